@@ -1,0 +1,15 @@
+"""What the hand meets: walls, viscoelastic solids, transfer functions."""
+
+from zwidth.environment.environment import Environment, RationalFunction
+from zwidth.environment.velocity import BackwardDifference, OnePole, VelocityFilter, Window
+from zwidth.environment.wall import Wall
+
+__all__ = [
+    "BackwardDifference",
+    "Environment",
+    "OnePole",
+    "RationalFunction",
+    "VelocityFilter",
+    "Wall",
+    "Window",
+]

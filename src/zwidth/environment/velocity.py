@@ -1,0 +1,124 @@
+"""Velocity estimators, as people really use them.
+
+Each is a pulse transfer function from sampled position to velocity [1/s]:
+
+    backward difference   (z − 1)/(T z)
+    window of N samples   (1 − z⁻ᴺ)/(N T)
+    one-pole low-pass     (1 − z⁻¹)/(T + τ (1 − z⁻¹))   (backward Euler of s/(1 + τ s))
+    any filter            F(z) · (z − 1)/(T z)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from zwidth.environment.environment import RationalFunction, certain, multiply
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
+
+_ONE = Fraction(1)
+
+
+@dataclass(frozen=True)
+class BackwardDifference:
+    """v(k) = (x(k) − x(k−1))/T."""
+
+    def transfer(self, period: Fraction) -> RationalFunction:
+        """(z − 1)/(T z) [1/s]."""
+        return RationalFunction((_ONE, -_ONE), (period, Fraction(0)))
+
+
+@dataclass(frozen=True)
+class Window:
+    """v(k) = (x(k) − x(k−N))/(N T).
+
+    Parameters
+    ----------
+    samples
+        N, 1 ≤ N ≤ 200; 1 is the backward difference.
+    """
+
+    samples: int
+
+    def __post_init__(self) -> None:
+        number = Exact(self.samples).fraction
+        if number.denominator != 1 or not 1 <= number <= 200:
+            raise InputError(
+                f"a velocity window has a whole number of samples from 1 to 200, got {self.samples}; "
+                "a longer one is better written as a one-pole filter"
+            )
+        object.__setattr__(self, "samples", int(number))
+
+    def transfer(self, period: Fraction) -> RationalFunction:
+        """(zᴺ − 1)/(N T zᴺ) [1/s]."""
+        zeros = (Fraction(0),) * (self.samples - 1)
+        return RationalFunction((_ONE, *zeros, -_ONE), (self.samples * period, *zeros, Fraction(0)))
+
+
+@dataclass(frozen=True, init=False)
+class OnePole:
+    """τ v̇ + v = ẋ by backward Euler: v(k) = (τ v(k−1) + x(k) − x(k−1))/(τ + T).
+
+    Parameters
+    ----------
+    time_constant
+        τ ≥ 0 [s]; the cut-off frequency is 1/(2πτ).
+    """
+
+    time_constant: Exact | Interval
+
+    def __init__(self, time_constant: RealLike | Interval | tuple[RealLike, RealLike]) -> None:
+        value = as_parameter(time_constant)
+        if ends(value)[0] < 0:
+            raise InputError(
+                f"time_constant must be ≥ 0 s, got {value}: a filter with a negative one grows without bound"
+            )
+        object.__setattr__(self, "time_constant", value)
+
+    def transfer(self, period: Fraction) -> RationalFunction:
+        """(z − 1)/((T + τ) z − τ) [1/s]."""
+        tau = certain(self.time_constant, "time_constant")
+        return RationalFunction((_ONE, -_ONE), (period + tau, -tau))
+
+
+@dataclass(frozen=True, init=False)
+class VelocityFilter:
+    """F(z) applied to the backward difference.
+
+    Parameters
+    ----------
+    numerator, denominator
+        Coefficients of F in descending powers of z; F proper.
+    """
+
+    numerator: tuple[Exact, ...]
+    denominator: tuple[Exact, ...]
+
+    def __init__(self, numerator: Sequence[RealLike], denominator: Sequence[RealLike]) -> None:
+        num, den = (tuple(Exact(c) for c in part) for part in (numerator, denominator))
+        while den and den[0] == 0:
+            den = den[1:]
+        while len(num) > 1 and num[0] == 0:
+            num = num[1:]
+        if not den or not num:
+            raise InputError("a velocity filter needs a numerator and a denominator that is not zero")
+        if len(num) > len(den):
+            raise InputError(
+                f"a velocity filter cannot have more zeros ({len(num) - 1}) than poles ({len(den) - 1}): "
+                "it would need samples that are still to come"
+            )
+        object.__setattr__(self, "numerator", num)
+        object.__setattr__(self, "denominator", den)
+
+    def transfer(self, period: Fraction) -> RationalFunction:
+        """F(z) (z − 1)/(T z) [1/s]."""
+        num = tuple(c.fraction for c in self.numerator)
+        den = tuple(c.fraction for c in self.denominator)
+        return RationalFunction(
+            multiply(num, (_ONE, -_ONE)), multiply(den, (period, Fraction(0)))
+        )
+
+
+VelocityEstimator = BackwardDifference | Window | OnePole | VelocityFilter

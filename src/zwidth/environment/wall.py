@@ -1,0 +1,79 @@
+"""The virtual wall: a spring and a damper that act inside only.
+
+    f = K x + B v    if x > 0,   0 outside;      H(z) = K + B V(z)
+
+with V(z) the velocity estimator, by default the backward difference
+(Colgate & Schenkel 1997; Abbott & Okamura 2005, equation (2)).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from zwidth.environment.environment import Environment, RationalFunction, add, certain, multiply
+from zwidth.environment.velocity import BackwardDifference, VelocityEstimator
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
+
+Parameter = RealLike | Interval | tuple[RealLike, RealLike]
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class Wall(Environment):
+    """A unilateral spring–damper wall, ``f = K x + B v if x > 0``.
+
+    Parameters
+    ----------
+    stiffness
+        K ≥ 0 [N/m; N·m/rad].
+    damping
+        B, of either sign [N·s/m; N·m·s/rad]. Default 0.
+    velocity_filter
+        `BackwardDifference()` (default), `Window(samples)`, `OnePole(time_constant)`
+        or `VelocityFilter(numerator, denominator)`.
+
+    Raises
+    ------
+    InputError
+        If K < 0: a negative spring pushes the hand in and its energy has no floor.
+    """
+
+    stiffness: Exact | Interval
+    damping: Exact | Interval
+    velocity_filter: VelocityEstimator
+
+    def __init__(
+        self,
+        stiffness: Parameter,
+        damping: Parameter = 0,
+        velocity_filter: VelocityEstimator | None = None,
+    ) -> None:
+        k, b = as_parameter(stiffness), as_parameter(damping)
+        if ends(k)[0] < 0:
+            raise InputError(
+                f"stiffness must be ≥ 0, got {k}: a negative spring pulls the hand in "
+                "and gives out energy without end"
+            )
+        object.__setattr__(self, "stiffness", k)
+        object.__setattr__(self, "damping", b)
+        object.__setattr__(
+            self, "velocity_filter", BackwardDifference() if velocity_filter is None else velocity_filter
+        )
+
+    @property
+    def unilateral(self) -> bool:
+        return True
+
+    @property
+    def spring(self) -> bool:
+        return ends(self.damping) == (0, 0)
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """K + B V(z) [N/m]."""
+        k = certain(self.stiffness, "stiffness")
+        if self.spring:
+            return RationalFunction((k,), (Fraction(1),))
+        b = certain(self.damping, "damping")
+        num, den = self.velocity_filter.transfer(sample_period)
+        return RationalFunction(add(multiply((k,), den), multiply((b,), num)), den)

@@ -1,0 +1,55 @@
+"""One glossary of quantities: symbol, name, unit, meaning.
+
+Axis labels, option help, report rows, JSON keys and docs tables read it, so
+that the same name has the same unit everywhere.  A rotary device carries
+torque and angle in the place of force and position: its units stand beside.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Quantity(NamedTuple):
+    """A physical quantity as people meet it."""
+
+    name: str
+    symbol: str
+    unit: str
+    rotary_unit: str
+    meaning: str
+
+    def unit_for(self, motion: str) -> str:
+        """The SI unit for a "linear" or a "rotary" device."""
+        return self.rotary_unit if motion == "rotary" else self.unit
+
+
+def _q(name: str, symbol: str, unit: str, rotary_unit: str, meaning: str) -> tuple[str, Quantity]:
+    return name, Quantity(name, symbol, unit, rotary_unit, meaning)
+
+
+GLOSSARY: dict[str, Quantity] = dict(
+    [
+        _q("mass", "m", "kg", "kg*m^2", "inertia felt at the handle; no criterion here depends on it"),
+        _q("damping", "b", "N*s/m", "N*m*s/rad", "viscous friction of the device itself"),
+        _q("coulomb_friction", "f_c", "N", "N*m", "dry friction of the device itself"),
+        _q("resolution", "Δ", "m", "rad", "one encoder count at the handle; 0 means ideal"),
+        _q("sample_period", "T", "s", "s", "time between two samples"),
+        _q("rate", "1/T", "Hz", "Hz", "samples per second"),
+        _q("delay", "τ", "s", "s", "from taking a sample to applying its force"),
+        _q("force_limit", "F_max", "N", "N*m", "largest force of the actuator"),
+        _q("force_resolution", "ΔF", "N", "N*m", "one step of the digital-to-analogue converter"),
+        _q("motor_inductance", "L", "H", "H", "inductance of the motor winding"),
+        _q("supply_voltage", "U", "V", "V", "largest voltage of the amplifier"),
+        _q("current_limit", "I_max", "A", "A", "largest current command"),
+        _q("stiffness", "K", "N/m", "N*m/rad", "virtual stiffness"),
+        _q("virtual_damping", "B", "N*s/m", "N*m*s/rad", "virtual damping"),
+        _q("branch_stiffness", "μ1", "N/m", "N*m/rad", "spring in series with a dashpot"),
+        _q("branch_damping", "η1", "N*s/m", "N*m*s/rad", "dashpot in series with a spring"),
+        _q("time_constant", "τ_v", "s", "s", "time constant of a velocity filter"),
+        _q("position", "x", "m", "rad", "positive into the wall"),
+        _q("force", "f", "N", "N*m", "actuator force, positive out of the wall"),
+        _q("energy", "W", "J", "J", "energy through the port"),
+        _q("frequency", "ω/2π", "Hz", "Hz", "frequency of the hand's motion"),
+    ]
+)
