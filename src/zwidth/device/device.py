@@ -35,17 +35,20 @@ class Device:
     Parameters
     ----------
     mass
-        Inertia at the handle, > 0 [kg; kg·m² if rotary].
+        Inertia at the handle, > 0 [kg; kg·m² if rotary]; None where unknown. No
+        criterion depends on it: only a simulated motion needs it.
     damping
         Viscous friction b of the device itself, ≥ 0 [N·s/m; N·m·s/rad].
     coulomb_friction
-        Coulomb friction f_c, ≥ 0 [N; N·m]. Default 0.
+        Coulomb friction f_c, ≥ 0 [N; N·m]. Not given: taken as 0, see `assumed`.
     resolution
         Encoder resolution Δ at the handle, ≥ 0, 0 for an ideal sensor [m; rad].
+        Not given: taken as 0, see `assumed`.
     sample_period, rate
         T [s] or 1/T [Hz], > 0; exactly one of the two.
     delay
-        Time from the sample to its force, any real number ≥ 0 [s].
+        Time from the sample to its force, any real number ≥ 0 [s]. Not given:
+        taken as 0, see `assumed`.
     force_limit
         Largest actuator force, > 0 [N; N·m]; None where unknown.
     force_resolution
@@ -63,7 +66,7 @@ class Device:
         If a number is missing, not finite, or outside its bound.
     """
 
-    mass: Exact | Interval
+    mass: Exact | Interval | None
     damping: Exact | Interval
     coulomb_friction: Exact | Interval
     resolution: Exact | Interval
@@ -80,13 +83,13 @@ class Device:
     def __init__(
         self,
         *,
-        mass: Parameter,
+        mass: Parameter | None = None,
         damping: Parameter,
-        coulomb_friction: Parameter = 0,
-        resolution: Parameter = 0,
+        coulomb_friction: Parameter | None = None,
+        resolution: Parameter | None = None,
         sample_period: Parameter | None = None,
         rate: Parameter | None = None,
-        delay: Parameter = 0,
+        delay: Parameter | None = None,
         force_limit: Parameter | None = None,
         force_resolution: Parameter | None = None,
         motor_inductance: Parameter | None = None,
@@ -111,10 +114,23 @@ class Device:
             "supply_voltage": supply_voltage,
             "current_limit": current_limit,
         }
+        assumed = tuple(key for key in _ZERO_IF_UNKNOWN if given[key] is None)
+        given.update(dict.fromkeys(assumed, 0))
         for key, value in given.items():
             object.__setattr__(self, key, _validated(key, value, motion))
+        object.__setattr__(self, "_assumed", assumed)
         object.__setattr__(self, "motion", motion)
         object.__setattr__(self, "name", str(name))
+
+    @property
+    def assumed(self) -> tuple[str, ...]:
+        """The parameters that were not given and are therefore taken as 0.
+
+        Some of "coulomb_friction", "resolution", "delay". An ideal encoder and
+        an instant computation are favourable assumptions: a claim must name
+        them. Devices compare equal whether a 0 was given or assumed.
+        """
+        return tuple(self.__dict__["_assumed"])
 
     @property
     def rate(self) -> Exact | Interval:
@@ -128,7 +144,7 @@ class Device:
 
     def replace(self, **changes: Any) -> Device:
         """The same device with some arguments changed (`rate` counts as one)."""
-        given = {f.name: getattr(self, f.name) for f in fields(self)}
+        given = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in self.assumed}
         if "rate" in changes and "sample_period" not in changes:
             del given["sample_period"]
         return Device(**{**given, **changes})
@@ -184,11 +200,16 @@ def _period(sample_period: Parameter | None, rate: Parameter | None) -> Paramete
     if sample_period is not None:
         return sample_period
     assert rate is not None
-    parameter = as_parameter(rate)
+    try:
+        parameter = as_parameter(rate)
+    except InputError as error:
+        raise InputError(f"rate [Hz]: {error}") from None
     if ends(parameter)[0] <= 0:
         raise InputError(f"rate must be > 0 Hz, got {parameter}; a loop that never samples renders nothing")
     return _reciprocal(parameter)
 
+
+_ZERO_IF_UNKNOWN = ("coulomb_friction", "resolution", "delay")
 
 _WHY = {
     "mass": (True, "a device has inertia; the criteria do not depend on it, the motions do"),
@@ -209,7 +230,7 @@ def _validated(key: str, value: Parameter | None, motion: str) -> Exact | Interv
     strict, why = _WHY[key]
     unit = GLOSSARY[key].unit_for(motion)
     if value is None:
-        if key in ("mass", "damping", "coulomb_friction", "resolution", "delay"):
+        if key == "damping":
             raise InputError(f"{key} [{unit}] is needed and was not given")
         return None
     try:
