@@ -1,0 +1,147 @@
+"""Values with units: "22.4 um" means 224/10⁷ m, exactly.
+
+A value is a number and a product of units, each an SI unit with a prefix:
+
+    "1 kHz"   "22.4 µm"   "0.15 N*s/m"   "0.15 N s/m"   "10 mN·m"   "500 g"   "1/3000 s"
+
+read from left to right, so N*s/m is (N·s)/m.  A number without a unit is SI.
+The arithmetic is rational: the typed decimal times the exact scale.  Only
+degrees and turns bring in π; their result is rounded to the nearest double.
+
+Dimensions are exponents of kg, m, s, A and rad.  The radian is kept, so that
+a rate of "60 rad/s" is refused instead of being read as 60 Hz; but where a
+quantity is per radian the radian may be left out, as in N*m*s for N*m*s/rad.
+"""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+from fractions import Fraction
+from numbers import Real
+
+from zwidth.errors import InputError
+from zwidth.quantity.dimension import PI, compatible, kind_of, unit_of
+from zwidth.quantity.exact import Exact, Interval
+
+LONGEST_TEXT = 120
+"""A value longer than this is a mistake, whatever it says."""
+
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_SPELLING = str.maketrans(
+    {"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", "−": "-", "°": "deg", "…": "..", "²": "^2", "³": "^3"}
+)
+
+
+def parse(value: object, unit: str, what: str) -> Exact | Interval:
+    """Read a number, a text with a unit, or the two ends of an interval.
+
+    Parameters
+    ----------
+    value
+        A number (SI), a text such as "22.4 um" or "0.1 .. 0.2 N", or a list
+        or tuple of two of them.
+    unit
+        The unit of the quantity, such as "N*s/m"; the result is in it.
+    what
+        The quantity's name, for the messages.
+
+    Raises
+    ------
+    InputError
+        If it is no number, not finite, or of another dimension.
+    """
+    if isinstance(value, Interval):
+        return value
+    if isinstance(value, (list, tuple)):
+        if len(value) != 2:
+            raise InputError(f"{what}: an interval has two ends, got {len(value)} values")
+        return _interval(parse_number(value[0], unit, what), parse_number(value[1], unit, what), what)
+    if isinstance(value, str) and ".." in value.translate(_SPELLING):
+        return _interval(*_text_ends(value, unit, what), what)
+    return parse_number(value, unit, what)
+
+
+def parse_number(value: object, unit: str, what: str) -> Exact:
+    """Read one number or text, in `unit`; an interval is refused."""
+    if isinstance(value, str):
+        return _parse_text(value, unit, what)
+    if isinstance(value, bool) or not isinstance(value, (Real, Decimal)):
+        raise InputError(f"{what} is in {unit}; got {_type_name(value)} where a number belongs")
+    if isinstance(value, int) and value.bit_length() > 512:
+        raise InputError(f"{what}: got a whole number of more than 150 digits; check the unit ({unit})")
+    try:
+        return Exact(value)  # type: ignore[arg-type]  # every Real is read as its shortest decimal
+    except InputError as error:
+        raise InputError(f"{what} [{unit}]: {error}") from None
+
+
+def _parse_text(value: str, unit: str, what: str) -> Exact:
+    number, rest = _split(value, unit, what)
+    try:
+        fraction = Exact(number).fraction
+        given, wanted = unit_of(rest), unit_of(unit)
+        if not any(map(str.isalpha, rest)):  # SI like a number; perhaps a ratio, such as 1/3000
+            return Exact(fraction * given.scale)
+        if not compatible(given, wanted):
+            raise InputError(f'{what} is in {unit}; got "{_short(value)}", {kind_of(given)}')
+        return _scaled(fraction * given.scale / wanted.scale, given.turns - wanted.turns)
+    except InputError as error:
+        if str(error).startswith(what):
+            raise
+        raise InputError(f'{what} is in {unit}; got "{_short(value)}": {error}') from None
+
+
+def _scaled(fraction: Fraction, turns: int) -> Exact:
+    if turns == 0:
+        return Exact(fraction)
+    # Validated before it becomes a float, which could overflow.
+    return Exact(float(Exact(fraction * PI**turns).fraction))
+
+
+def _split(value: str, unit: str, what: str) -> tuple[str, str]:
+    """The number and the unit of one value, both in plain ASCII spelling."""
+    text = value.translate(_SPELLING).strip()
+    if not text:
+        raise InputError(f"{what} is in {unit}; got an empty text")
+    match = _NUMBER.match(text) if len(text) <= LONGEST_TEXT else None
+    if match is None or text[match.end() :].startswith(","):
+        example = (
+            '; write "0.15", with a point' if "," in text else f': expected a number, such as "0.15 {unit}"'
+        )
+        if text.lstrip("+-").lower().startswith(("nan", "inf")):
+            example = ": it must be finite"
+        raise InputError(f'{what} is in {unit}; got "{_short(value)}"{example}')
+    return match[0], text[match.end() :].strip()
+
+
+def _text_ends(value: str, unit: str, what: str) -> tuple[Exact, Exact]:
+    parts = value.translate(_SPELLING).split("..")
+    if len(parts) != 2 or len(value) > 2 * LONGEST_TEXT or "..." in value:
+        raise InputError(
+            f'{what} is in {unit}; got "{_short(value)}": an interval is two numbers, such as "0.1 .. 0.2"'
+        )
+    (_, first_unit), (_, second_unit) = (_split(part, unit, what) for part in parts)
+    if first_unit and not second_unit:
+        raise InputError(
+            f'{what}: in "{_short(value)}" the unit belongs after the second number, or after both'
+        )
+    low = parts[0] if first_unit else f"{parts[0]} {second_unit}"
+    return _parse_text(low, unit, what), _parse_text(parts[1], unit, what)
+
+
+def _interval(low: Exact, high: Exact, what: str) -> Interval:
+    try:
+        return Interval(low, high)
+    except InputError as error:
+        raise InputError(f"{what}: {error}") from None
+
+
+def _short(text: str) -> str:
+    printable = "".join(c if c.isprintable() else "?" for c in text)
+    return printable if len(printable) <= 40 else printable[:37] + "..."
+
+
+def _type_name(value: object) -> str:
+    names = {bool: "true or false", dict: "a table", list: "a list", tuple: "a list", type(None): "nothing"}
+    return names.get(type(value), f"a value of type {type(value).__name__}")
