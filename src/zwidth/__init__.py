@@ -1,7 +1,16 @@
 """Which virtual walls a haptic device can render without generating energy, proved."""
 
 from zwidth.device import Device
-from zwidth.environment import BackwardDifference, OnePole, VelocityFilter, Wall, Window
+from zwidth.environment import (
+    BackwardDifference,
+    GeneralizedMaxwell,
+    Maxwell,
+    OnePole,
+    StandardLinearSolid,
+    VelocityFilter,
+    Wall,
+    Window,
+)
 from zwidth.errors import InputError
 from zwidth.quantity import Exact, Interval
 
@@ -9,9 +18,12 @@ __all__ = [
     "BackwardDifference",
     "Device",
     "Exact",
+    "GeneralizedMaxwell",
     "InputError",
     "Interval",
+    "Maxwell",
     "OnePole",
+    "StandardLinearSolid",
     "VelocityFilter",
     "Wall",
     "Window",

@@ -2,13 +2,17 @@
 
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.environment.velocity import BackwardDifference, OnePole, VelocityFilter, Window
+from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
 from zwidth.environment.wall import Wall
 
 __all__ = [
     "BackwardDifference",
     "Environment",
+    "GeneralizedMaxwell",
+    "Maxwell",
     "OnePole",
     "RationalFunction",
+    "StandardLinearSolid",
     "VelocityFilter",
     "Wall",
     "Window",

@@ -1,0 +1,289 @@
+"""Viscoelastic solids: springs with Maxwell branches beside them.
+
+A branch is a spring μ and a dashpot η in series.  Under the position x it gives
+
+    H_i(s) = μ η s/(μ + η s)
+
+at first the spring, in the end nothing, relaxing with the time η/μ.  Then
+
+    Maxwell                 H = H_1
+    standard linear solid   H = μ0 + H_1
+    generalized Maxwell     H = μ0 + H_1 + H_2 + …      (a Prony series)
+
+A controller runs H(z), which the discretization makes of H(s).  Backward Euler
+gives H_i(z) = μ η (z − 1)/((μ T + η) z − η).
+
+The solids are touched and left: they push for x > 0 only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from zwidth.environment.discretization import (
+    LARGEST_ORDER,
+    ROUNDED,
+    Discretization,
+    as_discretization,
+    discretize,
+)
+from zwidth.environment.environment import Environment, RationalFunction, add, certain, multiply
+from zwidth.environment.wall import Parameter
+from zwidth.environment.wording import with_unit
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval, as_parameter, ends
+
+Branch = tuple[Exact | Interval, Exact | Interval]
+"""Spring μ and dashpot η in series."""
+
+_NEGATIVE = "a negative spring pulls the hand in and gives out energy without end"
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class StandardLinearSolid(Environment):
+    """A spring with one Maxwell branch beside it, ``H(s) = μ0 + μ1 η1 s/(μ1 + η1 s)``.
+
+    A step of depth 1 is answered with μ0 + μ1 at first, relaxing to μ0.
+
+    Parameters
+    ----------
+    stiffness
+        μ0 ≥ 0 [N/m; N·m/rad].
+    branch_stiffness
+        μ1 ≥ 0 [N/m; N·m/rad]; with 0 the solid is a spring.
+    branch_damping
+        η1, of either sign [N·s/m; N·m·s/rad]; with 0 the solid is a spring.  A negative
+        one makes H(s) unstable.
+    discretization
+        "backward" (default), "forward", "tustin", "zoh", "impulse" or "matched".
+
+    Raises
+    ------
+    InputError
+        If a stiffness is negative or the discretization is unknown.
+
+    Notes
+    -----
+    For μ1, η1 > 0 the loop without delay is passive iff
+    b ≥ μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T) with backward Euler, and
+    b ≥ (μ0 + μ1) T/2 with Tustin's rule.
+    """
+
+    stiffness: Exact | Interval
+    branch_stiffness: Exact | Interval
+    branch_damping: Exact | Interval
+    discretization: Discretization
+
+    def __init__(
+        self,
+        stiffness: Parameter,
+        branch_stiffness: Parameter,
+        branch_damping: Parameter,
+        discretization: Discretization = "backward",
+    ) -> None:
+        object.__setattr__(self, "stiffness", _stiffness("stiffness", stiffness))
+        object.__setattr__(self, "branch_stiffness", _stiffness("branch_stiffness", branch_stiffness))
+        object.__setattr__(self, "branch_damping", _read("branch_damping", branch_damping))
+        object.__setattr__(self, "discretization", as_discretization(discretization))
+
+    @property
+    def unilateral(self) -> bool:
+        return True
+
+    @property
+    def spring(self) -> bool:
+        return not _acts((self.branch_stiffness, self.branch_damping))
+
+    @property
+    def coefficients_rounded(self) -> bool:
+        """True when H(z) has coefficients rounded to doubles."""
+        return self.discretization in ROUNDED and not self.spring
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """H(z) [N/m]; backward: μ0 + μ1 η1 (z − 1)/((μ1 T + η1) z − η1)."""
+        k = certain(self.stiffness, "stiffness")
+        mu = certain(self.branch_stiffness, "branch_stiffness")
+        eta = certain(self.branch_damping, "branch_damping")
+        return _discretized(k, [(mu, eta)], self.discretization, sample_period)
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line."""
+        k = with_unit("stiffness", self.stiffness, motion)
+        branch = _branch_text((self.branch_stiffness, self.branch_damping), motion)
+        return f"standard linear solid, {k} beside {branch}, discretization {self.discretization}"
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class GeneralizedMaxwell(Environment):
+    """A spring with Maxwell branches beside it, ``H(s) = μ0 + Σ μᵢ ηᵢ s/(μᵢ + ηᵢ s)``.
+
+    Its relaxation is the Prony series μ0 + Σ μᵢ exp(−t μᵢ/ηᵢ).
+
+    Parameters
+    ----------
+    stiffness
+        μ0 ≥ 0 [N/m; N·m/rad].
+    branches
+        Pairs (μᵢ, ηᵢ): μᵢ ≥ 0 [N/m; N·m/rad], ηᵢ of either sign [N·s/m; N·m·s/rad];
+        at most 200 of them.
+    discretization
+        "backward" (default), "forward", "tustin", "zoh", "impulse" or "matched".
+
+    Raises
+    ------
+    InputError
+        If a stiffness is negative, a branch is not a pair, or the discretization is unknown.
+    """
+
+    stiffness: Exact | Interval
+    branches: tuple[Branch, ...]
+    discretization: Discretization
+
+    def __init__(
+        self,
+        stiffness: Parameter,
+        branches: Iterable[Sequence[Parameter]],
+        discretization: Discretization = "backward",
+    ) -> None:
+        object.__setattr__(self, "stiffness", _stiffness("stiffness", stiffness))
+        object.__setattr__(self, "branches", _branches(branches))
+        object.__setattr__(self, "discretization", as_discretization(discretization))
+
+    @property
+    def unilateral(self) -> bool:
+        return True
+
+    @property
+    def spring(self) -> bool:
+        return not any(_acts(branch) for branch in self.branches)
+
+    @property
+    def coefficients_rounded(self) -> bool:
+        """True when H(z) has coefficients rounded to doubles."""
+        return self.discretization in ROUNDED and not self.spring
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """H(z) [N/m]; branches of one relaxation time keep their common factor."""
+        k = certain(self.stiffness, "stiffness")
+        pairs = [
+            (certain(mu, f"branches[{i}] stiffness"), certain(eta, f"branches[{i}] damping"))
+            for i, (mu, eta) in enumerate(self.branches)
+        ]
+        return _discretized(k, pairs, self.discretization, sample_period)
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line."""
+        parts = [with_unit("stiffness", self.stiffness, motion)]
+        parts += [_branch_text(branch, motion) for branch in self.branches]
+        return f"generalized Maxwell, {' beside '.join(parts)}, discretization {self.discretization}"
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class Maxwell(Environment):
+    """A spring and a dashpot in series, ``H(s) = μ η s/(μ + η s)``: a viscoelastic fluid.
+
+    Parameters
+    ----------
+    stiffness
+        μ ≥ 0 [N/m; N·m/rad].
+    damping
+        η, of either sign [N·s/m; N·m·s/rad]; 0 transmits no force, a negative one makes
+        H(s) unstable.
+    discretization
+        "backward" (default), "forward", "tustin", "zoh", "impulse" or "matched".
+
+    Raises
+    ------
+    InputError
+        If the stiffness is negative or the discretization is unknown.
+    """
+
+    stiffness: Exact | Interval
+    damping: Exact | Interval
+    discretization: Discretization
+
+    def __init__(
+        self, stiffness: Parameter, damping: Parameter, discretization: Discretization = "backward"
+    ) -> None:
+        object.__setattr__(self, "stiffness", _stiffness("stiffness", stiffness))
+        object.__setattr__(self, "damping", _read("damping", damping))
+        object.__setattr__(self, "discretization", as_discretization(discretization))
+
+    @property
+    def unilateral(self) -> bool:
+        return True
+
+    @property
+    def coefficients_rounded(self) -> bool:
+        """True when H(z) has coefficients rounded to doubles."""
+        return self.discretization in ROUNDED and _acts((self.stiffness, self.damping))
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """H(z) [N/m]; backward: μ η (z − 1)/((μ T + η) z − η)."""
+        pair = certain(self.stiffness, "stiffness"), certain(self.damping, "damping")
+        return _discretized(Fraction(0), [pair], self.discretization, sample_period)
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line."""
+        branch = _branch_text((self.stiffness, self.damping), motion)
+        return f"Maxwell body, {branch}, discretization {self.discretization}"
+
+
+def _discretized(
+    stiffness: Fraction,
+    branches: Sequence[tuple[Fraction, Fraction]],
+    method: Discretization,
+    period: Fraction,
+) -> RationalFunction:
+    num: tuple[Fraction, ...] = (stiffness,)
+    den: tuple[Fraction, ...] = (Fraction(1),)
+    for mu, eta in branches:
+        # a branch without spring or dashpot transmits no force
+        if mu and eta:
+            top, bottom = (mu * eta, Fraction(0)), (eta, mu)
+            num, den = add(multiply(num, bottom), multiply(den, top)), multiply(den, bottom)
+    return discretize(num, den, method, period)
+
+
+def _acts(branch: Branch) -> bool:
+    """False when the branch transmits no force, whatever its uncertain value."""
+    return all(ends(value) != (Fraction(0), Fraction(0)) for value in branch)
+
+
+def _read(key: str, value: Parameter) -> Exact | Interval:
+    try:
+        return as_parameter(value)
+    except InputError as error:
+        raise InputError(f"{key}: {error}") from None
+
+
+def _stiffness(key: str, value: Parameter) -> Exact | Interval:
+    parameter = _read(key, value)
+    if ends(parameter)[0] < 0:
+        raise InputError(f"{key} must be ≥ 0, got {parameter}: {_NEGATIVE}")
+    return parameter
+
+
+def _branches(given: Iterable[Sequence[Parameter]]) -> tuple[Branch, ...]:
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise InputError(f"branches is a list of pairs (stiffness, damping), got {given!r}")
+    pairs = [_pair(i, pair) for i, pair in enumerate(given)]
+    if len(pairs) > LARGEST_ORDER:
+        raise InputError(
+            f"branches has {len(pairs)} pairs, more than {LARGEST_ORDER}; no controller runs them"
+        )
+    return tuple(pairs)
+
+
+def _pair(index: int, pair: Sequence[Parameter]) -> Branch:
+    if isinstance(pair, str) or not hasattr(pair, "__len__") or len(pair) != 2:
+        raise InputError(f"branches[{index}] is a pair (stiffness, damping), got {pair!r}")
+    return _stiffness(f"branches[{index}] stiffness", pair[0]), _read(f"branches[{index}] damping", pair[1])
+
+
+def _branch_text(branch: Branch, motion: str) -> str:
+    mu = with_unit("branch_stiffness", branch[0], motion)
+    eta = with_unit("branch_damping", branch[1], motion)
+    return f"({mu} in series with {eta})"
