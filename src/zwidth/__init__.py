@@ -1,6 +1,6 @@
 """Which virtual walls a haptic device can render without generating energy, proved."""
 
-from zwidth.device import Device
+from zwidth.device import Device, catalogue
 from zwidth.environment import (
     BackwardDifference,
     GeneralizedMaxwell,
@@ -27,4 +27,5 @@ __all__ = [
     "VelocityFilter",
     "Wall",
     "Window",
+    "catalogue",
 ]
