@@ -1,6 +1,7 @@
 """Which virtual walls a haptic device can render without generating energy, proved."""
 
-from zwidth.device import Device, catalogue
+from zwidth.device import Device, FrictionCurve, FrictionModel, catalogue
+from zwidth.device.rotary import rotary
 from zwidth.environment import (
     BackwardDifference,
     GeneralizedMaxwell,
@@ -18,6 +19,8 @@ __all__ = [
     "BackwardDifference",
     "Device",
     "Exact",
+    "FrictionCurve",
+    "FrictionModel",
     "GeneralizedMaxwell",
     "InputError",
     "Interval",
@@ -28,4 +31,5 @@ __all__ = [
     "Wall",
     "Window",
     "catalogue",
+    "rotary",
 ]

@@ -1,0 +1,135 @@
+"""Rotary devices: wheels, knobs, paddles.
+
+A rotary device has torque and angle in the place of force and position:
+
+    J θ̈ = τ_h − τ_a − τ_c sgn θ̇ − b θ̇
+
+Everything that holds for the linear device holds with N → N·m and m → rad.
+Seen at a handle of radius r, with x = r θ and f = τ/r, it is the linear device
+
+    m = J/r²,   b/r²,   f_c = τ_c/r,   Δ = r Δθ,   F_max = τ_max/r.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from zwidth.device.device import Device, Parameter
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval, as_parameter, ends
+
+
+def rotary(
+    *,
+    inertia: Parameter | None = None,
+    damping: Parameter,
+    coulomb_friction: Parameter | None = None,
+    resolution: Parameter | None = None,
+    counts_per_turn: Parameter | None = None,
+    handle_radius: Parameter | None = None,
+    force_limit: Parameter | None = None,
+    force_resolution: Parameter | None = None,
+    **rest: Any,
+) -> Device:
+    """A rotary device; with `handle_radius`, its linear equivalent at the handle.
+
+    Parameters
+    ----------
+    inertia
+        J about the axis, > 0 [kg·m²]; None where unknown.
+    damping
+        Viscous friction b, ≥ 0 [N·m·s/rad].
+    coulomb_friction
+        Coulomb friction torque τ_c, ≥ 0 [N·m].
+    resolution, counts_per_turn
+        Δθ [rad], or N > 0 and then Δθ = 2π/N to double precision; one of the
+        two at most. N is counts, not lines: with quadrature decoding an
+        encoder of 500 lines gives 2000 counts per turn, at the axis whose
+        angle θ is (times the gear ratio, where there is one).
+    handle_radius
+        r > 0 [m]. With it the result has motion "linear", in newtons and
+        metres at the handle; without it "rotary", in N·m and rad.
+    force_limit, force_resolution
+        Of the actuator, as torques [N·m].
+    rest
+        The other arguments of `Device`: rate or sample_period, delay, …
+
+    Raises
+    ------
+    InputError
+        If a number is missing, not finite, or outside its bound.
+    """
+    if counts_per_turn is not None:
+        if resolution is not None:
+            raise InputError(
+                "give either resolution [rad] or counts_per_turn, got both; one follows from the other"
+            )
+        resolution = _count_angle(counts_per_turn)
+    given: dict[str, Any] = {
+        "mass": _inertia(inertia),
+        "damping": damping,
+        "coulomb_friction": coulomb_friction,
+        "resolution": resolution,
+        "force_limit": force_limit,
+        "force_resolution": force_resolution,
+    }
+    device = Device(**given, motion="rotary", **rest)
+    if handle_radius is None:
+        return device
+    return _at_handle(
+        device, _positive(handle_radius, "handle_radius", "m", "the handle turns about the axis")
+    )
+
+
+def _inertia(value: Parameter | None) -> Exact | Interval | None:
+    return None if value is None else _positive(value, "inertia", "kg*m^2", "a body has inertia")
+
+
+_POWER = {
+    "mass": -2,
+    "damping": -2,
+    "coulomb_friction": -1,
+    "resolution": 1,
+    "force_limit": -1,
+    "force_resolution": -1,
+}
+"""The power of the handle radius that takes each rotary quantity to the handle."""
+
+
+def _at_handle(device: Device, radius: Exact | Interval) -> Device:
+    changes: dict[str, Any] = {"motion": "linear"}
+    for key, power in _POWER.items():
+        value = getattr(device, key)
+        if value is not None and key not in device.assumed:
+            changes[key] = _scaled(value, radius, power)
+    return device.replace(**changes)
+
+
+def _scaled(value: Exact | Interval, radius: Exact | Interval, power: int) -> Exact | Interval:
+    """value · radiusᵖ; both are ≥ 0, so the ends give the ends."""
+    (low, high), (near, far) = ends(value), ends(radius)
+    if power < 0:
+        near, far = far, near
+    if isinstance(value, Interval) or isinstance(radius, Interval):
+        return Interval(low * near**power, high * far**power)
+    return Exact(low * near**power)
+
+
+def _count_angle(counts_per_turn: Parameter) -> Exact | Interval:
+    low, high = ends(_positive(counts_per_turn, "counts_per_turn", "counts", "leave it out if unknown"))
+    if low == high:
+        return Exact(2 * math.pi / float(low))
+    return Interval(2 * math.pi / float(high), 2 * math.pi / float(low))
+
+
+def _positive(value: Parameter, key: str, unit: str, why: str) -> Exact | Interval:
+    try:
+        parameter = as_parameter(value)
+    except InputError as error:
+        raise InputError(f"{key} [{unit}]: {error}") from None
+    if ends(parameter)[0] <= 0:
+        raise InputError(
+            f"{key} must be > 0 {unit}, got {parameter}: angle and handle are then not connected"
+        )
+    return parameter
