@@ -1,0 +1,148 @@
+"""Systems of python-control and scipy.signal, read exactly.
+
+They are recognised by what they have (num and den; A, B, C, D; zeros, poles,
+gain), so that neither library is needed here.  A float means its shortest
+decimal, as everywhere; the transfer function of a state space is computed in
+rational arithmetic.  Common factors are kept: a mode that the transfer
+function hides is still run by the controller.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import Any, Literal, NamedTuple
+
+import flint
+
+from zwidth.errors import InputError
+
+Polynomial = tuple[Fraction, ...]
+
+
+class LinearSystem(NamedTuple):
+    """Numerator and denominator in descending powers, and the time they are of."""
+
+    numerator: Polynomial
+    denominator: Polynomial
+    time: Literal["continuous", "discrete", "unsaid"]
+    sample_period: Fraction | None
+    """T [s] of a discrete system that says it."""
+
+
+def is_system(thing: object) -> bool:
+    """True for what looks like a system of python-control or scipy.signal."""
+    return hasattr(thing, "dt") and not isinstance(thing, type)
+
+
+def read_system(system: Any) -> LinearSystem:
+    """The transfer function of a single-input single-output linear system.
+
+    Raises
+    ------
+    InputError
+        If the system has several inputs or outputs, is not a transfer function,
+        state space or zeros–poles–gain model, or holds a number that is not finite.
+    """
+    if all(hasattr(system, name) for name in ("A", "B", "C", "D")):
+        num, den = _from_state_space(system)
+    elif hasattr(system, "num") and hasattr(system, "den"):
+        num, den = (_single(getattr(system, name), name) for name in ("num", "den"))
+    elif all(hasattr(system, name) for name in ("zeros", "poles", "gain")):
+        num, den = _from_roots(system)
+    else:
+        raise InputError(
+            f"a system of type {type(system).__name__} is not read; give a TransferFunction, StateSpace or "
+            "ZerosPolesGain system of python-control or scipy.signal, or the coefficients themselves"
+        )
+    return LinearSystem(num, den, *_time(system))
+
+
+def _time(system: Any) -> tuple[Literal["continuous", "discrete", "unsaid"], Fraction | None]:
+    """scipy says None for continuous time; python-control says 0, and None for either."""
+    dt = system.dt
+    if dt is None:
+        return ("continuous" if _of_scipy(system) else "unsaid"), None
+    if dt is True:
+        return "discrete", None
+    if dt == 0:
+        return "continuous", None
+    return "discrete", _number(dt, "dt")
+
+
+def _of_scipy(system: object) -> bool:
+    return any(base.__module__.split(".")[0] == "scipy" for base in type(system).__mro__)
+
+
+def _number(value: Any, key: str) -> Fraction:
+    if isinstance(value, complex) or getattr(value, "imag", 0) != 0:
+        raise InputError(f"{key} has the complex coefficient {value}; a force law is real")
+    number = float(value)
+    if not math.isfinite(number):
+        raise InputError(f"{key} holds {number}; expected finite numbers")
+    return Fraction(repr(number))
+
+
+def _single(coefficients: Any, key: str) -> Polynomial:
+    """One polynomial out of the nested lists that hold one for each input and output."""
+    inner = coefficients
+    while len(inner) == 1 and isinstance(inner[0], Iterable):
+        inner = inner[0]
+    if any(isinstance(c, Iterable) for c in inner):
+        raise InputError(_SEVERAL)
+    return tuple(_number(c, key) for c in inner)
+
+
+_SEVERAL = (
+    "the system has several inputs or outputs; a force law has one position in and one force out: "
+    "pick one entry of it, such as system[0, 0]"
+)
+
+
+def _from_state_space(system: Any) -> tuple[Polynomial, Polynomial]:
+    """C (zI − A)⁻¹ B + D = (det(zI − A + BC) + (D − 1) det(zI − A))/det(zI − A)."""
+    a, b, c, d = (_rows(getattr(system, name), name) for name in "ABCD")
+    order = len(a)
+    if len(d) != 1 or len(d[0]) != 1:
+        raise InputError(_SEVERAL)
+    if order == 0:
+        return (d[0][0],), (Fraction(1),)
+    closed = [[a[i][j] - b[i][0] * c[0][j] for j in range(order)] for i in range(order)]
+    den = _characteristic(a)
+    num = tuple(x + (d[0][0] - 1) * y for x, y in zip(_characteristic(closed), den, strict=True))
+    return num, den
+
+
+def _rows(matrix: Any, key: str) -> list[list[Fraction]]:
+    return [[_number(entry, key) for entry in row] for row in matrix]
+
+
+def _characteristic(matrix: list[list[Fraction]]) -> Polynomial:
+    entries = [[flint.fmpq(x.numerator, x.denominator) for x in row] for row in matrix]
+    coefficients = flint.fmpq_mat(entries).charpoly().coeffs()
+    return tuple(Fraction(int(c.p), int(c.q)) for c in coefficients[::-1])
+
+
+def _from_roots(system: Any) -> tuple[Polynomial, Polynomial]:
+    gain = _number(system.gain, "gain")
+    num = tuple(gain * c for c in _with_roots(system.zeros, "zeros"))
+    return num, _with_roots(system.poles, "poles")
+
+
+def _with_roots(roots: Any, key: str) -> Polynomial:
+    """∏ (z − r), the complex roots in conjugate pairs."""
+    real, imaginary = [Fraction(1)], [Fraction(0)]
+    for root in roots:
+        if isinstance(root, Iterable):
+            raise InputError(_SEVERAL)
+        x, y = _number(root.real, key), _number(root.imag, key)
+        zero = [Fraction(0)]
+        re, im = zero + real, zero + imaginary
+        real, imaginary = (
+            [p - x * q + y * r for p, q, r in zip(real + zero, re, im, strict=True)],
+            [p - x * q - y * r for p, q, r in zip(imaginary + zero, im, re, strict=True)],
+        )
+    if any(imaginary):
+        raise InputError(f"the complex {key} of the system are not in conjugate pairs; a force law is real")
+    return tuple(real)

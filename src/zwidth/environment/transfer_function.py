@@ -1,0 +1,311 @@
+"""Any linear law, given as H(s) or as H(z), position → force.
+
+Both take coefficients in descending powers, as scipy.signal does, or a system
+of python-control or scipy.signal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import floor, log10
+from typing import Any, Self
+
+from zwidth.environment.discretization import (
+    LARGEST_ORDER,
+    ROUNDED,
+    Discretization,
+    as_discretization,
+    choices,
+    discretize,
+    trimmed,
+)
+from zwidth.environment.environment import Environment, RationalFunction
+from zwidth.environment.system import LinearSystem, is_system, read_system
+from zwidth.environment.wording import polynomial_text
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike
+
+Coefficients = tuple[Exact, ...]
+Polynomial = tuple[Fraction, ...]
+
+_SAME_PERIOD = Fraction(1, 10**9)
+"""Two sample periods that differ by less, relatively, are one."""
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class PulseTransferFunction(Environment):
+    """A law given as the controller runs it, H(z) from sampled position to force.
+
+    It acts at any position: there is no surface.
+
+    Parameters
+    ----------
+    numerator, denominator
+        Coefficients in descending powers of z [N/m; N·m/rad]; H proper, of order ≤ 200.
+        Common factors are kept.  Or, in the place of both, a discrete system of
+        python-control or scipy.signal.
+    sample_period
+        T > 0 [s] that the coefficients are meant for; a device of another is then refused.
+        None (default) where they do not say.
+
+    Raises
+    ------
+    InputError
+        If H is improper, has a zero denominator or too high an order; if a system is
+        continuous, complex, or has several inputs or outputs.
+    """
+
+    numerator: Coefficients
+    denominator: Coefficients
+    sample_period: Exact | None
+
+    def __init__(
+        self,
+        numerator: Sequence[RealLike] | Any,
+        denominator: Sequence[RealLike] | None = None,
+        sample_period: RealLike | None = None,
+    ) -> None:
+        num, den, system = _read(numerator, denominator)
+        if len(num) > len(den):
+            raise InputError(
+                f"H(z) has more zeros ({len(num) - 1}) than poles ({len(den) - 1}): it would need positions "
+                "that are still to come; multiply the denominator by a power of z"
+            )
+        object.__setattr__(self, "numerator", num)
+        object.__setattr__(self, "denominator", den)
+        object.__setattr__(self, "sample_period", _period(sample_period, system))
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """H(z) as given [N/m].
+
+        Raises
+        ------
+        InputError
+            If H(z) was made for another sample period.
+        """
+        own = self.sample_period
+        if own is not None and abs(own.fraction - sample_period) > _SAME_PERIOD * own.fraction:
+            raise InputError(
+                f"H(z) was made for the sample period {float(own):.12g} s and the device samples every "
+                f"{float(sample_period):.12g} s; discretize it again, or change the device's rate"
+            )
+        return RationalFunction(_fractions(self.numerator), _fractions(self.denominator))
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The law factor · H(z), exactly."""
+        return self.replace(numerator=tuple(c.fraction * factor for c in self.numerator))
+
+    def describe(self) -> str:
+        """The law with its numbers, on one line."""
+        period = "" if self.sample_period is None else f", T = {float(self.sample_period):.6g} s"
+        return f"H(z) = {_ratio(self.numerator, self.denominator, 'z')}{period}"
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class ContinuousTransferFunction(Environment):
+    """A law given as H(s) from position to force, and how the controller discretizes it.
+
+    It acts at any position: there is no surface.
+
+    Parameters
+    ----------
+    numerator, denominator
+        Coefficients in descending powers of s [N/m; N·m/rad], of order ≤ 200.
+        Or, in the place of both, a continuous system of python-control or scipy.signal.
+    discretization
+        "backward", "forward", "tustin", "zoh", "impulse" or "matched".  Needed: the same
+        H(s) may be passive under one and active under another.  The coefficients of H(z)
+        are exact for the first three and correctly rounded to doubles for the others.
+
+    Raises
+    ------
+    InputError
+        If the discretization is missing or unknown, H has a zero denominator or too high
+        an order; if a system is discrete, complex, or has several inputs or outputs.
+    """
+
+    numerator: Coefficients
+    denominator: Coefficients
+    discretization: Discretization
+
+    def __init__(
+        self,
+        numerator: Sequence[RealLike] | Any,
+        denominator: Sequence[RealLike] | None = None,
+        discretization: Discretization | None = None,
+    ) -> None:
+        if discretization is None:
+            raise InputError(
+                "a continuous H(s) needs a discretization, for the verdict depends on it: "
+                f"give discretization = one of {choices()}"
+            )
+        method = as_discretization(discretization)
+        num, den, system = _read(numerator, denominator)
+        if system is not None and system.time == "discrete":
+            raise InputError("the system is discrete already; give it as PulseTransferFunction(system)")
+        object.__setattr__(self, "numerator", num)
+        object.__setattr__(self, "denominator", den)
+        object.__setattr__(self, "discretization", method)
+
+    @property
+    def coefficients_rounded(self) -> bool:
+        """True when H(z) has coefficients rounded to doubles."""
+        constant = len(self.numerator) == len(self.denominator) == 1
+        return self.discretization in ROUNDED and not constant
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """H(z) of H(s) [N/m]; common factors are kept.
+
+        Raises
+        ------
+        InputError
+            If the discretization would need samples that are still to come, or cannot
+            be computed in doubles.
+        """
+        num, den = _fractions(self.numerator), _fractions(self.denominator)
+        return discretize(num, den, self.discretization, sample_period)
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The law factor · H(s), exactly."""
+        return self.replace(numerator=tuple(c.fraction * factor for c in self.numerator))
+
+    def describe(self) -> str:
+        """The law with its numbers, on one line."""
+        ratio = _ratio(self.numerator, self.denominator, "s")
+        return f"H(s) = {ratio}, discretization {self.discretization}"
+
+
+def as_environment(thing: object, discretization: Discretization | None = None) -> Environment:
+    """An environment from anything that has an H.
+
+    Parameters
+    ----------
+    thing
+        An environment, which is returned as it is; or a linear system of python-control
+        or scipy.signal.
+    discretization
+        For a continuous system, and for it alone.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, a continuous system comes without a discretization, or a
+        discretization with anything else.
+    """
+    if isinstance(thing, Environment):
+        _refuse(discretization, "an environment has its own H(z)")
+        return thing
+    if not is_system(thing):
+        raise InputError(
+            f"an environment is a wall, a solid, a transfer function, or a system of python-control or "
+            f"scipy.signal; got {thing!r}"
+        )
+    system = read_system(thing)
+    if system.time == "discrete" or (discretization is None and _is_constant(system)):
+        _refuse(discretization, "a discrete system has its own H(z)")
+        return PulseTransferFunction(thing)
+    if system.time == "unsaid" and discretization is None:
+        raise InputError(
+            "the system has dt=None and so does not say whether it is H(s) or H(z); give it a dt, or write "
+            "PulseTransferFunction(system) or ContinuousTransferFunction(system, discretization=…)"
+        )
+    return ContinuousTransferFunction(thing, discretization=discretization)
+
+
+def _refuse(discretization: object, why: str) -> None:
+    if discretization is not None:
+        raise InputError(f"discretization = {discretization!r} has nothing to act on: {why}")
+
+
+def _is_constant(system: LinearSystem) -> bool:
+    return len(trimmed(system.numerator)) == len(trimmed(system.denominator)) == 1
+
+
+def _read(
+    numerator: object, denominator: Sequence[RealLike] | None
+) -> tuple[Coefficients, Coefficients, LinearSystem | None]:
+    if not is_system(numerator):
+        if denominator is None:
+            raise InputError("a transfer function needs a numerator and a denominator, or a system")
+        num, den = _coefficients(numerator, "numerator"), _coefficients(denominator, "denominator")
+        return (*_checked(num, den), None)
+    if denominator is not None:
+        raise InputError("give either a system or a numerator and a denominator, got both")
+    system = read_system(numerator)
+    return (*_checked(*_in_range(system.numerator, system.denominator)), system)
+
+
+def _coefficients(given: object, key: str) -> Coefficients:
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise InputError(f"{key} is a list of coefficients in descending powers, got {given!r}")
+    return tuple(_coefficient(c, f"{key}[{i}]") for i, c in enumerate(given))
+
+
+def _coefficient(value: Any, key: str) -> Exact:
+    try:
+        return Exact(value)
+    except InputError as error:
+        raise InputError(f"{key}: {error}") from None
+
+
+def _checked(numerator: Coefficients, denominator: Coefficients) -> tuple[Coefficients, Coefficients]:
+    num, den = _without_leading_zeros(numerator), _without_leading_zeros(denominator)
+    if not any(den):
+        raise InputError("the denominator of a transfer function is zero")
+    if not num:
+        raise InputError("the numerator of a transfer function has no coefficient; for no force give [0]")
+    order = max(len(num), len(den)) - 1
+    if order > LARGEST_ORDER:
+        raise InputError(f"the transfer function has order {order}; at most {LARGEST_ORDER} is read")
+    return num, den
+
+
+def _without_leading_zeros(coefficients: Coefficients) -> Coefficients:
+    start = next((i for i, c in enumerate(coefficients) if c.fraction), len(coefficients) - 1)
+    return coefficients[max(start, 0) :]
+
+
+def _in_range(numerator: Polynomial, denominator: Polynomial) -> tuple[Coefficients, Coefficients]:
+    """Both polynomials times one power of ten, where they need it to be within range."""
+    sizes = [_decade(c) for c in (*numerator, *denominator) if c]
+    shift = Fraction(1)
+    if sizes and (min(sizes) < -39 or max(sizes) > 39):
+        shift = Fraction(10) ** (-(min(sizes) + max(sizes)) // 2)
+    num, den = (
+        tuple(_coefficient(c * shift, key) for c in part)
+        for part, key in ((numerator, "numerator"), (denominator, "denominator"))
+    )
+    return num, den
+
+
+def _decade(value: Fraction) -> int:
+    return floor((abs(value.numerator).bit_length() - value.denominator.bit_length()) * log10(2))
+
+
+def _fractions(coefficients: Coefficients) -> Polynomial:
+    return tuple(c.fraction for c in coefficients)
+
+
+def _period(given: RealLike | None, system: LinearSystem | None) -> Exact | None:
+    if system is not None and system.time == "continuous" and not _is_constant(system):
+        raise InputError(
+            "the system is continuous; give it as ContinuousTransferFunction(system, discretization=…) "
+            f"with one of {choices()}"
+        )
+    own = None if system is None else system.sample_period
+    if own is not None and given is not None:
+        raise InputError("the system has its own sample period; leave sample_period out")
+    value = own if own is not None else given
+    if value is None:
+        return None
+    period = _coefficient(value, "sample_period [s]")
+    if period <= 0:
+        raise InputError(f"sample_period must be > 0 s, got {period}")
+    return period
+
+
+def _ratio(numerator: Coefficients, denominator: Coefficients, variable: str) -> str:
+    top, bottom = (polynomial_text(c, variable) for c in (numerator, denominator))
+    return top if bottom == "1" else f"({top})/({bottom})"

@@ -1,0 +1,213 @@
+"""The sampled loop as exact polynomials.
+
+With ζ = z⁻¹ = e^{−jθ}, θ = ωT, c = cos θ, H = N(ζ)/D(ζ) and the delay
+(d + α)T, 0 ≤ α < 1, the energy a hand puts in over any motion is, at the least,
+
+    W = ½ ∫ |v|² q(cos θ) dθ/2π        (x = D w, v = w(k+1) − w(k))
+    q(c) = (2b/T) |D|² − R + (1 + c) S − (T α(1−α)/2b) |N|²
+    M D̄ = R(c) + j sin θ S(c),          M = ζᵈ (1 − α + α ζ) N
+
+so the loop cannot give out energy exactly if q ≥ 0 on [−1, 1] (and H is
+stable).  α = 0 is the criterion of Colgate & Schenkel (1997),
+b ≥ (T/2) Re{(1 − z⁻¹) H}/(1 − cos ωT); the last term is what the hand gains by
+moving in the instant at which a delayed force changes inside a sample.
+Everything is rational: N, D, b, T, α are the decimals that were typed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import lcm
+
+from flint import fmpq, fmpq_poly, fmpz_poly
+
+from zwidth.device import Device
+from zwidth.environment.environment import Environment, RationalFunction
+from zwidth.errors import InputError
+
+LARGEST_DEGREE = 400
+"""The order of H plus the delay in samples that is still decided."""
+
+
+@dataclass(frozen=True)
+class LinearLoop:
+    """A device and H(z), exact: what the linear criterion needs and no more.
+
+    Parameters
+    ----------
+    numerator, denominator
+        Coprime integer coefficients of N and D in ascending powers of ζ = z⁻¹.
+    damping, period
+        b [N·s/m] and T [s].
+    whole_delay, part_delay
+        d and α of delay = (d + α) T.
+    """
+
+    numerator: tuple[int, ...]
+    denominator: tuple[int, ...]
+    damping: Fraction
+    period: Fraction
+    whole_delay: int
+    part_delay: Fraction
+
+    @property
+    def order(self) -> int:
+        """Order of H(z)."""
+        return len(self.denominator) - 1
+
+    @property
+    def static_stiffness(self) -> Fraction | None:
+        """H(1) [N/m]; None with a pole there."""
+        at_one = sum(self.denominator)
+        return Fraction(sum(self.numerator), at_one) if at_one else None
+
+    def with_damping(self, damping: Fraction) -> LinearLoop:
+        """The same loop on a device with another b."""
+        return LinearLoop(
+            self.numerator, self.denominator, damping, self.period, self.whole_delay, self.part_delay
+        )
+
+    @cached_property
+    def dissipation(self) -> fmpq_poly:
+        """|D|² as a polynomial in c."""
+        return _from_cosines(_autocorrelation(self.denominator))
+
+    @cached_property
+    def switching(self) -> fmpq_poly:
+        """|N|² as a polynomial in c."""
+        return _from_cosines(_autocorrelation(self.numerator))
+
+    @cached_property
+    def hold(self) -> fmpq_poly:
+        """−R + (1 + c) S as a polynomial in c."""
+        alpha = self.part_delay
+        n = fmpq_poly(list(self.numerator))
+        shift = fmpq_poly([_q(1 - alpha), _q(alpha)])
+        m = (n * shift).left_shift(self.whole_delay)
+        lag = len(self.denominator) - 1
+        r = (m * fmpq_poly(list(self.denominator[::-1]))).coeffs()
+        return _from_cosines(_dirichlet(r, lag))
+
+    @cached_property
+    def criterion(self) -> fmpz_poly:
+        """q(c), times b where α > 0, times a positive integer: ≥ 0 on [−1, 1] if passive."""
+        b, t, alpha = self.damping, self.period, self.part_delay
+        if alpha == 0:
+            return (_q(2 * b / t) * self.dissipation + self.hold).numer()
+        return (
+            _q(2 * b * b / t) * self.dissipation
+            + _q(b) * self.hold
+            - _q(t * alpha * (1 - alpha) / 2) * self.switching
+        ).numer()
+
+    def required_damping_at(self, c: Fraction) -> float:
+        """The damping that the criterion asks for at cos ωT = c, to rounding [N·s/m].
+
+        ½ [A + √(A² + T² α(1−α) |H|²)],  A = (T/2) (R − (1 + c) S)/|D|².
+        """
+        point = _q(c)
+        scale = float(self.dissipation(point))
+        if scale == 0:
+            return float("inf")
+        base = -float(self.period) / 2 * float(self.hold(point)) / scale
+        alpha = float(self.part_delay)
+        extra = float(self.period) ** 2 * alpha * (1 - alpha) * float(self.switching(point)) / scale
+        if extra == 0:
+            return base
+        root = (base * base + extra) ** 0.5
+        return (base + root) / 2 if base > 0 else extra / 2 / (root - base)
+
+
+def linear_loop(device: Device, environment: Environment) -> LinearLoop:
+    """The exact loop of a certain device and environment.
+
+    Raises
+    ------
+    InputError
+        If a parameter is an interval, H(z) does not exist, or order and delay
+        together exceed `LARGEST_DEGREE`.
+    """
+    period = device.exact("sample_period")
+    h = environment.pulse_transfer_function(period)
+    return loop_from(h, device.exact("damping"), period, device.exact("delay"))
+
+
+def loop_from(h: RationalFunction, damping: Fraction, period: Fraction, delay: Fraction) -> LinearLoop:
+    """The exact loop of H(z), b [N·s/m], T [s] and a delay [s]."""
+    numerator, denominator = _coprime(h)
+    whole = delay // period
+    degree = len(denominator) - 1 + whole
+    if degree > LARGEST_DEGREE:
+        raise InputError(
+            f"the order of the environment plus the delay in samples is {degree}; at most "
+            f"{LARGEST_DEGREE} can be certified: shorten the delay or lower the rate"
+        )
+    return LinearLoop(numerator, denominator, damping, period, int(whole), delay / period - whole)
+
+
+def _q(value: Fraction) -> fmpq:
+    return fmpq(value.numerator, value.denominator)
+
+
+def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """N and D as coprime integer polynomials in ζ; D(1) > 0 where it is not 0."""
+    scale = lcm(*(c.denominator for c in (*h.numerator, *h.denominator)))
+    n = fmpz_poly([int(c * scale) for c in reversed(h.numerator)])
+    d = fmpz_poly([int(c * scale) for c in reversed(h.denominator)])
+    if d.degree() < 0:
+        raise InputError("the denominator of H(z) is zero")
+    if n.degree() > d.degree():
+        raise InputError("H(z) has more zeros than poles: it would need samples that are still to come")
+    common = n.gcd(d)
+    n, d = n // common, d // common
+    size = d.degree() + 1
+    top_down_n = [int(n[size - 1 - i]) for i in range(size)]
+    top_down_d = [int(d[size - 1 - i]) for i in range(size)]
+    sign = sum(top_down_d) or top_down_d[0]
+    if sign < 0:
+        top_down_n, top_down_d = [-c for c in top_down_n], [-c for c in top_down_d]
+    while len(top_down_n) > 1 and top_down_n[-1] == 0:
+        top_down_n.pop()
+    while len(top_down_d) > 1 and top_down_d[-1] == 0:
+        top_down_d.pop()
+    return tuple(top_down_n), tuple(top_down_d)
+
+
+def _autocorrelation(a: tuple[int, ...]) -> list[fmpq]:
+    """Coefficients of |a(ζ)|² = Σ a_j cos jθ."""
+    product = (fmpq_poly(list(a)) * fmpq_poly(list(a[::-1]))).coeffs()
+    product += [fmpq(0)] * (2 * len(a) - 1 - len(product))
+    middle = len(a) - 1
+    return [product[middle]] + [2 * product[middle + j] for j in range(1, len(a))]
+
+
+def _dirichlet(r: list[fmpq], lag: int) -> list[fmpq]:
+    """Cosine coefficients of Σ_{m≥1} r₋ₘ D_{m−1} − Σ_{j≥0} r_j D_j, D_j = 1 + 2 Σ_{i≤j} cos iθ.
+
+    Since cot(θ/2) sin jθ + cos jθ = D_j for j ≥ 0 and −D_{|j|−1} for j < 0,
+    this is −R + (1 + c) S without a division by sin θ.
+    """
+    ahead = max(len(r) - lag, 0)
+    weights = [fmpq(0)] * (max(ahead, lag) + 1)
+    for j in range(ahead):
+        weights[j] -= r[lag + j]
+    for m in range(1, lag + 1):
+        if lag - m < len(r):
+            weights[m - 1] += r[lag - m]
+    total = fmpq(0)
+    cosines = [fmpq(0)] * len(weights)
+    for i in range(len(weights) - 1, -1, -1):
+        total += weights[i]
+        cosines[i] = 2 * total if i else total
+    return cosines
+
+
+def _from_cosines(a: list[fmpq]) -> fmpq_poly:
+    """Σ a_j cos jθ as a polynomial in c = cos θ."""
+    total = fmpq_poly([])
+    for j, weight in enumerate(a):
+        if weight != 0:
+            total += weight * fmpq_poly(fmpz_poly.chebyshev_t(j))
+    return total

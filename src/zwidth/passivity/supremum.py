@@ -1,0 +1,80 @@
+"""The supremum of the linear criterion and where it is reached.
+
+At a given damping the tightest frequency is a root of a polynomial; raising b
+to what that frequency needs and looking again converges in a few steps (Newton
+for a fractional programme, Dinkelbach 1967).  This finds the place; what is
+claimed there is decided exactly elsewhere.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import acos, inf, pi
+
+from flint import ctx, fmpq, fmpq_poly, fmpz_poly
+
+from zwidth.passivity.loop import LinearLoop
+
+_FLAT = 1e-12
+"""Relative difference below which two frequencies are equally tight."""
+
+
+def tightest(loop: LinearLoop) -> tuple[float, Fraction]:
+    """(required damping [N·s/m], cos ωT) where the criterion is tightest.
+
+    Of equally tight frequencies the highest is given: there the motion that
+    shows a violation is the shortest.
+    """
+    best, cosine = _best(loop, [Fraction(-1), Fraction(0), Fraction(1)])
+    for _ in range(12):
+        candidates = _stationary(loop.with_damping(_rational(max(best, 0.0))))
+        value, at = _best(loop, [*candidates, cosine])
+        if value <= best * (1 + 1e-15) or value == inf:
+            best, cosine = (value, at) if value > best else (best, cosine)
+            break
+        best, cosine = value, at
+    return best, cosine
+
+
+def frequency(cosine: Fraction, period: Fraction) -> float:
+    """ω/2π [Hz] of cos ωT."""
+    return acos(max(-1.0, min(1.0, float(cosine)))) / (2 * pi * float(period))
+
+
+def _best(loop: LinearLoop, cosines: list[Fraction]) -> tuple[float, Fraction]:
+    needs = [(loop.required_damping_at(c), c) for c in cosines]
+    top = max(need for need, _ in needs)
+    margin = abs(top) * _FLAT
+    return top, min(c for need, c in needs if need >= top - margin)
+
+
+def _stationary(loop: LinearLoop) -> list[Fraction]:
+    """Points of (−1, 1) where criterion/|D|² is stationary."""
+    p, weight = fmpq_poly(loop.criterion), loop.dissipation
+    slope = (p.derivative() * weight - p * weight.derivative()).numer()
+    if slope.degree() < 1:
+        return []
+    return [c for c in _real_roots(slope) if -1 < c < 1]
+
+
+def _real_roots(p: fmpz_poly) -> list[Fraction]:
+    roots = []
+    saved = ctx.prec
+    try:
+        ctx.prec = 128
+        for root, _ in p.complex_roots():
+            if abs(float(root.imag)) <= 1e-30:
+                roots.append(_fraction(root.real))
+    finally:
+        ctx.prec = saved
+    return roots
+
+
+def _fraction(ball: object) -> Fraction:
+    """The midpoint of a real ball, exactly."""
+    middle: fmpq = ball.mid().fmpq()  # type: ignore[attr-defined]
+    return Fraction(int(middle.p), int(middle.q))
+
+
+def _rational(value: float) -> Fraction:
+    return Fraction(value).limit_denominator(10**24) if value < inf else Fraction(0)
