@@ -4,9 +4,11 @@ from zwidth.device import Device, FrictionCurve, FrictionModel, catalogue
 from zwidth.device.rotary import rotary
 from zwidth.environment import (
     BackwardDifference,
+    ContinuousTransferFunction,
     GeneralizedMaxwell,
     Maxwell,
     OnePole,
+    PulseTransferFunction,
     StandardLinearSolid,
     VelocityFilter,
     Wall,
@@ -14,9 +16,11 @@ from zwidth.environment import (
 )
 from zwidth.errors import InputError
 from zwidth.quantity import Exact, Interval
+from zwidth.rendering import VirtualCoupling
 
 __all__ = [
     "BackwardDifference",
+    "ContinuousTransferFunction",
     "Device",
     "Exact",
     "FrictionCurve",
@@ -26,8 +30,10 @@ __all__ = [
     "Interval",
     "Maxwell",
     "OnePole",
+    "PulseTransferFunction",
     "StandardLinearSolid",
     "VelocityFilter",
+    "VirtualCoupling",
     "Wall",
     "Window",
     "catalogue",

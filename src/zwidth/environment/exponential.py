@@ -181,8 +181,8 @@ def _rounded(compute: Callable[[], tuple[Balls, Balls]], denominator: Polynomial
     finally:
         flint.ctx.prec = before
     raise InputError(
-        "H(s) has modes so fast against the sample period that the coefficients of H(z) cannot be computed; "
-        "check the units of the coefficients, or leave out what decays within a sample"
+        "H(s) has modes so fast against the sample period that no double holds the coefficients of H(z); "
+        "check the unit of the coefficients"
     )
 
 

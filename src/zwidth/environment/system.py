@@ -16,6 +16,7 @@ from typing import Any, Literal, NamedTuple
 
 import flint
 
+from zwidth.environment.discretization import LARGEST_ORDER
 from zwidth.errors import InputError
 
 Polynomial = tuple[Fraction, ...]
@@ -91,7 +92,13 @@ def _single(coefficients: Any, key: str) -> Polynomial:
         inner = inner[0]
     if any(isinstance(c, Iterable) for c in inner):
         raise InputError(_SEVERAL)
+    _bounded(len(inner) - 1)
     return tuple(_number(c, key) for c in inner)
+
+
+def _bounded(order: int) -> None:
+    if order > LARGEST_ORDER:
+        raise InputError(f"the system has order {order}; at most {LARGEST_ORDER} is read")
 
 
 _SEVERAL = (
@@ -102,6 +109,7 @@ _SEVERAL = (
 
 def _from_state_space(system: Any) -> tuple[Polynomial, Polynomial]:
     """C (zI − A)⁻¹ B + D = (det(zI − A + BC) + (D − 1) det(zI − A))/det(zI − A)."""
+    _bounded(len(system.A))
     a, b, c, d = (_rows(getattr(system, name), name) for name in "ABCD")
     order = len(a)
     if len(d) != 1 or len(d[0]) != 1:
@@ -132,6 +140,7 @@ def _from_roots(system: Any) -> tuple[Polynomial, Polynomial]:
 
 def _with_roots(roots: Any, key: str) -> Polynomial:
     """∏ (z − r), the complex roots in conjugate pairs."""
+    _bounded(len(roots))
     real, imaginary = [Fraction(1)], [Fraction(0)]
     for root in roots:
         if isinstance(root, Iterable):

@@ -6,14 +6,13 @@ of python-control or scipy.signal.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import floor, log10
 from typing import Any, Self
 
+from zwidth.environment.coefficients import Coefficients, read_coefficient, read_transfer_function
 from zwidth.environment.discretization import (
-    LARGEST_ORDER,
     ROUNDED,
     Discretization,
     as_discretization,
@@ -26,9 +25,6 @@ from zwidth.environment.system import LinearSystem, is_system, read_system
 from zwidth.environment.wording import polynomial_text
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
-
-Coefficients = tuple[Exact, ...]
-Polynomial = tuple[Fraction, ...]
 
 _SAME_PERIOD = Fraction(1, 10**9)
 """Two sample periods that differ by less, relatively, are one."""
@@ -67,7 +63,7 @@ class PulseTransferFunction(Environment):
         denominator: Sequence[RealLike] | None = None,
         sample_period: RealLike | None = None,
     ) -> None:
-        num, den, system = _read(numerator, denominator)
+        num, den, system = read_transfer_function(numerator, denominator)
         if len(num) > len(den):
             raise InputError(
                 f"H(z) has more zeros ({len(num) - 1}) than poles ({len(den) - 1}): it would need positions "
@@ -142,7 +138,7 @@ class ContinuousTransferFunction(Environment):
                 f"give discretization = one of {choices()}"
             )
         method = as_discretization(discretization)
-        num, den, system = _read(numerator, denominator)
+        num, den, system = read_transfer_function(numerator, denominator)
         if system is not None and system.time == "discrete":
             raise InputError("the system is discrete already; give it as PulseTransferFunction(system)")
         object.__setattr__(self, "numerator", num)
@@ -223,68 +219,7 @@ def _is_constant(system: LinearSystem) -> bool:
     return len(trimmed(system.numerator)) == len(trimmed(system.denominator)) == 1
 
 
-def _read(
-    numerator: object, denominator: Sequence[RealLike] | None
-) -> tuple[Coefficients, Coefficients, LinearSystem | None]:
-    if not is_system(numerator):
-        if denominator is None:
-            raise InputError("a transfer function needs a numerator and a denominator, or a system")
-        num, den = _coefficients(numerator, "numerator"), _coefficients(denominator, "denominator")
-        return (*_checked(num, den), None)
-    if denominator is not None:
-        raise InputError("give either a system or a numerator and a denominator, got both")
-    system = read_system(numerator)
-    return (*_checked(*_in_range(system.numerator, system.denominator)), system)
-
-
-def _coefficients(given: object, key: str) -> Coefficients:
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise InputError(f"{key} is a list of coefficients in descending powers, got {given!r}")
-    return tuple(_coefficient(c, f"{key}[{i}]") for i, c in enumerate(given))
-
-
-def _coefficient(value: Any, key: str) -> Exact:
-    try:
-        return Exact(value)
-    except InputError as error:
-        raise InputError(f"{key}: {error}") from None
-
-
-def _checked(numerator: Coefficients, denominator: Coefficients) -> tuple[Coefficients, Coefficients]:
-    num, den = _without_leading_zeros(numerator), _without_leading_zeros(denominator)
-    if not any(den):
-        raise InputError("the denominator of a transfer function is zero")
-    if not num:
-        raise InputError("the numerator of a transfer function has no coefficient; for no force give [0]")
-    order = max(len(num), len(den)) - 1
-    if order > LARGEST_ORDER:
-        raise InputError(f"the transfer function has order {order}; at most {LARGEST_ORDER} is read")
-    return num, den
-
-
-def _without_leading_zeros(coefficients: Coefficients) -> Coefficients:
-    start = next((i for i, c in enumerate(coefficients) if c.fraction), len(coefficients) - 1)
-    return coefficients[max(start, 0) :]
-
-
-def _in_range(numerator: Polynomial, denominator: Polynomial) -> tuple[Coefficients, Coefficients]:
-    """Both polynomials times one power of ten, where they need it to be within range."""
-    sizes = [_decade(c) for c in (*numerator, *denominator) if c]
-    shift = Fraction(1)
-    if sizes and (min(sizes) < -39 or max(sizes) > 39):
-        shift = Fraction(10) ** (-(min(sizes) + max(sizes)) // 2)
-    num, den = (
-        tuple(_coefficient(c * shift, key) for c in part)
-        for part, key in ((numerator, "numerator"), (denominator, "denominator"))
-    )
-    return num, den
-
-
-def _decade(value: Fraction) -> int:
-    return floor((abs(value.numerator).bit_length() - value.denominator.bit_length()) * log10(2))
-
-
-def _fractions(coefficients: Coefficients) -> Polynomial:
+def _fractions(coefficients: Coefficients) -> tuple[Fraction, ...]:
     return tuple(c.fraction for c in coefficients)
 
 
@@ -300,7 +235,7 @@ def _period(given: RealLike | None, system: LinearSystem | None) -> Exact | None
     value = own if own is not None else given
     if value is None:
         return None
-    period = _coefficient(value, "sample_period [s]")
+    period = read_coefficient(value, "sample_period [s]")
     if period <= 0:
         raise InputError(f"sample_period must be > 0 s, got {period}")
     return period

@@ -1,0 +1,128 @@
+"""The virtual coupling: a spring and damper between the handle and the environment.
+
+    Z_c(z) = K_c + B_c (z − 1)/(T z)        H = Z_c E/(Z_c + E)
+
+The handle pulls at one end of the coupling, the environment E(z) holds the
+other (Colgate, Stanley & Brown 1995).  For every E that is passive in discrete
+time the condition on the device is that of a wall of K_c and B_c: the coupling
+bounds what the hand can feel, whatever lies behind it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from zwidth.environment.discretization import trimmed
+from zwidth.environment.environment import Environment, RationalFunction, add, certain, multiply
+from zwidth.environment.transfer_function import as_environment
+from zwidth.environment.wall import Parameter
+from zwidth.environment.wording import with_unit
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval, as_parameter, ends
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class VirtualCoupling(Environment):
+    """A spring–damper in series before an environment, ``H = Z_c E/(Z_c + E)``.
+
+    Parameters
+    ----------
+    stiffness
+        K_c ≥ 0 [N/m; N·m/rad].
+    damping
+        B_c, of either sign, on the backward difference [N·s/m; N·m·s/rad].
+    environment
+        E: an `Environment`, or a discrete system of python-control or scipy.signal.
+
+    Raises
+    ------
+    InputError
+        If K_c < 0, or the environment is none.
+    """
+
+    stiffness: Exact | Interval
+    damping: Exact | Interval
+    environment: Environment
+
+    def __init__(self, stiffness: Parameter, damping: Parameter, environment: Environment | Any) -> None:
+        k, b = _read("stiffness", stiffness), _read("damping", damping)
+        if ends(k)[0] < 0:
+            raise InputError(
+                f"stiffness must be ≥ 0, got {k}: a negative spring pulls the hand in "
+                "and gives out energy without end"
+            )
+        object.__setattr__(self, "stiffness", k)
+        object.__setattr__(self, "damping", b)
+        object.__setattr__(self, "environment", as_environment(environment))
+
+    @property
+    def unilateral(self) -> bool:
+        """As the environment behind the coupling."""
+        return self.environment.unilateral
+
+    @property
+    def spring(self) -> bool:
+        """True when both are springs; H is then K_c K/(K_c + K)."""
+        return self._undamped and self.environment.spring
+
+    @property
+    def coefficients_rounded(self) -> bool:
+        """True when the environment has coefficients rounded to doubles."""
+        return bool(getattr(self.environment, "coefficients_rounded", False))
+
+    @property
+    def _undamped(self) -> bool:
+        return ends(self.damping) == (Fraction(0), Fraction(0))
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """Z_c E/(Z_c + E) [N/m]; common factors are kept.
+
+        Raises
+        ------
+        InputError
+            If Z_c + E is zero, or so at infinite z: nothing then says where the joint
+            between coupling and environment is.
+        """
+        coupling = self._coupling(sample_period)
+        inner = self.environment.pulse_transfer_function(sample_period)
+        numerator = multiply(coupling.numerator, inner.numerator)
+        denominator = add(
+            multiply(coupling.numerator, inner.denominator), multiply(coupling.denominator, inner.numerator)
+        )
+        return _proper(numerator, denominator)
+
+    def _coupling(self, period: Fraction) -> RationalFunction:
+        k, b = certain(self.stiffness, "stiffness"), certain(self.damping, "damping")
+        if self._undamped:
+            return RationalFunction((k,), (Fraction(1),))
+        return RationalFunction((k * period + b, -b), (period, Fraction(0)))
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line."""
+        k = with_unit("stiffness", self.stiffness, motion)
+        b = with_unit("virtual_damping", self.damping, motion)
+        return f"virtual coupling, {k} and {b}, before {self.environment.describe()}"
+
+
+def _read(key: str, value: Parameter) -> Exact | Interval:
+    try:
+        return as_parameter(value)
+    except InputError as error:
+        raise InputError(f"{key}: {error}") from None
+
+
+def _proper(numerator: tuple[Fraction, ...], denominator: tuple[Fraction, ...]) -> RationalFunction:
+    if not any(denominator):
+        raise InputError(
+            "the stiffness of coupling and environment add up to zero: a coupling of no stiffness before "
+            "nothing has no force; give the coupling a stiffness"
+        )
+    num, den = trimmed(numerator), trimmed(denominator)
+    if len(num) > len(den):
+        raise InputError(
+            "coupling and environment cancel at the newest sample, so the force would need positions that "
+            "are still to come; change the damping of the coupling"
+        )
+    return RationalFunction(num, den)
