@@ -129,7 +129,5 @@ def _positive(value: Parameter, key: str, unit: str, why: str) -> Exact | Interv
     except InputError as error:
         raise InputError(f"{key} [{unit}]: {error}") from None
     if ends(parameter)[0] <= 0:
-        raise InputError(
-            f"{key} must be > 0 {unit}, got {parameter}: angle and handle are then not connected"
-        )
+        raise InputError(f"{key} must be > 0 {unit}, got {parameter}: {why}")
     return parameter

@@ -67,13 +67,13 @@ def parse_number(value: object, unit: str, what: str) -> Exact:
     if isinstance(value, str):
         return _parse_text(value, unit, what)
     if isinstance(value, bool) or not isinstance(value, (Real, Decimal)):
-        raise InputError(f"{what} is in {unit}; got {_type_name(value)} where a number belongs")
-    if isinstance(value, int) and value.bit_length() > 512:
-        raise InputError(f"{what}: got a whole number of more than 150 digits; check the unit ({unit})")
+        raise InputError(f"{_is(what, unit)}; got {_type_name(value)} where a number belongs")
+    if _digits(value) > LONGEST_TEXT:
+        raise InputError(f"{_is(what, unit)}; got a number of more than {LONGEST_TEXT} digits")
     try:
         return Exact(value)  # type: ignore[arg-type]  # every Real is read as its shortest decimal
     except InputError as error:
-        raise InputError(f"{what} [{unit}]: {error}") from None
+        raise InputError(f"{_is(what, unit)}: {error}") from None
 
 
 def _parse_text(value: str, unit: str, what: str) -> Exact:
@@ -84,12 +84,12 @@ def _parse_text(value: str, unit: str, what: str) -> Exact:
         if not any(map(str.isalpha, rest)):  # SI like a number; perhaps a ratio, such as 1/3000
             return Exact(fraction * given.scale)
         if not compatible(given, wanted):
-            raise InputError(f'{what} is in {unit}; got "{_short(value)}", {kind_of(given)}')
+            raise InputError(f'{_is(what, unit)}; got "{_short(value)}", {kind_of(given)}')
         return _scaled(fraction * given.scale / wanted.scale, given.turns - wanted.turns)
     except InputError as error:
         if str(error).startswith(what):
             raise
-        raise InputError(f'{what} is in {unit}; got "{_short(value)}": {error}') from None
+        raise InputError(f'{_is(what, unit)}; got "{_short(value)}": {error}') from None
 
 
 def _scaled(fraction: Fraction, turns: int) -> Exact:
@@ -103,15 +103,17 @@ def _split(value: str, unit: str, what: str) -> tuple[str, str]:
     """The number and the unit of one value, both in plain ASCII spelling."""
     text = value.translate(_SPELLING).strip()
     if not text:
-        raise InputError(f"{what} is in {unit}; got an empty text")
+        raise InputError(f"{_is(what, unit)}; got an empty text")
     match = _NUMBER.match(text) if len(text) <= LONGEST_TEXT else None
     if match is None or text[match.end() :].startswith(","):
         example = (
-            '; write "0.15", with a point' if "," in text else f': expected a number, such as "0.15 {unit}"'
+            '; write "0.15", with a point'
+            if "," in text
+            else f': expected a number, such as "{f"0.15 {unit}".removesuffix(" 1")}"'
         )
         if text.lstrip("+-").lower().startswith(("nan", "inf")):
             example = ": it must be finite"
-        raise InputError(f'{what} is in {unit}; got "{_short(value)}"{example}')
+        raise InputError(f'{_is(what, unit)}; got "{_short(value)}"{example}')
     return match[0], text[match.end() :].strip()
 
 
@@ -119,7 +121,7 @@ def _text_ends(value: str, unit: str, what: str) -> tuple[Exact, Exact]:
     parts = value.translate(_SPELLING).split("..")
     if len(parts) != 2 or len(value) > 2 * LONGEST_TEXT or "..." in value:
         raise InputError(
-            f'{what} is in {unit}; got "{_short(value)}": an interval is two numbers, such as "0.1 .. 0.2"'
+            f'{_is(what, unit)}; got "{_short(value)}": an interval is two numbers, such as "0.1 .. 0.2"'
         )
     (_, first_unit), (_, second_unit) = (_split(part, unit, what) for part in parts)
     if first_unit and not second_unit:
@@ -137,9 +139,19 @@ def _interval(low: Exact, high: Exact, what: str) -> Interval:
         raise InputError(f"{what}: {error}") from None
 
 
+def _is(what: str, unit: str) -> str:
+    return f"{what} is a plain number" if unit in ("", "1") else f"{what} is in {unit}"
+
+
 def _short(text: str) -> str:
     printable = "".join(c if c.isprintable() else "?" for c in text)
     return printable if len(printable) <= 40 else printable[:37] + "..."
+
+
+def _digits(value: object) -> int:
+    if isinstance(value, int):
+        return value.bit_length() * 3 // 10
+    return len(value.as_tuple().digits) if isinstance(value, Decimal) else 0
 
 
 def _type_name(value: object) -> str:

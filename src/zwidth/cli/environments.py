@@ -1,0 +1,203 @@
+"""The types of environment that a specification can name.
+
+`TYPES` is the registry: a new environment is one row.  It feeds the reader
+here, the choices and the option help of the command line, and the docs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any, Literal, NamedTuple
+
+from zwidth.cli.table import Table, located, quoted, suggestion
+from zwidth.cli.values import branches, coefficients, velocity_filter
+from zwidth.environment import Environment
+from zwidth.errors import InputError
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse
+
+Form = Literal["quantity", "coefficients", "branches", "word", "velocity filter", "environment"]
+
+DEEPEST = 4
+"""Couplings inside couplings; more is a mistake."""
+
+
+class Key(NamedTuple):
+    """One key of an environment table, an argument of its class."""
+
+    form: Form
+    meaning: str
+    quantity: str = ""
+    required: bool = True
+
+
+class EnvironmentType(NamedTuple):
+    """A type of environment: its class and its keys."""
+
+    module: str
+    class_name: str
+    meaning: str
+    keys: Mapping[str, Key]
+
+
+def _number(quantity: str, required: bool = True) -> Key:
+    return Key("quantity", GLOSSARY[quantity].meaning, quantity, required)
+
+
+_DISCRETIZATION = Key("word", "backward, forward, tustin, zoh, impulse or matched", required=False)
+_NUMERATOR = Key("coefficients", "numerator, descending powers")
+_DENOMINATOR = Key("coefficients", "denominator, descending powers")
+
+TYPES: Mapping[str, EnvironmentType] = MappingProxyType(
+    {
+        "wall": EnvironmentType(
+            "zwidth.environment",
+            "Wall",
+            "spring and damper inside x > 0",
+            {
+                "stiffness": _number("stiffness"),
+                "damping": _number("virtual_damping", required=False),
+                "velocity_filter": Key(
+                    "velocity filter",
+                    "backward-difference, window N, one-pole τ or f, filter",
+                    required=False,
+                ),
+            },
+        ),
+        "maxwell": EnvironmentType(
+            "zwidth.environment",
+            "Maxwell",
+            "spring and dashpot in series",
+            {
+                "stiffness": _number("stiffness"),
+                "damping": _number("virtual_damping"),
+                "discretization": _DISCRETIZATION,
+            },
+        ),
+        "standard-linear-solid": EnvironmentType(
+            "zwidth.environment",
+            "StandardLinearSolid",
+            "spring with one Maxwell branch beside it",
+            {
+                "stiffness": _number("stiffness"),
+                "branch_stiffness": _number("branch_stiffness"),
+                "branch_damping": _number("branch_damping"),
+                "discretization": _DISCRETIZATION,
+            },
+        ),
+        "generalized-maxwell": EnvironmentType(
+            "zwidth.environment",
+            "GeneralizedMaxwell",
+            "spring with Maxwell branches beside it, a Prony series",
+            {
+                "stiffness": _number("stiffness"),
+                "branches": Key("branches", "pairs of branch stiffness and branch damping"),
+                "discretization": _DISCRETIZATION,
+            },
+        ),
+        "transfer-function": EnvironmentType(
+            "zwidth.environment",
+            "ContinuousTransferFunction",
+            "H(s) with a discretization",
+            {"numerator": _NUMERATOR, "denominator": _DENOMINATOR, "discretization": _DISCRETIZATION},
+        ),
+        "pulse-transfer-function": EnvironmentType(
+            "zwidth.environment",
+            "PulseTransferFunction",
+            "H(z)",
+            {"numerator": _NUMERATOR, "denominator": _DENOMINATOR},
+        ),
+        "virtual-coupling": EnvironmentType(
+            "zwidth.rendering",
+            "VirtualCoupling",
+            "spring and damper between the device and another environment",
+            {
+                "stiffness": _number("stiffness"),
+                "damping": _number("virtual_damping"),
+                "environment": Key("environment", "the environment behind the coupling"),
+            },
+        ),
+    }
+)
+
+
+def option_keys() -> dict[str, Key]:
+    """Every environment key under its name on the command line.
+
+    There `damping` is the device's, so the environment's is `virtual_damping`;
+    a key of the environment behind a coupling is written `environment.stiffness`.
+    """
+    return {
+        "virtual_damping" if name == "damping" else name: key
+        for row in TYPES.values()
+        for name, key in row.keys.items()
+        if key.form != "environment"
+    }
+
+
+def build_environment(table: Table, motion: str, depth: int = 0) -> Environment:
+    """The environment that a table describes, in the units of the device's motion.
+
+    Raises
+    ------
+    InputError
+        If the type or a key is unknown, missing, or has a value it cannot have.
+    """
+    row = _row(table)
+    if "damping" in row.keys:
+        table.rename("virtual_damping", "damping")
+    allowed = ("type", *row.keys, *(["virtual_damping"] if "damping" in row.keys else []))
+    table.check_keys(allowed, f'an environment of type "{table.text("type")}"')
+    missing = [key for key, k in row.keys.items() if k.required and key not in table.values]
+    if missing:
+        needed = ", ".join(f"{key}{_unit(row.keys[key], motion)}" for key in missing)
+        raise InputError(f'{table.label}: type "{table.text("type")}" needs {needed}')
+    arguments = {
+        key: _read(table, key, row.keys[key], motion, depth) for key in table.values if key != "type"
+    }
+    with located(table.label):
+        environment: Environment = getattr(import_module(row.module), row.class_name)(**arguments)
+    return environment
+
+
+def _row(table: Table) -> EnvironmentType:
+    if "type" not in table.values:
+        raise InputError(f"{table.label}: type is missing; it may be: {', '.join(TYPES)}")
+    name = table.text("type")
+    if name not in TYPES:
+        hint = suggestion(name, TYPES)
+        raise InputError(f"{table.where('type')}: there is no environment of type {quoted(name)}; {hint}")
+    return TYPES[name]
+
+
+def _unit(key: Key, motion: str) -> str:
+    return f" [{GLOSSARY[key.quantity].unit_for(motion)}]" if key.quantity else ""
+
+
+def _read(table: Table, key: str, kind: Key, motion: str, depth: int) -> Any:
+    value = table.values[key]
+    if kind.form == "environment":
+        return _nested(table, key, value, motion, depth)
+    if kind.form == "word":
+        return table.text(key)
+    with located(table.where(key)):
+        if kind.form == "quantity":
+            return parse(value, GLOSSARY[kind.quantity].unit_for(motion), key)
+        if kind.form == "coefficients":
+            return coefficients(value, key)
+        if kind.form == "branches":
+            return branches(value, motion)
+        return velocity_filter(value)
+
+
+def _nested(table: Table, key: str, value: object, motion: str, depth: int) -> Environment:
+    if not isinstance(value, Mapping):
+        raise InputError(
+            f'{table.where(key)}: {key} is a table, such as [environment.environment] type = "wall"'
+        )
+    if depth >= DEEPEST:
+        raise InputError(f"{table.label}: more than {DEEPEST} couplings inside each other")
+    label = table.label.removesuffix("]") + ".environment]" if table.label.endswith("]") else table.label
+    return build_environment(Table(label, value), motion, depth + 1)

@@ -1,0 +1,242 @@
+"""A device and an environment from TOML files and the command line.
+
+    [device]                            [environment]
+    damping = "0.15 N*s/m"              type = "wall"
+    rate = "1 kHz"                      stiffness = 300
+
+One file or two, or the name of a catalogue device in the place of the first;
+plain numbers are SI and exact as typed.  Every parameter can be overridden
+under its own name; `damping` is then the device's, `virtual_damping` the
+wall's.  Nothing is ignored: an unknown key is an error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+from zwidth.cli.environments import build_environment, option_keys
+from zwidth.cli.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
+from zwidth.device import Device, catalogue
+from zwidth.device.rotary import rotary
+from zwidth.environment import Environment
+from zwidth.errors import InputError
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse
+
+LARGEST_FILE = 1 << 20
+"""Bytes; a specification is a page of text."""
+
+ROTARY_KEYS = {"inertia": "kg*m^2", "counts_per_turn": "1", "handle_radius": "m"}
+"""The keys that make a device rotary, with their units."""
+
+DEVICE_KEYS = (*catalogue.PROPERTIES, *ROTARY_KEYS, "motion", "name", "catalogue")
+"""The keys of a [device] table."""
+
+_ONE_OF = (("rate", "sample_period"), ("resolution", "counts_per_turn"))
+"""Two ways to say the same: overriding one puts the other aside."""
+
+
+@dataclass(frozen=True)
+class Specification:
+    """What is to be checked: a device against an environment."""
+
+    device: Device
+    environment: Environment
+
+
+def load(sources: Sequence[Path | str], overrides: Mapping[str, str] | None = None) -> Specification:
+    """Read files or catalogue names, then the command line's parameters.
+
+    Parameters
+    ----------
+    sources
+        TOML files with [device] and [environment]; a name in the catalogue
+        stands for a [device].
+    overrides
+        Values by name, as typed: {"rate": "2 kHz", "virtual_damping": "0.1"}.
+        Without an [environment] they describe a wall, or the `type` they give.
+
+    Raises
+    ------
+    InputError
+        If anything cannot be used: it says where it stands and what is allowed.
+    """
+    tables = _tables(sources)
+    names = {key.replace("-", "_"): value for key, value in (overrides or {}).items()}
+    device_names = {key: value for key, value in names.items() if key in DEVICE_KEYS}
+    environment_names = {key: value for key, value in names.items() if key not in DEVICE_KEYS}
+    device_table = _device_table(tables, device_names)
+    environment_table = _environment_table(tables, environment_names)
+    device = build_device(device_table)
+    return Specification(device, build_environment(environment_table, device.motion))
+
+
+def build_device(table: Table) -> Device:
+    """The device that a table describes.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown, missing, contradicts another or has a value it
+        cannot have.
+    """
+    table.check_keys(DEVICE_KEYS, "a device")
+    turning = [key for key in ROTARY_KEYS if key in table.values]
+    motion = table.text("motion") if "motion" in table.values else "rotary" if turning else "linear"
+    if turning and motion == "linear":
+        raise InputError(
+            f"{table.label}: {turning[0]} belongs to a rotary device, and motion is linear; drop one"
+        )
+    arguments = {key: _device_value(table, key, motion) for key in table.values if key != "catalogue"}
+    if "catalogue" in table.values:
+        return _catalogue_device(table, arguments, turning, motion)
+    arguments.setdefault("damping", None)  # Device says that it is missing
+    with located(table.label):
+        if motion != "rotary":
+            return Device(**arguments)
+        if "mass" in arguments:
+            raise InputError("a rotary device has an inertia [kg*m^2], not a mass")
+        arguments.pop("motion", None)
+        return rotary(**arguments)
+
+
+def _device_value(table: Table, key: str, motion: str) -> Any:
+    if key in ("name", "motion"):
+        return table.text(key)
+    unit = ROTARY_KEYS[key] if key in ROTARY_KEYS else GLOSSARY[key].unit_for(motion)
+    with located(table.where(key)):
+        return parse(table.values[key], unit, key)
+
+
+def _catalogue_device(table: Table, arguments: Mapping[str, Any], turning: list[str], motion: str) -> Device:
+    if turning or motion != "linear":
+        raise InputError(
+            f"{table.label}: the devices of the catalogue are linear, at the handle; drop {', '.join(turning) or 'motion'}"
+        )
+    with located(table.label):
+        return catalogue.device(table.text("catalogue"), **arguments)
+
+
+def _tables(sources: Sequence[Path | str]) -> dict[str, Table]:
+    tables: dict[str, Table] = {}
+    for source in sources:
+        for kind, table in _read(source).items():
+            if kind in tables:
+                raise InputError(
+                    f"both {tables[kind].label} and {table.label} give the {kind}; "
+                    "leave one out, or set single parameters on the command line"
+                )
+            tables[kind] = table
+    return tables
+
+
+def _read(source: Path | str) -> dict[str, Table]:
+    if str(source) in catalogue.names():
+        return {"device": Table(str(source), {"catalogue": str(source)})}
+    name = plain(str(source))
+    content = _parse(_text(source), name)
+    for key, value in content.items():
+        if key not in ("device", "environment"):
+            hint = suggestion(key, ["device", "environment"])
+            raise InputError(f"{name}: there is no table or key {quoted(key)} in a specification; {hint}")
+        if not isinstance(value, dict):
+            raise InputError(f"{name}: {key} is a table, written [{key}] above its keys")
+    if not content:
+        raise InputError(f"{name}: the file has neither a [device] nor an [environment] table")
+    if "device" in content and "name" not in content["device"] and "catalogue" not in content["device"]:
+        content["device"]["name"] = Path(source).stem
+    return {key: Table(f"{name}: [{key}]", value) for key, value in content.items()}
+
+
+def _parse(text: str, name: str) -> dict[str, Any]:
+    import tomllib  # only where a file is read
+
+    try:
+        return tomllib.loads(text, parse_float=Decimal)
+    except (ValueError, ArithmeticError) as error:  # the latter: a number that Decimal cannot hold
+        raise InputError(f"{name}: not TOML: {plain(str(error), 160)}") from None
+    except RecursionError:
+        raise InputError(f"{name}: nested too deeply for a specification") from None
+
+
+def _text(source: Path | str) -> str:
+    path, name = Path(source), quoted(str(source))
+    try:
+        if path.is_dir():
+            raise InputError(f"{name} is a directory; give the TOML file in it")
+        if not path.exists():
+            if path.suffix == ".toml":
+                raise InputError(f"there is no file {name}")
+            hint = suggestion(str(source), catalogue.names())
+            raise InputError(f"{name} is neither a file nor a device of the catalogue; {hint}")
+        if not path.is_file():
+            raise InputError(f"{name} is not a regular file")
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"{name} cannot be read: {reason}") from None
+    if len(content) > LARGEST_FILE:
+        raise InputError(
+            f"{name} is larger than {LARGEST_FILE // 1024} KiB; a specification is a page of text"
+        )
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{name} is not UTF-8 text (byte {error.start}); save it as UTF-8") from None
+
+
+def _device_table(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Table:
+    table = tables.get("device")
+    if table is None:
+        if not overrides:
+            raise InputError(
+                "no device is given: name one of the catalogue, give a file with a [device] table, "
+                "or set --damping and --rate"
+            )
+        table = Table(COMMAND_LINE, {})
+    for key, value in overrides.items():
+        others = [other for pair in _ONE_OF if key in pair for other in pair if other != key]
+        table.override(key, value, instead_of=others)
+    return table
+
+
+def _environment_table(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Table:
+    table = tables.get("environment")
+    known = option_keys()
+    if table is None:
+        if not overrides:
+            raise InputError(
+                "no environment is given: set --stiffness for a wall, or write an [environment] table"
+            )
+        table = Table(COMMAND_LINE, {"type": "wall"})
+    for key, value in overrides.items():
+        if key.removeprefix("environment.") not in ("type", *known):
+            options = sorted({*DEVICE_KEYS, *known, "type"})
+            raise InputError(
+                f"{COMMAND_LINE}: there is no parameter {quoted(key)}; {suggestion(key, options)}"
+            )
+        _override_environment(table, key, value)
+    return table
+
+
+def _override_environment(table: Table, key: str, value: str) -> None:
+    if key.startswith("environment."):
+        inner = table.values.get("environment")
+        if not isinstance(inner, dict):
+            raise InputError(
+                f"{COMMAND_LINE}: {key} needs an environment behind a coupling, and there is none"
+            )
+        key = key.removeprefix("environment.")
+        inner.pop(
+            "virtual_damping" if key == "damping" else "damping" if key == "virtual_damping" else "", None
+        )
+        inner[key] = value
+        return
+    table.override(key, value, instead_of=("damping",) if key == "virtual_damping" else ())

@@ -1,0 +1,118 @@
+"""Values of a specification that are more than one quantity.
+
+Polynomials, Maxwell branches and velocity filters: a TOML list or table, or
+one text on the command line.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from zwidth.cli.table import Table, quoted, suggestion
+from zwidth.environment import BackwardDifference, OnePole, VelocityFilter, Window
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse, parse_number
+
+
+def coefficients(value: object, key: str) -> list[Exact]:
+    """The coefficients of a polynomial: a list, or a text such as "1, -0.5"."""
+    if isinstance(value, str):
+        value = re.split(r"[\s,]+", value.strip("[] \t\n"))
+    if not isinstance(value, list):
+        raise InputError(f"{key} is a list of numbers in descending powers, such as {key} = [1, 0.5]")
+    return [parse_number(c, "1", key) for c in value]
+
+
+def branches(value: object, motion: str) -> list[tuple[Exact | Interval, Exact | Interval]]:
+    """Maxwell branches: pairs (μ, η), or a text such as "800:3, 200:20"."""
+    if isinstance(value, str):
+        value = [pair.split(":") for pair in value.split(",")]
+    if not isinstance(value, list) or not all(isinstance(b, list) and len(b) == 2 for b in value):
+        raise InputError(
+            "branches is a list of pairs of stiffness and damping, such as branches = [[800, 3], [200, 20]]; "
+            'on the command line "800:3, 200:20"'
+        )
+    spring, dashpot = GLOSSARY["branch_stiffness"], GLOSSARY["branch_damping"]
+    return [
+        (
+            parse(mu, spring.unit_for(motion), "branch stiffness"),
+            parse(eta, dashpot.unit_for(motion), "branch damping"),
+        )
+        for mu, eta in value
+    ]
+
+
+FILTERS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "backward-difference": (),
+        "window": ("samples",),
+        "one-pole": ("time_constant", "cutoff"),
+        "filter": ("numerator", "denominator"),
+    }
+)
+"""The types of velocity filter and their keys."""
+
+
+def velocity_filter(value: object) -> BackwardDifference | Window | OnePole | VelocityFilter:
+    """A velocity estimator from a table, or a text such as "window 5" or "one-pole 50 Hz".
+
+    Raises
+    ------
+    InputError
+        If the type or a key is unknown, missing, or has a value it cannot have.
+    """
+    if isinstance(value, str):
+        value = _filter_table(value)
+    if not isinstance(value, Mapping):
+        raise InputError(f'velocity_filter is {{ type = "…" }} with one of the types {", ".join(FILTERS)}')
+    table = Table("velocity_filter", value)
+    name = table.text("type") if "type" in value else ""
+    if name not in FILTERS:
+        raise InputError(f"velocity_filter: there is no type {quoted(name)}; {suggestion(name, FILTERS)}")
+    table.check_keys(("type", *FILTERS[name]), f'a filter of type "{name}"')
+    arguments = {k: v for k, v in table.values.items() if k != "type"}
+    if len(arguments) != (1 if name == "one-pole" else len(FILTERS[name])):
+        needed = " or ".join(FILTERS[name]) if name == "one-pole" else " and ".join(FILTERS[name])
+        raise InputError(f'velocity_filter: type "{name}" needs {needed}')
+    return _filter(name, arguments)
+
+
+def _filter(
+    name: str, arguments: Mapping[str, object]
+) -> BackwardDifference | Window | OnePole | VelocityFilter:
+    if name == "window":
+        return Window(parse_number(arguments["samples"], "1", "samples"))  # type: ignore[arg-type]  # checks it is whole
+    if name == "one-pole":
+        return OnePole(_time_constant(arguments))
+    if name == "filter":
+        return VelocityFilter(*(coefficients(arguments[k], k) for k in FILTERS["filter"]))
+    return BackwardDifference()
+
+
+def _time_constant(arguments: Mapping[str, object]) -> Exact | Interval:
+    if "cutoff" not in arguments:
+        return parse(arguments["time_constant"], "s", "time_constant")
+    cutoff = parse(arguments["cutoff"], "Hz", "cutoff")
+    low, high = ends(cutoff)
+    if low <= 0:
+        raise InputError(f"cutoff must be > 0 Hz, got {cutoff}: the filter would pass nothing")
+    # τ = 1/(2πf) is irrational: rounded to a double, as a controller would hold it.
+    slow, fast = (Exact(1 / (2 * math.pi * float(f))) for f in (low, high))
+    return slow if low == high else Interval(fast, slow)
+
+
+def _filter_table(text: str) -> dict[str, object]:
+    name, _, rest = text.strip().partition(" ")
+    if not rest:
+        return {"type": name}
+    if name == "one-pole":
+        return {"type": name, "cutoff" if rest.strip().endswith("Hz") else "time_constant": rest}
+    if name == "filter":
+        parts = rest.split("/")
+        return {"type": name, **dict(zip(("numerator", "denominator"), parts, strict=False))}
+    return {"type": name, (*FILTERS.get(name, ()), "samples")[0]: rest}
