@@ -107,7 +107,11 @@ TYPES: Mapping[str, EnvironmentType] = MappingProxyType(
             "zwidth.environment",
             "PulseTransferFunction",
             "H(z)",
-            {"numerator": _NUMERATOR, "denominator": _DENOMINATOR},
+            {
+                "numerator": _NUMERATOR,
+                "denominator": _DENOMINATOR,
+                "sample_period": _number("sample_period", required=False),
+            },
         ),
         "virtual-coupling": EnvironmentType(
             "zwidth.rendering",
@@ -127,13 +131,14 @@ def option_keys() -> dict[str, Key]:
     """Every environment key under its name on the command line.
 
     There `damping` is the device's, so the environment's is `virtual_damping`;
-    a key of the environment behind a coupling is written `environment.stiffness`.
+    `sample_period`, too, is the device's. A key of the environment behind a
+    coupling is written `environment.stiffness`.
     """
     return {
         "virtual_damping" if name == "damping" else name: key
         for row in TYPES.values()
         for name, key in row.keys.items()
-        if key.form != "environment"
+        if key.form != "environment" and name != "sample_period"
     }
 
 

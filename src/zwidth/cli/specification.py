@@ -115,7 +115,8 @@ def _device_value(table: Table, key: str, motion: str) -> Any:
 def _catalogue_device(table: Table, arguments: Mapping[str, Any], turning: list[str], motion: str) -> Device:
     if turning or motion != "linear":
         raise InputError(
-            f"{table.label}: the devices of the catalogue are linear, at the handle; drop {', '.join(turning) or 'motion'}"
+            f"{table.label}: the devices of the catalogue are linear, at the handle; "
+            f"drop {', '.join(turning) or 'motion'}"
         )
     with located(table.label):
         return catalogue.device(table.text("catalogue"), **arguments)
@@ -234,9 +235,8 @@ def _override_environment(table: Table, key: str, value: str) -> None:
                 f"{COMMAND_LINE}: {key} needs an environment behind a coupling, and there is none"
             )
         key = key.removeprefix("environment.")
-        inner.pop(
-            "virtual_damping" if key == "damping" else "damping" if key == "virtual_damping" else "", None
-        )
+        if key == "virtual_damping":
+            inner.pop("damping", None)
         inner[key] = value
         return
     table.override(key, value, instead_of=("damping",) if key == "virtual_damping" else ())

@@ -17,6 +17,9 @@ Coefficients = tuple[Exact, ...]
 
 Polynomial = tuple[Fraction, ...]
 
+_DECADES = 76
+"""Room for every coefficient between the smallest and the largest magnitude of `Exact`."""
+
 
 def read_transfer_function(
     numerator: object, denominator: Sequence[RealLike] | None
@@ -76,6 +79,11 @@ def _in_range(numerator: Polynomial, denominator: Polynomial) -> tuple[Coefficie
     """Both polynomials times one power of ten, where they need it to be within range."""
     sizes = [_decade(c) for c in (*numerator, *denominator) if c]
     shift = Fraction(1)
+    if sizes and max(sizes) - min(sizes) > _DECADES:
+        raise InputError(
+            f"the coefficients of the transfer function lie {max(sizes) - min(sizes)} decades apart, "
+            f"more than the {_DECADES} that are read; reduce its order, or its fastest modes"
+        )
     if sizes and (min(sizes) < -39 or max(sizes) > 39):
         shift = Fraction(10) ** (-(min(sizes) + max(sizes)) // 2)
     num, den = (

@@ -23,7 +23,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from zwidth.environment.discretization import (
-    LARGEST_ORDER,
     ROUNDED,
     Discretization,
     as_discretization,
@@ -37,6 +36,9 @@ from zwidth.quantity.exact import Exact, Interval, as_parameter, ends
 
 Branch = tuple[Exact | Interval, Exact | Interval]
 """Spring μ and dashpot η in series."""
+
+MOST_BRANCHES = 60
+"""More branches than any fitted Prony series has."""
 
 _NEGATIVE = "a negative spring pulls the hand in and gives out energy without end"
 
@@ -127,7 +129,7 @@ class GeneralizedMaxwell(Environment):
         μ0 ≥ 0 [N/m; N·m/rad].
     branches
         Pairs (μᵢ, ηᵢ): μᵢ ≥ 0 [N/m; N·m/rad], ηᵢ of either sign [N·s/m; N·m·s/rad];
-        at most 200 of them.
+        at most 60 of them.
     discretization
         "backward" (default), "forward", "tustin", "zoh", "impulse" or "matched".
 
@@ -270,9 +272,9 @@ def _branches(given: Iterable[Sequence[Parameter]]) -> tuple[Branch, ...]:
     if isinstance(given, str) or not isinstance(given, Iterable):
         raise InputError(f"branches is a list of pairs (stiffness, damping), got {given!r}")
     pairs = [_pair(i, pair) for i, pair in enumerate(given)]
-    if len(pairs) > LARGEST_ORDER:
+    if len(pairs) > MOST_BRANCHES:
         raise InputError(
-            f"branches has {len(pairs)} pairs, more than {LARGEST_ORDER}; no controller runs them"
+            f"branches has {len(pairs)} pairs, more than {MOST_BRANCHES}; no controller runs them"
         )
     return tuple(pairs)
 

@@ -101,10 +101,10 @@ def _scaled(fraction: Fraction, turns: int) -> Exact:
 
 def _split(value: str, unit: str, what: str) -> tuple[str, str]:
     """The number and the unit of one value, both in plain ASCII spelling."""
-    text = value.translate(_SPELLING).strip()
+    text = " ".join(value.translate(_SPELLING).split())
     if not text:
         raise InputError(f"{_is(what, unit)}; got an empty text")
-    match = _NUMBER.match(text) if len(text) <= LONGEST_TEXT else None
+    match = _NUMBER.match(text) if len(text) <= LONGEST_TEXT and text.isprintable() else None
     if match is None or text[match.end() :].startswith(","):
         example = (
             '; write "0.15", with a point'

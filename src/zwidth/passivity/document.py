@@ -1,0 +1,110 @@
+"""Proofs and motions as plain data that can be saved, sent and checked anywhere.
+
+Numbers are written exactly: as a decimal where one exists, otherwise as text
+"p/q".  Every key of a physical quantity carries its unit.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+from zwidth.passivity.loop import LinearLoop
+from zwidth.quantity.glossary import GLOSSARY
+
+
+def unit_key(name: str, motion: str = "linear") -> str:
+    """The JSON key of a quantity: its name and its SI unit, `damping_N_s_per_m`."""
+    return f"{name}_{unit_suffix(GLOSSARY[name].unit_for(motion))}"
+
+
+def unit_suffix(unit: str) -> str:
+    """A unit as part of a key: "N*s/m" becomes "N_s_per_m"."""
+    return unit.replace("/", "_per_").replace("*", "_").replace("^", "")
+
+
+def loop_document(
+    loop: LinearLoop,
+    coulomb_friction: Fraction,
+    resolution: Fraction,
+    unilateral: bool,
+    motion: str,
+) -> dict[str, Any]:
+    """The loop that a proof or a motion speaks of, exact; H(z) in descending powers of z."""
+    size = max(len(loop.numerator), len(loop.denominator))
+    delay = (loop.whole_delay + loop.part_delay) * loop.period
+    quantities = {
+        "damping": loop.damping,
+        "coulomb_friction": coulomb_friction,
+        "resolution": resolution,
+        "sample_period": loop.period,
+        "delay": delay,
+    }
+    return {
+        **{unit_key(name, motion): exact_text(value) for name, value in quantities.items()},
+        "numerator": [str(c) for c in (*loop.numerator, *[0] * (size - len(loop.numerator)))],
+        "denominator": [str(c) for c in (*loop.denominator, *[0] * (size - len(loop.denominator)))],
+        "unilateral": unilateral,
+    }
+
+
+def exact_text(value: Fraction) -> str:
+    """A rational as decimal text where it ends, else as "p/q"."""
+    decimal = as_decimal(value)
+    return f"{value.numerator}/{value.denominator}" if decimal is None else str(decimal)
+
+
+def as_decimal(value: Fraction) -> Decimal | None:
+    """The finite decimal equal to a rational, or None."""
+    rest, twos, fives = value.denominator, 0, 0
+    while rest % 2 == 0:
+        rest, twos = rest // 2, twos + 1
+    while rest % 5 == 0:
+        rest, fives = rest // 5, fives + 1
+    if rest != 1:
+        return None
+    places = max(twos, fives)
+    digits = value.numerator * 10**places // value.denominator
+    return Decimal((int(digits < 0), tuple(int(d) for d in str(abs(digits))), -places))
+
+
+def to_json(document: object, indent: int | None = 2) -> str:
+    """JSON text in which a Fraction is written digit for digit.
+
+    A rational that is no finite decimal becomes the text "p/q".
+    """
+    return _text(document, indent, 0)
+
+
+def _text(value: object, indent: int | None, level: int) -> str:
+    if isinstance(value, Fraction):
+        decimal = as_decimal(value)
+        return json.dumps(f"{value.numerator}/{value.denominator}") if decimal is None else _plain(decimal)
+    if isinstance(value, Mapping):
+        items = [f"{json.dumps(str(k))}: {_text(v, indent, level + 1)}" for k, v in value.items()]
+        return _bracket("{", items, "}", indent, level)
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        scalar = not any(isinstance(v, (Mapping, list, tuple)) for v in value)
+        items = [_text(v, indent, level + 1) for v in value]
+        return f"[{', '.join(items)}]" if scalar else _bracket("[", items, "]", indent, level)
+    if isinstance(value, float):
+        return json.dumps(value if abs(value) < float("inf") else None)
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _bracket(opening: str, items: list[str], closing: str, indent: int | None, level: int) -> str:
+    if indent is None or not items:
+        return opening + ", ".join(items) + closing
+    pad = "\n" + " " * indent * (level + 1)
+    return opening + pad + ("," + pad).join(items) + "\n" + " " * indent * level + closing
+
+
+def _plain(decimal: Decimal) -> str:
+    """Decimal text that JSON accepts, without exponent padding surprises."""
+    if decimal == 0:
+        return "0"
+    text = str(decimal.normalize() if decimal.adjusted() < 25 else decimal)
+    return text.replace("E+", "e").replace("E", "e")

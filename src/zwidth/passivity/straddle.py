@@ -1,0 +1,96 @@
+"""The motion that refutes Coulomb friction against the encoder: a tiny step to and fro over one edge.
+
+Moving by ε over an edge changes the count by one, and with it the force by
+Δ · (step response); Coulomb friction costs f_c ε each way and viscous friction
+only ε² b/T, so a small enough ε gains (Abbott & Okamura 2005, section III-C).
+The hand may wait at either side for the force to be as it likes it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from zwidth.passivity.loop import LinearLoop
+from zwidth.passivity.motion import Motion, round_up
+
+LONGEST_WAIT = 12
+"""Samples the hand may wait on one side of an edge, beyond the delay."""
+
+_APPROACH = 64
+_HORIZON = 400
+
+
+@dataclass(frozen=True)
+class Waits:
+    """How many samples to stay above and below the edge, and the force gained per count."""
+
+    above: int
+    below: int
+    gain: float
+
+
+def best_waits(loop: LinearLoop) -> Waits:
+    """The waits that gain most force between going out and coming in [N/m], to rounding.
+
+    Twice the Coulomb friction per resolution below this gain is too little.
+    """
+    response = _impulse_response(loop)
+    extra = loop.whole_delay + (1 if loop.part_delay else 0)
+    best = Waits(1 + extra, 1 + extra, float("-inf"))
+    for above in range(1, LONGEST_WAIT + 1):
+        for below in range(1, LONGEST_WAIT + 1):
+            gain = _gain(response, above + extra, below + extra, loop)
+            if gain > best.gain * (1 + 1e-12) + 1e-300:
+                best = Waits(above + extra, below + extra, gain)
+    return best
+
+
+def _impulse_response(loop: LinearLoop) -> list[float]:
+    d, n = loop.denominator, loop.numerator
+    scaled_d = [c / d[0] for c in d]
+    scaled_n = [Fraction(c, d[0]) for c in n]
+    h: list[float] = []
+    for k in range(_HORIZON):
+        value = float(scaled_n[k]) if k < len(n) else 0.0
+        value -= sum(a * h[k - i] for i, a in enumerate(scaled_d) if 0 < i <= k)
+        if abs(value) > 1e100:
+            break
+        h.append(value)
+    return h
+
+
+def _gain(h: list[float], above: int, below: int, loop: LinearLoop) -> float:
+    """Force going out minus force coming in over one settled cycle, per count."""
+    period, d, alpha = above + below, loop.whole_delay, float(loop.part_delay)
+
+    def force(phase: int) -> float:
+        """Computed `phase` samples after coming above."""
+        return sum(h[i] for i in range(len(h)) if (phase - i) % period < above)
+
+    def applied(phase: int) -> float:
+        return alpha * force(phase - d - 1) + (1 - alpha) * force(phase - d)
+
+    return applied(above - 1) - applied(period - 1)
+
+
+def straddle(
+    loop: LinearLoop, coulomb_friction: Fraction, resolution: Fraction, waits: Waits, cell: int
+) -> Motion | None:
+    """Go to the edge between counts `cell` and `cell` + 1, then to and fro over it; None if it gains nothing."""
+    surplus = Fraction(waits.gain) * resolution - 2 * coulomb_friction
+    if surplus <= 0:
+        return None
+    step = resolution / 4
+    if loop.damping > 0:
+        step = min(step, round_up(surplus * loop.period / (4 * loop.damping)) / 2)
+    edge = (cell + 1) * resolution
+    below, above = edge - step / 2, edge + step / 2
+    approach = [below * k / _APPROACH for k in range(_APPROACH + 1)]
+    wait = loop.whole_delay + 2
+    lead = approach + [below] * wait
+    cycle = [above] * waits.above + [below] * waits.below
+    x = tuple(lead + cycle * 2)
+    first = len(lead) + len(cycle) - 1
+    switches = tuple(a + loop.part_delay * (b - a) for a, b in zip(x, x[1:], strict=False))
+    return Motion(x, switches if loop.part_delay else (), first, len(x) - 1, 1)
