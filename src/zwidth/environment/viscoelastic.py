@@ -273,9 +273,7 @@ def _branches(given: Iterable[Sequence[Parameter]]) -> tuple[Branch, ...]:
         raise InputError(f"branches is a list of pairs (stiffness, damping), got {given!r}")
     pairs = [_pair(i, pair) for i, pair in enumerate(given)]
     if len(pairs) > MOST_BRANCHES:
-        raise InputError(
-            f"branches has {len(pairs)} pairs, more than {MOST_BRANCHES}; no controller runs them"
-        )
+        raise InputError(f"branches has {len(pairs)} pairs; at most {MOST_BRANCHES} are read")
     return tuple(pairs)
 
 

@@ -3,9 +3,9 @@
     Z_c(z) = K_c + B_c (z − 1)/(T z)        H = Z_c E/(Z_c + E)
 
 The handle pulls at one end of the coupling, the environment E(z) holds the
-other (Colgate, Stanley & Brown 1995).  For every E that is passive in discrete
-time the condition on the device is that of a wall of K_c and B_c: the coupling
-bounds what the hand can feel, whatever lies behind it.
+other (Colgate, Stanley & Brown 1995).  A device that renders a wall of K_c and
+B_c passively renders it before every E that is passive in discrete time, and
+no less will do for all of them: the coupling bounds what the hand can meet.
 """
 
 from __future__ import annotations

@@ -1,0 +1,115 @@
+"""The coupling: series stiffness, its own bound, bad input."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import control
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import zwidth as zw
+
+T = Fraction(1, 1000)
+Z = np.exp(1j * np.linspace(0.05, np.pi, 60))
+
+
+def evaluate(law, z=Z):
+    """H(z) in floats."""
+    top, bottom = ([float(c) for c in p] for p in law.pulse_transfer_function(T))
+    return np.polyval(top, z) / np.polyval(bottom, z)
+
+
+@pytest.mark.parametrize(
+    "inner",
+    [
+        zw.Wall(290, 1.3),
+        zw.StandardLinearSolid(290, 731, 4, "zoh"),
+        zw.PulseTransferFunction([310, -250], [0.7, -0.5]),
+    ],
+)
+def test_compliances_add(inner):
+    """1/H = 1/Z_c + 1/E at every frequency."""
+    coupling = zw.VirtualCoupling(820, 2.1, inner)
+    zc = 820 + 2.1 * (Z - 1) / (1e-3 * Z)
+    assert 1 / evaluate(coupling) == pytest.approx(1 / zc + 1 / evaluate(inner), rel=1e-12)
+
+
+@given(st.fractions(1, 900, max_denominator=97), st.fractions(1, 900, max_denominator=97))
+def test_two_springs_in_series(k, inner):
+    """H = K_c K/(K_c + K), exactly, and memoryless."""
+    law = zw.VirtualCoupling(k, 0, zw.Wall(inner))
+    top, bottom = law.pulse_transfer_function(T)
+    assert len(top) == len(bottom) == 1
+    assert top[0] / bottom[0] == k * inner / (k + inner)
+    assert law.spring
+
+
+def required_damping(h):
+    """(T/2) Re{(1 − z⁻¹) H}/(1 − cos θ), its largest value over the frequencies."""
+    return np.max(5e-4 * np.real((1 - 1 / Z) * h) / (1 - np.real(Z)))
+
+
+@given(st.floats(1, 5000), st.floats(1, 5000), st.floats(0.01, 50))
+def test_a_passive_environment_needs_no_more_than_the_coupling_alone(k, mu, eta):
+    """Before a solid that is passive in discrete time, K_c T/2 + B_c is always enough."""
+    solid = zw.StandardLinearSolid(k, mu, eta, "backward")
+    # from velocity (z − 1) x/(T z) to force
+    assert np.min(np.real(evaluate(solid) * Z / (Z - 1))) >= 0
+    assert required_damping(evaluate(zw.VirtualCoupling(820, 0.3, solid))) <= (820 * 5e-4 + 0.3) * (1 + 1e-9)
+
+
+def test_a_rigid_environment_needs_what_the_coupling_alone_needs():
+    """The bound is met in the limit of a stiff wall."""
+    law = zw.VirtualCoupling(820, 0.3, zw.Wall(1e12))
+    assert required_damping(evaluate(law)) == pytest.approx(820 * 5e-4 + 0.3, rel=1e-6)
+
+
+def test_surface_and_rounding_follow_the_environment():
+    """Unilateral, rounded and uncertain exactly as what lies behind."""
+    wall, free = zw.Wall(290, 1.3), zw.PulseTransferFunction([1], [1, 0.5])
+    assert zw.VirtualCoupling(820, 2, wall).unilateral
+    assert not zw.VirtualCoupling(820, 2, free).unilateral
+    assert not zw.VirtualCoupling(820, 2, zw.Wall(290)).spring
+    assert not zw.VirtualCoupling(820, 2, wall).coefficients_rounded
+    assert zw.VirtualCoupling(820, 2, zw.Maxwell(3, 4, "zoh")).coefficients_rounded
+    assert not zw.VirtualCoupling(820, 2, zw.Wall((1, 2))).is_certain
+
+
+def test_foreign_systems_are_accepted():
+    """A discrete python-control system lies behind the coupling as its transfer function."""
+    system = control.tf([310.0, -250.0], [0.7, -0.5], 1e-3)
+    law = zw.VirtualCoupling(820, 2.1, system)
+    assert law.environment == zw.PulseTransferFunction(system)
+    zc = control.tf([820e-3 + 2.1, -2.1], [1e-3, 0], 1e-3)
+    assert evaluate(law) == pytest.approx((zc * system / (zc + system))(Z), rel=1e-9)
+
+
+def test_nested_couplings_and_text():
+    """Couplings in series; describe() from the outside in; repr() can be typed again."""
+    law = zw.VirtualCoupling(820, 2, zw.VirtualCoupling(700, 1, zw.Maxwell(3, 4)))
+    assert law.describe().startswith(
+        "virtual coupling, 820 N/m and 2 N*s/m, before virtual coupling, 700 N/m and 1 N*s/m, before Maxwell"
+    )
+    assert eval(repr(law), vars(zw)) == law
+    assert law.replace(stiffness=5).stiffness == 5
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: zw.VirtualCoupling(-1, 2, zw.Wall(3)), "stiffness must be ≥ 0"),
+        (lambda: zw.VirtualCoupling(1, "x", zw.Wall(3)), "damping: expected a number"),
+        (lambda: zw.VirtualCoupling(1, 2, None), "an environment is"),
+        (lambda: zw.VirtualCoupling(1, 2, control.tf([1], [1, 2])), "needs a discretization"),
+        (lambda: zw.VirtualCoupling((1, 2), 2, zw.Wall(3)).pulse_transfer_function(T), "interval"),
+        (lambda: zw.VirtualCoupling(0, 0, zw.Wall(0)).pulse_transfer_function(T), "add up to zero"),
+        (lambda: zw.VirtualCoupling(0, -3, zw.Wall(3000)).pulse_transfer_function(T), "still to come"),
+    ],
+)
+def test_bad_input_has_one_clear_message(make, message):
+    """What was given and what to give instead."""
+    with pytest.raises(zw.InputError, match=message):
+        make()
