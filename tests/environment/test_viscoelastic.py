@@ -9,7 +9,7 @@ import control
 import numpy as np
 import pytest
 import scipy.signal
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import zwidth as zw
@@ -46,6 +46,7 @@ def response(transfer, inputs):
     return scipy.signal.lfilter(top, bottom, inputs)
 
 
+@settings(deadline=None)
 @given(positive, positive, positive, st.sampled_from(["backward", "forward", "tustin"]))
 def test_standard_linear_solid_is_the_closed_form_exactly(mu0, mu1, eta1, method):
     """For every rational parameter, at a rational z off the poles, without rounding."""
@@ -56,6 +57,7 @@ def test_standard_linear_solid_is_the_closed_form_exactly(mu0, mu1, eta1, method
         assert at(solid.pulse_transfer_function(T), z) == closed_form(mu0, mu1, eta1, method, T, z)
 
 
+@settings(deadline=None)
 @given(positive, positive, positive)
 def test_required_damping_at_nyquist_is_the_published_one(mu0, mu1, eta1):
     """(T/2) H(−1) is μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T) by backward Euler, (μ0 + μ1) T/2 by Tustin."""
@@ -99,6 +101,7 @@ def test_one_branch_is_the_standard_linear_solid(method):
     assert zw.Maxwell(731, 40, method).pulse_transfer_function(T) == without
 
 
+@settings(deadline=None)
 @given(st.lists(st.tuples(positive, positive), min_size=1, max_size=4))
 def test_branches_add(branches):
     """H of the series is the sum of spring and branches, exactly."""

@@ -7,7 +7,7 @@ from fractions import Fraction
 import control
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import zwidth as zw
@@ -37,6 +37,7 @@ def test_compliances_add(inner):
     assert 1 / evaluate(coupling) == pytest.approx(1 / zc + 1 / evaluate(inner), rel=1e-12)
 
 
+@settings(deadline=None)
 @given(st.fractions(1, 900, max_denominator=97), st.fractions(1, 900, max_denominator=97))
 def test_two_springs_in_series(k, inner):
     """H = K_c K/(K_c + K), exactly, and memoryless."""
@@ -52,6 +53,7 @@ def required_damping(h):
     return np.max(5e-4 * np.real((1 - 1 / Z) * h) / (1 - np.real(Z)))
 
 
+@settings(deadline=None)
 @given(st.floats(1, 5000), st.floats(1, 5000), st.floats(0.01, 50))
 def test_a_passive_environment_needs_no_more_than_the_coupling_alone(k, mu, eta):
     """Before a solid that is passive in discrete time, K_c T/2 + B_c is always enough."""
