@@ -1,0 +1,1 @@
+"""Makes the shared Hypothesis strategies importable, `from strategies import …`."""

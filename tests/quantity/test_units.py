@@ -1,0 +1,211 @@
+"""Values with units are exact, and a wrong one is refused in one clear message."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from strategies import decimals, texts, toml_values
+
+from zwidth.errors import InputError
+from zwidth.quantity.dimension import unit_of
+from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse, parse_number
+
+EXACT = [
+    ("1 kHz", "Hz", "1000"),
+    ("22.4 um", "m", "224/10000000"),
+    ("22.4 µm", "m", "224/10000000"),  # micro sign
+    ("22.4 μm", "m", "224/10000000"),  # Greek mu
+    ("22.4um", "m", "224/10000000"),
+    ("0.15 N*s/m", "N*s/m", "3/20"),
+    ("0.15 N·s/m", "N*s/m", "3/20"),
+    ("0.15 N s/m", "N*s/m", "3/20"),
+    ("0.15 kg/s", "N*s/m", "3/20"),
+    ("60 1/min", "Hz", "1"),
+    ("60/min", "Hz", "1"),
+    ("1 s^-1", "Hz", "1"),
+    ("0.3 ms", "s", "3/10000"),
+    ("1/3000 s", "s", "1/3000"),
+    ("1/3000", "s", "1/3000"),
+    ("5 N/mm", "N/m", "5000"),
+    ("10 mN*m", "N*m", "1/100"),
+    ("1.8 N*m/rad", "N*m/rad", "9/5"),
+    ("1.8 N*m", "N*m/rad", "9/5"),
+    ("2 N*m*s", "N*m*s/rad", "2"),
+    ("2 N*m*s/rad", "N*m*s/rad", "2"),
+    ("500 g", "kg", "1/2"),
+    ("30 g*cm^2", "kg*m^2", "3/1000000"),
+    ("30 g cm²", "kg*m^2", "3/1000000"),
+    ("30 g*cm**2", "kg*m^2", "3/1000000"),
+    ("0.55 mH", "H", "11/20000"),
+    ("12 V", "V", "12"),
+    ("3.3 A", "A", "33/10"),
+    ("5 mrad", "rad", "1/200"),
+    ("−3 N", "N", "-3"),
+    ("1e-3", "s", "1/1000"),
+    (Decimal("0.15"), "N*s/m", "3/20"),
+    (0.15, "N*s/m", "3/20"),
+    (7, "m", "7"),
+    ("180 deg", "deg", "180"),
+]
+
+WRONG = [
+    ("5 kHz", "N/m", 'is in N/m; got "5 kHz", a frequency (1/s)'),
+    ("60 rad/s", "Hz", "an angular speed (rad/s)"),
+    ("5 N*m/rad", "N*m", "a rotary stiffness"),
+    ("1 N*m", "rad", "a torque or an energy"),
+    ("1 m", "rad", "a length (m)"),
+    ("5 mm/m", "m", "a plain number"),
+    ("1 khz", "Hz", 'did you mean "kHz"'),
+    ("5 foo", "m", '"foo" is not a known unit'),
+    ("", "m", "empty"),
+    ("   ", "m", "empty"),
+    ("m", "m", "expected a number"),
+    ("nan", "m", "finite"),
+    ("-inf m", "m", "finite"),
+    (float("nan"), "m", "finite"),
+    (Decimal("sNaN"), "m", "finite"),
+    ("0,15", "m", "with a point"),
+    ("1e999 m", "m", "magnitudes"),
+    ("1e40 km", "m", "magnitudes"),
+    ("1e99999999999999999999", "m", "m"),
+    ("1 2 m", "m", "the number 2"),
+    ("1 m/0", "m", "the number 0"),
+    ("1 m^", "m", "not a product of units"),
+    ("1 m/", "m", "not a product of units"),
+    ("1 m^22", "m", "not a product of units"),
+    ("9" * 200, "m", "expected a number"),
+    (10**1000, "m", "digits"),
+    (Decimal("0." + "1" * 500), "m", "digits"),
+    (True, "m", "true or false"),
+    (None, "m", "nothing"),
+    ({"a": 1}, "m", "a table"),
+    ([1, 2, 3], "m", "two ends"),
+    ([[1, 2], 3], "m", "a list"),
+    ([2, 1], "m", "swap"),
+    ("2..1", "m", "swap"),
+    ("1...2", "m", "two numbers"),
+    ("1..2..3", "m", "two numbers"),
+    ("1 mm .. 2", "m", "after the second"),
+    ("..", "m", "empty"),
+    ("\x00\n\x1b[31m", "m", "expected a number"),
+]
+
+
+def attempt(value: object, unit: str) -> tuple[Exact | Interval | None, str]:
+    """What `parse` returns, or the message of its InputError."""
+    try:
+        return parse(value, unit, "x"), ""
+    except InputError as error:
+        return None, str(error)
+
+
+@pytest.mark.parametrize(("given_value", "unit", "expected"), EXACT)
+def test_values_are_exact(given_value: object, unit: str, expected: str) -> None:
+    """The typed decimal times an exact scale, without a rounding."""
+    parsed = parse(given_value, unit, "value")
+    assert isinstance(parsed, Exact)
+    assert parsed.fraction == Fraction(expected)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "expected"),
+    [
+        ("3 deg", "rad", lambda: mpmath.pi / 60),
+        ("3°", "rad", lambda: mpmath.pi / 60),
+        ("0.25 turn", "rad", lambda: mpmath.pi / 2),
+        ("2 rev", "rad", lambda: 4 * mpmath.pi),
+        ("7 N*m/deg", "N*m/rad", lambda: 1260 / mpmath.pi),
+    ],
+)
+def test_degrees_and_turns_are_rounded_once(text: str, unit: str, expected: Callable[[], Any]) -> None:
+    """π enters through 40 digits, so the result is the nearest double."""
+    with mpmath.workdps(60):
+        nearest = float(expected())
+    assert float(parse_number(text, unit, "angle")) == nearest
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high"),
+    [
+        ("0.1..0.2", "0.1", "0.2"),
+        ("0.1 .. 0.2 N", "0.1", "0.2"),
+        ("100 … 200 mN", "0.1", "0.2"),
+        ("100 mN .. 0.2 N", "0.1", "0.2"),
+        (["100 mN", 0.2], "0.1", "0.2"),
+        ((Decimal("0.1"), Decimal("0.2")), "0.1", "0.2"),
+        (Interval(0.1, 0.2), "0.1", "0.2"),
+        ("0.1..0.1", "0.1", "0.1"),
+    ],
+)
+def test_intervals(value: object, low: str, high: str) -> None:
+    """Two ends in a list, or a text with two points between them."""
+    assert parse(value, "N", "friction") == Interval(low, high)
+
+
+@pytest.mark.parametrize(("value", "unit", "part"), WRONG)
+def test_wrong_values_are_refused(value: object, unit: str, part: str) -> None:
+    """One line that names the quantity and says what is wrong."""
+    with pytest.raises(InputError) as caught:
+        parse(value, unit, "stiffness")
+    message = str(caught.value)
+    assert part in message
+    assert message.startswith("stiffness")
+    assert len(message) < 300
+    assert message.isprintable()
+
+
+@pytest.mark.parametrize("quantity", GLOSSARY.values(), ids=GLOSSARY.keys())
+def test_every_unit_of_the_glossary_is_understood(quantity) -> None:  # type: ignore[no-untyped-def]
+    """Otherwise its own unit could not be typed."""
+    for unit in (quantity.unit, quantity.rotary_unit):
+        assert parse_number(f"2 {unit}", unit, quantity.name).fraction == 2
+
+
+@given(decimals("-1000", "1000"), st.sampled_from(["um", "mm", "cm", "m", "km"]))
+def test_a_prefix_is_a_power_of_ten(number: Decimal, unit: str) -> None:
+    """For every decimal, by rational arithmetic."""
+    power = {"um": -6, "mm": -3, "cm": -2, "m": 0, "km": 3}[unit]
+    assert parse_number(f"{number:f} {unit}", "m", "x").fraction == Fraction(number) * Fraction(10) ** power
+
+
+def test_a_number_too_long_to_print_is_refused() -> None:
+    """Python itself refuses to print more than 4300 digits."""
+    assert "digits" in attempt(10**5000, "m")[1]
+    assert "digits" in attempt(-(10**5000), "m")[1]
+
+
+@settings(max_examples=300)
+@given(texts(), st.sampled_from(["m", "N*s/m", "N*m*s/rad", "1", "Hz"]))
+@example("1 .. 2 ..", "m")
+@example("1 " + "m*" * 40, "m")
+def test_any_text_gives_a_value_or_an_input_error(text: str, unit: str) -> None:
+    """No other exception, and what is returned is finite."""
+    value, message = attempt(text, unit)
+    assert isinstance(value, (Exact, Interval)) if not message else message.isprintable()
+
+
+@settings(max_examples=200)
+@given(toml_values())
+def test_any_toml_value_gives_a_value_or_an_input_error(value: object) -> None:
+    """Tables, lists, booleans and huge numbers included."""
+    assert len(attempt(value, "m")[1]) < 400
+
+
+@settings(max_examples=200)
+@given(st.text(alphabet="kmNsHzgrad*/^-+123µ ", max_size=12))
+def test_units_never_break(text: str) -> None:
+    """A product of units or an InputError."""
+    try:
+        unit = unit_of(text)
+    except InputError:
+        return
+    assert unit.scale > 0

@@ -1,0 +1,78 @@
+"""Hypothesis strategies that several test files share."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+from hypothesis import strategies as st
+
+import zwidth as zw
+
+
+def decimals(low: str, high: str, places: int = 6) -> st.SearchStrategy[Decimal]:
+    """Numbers as a person types them, of either end included."""
+    return st.decimals(Decimal(low), Decimal(high), places=places, allow_nan=False, allow_infinity=False)
+
+
+def fractions(low: str = "0.001", high: str = "1000") -> st.SearchStrategy[Fraction]:
+    """Positive rationals with modest denominators."""
+    return st.fractions(Fraction(low), Fraction(high), max_denominator=10**6)
+
+
+@st.composite
+def devices(draw: st.DrawFn, **fixed: Any) -> zw.Device:
+    """Certain linear devices with typical numbers; `fixed` arguments are kept."""
+    drawn: dict[str, Any] = {
+        "mass": draw(decimals("0.001", "2")),
+        "damping": draw(decimals("0.001", "2")),
+        "coulomb_friction": draw(decimals("0", "1")),
+        "resolution": draw(decimals("0", "0.001", places=8)),
+        "sample_period": draw(decimals("0.0001", "0.01")),
+        "delay": draw(decimals("0", "0.005")),
+    }
+    return zw.Device(**{**drawn, **fixed})
+
+
+WORDS = (
+    "device",
+    "environment",
+    "type",
+    "wall",
+    "damping",
+    "rate",
+    "stiffness",
+    "1 kHz",
+    "22.4 um",
+    "0.1..0.2",
+    "nan",
+    "-1",
+    "1e999",
+    "µm",
+    "N*s/m",
+    "one-pole",
+    "",
+)
+"""Words near to valid input, where a parser is most easily confused."""
+
+
+def texts() -> st.SearchStrategy[str]:
+    """Any text, and texts made of words that mean something."""
+    return st.text(max_size=60) | st.lists(st.sampled_from(WORDS), max_size=4).map(" ".join)
+
+
+def toml_values() -> st.SearchStrategy[Any]:
+    """Whatever tomllib may return, dates apart, nested three deep."""
+    leaves = (
+        texts()
+        | st.booleans()
+        | st.integers()
+        | st.decimals()
+        | st.sampled_from([1, 300, Decimal("0.15"), 10**4000, Decimal("1e-99999")])
+    )
+    return st.recursive(
+        leaves,
+        lambda inner: st.lists(inner, max_size=3) | st.dictionaries(texts(), inner, max_size=3),
+        max_leaves=8,
+    )
