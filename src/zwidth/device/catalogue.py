@@ -87,7 +87,7 @@ def entry(name: str) -> Entry:
     return found
 
 
-def device(name: str, **overrides: Any) -> Device:
+def device(name: str, /, **overrides: Any) -> Device:
     """A catalogue device, with some numbers given or replaced.
 
     Parameters
