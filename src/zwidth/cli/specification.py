@@ -138,7 +138,7 @@ def _tables(sources: Sequence[Path | str]) -> dict[str, Table]:
 def _read(source: Path | str) -> dict[str, Table]:
     if str(source) in catalogue.names():
         return {"device": Table(str(source), {"catalogue": str(source)})}
-    name = plain(str(source))
+    name = _shown(source)
     content = _parse(_text(source), name)
     for key, value in content.items():
         if key not in ("device", "environment"):
@@ -158,14 +158,16 @@ def _parse(text: str, name: str) -> dict[str, Any]:
 
     try:
         return tomllib.loads(text, parse_float=Decimal)
-    except (ValueError, ArithmeticError) as error:  # the latter: a number that Decimal cannot hold
+    except tomllib.TOMLDecodeError as error:
         raise InputError(f"{name}: not TOML: {plain(str(error), 160)}") from None
+    except (ValueError, ArithmeticError):  # what int and Decimal refuse
+        raise InputError(f"{name}: a number or date in it is larger than any quantity") from None
     except RecursionError:
         raise InputError(f"{name}: nested too deeply for a specification") from None
 
 
 def _text(source: Path | str) -> str:
-    path, name = Path(source), quoted(str(source))
+    path, name = Path(source), f'"{_shown(source)}"'
     try:
         if path.is_dir():
             raise InputError(f"{name} is a directory; give the TOML file in it")
@@ -191,6 +193,12 @@ def _text(source: Path | str) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"{name} is not UTF-8 text (byte {error.start}); save it as UTF-8") from None
+
+
+def _shown(source: Path | str) -> str:
+    """The path on one line; of a long one the end, where the file's name stands."""
+    text = str(source)
+    return plain(text if len(text) <= 100 else f"...{text[-97:]}", 100)
 
 
 def _device_table(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Table:

@@ -1,0 +1,387 @@
+"""Specifications are read exactly, and every slip is one clear message."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from strategies import texts, toml_values
+
+import zwidth as zw
+from zwidth.cli.environments import TYPES, build_environment, option_keys
+from zwidth.cli.specification import DEVICE_KEYS, LARGEST_FILE, Specification, build_device, load
+from zwidth.cli.table import Table
+from zwidth.quantity.glossary import GLOSSARY
+
+DEVICE = '[device]\ndamping = "0.15 N*s/m"\nrate = "3 kHz"\n'
+WALL = '[environment]\ntype = "wall"\nstiffness = 300\n'
+
+Load = Callable[..., Specification]
+
+
+@pytest.fixture
+def read(tmp_path: Path) -> Load:
+    """Writes each content to a file of its own and loads them all."""
+
+    def loader(*contents: str | bytes, **overrides: str) -> Specification:
+        paths = [tmp_path / f"file{i}.toml" for i in range(len(contents))]
+        for path, content in zip(paths, contents, strict=True):
+            path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return load(paths, overrides)
+
+    return loader
+
+
+def message(call: Callable[[], object]) -> str:
+    """The message of the InputError that a call must raise."""
+    with pytest.raises(zw.InputError) as caught:
+        call()
+    text = str(caught.value)
+    assert text.isprintable()
+    assert len(text) < 700
+    return text
+
+
+def outcome(call: Callable[[], object]) -> str:
+    """The message of an InputError, or nothing where all is well."""
+    try:
+        call()
+    except zw.InputError as error:
+        return str(error)
+    return ""
+
+
+def test_numbers_are_exact(read: Load) -> None:
+    """A third of a millisecond, and TOML floats as they were typed."""
+    device, wall = (s := read(DEVICE + "resolution = 22.4e-6\n" + WALL)).device, s.environment
+    assert device.exact("sample_period") == Fraction(1, 3000)
+    assert device.exact("resolution") == Fraction(224, 10**7)
+    assert device.name == "file0"
+    assert device.assumed == ("coulomb_friction", "delay")
+    assert wall == zw.Wall(300)
+
+
+def test_one_file_or_two_or_a_catalogue_name(read: Load) -> None:
+    """In any order."""
+    both = read(DEVICE + WALL)
+    assert read(WALL, DEVICE.replace("[device]", '[device]\nname = "file0"')) == both
+    paddle = load(["haptic-paddle"], {"stiffness": "0.3 N/mm"})
+    assert paddle == Specification(zw.catalogue.device("haptic-paddle"), zw.Wall(300))
+
+
+def test_the_command_line_alone() -> None:
+    """A device and a wall without a file."""
+    s = load([], {"damping": "0.15", "sample-period": "1 ms", "stiffness": "300", "virtual-damping": "-0.1"})
+    assert s == Specification(zw.Device(damping=0.15, rate=1000), zw.Wall(300, -0.1))
+
+
+def test_overrides_replace_the_file(read: Load) -> None:
+    """Rate stands for the period, `damping` is the device's and `virtual_damping` the wall's."""
+    text = (
+        "[device]\ndamping = 1\nsample_period = 0.001\n"
+        '[environment]\ntype = "wall"\nstiffness = 1\ndamping = 2\n'
+    )
+    s = read(text, rate="2 kHz", damping="0.5", stiffness="7", virtual_damping="0.25", delay="0.3 ms")
+    assert s.device.exact("sample_period") == Fraction(1, 2000)
+    assert s.device.exact("damping") == Fraction(1, 2)
+    assert s.device.exact("delay") == Fraction(3, 10000)
+    assert s.environment == zw.Wall(7, 0.25)
+    alias = read(text.replace("damping = 2", "virtual_damping = 2"))
+    assert alias.environment == zw.Wall(1, 2)
+
+
+def test_a_catalogue_device_as_a_base(read: Load) -> None:
+    """Keys beside `catalogue` replace the published ones."""
+    device = read('[device]\ncatalogue = "haptic-paddle"\nrate = "5 kHz"\n' + WALL).device
+    assert device == zw.catalogue.device("haptic-paddle", rate=5000)
+    named = read('[device]\ncatalogue = "phantom"\nname = "ours"\n' + WALL).device
+    assert named.name == "ours"
+
+
+def test_intervals(read: Load) -> None:
+    """Lists in TOML, two points on the command line."""
+    s = read(DEVICE + 'mass = ["10 g", 0.02]\n' + WALL, resolution="10 .. 20 um", stiffness="100..200")
+    assert s.device.mass == zw.Interval(0.01, 0.02)
+    assert s.device.resolution == zw.Interval("1e-5", "2e-5")
+    assert s.environment == zw.Wall((100, 200))
+
+
+def test_rotary_devices(read: Load) -> None:
+    """Rotary units throughout; linear ones once there is a handle."""
+    wheel = '[device]\ninertia = "100 g*cm^2"\ndamping = "1e-3 N*m*s"\nrate = 1000\ncounts_per_turn = 4096\n'
+    s = read(wheel, '[environment]\ntype = "wall"\nstiffness = "2 N*m/rad"\n')
+    assert s.device == zw.rotary(inertia=1e-5, damping=1e-3, rate=1000, counts_per_turn=4096, name="file0")
+    assert s.device.motion == "rotary"
+    assert s.environment == zw.Wall(2)
+    handle = read(wheel + 'handle_radius = "5 cm"\n', '[environment]\ntype = "wall"\nstiffness = "2 N/m"\n')
+    assert handle.device.motion == "linear"
+    assert handle.device.exact("damping") == Fraction(1, 1000) / Fraction(5, 100) ** 2
+    assert read(wheel + WALL, resolution="1 mrad").device.exact("resolution") == Fraction(1, 1000)
+    assert "a rotary stiffness" in message(
+        lambda: read(DEVICE, '[environment]\ntype = "wall"\nstiffness = "2 N*m/rad"\n')
+    )
+
+
+SLS = 'type = "standard-linear-solid"\nstiffness = 10\nbranch_stiffness = "1 N/mm"\nbranch_damping = 3\n'
+ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
+    ('type = "wall"\nstiffness = 1\ndamping = 2\n', lambda: zw.Wall(1, 2)),
+    ('type = "maxwell"\nstiffness = 1\ndamping = 2\n', lambda: zw.Maxwell(1, 2)),
+    (SLS, lambda: zw.StandardLinearSolid(10, 1000, 3)),
+    (SLS + 'discretization = "tustin"\n', lambda: zw.StandardLinearSolid(10, 1000, 3, "tustin")),
+    (
+        'type = "generalized-maxwell"\nstiffness = 1\nbranches = [[800, 3], ["1 N/mm", [1, 2]]]\n',
+        lambda: zw.GeneralizedMaxwell(1, [(800, 3), (1000, zw.Interval(1, 2))]),
+    ),
+    (
+        'type = "transfer-function"\nnumerator = [3, 0.1]\ndenominator = [1, 2]\ndiscretization = "zoh"\n',
+        lambda: zw.ContinuousTransferFunction([3, 0.1], [1, 2], "zoh"),
+    ),
+    (
+        'type = "pulse-transfer-function"\nsample_period = "1 ms"\n'
+        'numerator = [0.1]\ndenominator = [1, "-0.5"]\n',
+        lambda: zw.PulseTransferFunction([0.1], [1, -0.5], sample_period=0.001),
+    ),
+    (
+        'type = "virtual-coupling"\nstiffness = 1\ndamping = 2\n'
+        'environment = { type = "wall", stiffness = 9 }\n',
+        lambda: zw.VirtualCoupling(1, 2, zw.Wall(9)),
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), ENVIRONMENTS)
+def test_every_type_of_environment(read: Load, text: str, expected: Callable[[], Any]) -> None:
+    """As its class makes it from the same numbers."""
+    assert read(DEVICE, "[environment]\n" + text).environment == expected()
+
+
+def test_every_type_is_tested() -> None:
+    """A new row of the registry needs a row above."""
+    assert {text.split('"')[1] for text, _ in ENVIRONMENTS} == set(TYPES)
+
+
+FILTERS: list[tuple[str, str, Any]] = [
+    ('{ type = "backward-difference" }', "backward-difference", zw.BackwardDifference()),
+    ('{ type = "window", samples = 5 }', "window 5", zw.Window(5)),
+    ('{ type = "one-pole", time_constant = "2 ms" }', "one-pole 2 ms", zw.OnePole(0.002)),
+    ('{ type = "one-pole", cutoff = "50 Hz" }', "one-pole 50 Hz", zw.OnePole(1 / (2 * math.pi * 50))),
+    (
+        '{ type = "filter", numerator = [0.2], denominator = [1, -0.8] }',
+        "filter 0.2 / 1, -0.8",
+        zw.VelocityFilter([0.2], [1, -0.8]),
+    ),
+]
+
+
+@pytest.mark.parametrize(("table", "text", "expected"), FILTERS)
+def test_velocity_filters(read: Load, table: str, text: str, expected: Any) -> None:
+    """As a table in the file and as a text on the command line."""
+    wall = zw.Wall(300, 0.1, expected)
+    assert read(DEVICE + WALL + f"damping = 0.1\nvelocity_filter = {table}\n").environment == wall
+    assert read(DEVICE + WALL, virtual_damping="0.1", velocity_filter=text).environment == wall
+
+
+def test_lists_on_the_command_line(read: Load) -> None:
+    """Coefficients, branches, the type itself, and what lies behind a coupling."""
+    s = load(["phantom"], {"type": "pulse-transfer-function", "numerator": "0.1", "denominator": "[1, -0.5]"})
+    assert s.environment == zw.PulseTransferFunction([0.1], [1, -0.5])
+    s = load(["phantom"], {"type": "generalized-maxwell", "stiffness": "1", "branches": "800:3, 1 N/mm : 20"})
+    assert s.environment == zw.GeneralizedMaxwell(1, [(800, 3), (1000, 20)])
+    coupling = '[environment]\ntype = "virtual-coupling"\nstiffness = 1\ndamping = 2\n'
+    inner = '[environment.environment]\ntype = "wall"\nstiffness = 9\ndamping = 1\n'
+    changed = read(
+        DEVICE,
+        coupling + inner,
+        **{"stiffness": "5", "environment.stiffness": "8", "environment.virtual_damping": "0"},
+    )
+    assert changed.environment == zw.VirtualCoupling(5, 2, zw.Wall(8))
+
+
+def bad(device: str, environment: str = WALL) -> str:
+    """A specification whose [device] has these lines."""
+    return f"[device]\n{device}\n{environment}"
+
+
+BAD: list[tuple[str | bytes, str]] = [
+    (bad("dampng = 1\nrate = 1"), 'file0.toml: [device]: a device has no "dampng"; did you mean "damping"?'),
+    (bad("damping = 1"), "rate"),
+    (bad("rate = 1"), "damping"),
+    (bad("damping = -1\nrate = 1"), "damping must be ≥ 0 N*s/m, got -1"),
+    (bad("damping = 1\nrate = 1\ncoulomb_friction = -1e-9"), "coulomb_friction must be ≥ 0"),
+    (bad("damping = nan\nrate = 1"), "finite"),
+    (bad("damping = 1\nrate = inf"), "finite"),
+    (bad("damping = 1\nrate = 1e999"), "magnitudes"),
+    (bad("damping = 1\nrate = 1e99999999999999999999999"), "file0.toml: a number"),
+    (bad("damping = 1\nrate = 0x" + "f" * 9000), "digits"),
+    (bad("damping = 1\nrate = " + "9" * 9000), "file0.toml: a number"),
+    (bad("damping = true\nrate = 1"), "true or false"),
+    (bad("damping = 2020-01-01\nrate = 1"), "a value of type date"),
+    (bad("damping = {a = 1}\nrate = 1"), "a table"),
+    (bad("damping = [1, 2, 3]\nrate = 1"), "two ends"),
+    (bad("damping = [2, 1]\nrate = 1"), "swap"),
+    (bad('damping = "5 kHz"\nrate = 1'), 'damping is in N*s/m; got "5 kHz", a frequency (1/s)'),
+    (bad("damping = 1\nrate = 1\nsample_period = 1"), "both"),
+    (bad('damping = 1\nrate = "60 rad/s"'), "an angular speed"),
+    (bad("damping = 1\nrate = 1\nname = 3"), "name is a text"),
+    (bad('damping = 1\nrate = 1\nmotion = "up"'), "motion"),
+    (bad("mass = 1\ninertia = 1\ndamping = 1\nrate = 1"), "not a mass"),
+    (bad('motion = "linear"\ninertia = 1\ndamping = 1\nrate = 1'), "belongs to a rotary device"),
+    (bad('catalogue = "phantom"\ninertia = 1'), "drop inertia"),
+    (bad('catalogue = "phantm"'), 'did you mean "phantom"'),
+    (bad('catalogue = "touch"'), "--damping 0.1 --rate 1000"),
+    (bad("catalogue = 1"), "catalogue is a text"),
+    (DEVICE + "[environment]\nstiffness = 1", "type is missing; it may be: wall"),
+    (DEVICE + "[environment]\ntype = 1", "type is a text"),
+    (DEVICE + '[environment]\ntype = "wal"\nstiffness = 1', 'did you mean "wall"'),
+    (DEVICE + '[environment]\ntype = "wall"', "needs stiffness [N/m]"),
+    (DEVICE + WALL + "stifness = 1", '[environment]: an environment of type "wall" has no "stifness"'),
+    (DEVICE + WALL + "branch_damping = 1", 'of type "wall" has no "branch_damping"'),
+    (DEVICE + WALL + "damping = 1\nvirtual_damping = 1", "same quantity"),
+    (DEVICE + WALL.replace("300", "-300"), "stiffness must be ≥ 0"),
+    (DEVICE + WALL + "velocity_filter = 5", "velocity_filter is"),
+    (DEVICE + WALL + 'velocity_filter = "windw 5"', 'did you mean "window"'),
+    (DEVICE + WALL + "velocity_filter = {}", "velocity_filter"),
+    (DEVICE + WALL + 'velocity_filter = {type = "window"}', "needs samples"),
+    (DEVICE + WALL + 'velocity_filter = {type = "window", samples = 2.5}', "whole number"),
+    (DEVICE + WALL + 'velocity_filter = {type = "window", samples = 5, foo = 1}', 'has no "foo"'),
+    (DEVICE + WALL + 'velocity_filter = {type = "window", samples = [1, 2]}', "a list"),
+    (DEVICE + WALL + 'velocity_filter = {type = "one-pole"}', "needs time_constant or cutoff"),
+    (DEVICE + WALL + 'velocity_filter = {type = "one-pole", cutoff = 0}', "cutoff must be > 0"),
+    (DEVICE + WALL + 'velocity_filter = {type = "one-pole", cutoff = "2 ms"}', "a time (s)"),
+    (DEVICE + WALL + 'velocity_filter = {type = "filter", numerator = 1, denominator = [1]}', "is a list"),
+    (DEVICE + "[environment]\n" + SLS + 'discretization = "euler"', "discretization"),
+    (DEVICE + '[environment]\ntype = "generalized-maxwell"\nstiffness = 1\nbranches = [1, 2]', "pairs"),
+    (
+        DEVICE + '[environment]\ntype = "virtual-coupling"\nstiffness = 1\ndamping = 1\nenvironment = 1',
+        "environment is a table",
+    ),
+    (
+        DEVICE
+        + '[environment]\ntype = "virtual-coupling"\nstiffness = 1\ndamping = 1\n'
+        + '[environment.environment]\ntype = "wall"\nstifness = 1',
+        '[environment.environment]: an environment of type "wall" has no "stifness"',
+    ),
+    (DEVICE + "[enviroment]\n", 'did you mean "environment"'),
+    ("device = 1", "device is a table"),
+    ("[[device]]\n", "device is a table"),
+    ("", "neither a [device] nor an [environment]"),
+    ("this is not TOML", "not TOML"),
+    ("[device\n", "not TOML"),
+    ("a = " + "[" * 20000, "nested too deeply"),
+    (b"\xff\xfe\x00", "not UTF-8"),
+    (b"#" * (LARGEST_FILE + 1), "larger than"),
+    (DEVICE, "no environment is given"),
+    (WALL, "no device is given"),
+]
+
+
+@pytest.mark.parametrize(("content", "part"), BAD, ids=range(len(BAD)))
+def test_slips_in_a_file(read: Load, content: str | bytes, part: str) -> None:
+    """One message that names the place, the key, what was given and what is allowed."""
+    assert part in message(lambda: read(content))
+
+
+@pytest.mark.parametrize(
+    ("overrides", "part"),
+    [
+        ({"stiffness": "5 kHz"}, 'command line: stiffness is in N/m; got "5 kHz", a frequency (1/s)'),
+        ({"stiffness": ""}, "empty"),
+        ({"stifness": "1"}, 'there is no parameter "stifness"; did you mean "stiffness"?'),
+        ({"stiffness": "1", "branch_damping": "1"}, 'of type "wall" has no "branch_damping"'),
+        ({"stiffness": "1", "rate": "1", "sample_period": "1"}, "both"),
+        ({"stiffness": "1", "coulomb_friction": "-0.1"}, "must be ≥ 0"),
+        ({"environment.stiffness": "1"}, "there is none"),
+        ({"environment.stifness": "1"}, "there is no parameter"),
+        ({"type": "spring"}, "there is no environment of type"),
+        ({"virtual_damping": "1"}, "needs stiffness"),
+        ({}, "no environment is given"),
+    ],
+)
+def test_slips_on_the_command_line(overrides: dict[str, str], part: str) -> None:
+    """They are said to stand there."""
+    assert part in message(lambda: load(["haptic-paddle"], overrides))
+
+
+def test_slips_in_the_sources(tmp_path: Path, read: Load) -> None:
+    """What is no file is one line, not a traceback."""
+    wall = {"stiffness": "1"}
+    assert 'did you mean "haptic-paddle"' in message(lambda: load(["haptic-padle"], wall))
+    assert "there is no file" in message(lambda: load(["missing.toml"], wall))
+    assert "is a directory" in message(lambda: load([tmp_path], wall))
+    assert "not a regular file" in message(lambda: load(["/dev/null"], wall))
+    assert "\x00" not in message(lambda: load(["a\x00b"], wall))
+    assert "cannot be read" in message(lambda: load(["x" * 5000], wall))
+    assert "both" in message(lambda: load(["phantom", "phantom"], wall))
+    assert "both" in message(lambda: read(DEVICE, DEVICE))
+    assert "no device is given" in message(lambda: load([], wall))
+
+
+def test_command_line_names_are_not_shared() -> None:
+    """No name means one thing for the device and another for the environment."""
+    assert not set(option_keys()) & set(DEVICE_KEYS)
+    for row in TYPES.values():
+        for key in row.keys.values():
+            assert (key.quantity in GLOSSARY) == (key.form == "quantity")
+            assert key.meaning
+
+
+KEYS = st.sampled_from([*DEVICE_KEYS, *option_keys(), "type", "environment"]) | texts()
+VALUES = toml_values() | st.sampled_from([1, Decimal("0.5"), "1 ms", [1, 2], *TYPES])
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.dictionaries(KEYS, VALUES, max_size=6))
+def test_any_device_table_is_a_device_or_an_input_error(values: dict[str, Any]) -> None:
+    """Whatever stands in it; and a device that is accepted has a period and a damping."""
+    assert outcome(lambda: build_device(Table("x", {"damping": 1, "rate": 1000, **values}))).isprintable()
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.sampled_from(sorted(TYPES)), st.dictionaries(KEYS, VALUES, max_size=4), st.data())
+def test_any_environment_table_is_one_or_an_input_error(
+    name: str, values: dict[str, Any], data: st.DataObject
+) -> None:
+    """With the keys of its own type, so that the values are reached."""
+    own = {key: data.draw(VALUES) for key in TYPES[name].keys}
+    assert outcome(lambda: build_environment(Table("x", {"type": name, **own}), "linear")).isprintable()
+    assert outcome(lambda: build_environment(Table("x", {"type": name, **values}), "rotary")).isprintable()
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.dictionaries(KEYS, texts(), max_size=5), st.sampled_from([[], ["haptic-paddle"], ["phantom"]]))
+def test_any_command_line_is_read_or_an_input_error(overrides: dict[str, str], sources: list[str]) -> None:
+    """Names and values at random."""
+    assert outcome(lambda: load(sources, overrides)).isprintable()
+
+
+PIECES = st.sampled_from(
+    [
+        "[device]\n",
+        "[environment]\n",
+        "damping=",
+        "rate=",
+        "type=",
+        '"wall"',
+        "stiffness=",
+        "1",
+        "\n",
+        "[",
+        "]",
+    ]
+)
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.binary(max_size=200) | st.lists(PIECES | texts(), max_size=12).map(lambda p: "".join(p).encode()))
+def test_any_file_is_read_or_an_input_error(tmp_path: Path, content: bytes) -> None:
+    """Bytes at random, and TOML with pieces out of order."""
+    path = tmp_path / "fuzz.toml"
+    path.write_bytes(content)
+    assert outcome(lambda: load([path], {})).isprintable()
