@@ -422,10 +422,14 @@ def _hurwitz(descending: list[int]) -> bool:
 
 
 class _State(NamedTuple):
-    """What a sampled loop remembers: the filter's past and the forces on their way."""
+    """What a sampled loop remembers: the filter's past and the forces on their way.
+
+    `ahead` is how far repeated parts have carried the hand beyond the list.
+    """
 
     memory: tuple[int | Fraction, ...]
     forces: tuple[int | Fraction, ...]
+    ahead: int
 
 
 def _motion(document: Mapping[str, Any]) -> Verification:
@@ -436,11 +440,12 @@ def _motion(document: Mapping[str, Any]) -> Verification:
         raise Invalid("a motion has at least two positions")
     if p.unilateral and positions[0] > 0:
         raise Invalid("the motion must start at rest outside the wall or on its surface")
-    if not p.unilateral and _measured(p, positions[0]) != 0:
+    start = positions[0] // p.resolution if p.resolution else positions[0]
+    if not p.unilateral and start != 0:
         raise Invalid("the motion must start at rest at x = 0")
     switches = _switch_positions(document, p, positions)
-    first, last, times = _repeat(document, positions)
-    energy = _energy_of(p, positions, switches, first, last, times)
+    repeats = _repeats(document, len(positions))
+    energy = _energy_of(p, positions, switches, repeats)
     claimed = _number(_get(document, "energy_J"))
     if energy <= 0:
         return Verification(False, f"the motion extracts no energy: {float(energy):g} J", energy)
@@ -466,19 +471,31 @@ def _switch_positions(document: Mapping[str, Any], p: _Loop, x: list[Fraction]) 
     return y
 
 
-def _repeat(document: Mapping[str, Any], x: list[Fraction]) -> tuple[int, int, int]:
-    repeat = document.get("repeat")
-    if repeat is None:
-        return 0, 0, 0
-    first, last = _integer(_get(repeat, "first")), _integer(_get(repeat, "last"))
-    times = _integer(_get(repeat, "times"), 1)
-    if not first < last < len(x) or x[first] != x[last]:
-        raise Invalid("the repeated part must begin and end at the same position")
-    return first, last, times
+class _Repeat(NamedTuple):
+    first: int
+    last: int
+    times: int
 
 
-def _measured(p: _Loop, x: Fraction) -> Fraction:
-    return p.resolution * (x // p.resolution) if p.resolution else x
+def _repeats(document: Mapping[str, Any], size: int) -> list[_Repeat]:
+    """Parts of the motion that are done more than once.
+
+    The positions list each of them once; where one ends ahead of its start,
+    every round and all that follows is that much further on.
+    """
+    entries = document.get("repeats", [])
+    if not isinstance(entries, list) or len(entries) > size:
+        raise Invalid("repeats must be a list")
+    parts = [
+        _Repeat(_integer(_get(e, "first")), _integer(_get(e, "last")), _integer(_get(e, "times"), 1))
+        for e in entries
+    ]
+    before = 0
+    for part in parts:
+        if not before <= part.first < part.last < size:
+            raise Invalid("repeated parts must lie in the motion, one after the other")
+        before = part.last
+    return parts
 
 
 class _Counts(NamedTuple):
@@ -499,12 +516,12 @@ class _Sums(NamedTuple):
     early: int
     late: int
 
+    def plus(self, other: _Sums) -> _Sums:
+        return _Sums(*(a + b for a, b in zip(self, other, strict=True)))
 
-def _energy_of(p: _Loop, x: list[Fraction], y: list[Fraction], first: int, last: int, times: int) -> Fraction:
-    """Energy out [J], the part from `first` to `last` done `times` times.
 
-    Once two rounds in a row start from the same state all later ones are equal.
-    """
+def _energy_of(p: _Loop, x: list[Fraction], y: list[Fraction], repeats: list[_Repeat]) -> Fraction:
+    """Energy the hand takes out over the whole motion [J]."""
     per_unit = lcm(p.resolution.denominator, *(v.denominator for v in x), *(v.denominator for v in y))
     scale = lcm(*(c.denominator for c in (*p.numerator, *p.denominator)))
     counts = _Counts(
@@ -514,21 +531,68 @@ def _energy_of(p: _Loop, x: list[Fraction], y: list[Fraction], first: int, last:
         [int(c * scale) for c in p.numerator],
         [int(c * scale) for c in p.denominator],
     )
-    state = _State((0,) * (len(p.denominator) - 1), (0,) * (p.whole + 2))
-    totals = [Fraction(0)] * 4
-    for start, stop, count in ((0, first, 1), (first, last, times), (last, len(x) - 1, 1)):
-        done = 0
-        while done < count and start < stop:
-            sums, following = _run(p, counts, start, stop, state)
-            rounds = count - done if following == state else 1
-            totals = [total + rounds * s for total, s in zip(totals, sums, strict=True)]
-            done, state = done + rounds, following
-            if done > 1000 + len(x) and done < count:
-                raise Invalid("the repeated part does not settle into a cycle")
-    work, path, early, late = totals
-    squares = early / p.part + late / (1 - p.part) if p.part else late
+    state = _State((0,) * (len(p.denominator) - 1), (0,) * (p.whole + 2), 0)
+    sums = _Sums(0, 0, 0, 0)
+    before = 0
+    for part in [*repeats, _Repeat(len(x) - 1, len(x) - 1, 1)]:
+        gained, state = _run(p, counts, before, part.first, state)
+        sums = sums.plus(gained)
+        gained, state = _rounds(p, counts, part, state)
+        sums = sums.plus(gained)
+        before = part.last
+    squares = sums.early / p.part + sums.late / (1 - p.part) if p.part else sums.late
     unit = Fraction(1, per_unit)
-    return -(unit**2) * (work + p.damping / p.period * squares) - p.coulomb_friction * unit * path
+    force_work = sums.work + p.damping / p.period * squares
+    return -(unit**2) * force_work - p.coulomb_friction * unit * sums.path
+
+
+def _rounds(p: _Loop, c: _Counts, part: _Repeat, state: _State) -> tuple[_Sums, _State]:
+    """All rounds of a repeated part: one by one until the loop has settled, then in closed form.
+
+    A law linear in x that has gone a constant distance on, all of it, does the
+    same again with every force larger by the same amount.
+    """
+    advance = c.x[part.last] - c.x[part.first]
+    sums, done = _Sums(0, 0, 0, 0), 0
+    while done < part.times and part.first < part.last:
+        gained, following = _run(p, c, part.first, part.last, state)
+        push = _uniform_push(p, c, part, state, following, part.times - done)
+        left = part.times - done if push is not None else 1
+        if push is not None:
+            growth = push * advance * (left * (left - 1) // 2)
+            gained = _Sums(left * gained.work + growth, *(left * s for s in gained[1:]))
+            following = _State(
+                tuple(w + (left - 1) * (w - v) for v, w in zip(state.memory, following.memory, strict=True)),
+                tuple(f + (left - 1) * push for f in following.forces),
+                state.ahead + left * advance,
+            )
+        else:
+            following = following._replace(ahead=state.ahead + advance)
+        sums, state, done = sums.plus(gained), following, done + left
+        if done > 1000 + len(c.x) and done < part.times:
+            raise Invalid("a repeated part does not settle into a cycle")
+    # x in the list after the part stands one advance ahead already
+    return sums, state._replace(ahead=state.ahead - advance)
+
+
+def _uniform_push(
+    p: _Loop, c: _Counts, part: _Repeat, state: _State, following: _State, left: int
+) -> int | Fraction | None:
+    """By how much every force grows from this round to each later one; None if not yet settled."""
+    advance = c.x[part.last] - c.x[part.first]
+    if advance == 0:
+        same = following.memory == state.memory and following.forces == state.forces
+        return 0 if same else None
+    lowest = min(c.x[part.first : part.last + 1]) + state.ahead + min(0, advance * (left - 1))
+    if (p.unilateral and lowest <= 0) or (c.count and advance % c.count):
+        return None
+    shift = Fraction(advance, sum(c.denominator)) if sum(c.denominator) else None
+    if shift is None or any(w - v != shift for v, w in zip(state.memory, following.memory, strict=True)):
+        return None
+    push = sum(c.numerator) * shift
+    if any(g - f != push for f, g in zip(state.forces, following.forces, strict=True)):
+        return None
+    return push
 
 
 def _run(p: _Loop, c: _Counts, start: int, stop: int, state: _State) -> tuple[_Sums, _State]:
@@ -542,7 +606,8 @@ def _run(p: _Loop, c: _Counts, start: int, stop: int, state: _State) -> tuple[_S
     path = early_squares = late_squares = 0
     inside_sample = p.part != 0
     for k in range(start, stop):
-        measured = c.count * (c.x[k] // c.count) if c.count else c.x[k]
+        here = c.x[k] + state.ahead
+        measured = c.count * (here // c.count) if c.count else here
         forces = [_force(p, c, measured, memory), *forces[:-1]]
         early, late = (c.y[k] - c.x[k], c.x[k + 1] - c.y[k]) if inside_sample else (0, c.x[k + 1] - c.x[k])
         work += forces[p.whole] * late
@@ -551,7 +616,8 @@ def _run(p: _Loop, c: _Counts, start: int, stop: int, state: _State) -> tuple[_S
         if early:
             work += forces[p.whole + 1] * early
             early_squares += early * early
-    return _Sums(work, path, early_squares, late_squares), _State(tuple(memory), tuple(forces))
+    sums = _Sums(work, path, early_squares, late_squares)
+    return sums, _State(tuple(memory), tuple(forces), state.ahead)
 
 
 def _force(p: _Loop, c: _Counts, x: int, memory: list[int | Fraction]) -> int | Fraction:

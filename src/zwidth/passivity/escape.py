@@ -25,7 +25,7 @@ def slow_presses(loop: LinearLoop) -> Iterator[Pattern]:
     """Ways in at constant speed, slower and slower, ending at rest inside."""
     for length in _LENGTHS:
         hold = (length,) * (len(loop.numerator) + len(loop.denominator) + loop.whole_delay + 1)
-        yield Pattern(tuple(range(length + 1)), hold, ())
+        yield Pattern((*range(length + 1), *hold), ())
 
 
 def buildups(loop: LinearLoop) -> Iterator[Motion]:

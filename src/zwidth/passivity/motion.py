@@ -10,53 +10,78 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor, log10
+from typing import NamedTuple
 
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.supremum import tightest
 
 
+class Repeat(NamedTuple):
+    """The part of a motion from sample `first` to `last`, done `times` times."""
+
+    first: int
+    last: int
+    times: int
+
+
 @dataclass(frozen=True)
 class Motion:
-    """Positions at the samples, with a part that may be done many times.
+    """Positions at the samples, with parts that may be done many times.
 
     Parameters
     ----------
     positions
-        x(k) [m; rad], from rest to rest.
+        x(k) [m; rad], from rest to rest; each repeated part is listed once.
+        Where one ends ahead of its start, every round, and all that follows,
+        is that much further on.
     switch_positions
         Position in each interval at the instant when a delayed force changes;
         empty for a delay of whole samples.
-    first, last, times
-        The part from sample `first` to `last` is done `times` times in all.
+    repeats
+        The parts done more than once, in order.
     """
 
     positions: tuple[Fraction, ...]
     switch_positions: tuple[Fraction, ...] = ()
-    first: int = 0
-    last: int = 0
-    times: int = 1
+    repeats: tuple[Repeat, ...] = ()
 
     def repeated(self, times: int) -> Motion:
-        """The same motion with another number of rounds."""
-        return replace(self, times=times)
+        """The same motion with another number of rounds in every repeated part."""
+        return replace(self, repeats=tuple(r._replace(times=times) for r in self.repeats))
+
+    @property
+    def rounds(self) -> int:
+        """How often the repeated parts are done; 1 if none is."""
+        return max((r.times for r in self.repeats), default=1)
 
     @property
     def samples(self) -> int:
         """Intervals in the whole motion."""
-        return len(self.positions) - 1 + (self.times - 1) * (self.last - self.first)
+        return len(self.positions) - 1 + sum((r.times - 1) * (r.last - r.first) for r in self.repeats)
+
+    @property
+    def depth(self) -> Fraction:
+        """The deepest position of the whole motion."""
+        ahead, deepest, after = Fraction(0), max(self.positions), 0
+        for part in self.repeats:
+            advance = self.positions[part.last] - self.positions[part.first]
+            deepest = max(deepest, max(self.positions[after : part.last + 1]) + ahead)
+            ahead += (part.times - 1) * advance
+            after = part.last
+        return max(deepest, max(self.positions[after:]) + ahead)
 
 
 @dataclass(frozen=True)
 class Pattern:
     """A motion in whole numbers: w of the law's direct form, x = unit · D w.
 
-    `cycle` begins after `lead` and may be repeated; `ends_inside` says that the
-    last move, from the end of `fall` to x = 0, is a step and not part of w.
+    The parts of w between `first` and `last` of each repeat may be done many
+    times; `ends_inside` says that the last move, from the end of w to x = 0,
+    is a step and not part of w.
     """
 
-    lead: tuple[int, ...]
-    cycle: tuple[int, ...]
-    fall: tuple[int, ...]
+    w: tuple[int, ...]
+    repeats: tuple[Repeat, ...]
     ends_inside: bool = False
 
 
@@ -66,14 +91,13 @@ def realize(loop: LinearLoop, pattern: Pattern, unit: Fraction, offset: Fraction
     `offset` is added away from the ends: it moves the hand off the encoder's
     edges without changing a count.
     """
-    w = pattern.lead + pattern.cycle + pattern.fall
+    w = pattern.w
     x = [unit * v for v in convolve(loop.denominator, w)]
     if pattern.ends_inside:
         x.append(Fraction(0))
     placed = tuple(v + offset if 0 < k < len(x) - 1 else v for k, v in enumerate(x))
-    first = len(pattern.lead) - 1
     switches = _switches(loop, w, placed, unit) if loop.part_delay else ()
-    return Motion(placed, switches, first, first + len(pattern.cycle), times)
+    return Motion(placed, switches, pattern.repeats).repeated(times)
 
 
 def convolve(a: tuple[int, ...], w: tuple[int, ...]) -> list[int]:

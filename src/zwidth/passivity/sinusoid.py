@@ -14,11 +14,16 @@ from math import ceil, cos, log2, pi, sin
 from flint import arb, ctx, fmpq, fmpz_poly
 
 from zwidth.passivity.loop import LinearLoop
-from zwidth.passivity.motion import Pattern
+from zwidth.passivity.motion import Pattern, Repeat
 from zwidth.passivity.supremum import tightest
 
-LONGEST_PERIOD = 200_000
+LONGEST_PERIOD = 500_000
 """Samples in one period; a criterion violated in a narrower band stays undecided."""
+
+LONGEST_LISTED = 5_000
+"""Samples in one slow period beyond which a wave of constant speeds is used instead."""
+
+_PIECES, _SPEED = 64, 1000
 
 _RAMPS = (1, 10, 100, 1000, 10_000, 100_000)
 
@@ -33,13 +38,17 @@ def sinusoids(loop: LinearLoop, unilateral: bool) -> list[Pattern]:
     if band is None:
         return []
     turn = _simplest_between(*band)
+    if band[0] <= turn and turn.numerator == 1 and turn.denominator > LONGEST_LISTED:
+        return [_slow_wave(loop)]
     if turn.denominator > LONGEST_PERIOD:
         return []
     cycle = _cycle(loop, turn)
     settled = cycle * (1 + (_memory(loop) + 1) // len(cycle)) if _memory(loop) else ()
     if unilateral and len(loop.numerator) + len(loop.denominator) > 2:
         return [_inside(loop, cycle, settled, ramp) for ramp in _RAMPS]
-    return [Pattern((0, *settled), cycle, (0,) * (len(loop.denominator) - 1))]
+    first = len(settled)
+    w = (0, *settled, *cycle, *(0,) * (len(loop.denominator) - 1))
+    return [Pattern(w, (Repeat(first, first + len(cycle), 1),))]
 
 
 def _memory(loop: LinearLoop) -> int:
@@ -57,7 +66,26 @@ def _inside(loop: LinearLoop, cycle: tuple[int, ...], settled: tuple[int, ...], 
     bottom = depth // 8 + 1
     fall = tuple(depth - (depth - bottom) * k // ramp for k in range(1, ramp + 1))
     lead = rise + hold + tuple(depth + w for w in settled)
-    return Pattern(lead, tuple(depth + w for w in cycle), hold + fall + (bottom,) * len(hold), True)
+    w = lead + tuple(depth + v for v in cycle) + hold + fall + (bottom,) * len(hold)
+    first = len(lead) - 1
+    return Pattern(w, (Repeat(first, first + len(cycle), 1),), True)
+
+
+def _slow_wave(loop: LinearLoop) -> Pattern:
+    """One very slow wave: pieces of constant speed, in with the first half and out with the second.
+
+    Where only slow motions gain, the length of the pieces is what decides; each
+    is one sample, done many times.
+    """
+    settle = _memory(loop) + 2
+    w, repeats = [0], []
+    for piece in range(_PIECES):
+        speed = round(_SPEED * sin(2 * pi * (piece + 0.5) / _PIECES))
+        for _ in range(settle + 1):
+            w.append(w[-1] + speed)
+        repeats.append(Repeat(len(w) - 2, len(w) - 1, 1))
+    w += [0] * (settle + len(loop.denominator))
+    return Pattern(tuple(w), tuple(repeats))
 
 
 def _negative_band(loop: LinearLoop) -> tuple[Fraction, Fraction] | None:

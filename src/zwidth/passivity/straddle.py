@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from zwidth.passivity.loop import LinearLoop
-from zwidth.passivity.motion import Motion, round_up
+from zwidth.passivity.motion import Motion, Repeat, round_up
 
 LONGEST_WAIT = 12
 """Samples the hand may wait on one side of an edge, beyond the delay."""
@@ -93,4 +93,4 @@ def straddle(
     x = tuple(lead + cycle * 2)
     first = len(lead) + len(cycle) - 1
     switches = tuple(a + loop.part_delay * (b - a) for a, b in zip(x, x[1:], strict=False))
-    return Motion(x, switches if loop.part_delay else (), first, len(x) - 1, 1)
+    return Motion(x, switches if loop.part_delay else (), (Repeat(first, len(x) - 1, 1),))

@@ -53,8 +53,8 @@ class Setting:
         document: dict[str, Any] = {"format": FORMAT, "kind": "motion", "loop": loop}
         document[unit_key("sample_period")] = self.loop.period
         document["energy_J"] = energy
-        if motion.times > 1:
-            document["repeat"] = {"first": motion.first, "last": motion.last, "times": motion.times}
+        if motion.rounds > 1:
+            document["repeats"] = [r._asdict() for r in motion.repeats if r.times > 1]
         suffix = unit_key("position", self.motion).removeprefix("position_")
         document[f"positions_{suffix}"] = list(motion.positions)
         if motion.switch_positions:
@@ -93,9 +93,9 @@ class Witness:
     @property
     def energy_per_cycle(self) -> float:
         """Energy extracted by one more round of the repeated part [J]; all of it if none repeats."""
-        if self.motion.last == self.motion.first:
+        if len(self.motion.repeats) != 1:
             return self.energy
-        more = self.setting.energy(self.motion.repeated(self.motion.times + 1))
+        more = self.setting.energy(self.motion.repeated(self.motion.rounds + 1))
         return float(more - self.exact_energy) if more is not None else self.energy
 
     @property
@@ -112,7 +112,7 @@ class Witness:
     @property
     def depth(self) -> float:
         """Deepest penetration [m; rad]."""
-        return float(max(self.motion.positions))
+        return float(self.motion.depth)
 
     def verify(self) -> bool:
         """True when the independent checker finds the same energy, > 0."""
@@ -132,7 +132,8 @@ class Witness:
     def describe(self) -> str:
         """The motion in a sentence."""
         unit = "rad" if self.setting.motion == "rotary" else "m"
-        rounds = f", its cycle {self.motion.times:.6g} times" if self.motion.times > 1 else ""
+        times = self.motion.rounds
+        rounds = f", its cycle {times:.6g} times" if times > 1 and len(self.motion.repeats) == 1 else ""
         return (
             f"{self.motion.samples:.6g} samples{rounds}, to {self.depth:.4g} {unit} at up to "
             f"{self.peak_speed:.4g} {unit}/s, extracts {self.energy:.4g} J"
@@ -187,7 +188,7 @@ def _scaled(setting: Setting, one: Motion, resize: Any = None) -> Witness | None
     if gain is None or gain <= 0:
         return None
     resize = resize or (lambda unit, offset: _multiplied(one, unit, offset))
-    unit = _AMPLITUDE / max(abs(x) for x in one.positions)
+    unit = _AMPLITUDE / max(abs(x) for x in (one.depth, *one.positions))
     if setting.coulomb_friction:
         unit = max(unit, 2 * setting.coulomb_friction * _path(setting, one, gain) / gain)
     for _ in range(12):
@@ -206,7 +207,7 @@ def _multiplied(one: Motion, unit: Fraction, offset: Fraction) -> Motion:
     last = len(one.positions) - 1
     x = tuple(unit * v + (offset if 0 < k < last else 0) for k, v in enumerate(one.positions))
     y = tuple(unit * v for v in one.switch_positions)
-    return Motion(x, y, one.first, one.last, one.times)
+    return Motion(x, y, one.repeats)
 
 
 def _path(setting: Setting, one: Motion, gain: Fraction) -> Fraction:
