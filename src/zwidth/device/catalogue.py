@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from decimal import Decimal
 from difflib import get_close_matches
 from functools import cache
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -83,7 +82,7 @@ def entry(name: str) -> Entry:
     if found is None:
         near = get_close_matches(str(name), names(), n=1)
         hint = f'did you mean "{near[0]}"?' if near else f"it has: {', '.join(names())}"
-        raise InputError(f'the catalogue has no device "{str(name)[:40]}"; {hint}')
+        raise InputError(f"the catalogue has no device {str(name)[:40]!r}; {hint}")
     return found
 
 
@@ -120,7 +119,7 @@ def _override(key: str, value: Any) -> Any:
     if key not in PROPERTIES:
         near = get_close_matches(key, PROPERTIES, n=1)
         hint = f'did you mean "{near[0]}"?' if near else f"it has: {', '.join(PROPERTIES)}"
-        raise InputError(f'a device has no "{key}"; {hint}')
+        raise InputError(f"a device has no {key!r}; {hint}")
     return None if value is None else parse(value, GLOSSARY[key].unit, key)
 
 
@@ -140,7 +139,8 @@ def _require(found: Entry, arguments: Mapping[str, Any]) -> None:
 
 @cache
 def _entries() -> Mapping[str, Entry]:
-    import tomllib  # read on first use, to keep `import zwidth` fast
+    import tomllib  # both on first use, to keep `import zwidth` fast
+    from pathlib import Path
 
     text = Path(__file__).with_name("catalogue.toml").read_text(encoding="utf-8")
     tables = tomllib.loads(text, parse_float=Decimal)
