@@ -15,11 +15,13 @@ from zwidth.environment import (
     Window,
 )
 from zwidth.errors import InputError
+from zwidth.passivity import Certificate, Verdict, Witness, check
 from zwidth.quantity import Exact, Interval
 from zwidth.rendering import VirtualCoupling
 
 __all__ = [
     "BackwardDifference",
+    "Certificate",
     "ContinuousTransferFunction",
     "Device",
     "Exact",
@@ -33,9 +35,12 @@ __all__ = [
     "PulseTransferFunction",
     "StandardLinearSolid",
     "VelocityFilter",
+    "Verdict",
     "VirtualCoupling",
     "Wall",
     "Window",
+    "Witness",
     "catalogue",
+    "check",
     "rotary",
 ]

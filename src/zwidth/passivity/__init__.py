@@ -1,0 +1,8 @@
+"""The proof: criteria, certificates, witnesses, the independent checker."""
+
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.check import check
+from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.witness import Witness
+
+__all__ = ["Certificate", "Verdict", "Witness", "check"]

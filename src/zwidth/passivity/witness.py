@@ -124,7 +124,7 @@ class Witness:
 
     def save(self, path: str | Path) -> None:
         """Write the witness as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(_rounded_energy(self.to_dict())) + "\n", encoding="utf-8")
+        Path(path).write_text(to_json(rounded_energy(self.to_dict())) + "\n", encoding="utf-8")
 
     def _repr_html_(self) -> str:
         return f"<p>{self.describe()}</p>"
@@ -140,7 +140,7 @@ class Witness:
         )
 
 
-def _rounded_energy(document: dict[str, Any]) -> dict[str, Any]:
+def rounded_energy(document: dict[str, Any]) -> dict[str, Any]:
     """Energy to double precision: the checker recomputes it anyway."""
     return {**document, "energy_J": Fraction(repr(float(document["energy_J"])))}
 

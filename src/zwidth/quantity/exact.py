@@ -88,7 +88,7 @@ def _fraction(value: RealLike) -> Fraction:
 
 
 def _magnitude(value: object) -> str:
-    text = str(value)
+    text = "a number" if isinstance(value, (int, Fraction)) else str(value)
     shown = text if len(text) <= 40 else text[:37] + "..."
     return (
         f"{shown} is outside the magnitudes 1e-{LARGEST_EXPONENT} to 1e{LARGEST_EXPONENT}; "

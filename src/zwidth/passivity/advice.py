@@ -1,0 +1,190 @@
+"""What to change: the smallest single change that makes an active loop passive, or the slack of a passive one.
+
+Every value given was itself proved passive, all else as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, floor, inf, isinf, log10
+from typing import Literal
+
+from zwidth.device import Device
+from zwidth.environment import BackwardDifference, OnePole, Wall, Window
+from zwidth.environment.environment import Environment
+from zwidth.passivity.boundary import largest_holding, smallest_holding
+from zwidth.passivity.limits import Change, has_stiffness, provable
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import GLOSSARY
+
+_WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
+
+
+@dataclass(frozen=True)
+class Advice:
+    """One parameter, where it is and where it may or must go, both in `unit`.
+
+    `kind` is "change" for a loop that is not passive and "slack" for one that
+    is; `to` is None where no value of this parameter alone would do, and inf
+    where it may grow without bound.
+    """
+
+    parameter: str
+    current: float | str
+    to: float | str | None
+    unit: str
+    kind: Literal["change", "slack"]
+    text: str
+
+    def to_dict(self) -> dict[str, object]:
+        """As plain data: parameter, from, to, unit, kind, text."""
+        to = None if isinstance(self.to, float) and isinf(self.to) else self.to
+        return {
+            "parameter": self.parameter,
+            "from": self.current,
+            "to": to,
+            "unit": self.unit,
+            "kind": self.kind,
+            "text": self.text,
+        }
+
+
+@dataclass(frozen=True)
+class _Knob:
+    """A number that one can turn; `more` is True when more of it is safer."""
+
+    parameter: str
+    current: float
+    change: Change
+    more: bool
+    name: str
+
+
+def advise(device: Device, environment: Environment, passive: bool) -> tuple[Advice, ...]:
+    """Advice on every parameter of a certain loop."""
+    kind: Literal["change", "slack"] = "slack" if passive else "change"
+    found = [_turn(knob, device.motion, kind) for knob in _knobs(device, environment)]
+    if not passive and isinstance(environment, Wall) and environment.damping != 0:
+        found.extend(_estimators(device, environment))
+    return tuple(found)
+
+
+def _knobs(device: Device, environment: Environment) -> Iterator[_Knob]:
+    def on_device(key: str) -> Change:
+        return lambda value: (device.replace(**{key: Exact(value)}), environment)
+
+    yield _Knob("rate", float(device.exact("sample_period") ** -1), _rate(device, environment), True, "rate")
+    for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False), ("delay", False)):
+        name = {"damping": "device damping", "resolution": "encoder resolution"}.get(key, key.replace("_", " "))
+        yield _Knob(key, float(device.exact(key)), on_device(key), more, name)
+    if has_stiffness(environment):
+        now = float(getattr(environment, "stiffness"))
+        change: Change = lambda k: (device, environment.replace(stiffness=Exact(k)))  # noqa: E731
+        yield _Knob("stiffness", now, change, False, "stiffness")
+    if isinstance(environment, Wall):
+        b = environment.damping
+        assert isinstance(b, Exact)
+        sign = -1 if b < 0 else 1
+        law: Change = lambda v: (device, environment.replace(damping=Exact(sign * v)))  # noqa: E731
+        yield _Knob("virtual_damping", abs(float(b)), law, False, "virtual damping")
+        yield from _time_constant(device, environment)
+
+
+def _rate(device: Device, environment: Environment) -> Change:
+    def change(rate: Fraction) -> tuple[Device, Environment]:
+        return device.replace(rate=Exact(rate)), environment
+
+    return change
+
+
+def _time_constant(device: Device, wall: Wall) -> Iterator[_Knob]:
+    velocity = wall.velocity_filter
+    if isinstance(velocity, OnePole) and isinstance(velocity.time_constant, Exact) and wall.damping != 0:
+        change: Change = lambda t: (device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
+        yield _Knob("time_constant", float(velocity.time_constant), change, True, "filter time constant")
+
+
+def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"]) -> Advice:
+    search = smallest_holding if knob.more else largest_holding
+    to = search(lambda value: provable(knob.change, value), knob.current or 1e-4)
+    if kind == "change" and to is not None and not _is_change(knob, to):
+        to = None
+    unit = GLOSSARY[knob.parameter].unit_for(motion)
+    shown = None if to is None else _outward(to, knob)
+    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind))
+
+
+def _is_change(knob: _Knob, to: float) -> bool:
+    """A remedy must lie on the safer side of where the parameter is and be something one can set."""
+    if to == inf or (to == 0 and knob.parameter in ("stiffness",)):
+        return False
+    return to > knob.current if knob.more else to < knob.current
+
+
+def _outward(value: float, knob: _Knob) -> float:
+    """Four significant digits on the safe side, if those are proved too."""
+    if value == 0 or isinf(value):
+        return value
+    scale = 10.0 ** (floor(log10(abs(value))) - 3)
+    rounded = float(f"{(ceil(value / scale) if knob.more else floor(value / scale)) * scale:.4g}")
+    return rounded if provable(knob.change, Exact(rounded).fraction) else value
+
+
+def _text(knob: _Knob, to: float | None, unit: str, kind: str) -> str:
+    now = f"{knob.current:.4g} {unit}"
+    if kind == "change":
+        if to is None:
+            return f"no value of {knob.name} alone would do"
+        verb = "raise" if knob.more else "lower"
+        return f"{verb} the {knob.name} from {now} to {to:.6g} {unit}"
+    if to is None or to == inf:
+        return f"{knob.name} may take any value" if to == inf else f"{knob.name} has no slack"
+    if to == knob.current:
+        return f"{knob.name} is exactly at its limit, {now}"
+    bound = "as low as" if knob.more else "up to"
+    return f"{knob.name} may go {bound} {to:.6g} {unit} (now {now})"
+
+
+def _estimators(device: Device, wall: Wall) -> Iterator[Advice]:
+    """Another velocity estimator that makes the loop passive, if one of the usual does."""
+    now = describe_estimator(wall)
+    for samples in _WINDOWS:
+        law = wall.replace(velocity_filter=Window(samples))
+        if provable(lambda _, law=law: (device, law), Fraction(0)):  # type: ignore[misc]
+            to = f"window of {samples} samples"
+            text = f"estimate velocity with a {to} instead of the {now}"
+            yield Advice("velocity_filter", now, to, "", "change", text)
+            break
+    if not isinstance(wall.velocity_filter, OnePole):
+        change: Change = lambda t: (device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
+        knob = _Knob("time_constant", 0.0, change, True, "time constant")
+        tau = _first_scanned(change, device)
+        if tau is not None:
+            shown = _outward(tau, knob)
+            to = f"one-pole filter of {shown:.4g} s"
+            text = f"estimate velocity with a {to} (time constant) instead of the {now}"
+            yield Advice("velocity_filter", now, to, "", "change", text)
+
+
+def _first_scanned(change: Change, device: Device) -> float | None:
+    """The smallest time constant found, from one sample to a thousand."""
+    period = float(device.exact("sample_period"))
+    holds: Callable[[Fraction], bool] = lambda t: provable(change, t)  # noqa: E731
+    for power in range(10):
+        if holds(Exact(period * 2**power).fraction):
+            return smallest_holding(holds, period * 2**power)
+    return None
+
+
+def describe_estimator(wall: Wall) -> str:
+    """The wall's velocity estimator in words."""
+    velocity = wall.velocity_filter
+    if isinstance(velocity, BackwardDifference):
+        return "backward difference"
+    if isinstance(velocity, Window):
+        return f"window of {velocity.samples} samples"
+    if isinstance(velocity, OnePole):
+        return f"one-pole filter of {velocity.time_constant} s"
+    return "velocity filter"

@@ -1,0 +1,148 @@
+"""A certificate: a proof that a loop is passive, as data that anyone can check.
+
+It holds the loop's exact numbers, the criterion's factors with a squarefree
+part that is positive on [−1, 1], and what proves the environment stable.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+from zwidth.errors import InputError
+from zwidth.passivity import checker
+from zwidth.passivity.decision import Decision
+from zwidth.passivity.document import loop_document, to_json
+from zwidth.passivity.linear import LinearProof
+
+FORMAT = "zwidth certificate 1"
+LARGEST_FILE = 200_000_000
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """A proof of passivity for one loop, or for every corner of an interval.
+
+    Parameters
+    ----------
+    documents
+        One proof per corner, each complete by itself.
+    """
+
+    documents: tuple[dict[str, Any], ...]
+
+    def verify(self) -> bool:
+        """True when the independent checker accepts every proof."""
+        return all(checker.verify(document).valid for document in self.documents)
+
+    @property
+    def kind(self) -> str:
+        """ "spring", "linear" or "quantized"."""
+        return str(self.documents[0]["kind"])
+
+    def to_dict(self) -> dict[str, Any]:
+        """The certificate as plain data."""
+        if len(self.documents) == 1:
+            return self.documents[0]
+        return {"format": FORMAT, "kind": "corners", "corners": list(self.documents)}
+
+    def save(self, path: str | Path) -> None:
+        """Write the certificate as JSON for `zwidth verify`."""
+        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        state = "accepted" if self.verify() else "rejected"
+        return f"<p>{self.kind} certificate, {len(self.documents)} part(s): {state} by the checker</p>"
+
+
+def certify(decision: Decision) -> dict[str, Any]:
+    """The proof document of a provable decision."""
+    setting = decision.setting
+    document: dict[str, Any] = {
+        "format": FORMAT,
+        "kind": decision.kind,
+        "loop": loop_document(
+            setting.loop, setting.coulomb_friction, setting.resolution, setting.unilateral, setting.motion
+        ),
+    }
+    if decision.kind == "spring":
+        return document
+    proof = decision.viscous
+    assert isinstance(proof, LinearProof), "only a provable decision is certified"
+    document["proof"] = _proof(proof)
+    if decision.kind == "quantized":
+        assert decision.norm is not None
+        document["proof"]["inverse"] = [str(c) for c in decision.norm.inverse]
+    return document
+
+
+def _proof(proof: LinearProof) -> dict[str, Any]:
+    stability: dict[str, Any] = {"kind": proof.stability}
+    if proof.offset is not None:
+        stability["offset"] = str(proof.offset)
+    sign = proof.positivity
+    return {
+        "stability": stability,
+        "positivity": {
+            "at_one": sign.at_one,
+            "at_minus_one": sign.at_minus_one,
+            "square": [str(c) for c in sign.square],
+            "factor": [str(c) for c in sign.factor],
+        },
+    }
+
+
+def verify_document(document: object) -> checker.Verification:
+    """Check a saved certificate, witness or `check --json` report, read as JSON.
+
+    Raises
+    ------
+    InputError
+        If it contains neither.
+    """
+    if not isinstance(document, Mapping):
+        raise InputError("expected a JSON object with a certificate or a witness")
+    for key in ("certificate", "witness"):
+        if isinstance(document.get(key), Mapping):
+            return verify_document(document[key])
+    if document.get("kind") == "corners":
+        return _verify_corners(document.get("corners"))
+    if "kind" not in document:
+        raise InputError("no certificate or witness found: the object has no key kind, certificate or witness")
+    return checker.verify(document)
+
+
+def _verify_corners(corners: object) -> checker.Verification:
+    if not isinstance(corners, list) or not corners:
+        raise InputError("corners must be a list of certificates")
+    results = [verify_document(corner) for corner in corners]
+    failed = next((r for r in results if not r.valid or r.energy is not None), None)
+    return failed or checker.Verification(True, f"all {len(results)} corners: {results[0].reason}")
+
+
+def read_document(path: str | Path) -> object:
+    """Read a JSON file with every number as the decimal that is written.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, is too large or is not JSON.
+    """
+    path = Path(path)
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"{path} is larger than {LARGEST_FILE} bytes; no certificate is")
+        text = path.read_text(encoding="utf-8")
+        return json.loads(text, parse_float=Decimal, parse_int=_integer)
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path} is not JSON: {error}") from None
+
+
+def _integer(text: str) -> object:
+    return int(text) if len(text) <= 4000 else Decimal(text)

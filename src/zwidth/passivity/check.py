@@ -1,0 +1,189 @@
+"""The main verb: is this device, rendering this environment, passive?
+
+Nothing is claimed on the prover's word: "passive" needs a certificate that
+the independent checker accepts, "active" a motion whose energy it recomputes.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from zwidth.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.errors import InputError
+from zwidth.passivity.certificate import Certificate, certify
+from zwidth.passivity.corners import best_corner, worst_corners
+from zwidth.passivity.decision import Decision, decide
+from zwidth.passivity.linear import LinearRefutation
+from zwidth.passivity.verdict import Outcome, Verdict
+from zwidth.passivity.witness import Witness, refute_friction, refute_linear
+from zwidth.quantity.exact import Interval
+
+
+def check(device: Device, environment: Environment | Any) -> Verdict:
+    """Decide whether a hand can ever take energy out of the sampled loop.
+
+    Passive means ∫ f_h v dt + E(0) ≥ 0 for every motion, E(0) finite.  For a
+    linear law of force H(z), exactly if
+
+        b ≥ (T/2) Re{(1 − e^{−jωT}) H(e^{jωT})}/(1 − cos ωT),  0 < ω ≤ π/T,
+
+    and H is stable (Colgate & Schenkel 1997; Fardad & Bamieh 2009); with a
+    delay of any length in the form derived in the documentation; and, with an
+    encoder of resolution Δ, f_c must cover its error: f_c ≥ K Δ/2 for a spring
+    (Abbott & Okamura 2005).  Equality counts as passive.
+
+    Parameters
+    ----------
+    device
+        The device; where parameters are intervals the verdict holds for all values.
+    environment
+        An `Environment`, or a discrete python-control or scipy.signal system H(z).
+
+    Raises
+    ------
+    InputError
+        If the environment cannot be sampled at this rate or is not an environment.
+    """
+    if not isinstance(device, Device):
+        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+    law = as_environment(environment)
+    corners = worst_corners(device, law)
+    if corners is None:
+        raise InputError(
+            "an interval in this combination of parameters has no proof that covers all its values: "
+            "intervals are covered for every device parameter but timing, for K and B of a wall and the "
+            "elastic stiffness of a solid, and for sample_period and delay with a spring; "
+            "give single values for the others and check both ends"
+        )
+    decisions = [decide(*corner) for corner in corners]
+    failing = [k for k, d in enumerate(decisions) if not d.is_provable]
+    if not failing:
+        return _passive(device, law, corners, decisions)
+    worst = failing[0]
+    witness = _refute(decisions[worst])
+    outcome: Outcome = "undecided"
+    if witness is not None and _active_throughout(device, law):
+        outcome = "active"
+    return _not_passive(outcome, device, law, corners[worst], decisions[worst], witness)
+
+
+def _passive(
+    device: Device, law: Environment, corners: list[tuple[Device, Environment]], decisions: list[Decision]
+) -> Verdict:
+    certificate = Certificate(tuple(certify(d) for d in decisions))
+    if not certificate.verify():  # never claim what the checker does not accept
+        raise AssertionError("the prover's certificate was rejected by the checker")
+    tight = _tightest(decisions)
+    claim = "No motion of the hand, however fast or skilled, can take energy out of this loop"
+    if any(_at_limit(d) for d in decisions):
+        claim += "; it is exactly at its limit, equality included"
+    (at, law_at) = corners[tight]
+    return Verdict(
+        "passive", claim + ".", _assumptions(device, law, decisions[tight]), at, law_at, decisions[tight],
+        certificate, None,
+    )  # fmt: skip
+
+
+def _at_limit(decision: Decision) -> bool:
+    """True when the smallest decrease of b or f_c would lose the proof."""
+    friction = decision.sufficient_friction
+    setting = decision.setting
+    if friction and friction == setting.coulomb_friction:
+        return True
+    positivity = getattr(decision.viscous, "positivity", None)
+    touches = positivity is not None and (
+        positivity.at_one or positivity.at_minus_one or len(positivity.square) != 1
+    )
+    return bool(touches) and any(setting.loop.numerator)
+
+
+def _tightest(decisions: list[Decision]) -> int:
+    """The corner that asks for most damping."""
+    from zwidth.passivity.supremum import tightest
+
+    return max(range(len(decisions)), key=lambda k: tightest(decisions[k].loop)[0]) if len(decisions) > 1 else 0
+
+
+def _refute(decision: Decision) -> Witness | None:
+    """A checked motion that takes energy out, or None."""
+    if isinstance(decision.viscous, LinearRefutation):
+        return refute_linear(decision.setting, decision.viscous.reason)
+    return refute_friction(decision.setting)
+
+
+def _active_throughout(device: Device, law: Environment) -> bool:
+    best = best_corner(device, law)
+    if best is None:
+        return False
+    decision = decide(*best)
+    return not decision.is_provable and _refute(decision) is not None
+
+
+def _not_passive(
+    outcome: Outcome,
+    device: Device,
+    law: Environment,
+    corner: tuple[Device, Environment],
+    decision: Decision,
+    witness: Witness | None,
+) -> Verdict:
+    if outcome == "active":
+        assert witness is not None
+        claim = f"A motion of the hand takes energy out of this loop: {witness.describe()}."
+    elif witness is not None:
+        claim = (
+            "The answer depends on where in its intervals the loop lies: a motion takes energy out at the "
+            "worst corner, and for other values none is known to."
+        )
+    else:
+        claim = _open_claim(decision)
+    assumptions = _assumptions(device, law, decision)
+    return Verdict(outcome, claim, assumptions, *corner, decision, None, witness)
+
+
+def _open_claim(decision: Decision) -> str:
+    """What is proved on both sides where the loop itself is neither proved nor refuted."""
+    if isinstance(decision.viscous, LinearRefutation):
+        if decision.viscous.reason == "criterion":
+            return (
+                "The linear criterion is violated, so passivity cannot be proved, but in so narrow a band of "
+                "frequencies that no motion short enough to list was found."
+            )
+        return f"Passivity cannot be proved ({decision.viscous.reason}), and no motion was found that gains."
+    need, least = decision.sufficient_friction, decision.necessary_friction
+    bound = "no bound is known above" if need is None else f"enough is {float(need):.6g}"
+    return (
+        "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
+        f"is proved: too little is below {least:.6g}, {bound}, and the device has "
+        f"{float(decision.setting.coulomb_friction):.6g}."
+    )
+
+
+def _assumptions(device: Device, law: Environment, decision: Decision) -> tuple[str, ...]:
+    unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
+    loop = decision.loop
+    lines = [
+        "contact made and broken at any instant; the same holds for every spring law of slope 0 to K"
+        if decision.is_spring
+        else "sustained contact: the law is linear while the hand stays inside; making and breaking contact "
+        "is not covered",
+        f"the device takes out at least b = {float(loop.damping):.6g} {unit['b']} of viscous and "
+        f"f_c = {float(decision.setting.coulomb_friction):.6g} {unit['N']} of Coulomb friction",
+        "a hand without limits on speed and force; the mass of the device plays no part",
+        "ideal actuator: force limit, converter steps, current rise and added filters are not in the claim",
+        "a constant sample period and delay, no missed samples",
+    ]
+    if decision.setting.resolution:
+        lines.append("encoder counts of one size, their phase against the surface unknown")
+    else:
+        lines.append("ideal position sensor: no quantization")
+    lines.extend(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed)
+    if getattr(law, "coefficients_rounded", False):
+        lines.append("H(z) has the coefficients of its discretization rounded to double precision")
+    intervals = [k for k, v in device.parameters().items() if isinstance(v, Interval)]
+    if intervals or not law.is_certain:
+        named = ", ".join(intervals) or "the environment's intervals"
+        lines.append(f"holds for every value within {named}; numbers are given for the worst corner")
+    return tuple(lines)

@@ -1,0 +1,112 @@
+"""One device and one environment, decided: which proof, or which refutation, applies.
+
+Two conditions, and both must hold:
+
+viscous    the hold, the delay and the law itself leak energy that b must take
+           out: the linear criterion (`linear`), exact and necessary;
+friction   one encoder count leaks energy that f_c must take out.  For a spring
+           f_c ≥ K Δ/2 is necessary and sufficient (Abbott & Okamura 2005; with
+           any delay: see the documentation).  For another law f_c ≥ ‖h‖₁ Δ/2 is
+           sufficient and straddling an edge gives a necessary bound; between
+           the two nothing is claimed.
+
+Coulomb friction never helps against the first: a larger motion outweighs it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Literal
+
+from zwidth.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity.loop import LinearLoop, linear_loop
+from zwidth.passivity.one_norm import NormBound, bound_one_norm
+from zwidth.passivity.straddle import best_waits
+from zwidth.passivity.witness import Setting
+
+Kind = Literal["spring", "linear", "quantized"]
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What is known of one loop; nothing here is claimed before its proof or motion is checked."""
+
+    setting: Setting
+
+    @property
+    def loop(self) -> LinearLoop:
+        """The exact linear loop."""
+        return self.setting.loop
+
+    @property
+    def is_spring(self) -> bool:
+        """True when H(z) is a constant K ≥ 0."""
+        loop = self.loop
+        return len(loop.numerator) == len(loop.denominator) == 1 and loop.numerator[0] >= 0
+
+    @property
+    def kind(self) -> Kind:
+        """Which kind of certificate covers this loop."""
+        if self.is_spring:
+            return "spring"
+        return "quantized" if self.setting.resolution else "linear"
+
+    @cached_property
+    def viscous(self) -> LinearProof | LinearRefutation:
+        """The linear criterion, decided."""
+        return decide_linear(self.loop)
+
+    @cached_property
+    def norm(self) -> NormBound | None:
+        """The bound on ‖h‖₁."""
+        return bound_one_norm(self.loop)
+
+    @property
+    def sufficient_friction(self) -> Fraction | None:
+        """Coulomb friction that certainly covers the encoder [N; N·m]; None where no bound is known."""
+        if self.setting.resolution == 0:
+            return Fraction(0)
+        return None if self.norm is None else self.norm.bound * self.setting.resolution / 2
+
+    @cached_property
+    def necessary_friction(self) -> float:
+        """Coulomb friction below which straddling an encoder edge gains energy, to rounding [N; N·m]."""
+        if self.setting.resolution == 0:
+            return 0.0
+        if self.is_spring:
+            return float(self.sufficient_friction or 0)
+        return max(0.0, best_waits(self.loop).gain * float(self.setting.resolution) / 2)
+
+    @property
+    def friction_covers(self) -> bool:
+        """True when Coulomb friction certainly covers the encoder."""
+        need = self.sufficient_friction
+        return need is not None and self.setting.coulomb_friction >= need
+
+    @property
+    def is_provable(self) -> bool:
+        """True when both conditions hold, so that a certificate exists."""
+        return isinstance(self.viscous, LinearProof) and self.friction_covers
+
+
+def decide(device: Device, environment: Environment) -> Decision:
+    """The decision for one certain device and environment.
+
+    Raises
+    ------
+    InputError
+        If a parameter is an interval, or the loop has no exact H(z).
+    """
+    loop = linear_loop(device, environment)
+    setting = Setting(
+        loop,
+        device.exact("coulomb_friction"),
+        device.exact("resolution"),
+        environment.unilateral,
+        device.motion,
+    )
+    return Decision(setting)

@@ -1,0 +1,75 @@
+"""How far one parameter may go, all else as given: the last value that is still proved.
+
+Each answer is a double at which the loop was proved passive, beside one at
+which it was not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from fractions import Fraction
+from typing import Any
+
+from zwidth.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.errors import InputError
+from zwidth.passivity.boundary import largest_holding, smallest_holding
+from zwidth.passivity.decision import decide
+from zwidth.passivity.linear import LinearProof
+from zwidth.passivity.loop import LinearLoop
+from zwidth.passivity.linear import decide_linear
+from zwidth.passivity.supremum import tightest
+from zwidth.quantity.exact import Exact
+
+Change = Callable[[Fraction], tuple[Device, Environment]]
+
+
+def provable(change: Change, value: Fraction) -> bool:
+    """True when the loop with this value is proved passive; a value that cannot be built is not."""
+    try:
+        return decide(*change(value)).is_provable
+    except (InputError, ZeroDivisionError):
+        return False
+
+
+def required_damping(loop: LinearLoop) -> float | None:
+    """The smallest damping b that the linear criterion accepts [N·s/m]; None if none would do."""
+    guess, _ = tightest(loop)
+    if guess == float("inf"):
+        return None
+
+    def holds(b: Fraction) -> bool:
+        return isinstance(decide_linear(loop.with_damping(b)), LinearProof)
+
+    return smallest_holding(holds, max(guess, 0.0))
+
+
+def max_stiffness(device: Device, environment: Environment) -> float | None:
+    """The largest passive stiffness K [N/m; N·m/rad], all else as given.
+
+    inf if every stiffness is, None if none is or the law has no stiffness.
+    """
+    if not has_stiffness(environment):
+        return None
+    now = float(getattr(environment, "stiffness"))
+
+    def change(k: Fraction) -> tuple[Device, Environment]:
+        return device, environment.replace(stiffness=Exact(k))
+
+    return largest_holding(lambda k: provable(change, k), now or 1.0)
+
+
+def max_gain(device: Device, environment: Environment) -> float | None:
+    """The largest factor on H(z) that stays passive; None where no factor does."""
+    scaled: Any = getattr(environment, "scaled", None)
+    if scaled is None:
+        return None
+    return largest_holding(lambda g: provable(lambda f: (device, scaled(f)), g), 1.0)
+
+
+def has_stiffness(environment: Environment) -> bool:
+    """True when the law has a parameter that is its stiffness."""
+    return any(f.name == "stiffness" for f in fields(environment))
+
+
