@@ -15,7 +15,7 @@ from zwidth.environment import (
     Window,
 )
 from zwidth.errors import InputError
-from zwidth.passivity import Certificate, Verdict, Witness, check
+from zwidth.passivity import Certificate, Verdict, Witness, check, closed_forms, quantization
 from zwidth.quantity import Exact, Interval
 from zwidth.rendering import VirtualCoupling
 
@@ -42,5 +42,7 @@ __all__ = [
     "Witness",
     "catalogue",
     "check",
+    "closed_forms",
+    "quantization",
     "rotary",
 ]
