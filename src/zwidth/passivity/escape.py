@@ -51,10 +51,11 @@ def _buildup(loop: LinearLoop, mode: complex, length: int, growing: bool) -> Mot
     for k in range(length):
         envelope = size * (k if growing else min(rate**k, 1e18))
         w.append(round(envelope * cos(angle * k)))
-    x = [Fraction(v) for v in convolve(loop.denominator, tuple(w))]
-    forces = convolve(loop.numerator, tuple(w))
-    b = loop.damping or Fraction(max(abs(forces[-1]), 1)) * loop.period / 1024
-    late = forces[-1 - loop.whole_delay] if loop.whole_delay < len(forces) else 0
+    x = [Fraction(v) for v in convolve(loop.follower, tuple(w))]
+    content = Fraction(loop.denominator[0], loop.follower[0])
+    forces = [f / content for f in convolve(loop.numerator, tuple(w))]
+    b = loop.damping or max(abs(forces[-1]), Fraction(1)) * loop.period / 1024
+    late = forces[-1 - loop.whole_delay] if loop.whole_delay < len(forces) else Fraction(0)
     x.append(x[-1] - round(late * loop.period / (2 * b)))
-    switches = tuple(a + loop.part_delay * (b2 - a) for a, b2 in zip(x, x[1:], strict=False))
+    switches = tuple(a + loop.part_delay * (c - a) for a, c in zip(x, x[1:], strict=False))
     return Motion(tuple(x), switches if loop.part_delay else ())

@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import lcm
+from math import gcd, lcm
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
@@ -56,6 +56,12 @@ class LinearLoop:
     def order(self) -> int:
         """Order of H(z)."""
         return len(self.denominator) - 1
+
+    @cached_property
+    def follower(self) -> tuple[int, ...]:
+        """D without its integer content: x = follower · w keeps x small for small whole w."""
+        content = gcd(*self.denominator)
+        return tuple(c // content for c in self.denominator)
 
     @property
     def static_stiffness(self) -> Fraction | None:

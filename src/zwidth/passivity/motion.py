@@ -2,7 +2,7 @@
 
 With x = D w the force is f = N w, so a motion made from whole numbers w keeps
 exact, short numbers through the filter, and a w that ends in zeros brings the
-filter back to rest.
+filter back to rest.  D is taken without its integer content (`follower`).
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def realize(loop: LinearLoop, pattern: Pattern, unit: Fraction, offset: Fraction
     edges without changing a count.
     """
     w = pattern.w
-    x = [unit * v for v in convolve(loop.denominator, w)]
+    x = [unit * v for v in convolve(loop.follower, w)]
     if pattern.ends_inside:
         x.append(Fraction(0))
     placed = tuple(v + offset if 0 < k < len(x) - 1 else v for k, v in enumerate(x))
@@ -115,7 +115,8 @@ def _switches(
     alpha, d = loop.part_delay, loop.whole_delay
     b = loop.damping or Fraction(max(tightest(loop)[0], 1e-9)).limit_denominator(10**12) / 100
     gain = loop.period / (2 * b) * alpha * (1 - alpha)
-    force = [unit * f for f in convolve(loop.numerator, w)]
+    content = Fraction(loop.denominator[0], loop.follower[0])
+    force = [unit * f / content for f in convolve(loop.numerator, w)]
 
     def at(k: int) -> Fraction:
         return force[k] if 0 <= k < len(force) else Fraction(0)

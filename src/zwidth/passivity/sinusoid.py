@@ -8,6 +8,7 @@ for going in and out.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 from math import ceil, cos, log2, pi, sin
 
@@ -24,31 +25,35 @@ LONGEST_LISTED = 5_000
 """Samples in one slow period beyond which a wave of constant speeds is used instead."""
 
 _PIECES, _SPEED = 64, 1000
+_RAMPS = (1, 16, 256)
 
-_RAMPS = (1, 10, 100, 1000, 10_000, 100_000)
 
-
-def sinusoids(loop: LinearLoop, unilateral: bool) -> list[Pattern]:
-    """Patterns at a frequency where the criterion is negative, the shortest first.
+def sinusoids(loop: LinearLoop, unilateral: bool) -> Iterator[Pattern]:
+    """Patterns at a frequency where the criterion is negative; none in too narrow a band.
 
     A law with memory behind a unilateral surface is kept in contact: the
-    pattern first goes in, the slower the later in the list.
+    pattern first goes in, the slower the later.
     """
     band = _negative_band(loop)
     if band is None:
-        return []
+        return
     turn = _simplest_between(*band)
     if band[0] <= turn and turn.numerator == 1 and turn.denominator > LONGEST_LISTED:
-        return [_slow_wave(loop)]
+        yield _slow_wave(loop, unilateral)
+        return
     if turn.denominator > LONGEST_PERIOD:
-        return []
+        return
     cycle = _cycle(loop, turn)
     settled = cycle * (1 + (_memory(loop) + 1) // len(cycle)) if _memory(loop) else ()
     if unilateral and len(loop.numerator) + len(loop.denominator) > 2:
-        return [_inside(loop, cycle, settled, ramp) for ramp in _RAMPS]
+        if sum(loop.follower) <= 0:
+            return
+        for ramp in _RAMPS:
+            yield _inside(loop, cycle, settled, ramp)
+        return
     first = len(settled)
     w = (0, *settled, *cycle, *(0,) * (len(loop.denominator) - 1))
-    return [Pattern(w, (Repeat(first, first + len(cycle), 1),))]
+    yield Pattern(w, (Repeat(first, first + len(cycle), 1),))
 
 
 def _memory(loop: LinearLoop) -> int:
@@ -57,35 +62,57 @@ def _memory(loop: LinearLoop) -> int:
 
 
 def _inside(loop: LinearLoop, cycle: tuple[int, ...], settled: tuple[int, ...], ramp: int) -> Pattern:
-    """The cycle on top of a constant depth, with a slow way in and most of the way out."""
-    at_one = sum(loop.denominator)
-    span = max(cycle) * sum(abs(c) for c in loop.denominator)
-    depth = 2 * (span // at_one + 1) if at_one else 0
-    rise = tuple(depth * k // ramp for k in range(ramp + 1))
+    """The cycle on top of a depth: a way in of `ramp` samples, the rounds, a way out, and a last step."""
+    at_one = sum(loop.follower)
+    depth = max(cycle) * sum(abs(c) for c in loop.follower) // at_one + 1
+    rise = [k / ramp for k in range(1, ramp + 1)]
+    lead = (0, *_following(loop, rise, depth), *(depth + w for w in settled))
+    fall = _following(loop, [1 - v for v in rise[:-1]], depth, start=1.0) if ramp > 1 else ()
     hold = (depth,) * (_memory(loop) + 1)
-    bottom = depth // 8 + 1
-    fall = tuple(depth - (depth - bottom) * k // ramp for k in range(1, ramp + 1))
-    lead = rise + hold + tuple(depth + w for w in settled)
-    w = lead + tuple(depth + v for v in cycle) + hold + fall + (bottom,) * len(hold)
+    w = (*lead, *(depth + v for v in cycle), *hold, *fall)
     first = len(lead) - 1
     return Pattern(w, (Repeat(first, first + len(cycle), 1),), True)
 
 
-def _slow_wave(loop: LinearLoop) -> Pattern:
+def _following(loop: LinearLoop, x: list[float], depth: int, start: float = 0.0) -> tuple[int, ...]:
+    """Whole w with which the position goes nearly as x (as a part of D(1) · depth) and, if to 1, settles there."""
+    d = [c / loop.follower[0] for c in loop.follower]
+    gain = sum(loop.follower) / loop.follower[0]
+    past = [start] * (len(d) - 1)
+    w: list[int] = []
+    while len(w) < len(x) or (x[-1] == 1 and len(w) < LONGEST_PERIOD):
+        target = x[len(w)] if len(w) < len(x) else 1.0
+        value = target * gain - sum(a * v for a, v in zip(d[1:], past, strict=True))
+        past = [value, *past[:-1]] if past else []
+        w.append(round(depth * Fraction(value)))
+        if len(w) >= len(x) and all(abs(v - 1) * depth < 0.5 for v in past):
+            break
+    if x[-1] == 1:
+        w += [depth] * (_memory(loop) + 1)
+    return tuple(w)
+
+
+def _slow_wave(loop: LinearLoop, unilateral: bool) -> Pattern:
     """One very slow wave: pieces of constant speed, in with the first half and out with the second.
 
     Where only slow motions gain, the length of the pieces is what decides; each
-    is one sample, done many times.
+    is one sample, done many times.  Behind a surface the wave stands on a depth
+    that keeps x > 0 while the filter follows.
     """
     settle = _memory(loop) + 2
-    w, repeats = [0], []
+    lag = sum(i * abs(c) for i, c in enumerate(loop.follower))
+    at_one = sum(loop.follower)
+    stands = unilateral and settle > 2 and at_one > 0
+    base = _SPEED * lag // at_one + _SPEED if stands else 0
+    w = [0, *[base] * (settle if stands else 0)]
+    repeats = []
     for piece in range(_PIECES):
         speed = round(_SPEED * sin(2 * pi * (piece + 0.5) / _PIECES))
-        for _ in range(settle + 1):
+        for _ in range(settle + 2):
             w.append(w[-1] + speed)
-        repeats.append(Repeat(len(w) - 2, len(w) - 1, 1))
-    w += [0] * (settle + len(loop.denominator))
-    return Pattern(tuple(w), tuple(repeats))
+        repeats.append(Repeat(len(w) - 3, len(w) - 2, 1))
+    w += [base] * settle if stands else [0] * (settle + len(loop.denominator))
+    return Pattern(tuple(w), tuple(repeats), stands)
 
 
 def _negative_band(loop: LinearLoop) -> tuple[Fraction, Fraction] | None:

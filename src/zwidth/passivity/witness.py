@@ -7,9 +7,10 @@ arithmetic, and found energy to come out.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from math import ceil
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,10 @@ from zwidth.passivity.straddle import best_waits, straddle
 FORMAT = "zwidth witness 1"
 _AMPLITUDE = Fraction(1, 1000)
 """Penetration of a witness that friction does not force to be larger [m; rad]."""
+
+_FEW_ROUNDS = 1000
+_MOST_ROUNDED = 2500
+"""Samples up to which a motion off the law's whole numbers is recomputed exactly."""
 
 
 @dataclass(frozen=True)
@@ -148,11 +153,12 @@ def rounded_energy(document: dict[str, Any]) -> dict[str, Any]:
 def refute_linear(setting: Setting, reason: str) -> Witness | None:
     """A witness against the linear criterion or an unstable environment, or None if none is found."""
     if reason == "criterion":
-        patterns = sinusoids(setting.loop, setting.unilateral)
-        return _first(_sized(setting, pattern) for pattern in patterns)
+        return _shortest(setting, sinusoids(setting.loop, setting.unilateral))
     if reason == "negative static stiffness":
         return _first(_sized(setting, pattern) for pattern in slow_presses(setting.loop))
-    return _first(_scaled(setting, motion) for motion in buildups(setting.loop))
+    return _first(
+        _scaled(setting, _unit(setting, one), partial(_multiplied, one)) for one in buildups(setting.loop)
+    )
 
 
 def refute_friction(setting: Setting) -> Witness | None:
@@ -168,29 +174,96 @@ def _first(candidates: Iterator[Witness | None]) -> Witness | None:
     return next((w for w in candidates if w is not None), None)
 
 
-def _sized(setting: Setting, pattern: Pattern) -> Witness | None:
+def _shortest(setting: Setting, patterns: Iterator[Pattern]) -> Witness | None:
+    """The first pattern that needs few rounds, else the one that needs fewest."""
+    best: tuple[int, Pattern] | None = None
+    for pattern in patterns:
+        times = _rounds(setting, pattern)
+        if times is not None and (best is None or times < best[0]):
+            best = times, pattern
+        if best is not None and best[0] <= _FEW_ROUNDS:
+            break
+    return None if best is None else _sized(setting, best[1], best[0])
+
+
+def _rounds(setting: Setting, pattern: Pattern) -> int | None:
+    """Rounds with which the pattern gains in the ideal loop."""
+    one = realize(setting.loop, pattern, Fraction(1), Fraction(0), 1)
+    return _enough_rounds(lambda n: setting.ideal().energy(one.repeated(n)))
+
+
+def _sized(setting: Setting, pattern: Pattern, times: int | None = None) -> Witness | None:
     """Enough rounds for the ideal loop, then large enough for friction and encoder."""
-    ideal = setting.ideal()
-
-    def motion(times: int, unit: Fraction, offset: Fraction = Fraction(0)) -> Motion:
-        return realize(setting.loop, pattern, unit, offset, times)
-
-    one = motion(1, Fraction(1))
-    times = _enough_rounds(lambda n: ideal.energy(one.repeated(n)))
+    times = times or _rounds(setting, pattern)
     if times is None:
         return None
-    return _scaled(setting, one.repeated(times), lambda unit, offset: motion(times, unit, offset))
+    one = realize(setting.loop, pattern, Fraction(1), Fraction(0), times)
+    unit = _unit(setting, one)
+    if unit is None:
+        return None
+    if setting.resolution and _follower_is_long(setting.loop) and one.samples <= _MOST_ROUNDED:
+        witness = _on_counts(setting, one, unit)
+        if witness is not None:
+            return witness
+    return _scaled(setting, unit, lambda u, offset: realize(setting.loop, pattern, u, offset, times))
 
 
-def _scaled(setting: Setting, one: Motion, resize: Any = None) -> Witness | None:
-    """The motion at a size at which energy, growing as size², exceeds friction, growing as size."""
+def _follower_is_long(loop: LinearLoop) -> bool:
+    """True when x = D w on whole counts would make the motion absurdly large."""
+    return sum(abs(c) for c in loop.follower) > 1000
+
+
+def _on_counts(setting: Setting, one: Motion, unit: Fraction) -> Witness | None:
+    """The motion rounded to whole counts, every round listed; the filter's exact numbers then grow."""
+    count = setting.resolution
+    unit = max(unit, 50 * count / one.depth)
+    for _ in range(4):
+        listed = _listed(one, unit)
+        last = len(listed) - 1
+        x = tuple(
+            count * round(v / count) + (count / 8 if 0 < k < last else 0) for k, v in enumerate(listed)
+        )
+        grid = count / 1024
+        switches = _listed_switches(one, unit)
+        y = tuple(grid * round(v / grid) for v in switches)
+        motion = Motion(x, y)
+        energy = setting.energy(motion)
+        if energy is not None and energy > 0:
+            return Witness(setting, motion, energy)
+        unit *= 4
+    return None
+
+
+def _listed(one: Motion, unit: Fraction) -> list[Fraction]:
+    """All positions of a motion whose single repeated part returns to its start."""
+    x = [unit * v for v in one.positions]
+    for part in reversed(one.repeats):
+        x[part.last : part.last] = x[part.first : part.last] * (part.times - 1)
+    return x
+
+
+def _listed_switches(one: Motion, unit: Fraction) -> list[Fraction]:
+    y = [unit * v for v in one.switch_positions]
+    for part in reversed(one.repeats if y else ()):
+        y[part.last : part.last] = y[part.first : part.last] * (part.times - 1)
+    return y
+
+
+def _unit(setting: Setting, one: Motion) -> Fraction | None:
+    """The size at which energy, growing as size², exceeds Coulomb friction, growing as size."""
     gain = setting.ideal().energy(one)
     if gain is None or gain <= 0:
         return None
-    resize = resize or (lambda unit, offset: _multiplied(one, unit, offset))
     unit = _AMPLITUDE / max(abs(x) for x in (one.depth, *one.positions))
     if setting.coulomb_friction:
         unit = max(unit, 2 * setting.coulomb_friction * _path(setting, one, gain) / gain)
+    return unit
+
+
+def _scaled(setting: Setting, unit: Fraction | None, resize: Callable[[Fraction, Fraction], Motion]) -> Witness | None:
+    """The motion at that size or above, on whole counts, once the checker finds that it gains."""
+    if unit is None:
+        return None
     for _ in range(12):
         unit = round_up(unit)
         if setting.resolution:
@@ -224,7 +297,7 @@ def _repeated(setting: Setting, motion: Motion) -> Witness | None:
     return Witness(setting, motion.repeated(times), energy) if energy is not None and energy > 0 else None
 
 
-def _enough_rounds(energy: Any) -> int | None:
+def _enough_rounds(energy: Callable[[int], Fraction | None]) -> int | None:
     """Rounds after which a repeated motion has gained: energy is affine in them from the second on."""
     one = energy(1)
     if one is None:
@@ -232,6 +305,8 @@ def _enough_rounds(energy: Any) -> int | None:
     if one > 0:
         return 1
     two, three = energy(2), energy(3)
+    if two is None or three is None:
+        return None
     per_round = three - two
     if per_round <= 0:
         return None
