@@ -154,6 +154,31 @@ def test_spring_inequality_without_a_root(seed):
     assert slack(bound * (1 - TINY)) < 0 < slack(bound * (1 + TINY))
 
 
+@pytest.mark.parametrize("seed", CASES)
+def test_delayed_nonlinear_spring_gives_nothing(seed):
+    """A one-sided spring that saturates gives no more than it stores, however the hand moves."""
+    random = Random(seed)
+    k, t = draw(random, 1, 1e5), draw(random, 1e-5, 0.1)
+    d, alpha = random.randint(0, 3), Fraction(random.randint(0, 99), 100)
+    b = zw.Exact(forms.spring_damping(k, t, (d + alpha) * t)).fraction * (1 + TINY)
+
+    def force(x):
+        return k * min(max(x, 0), 1)
+
+    def stored(x):
+        return force(x) ** 2 / (2 * k) + k * max(x - 1, 0)
+
+    wander = [Fraction(random.randint(-1000, 2000), 1000) for _ in range(12)]
+    x = [Fraction(0)] * (d + 2) + [v for v in wander for _ in range(random.randint(1, 2))]
+    work = Fraction(0)
+    for i in range(d + 1, len(x) - 1):
+        g, h, step = force(x[i - d - 1]), force(x[i - d]), x[i + 1] - x[i]
+        early = alpha * step - t / (2 * b) * alpha * (1 - alpha) * (g - h)  # where g ends, at best
+        work += g * early + h * (step - early)
+        work += b / t * ((early**2 / alpha if alpha else 0) + (step - early) ** 2 / (1 - alpha))
+        assert work >= stored(x[i + 1])
+
+
 def test_paddle_limits():
     """The paddle: 2b/T = 300 N/m binds, 2f_c/Δ = 10 714 N/m; 820 by the mass–damper fit; 107 coarser."""
     sampling, quantization = forms.abbott_okamura_stiffness("0.15", "0.12", "22.4e-6", "0.001")

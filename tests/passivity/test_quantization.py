@@ -106,7 +106,7 @@ def test_fast_press_gains_what_it_says(seed):
     if n > 1:
         depth = (n - 1) * dev.exact("resolution")
         assert gained(dev, k, (Fraction(0), depth, Fraction(0))) <= 0
-        with pytest.raises(zw.InputError, match="counts must exceed"):
+        with pytest.raises(zw.InputError, match="counts is a whole number above"):
             q.fast_press(dev, k, counts=n - 1)
 
 
@@ -128,6 +128,8 @@ def test_paddle_press():
     assert press.peak_speed == pytest.approx(240.016, rel=1e-6)
     with pytest.raises(zw.InputError, match=r"= 10714\.3, got 10714"):
         q.fast_press(PADDLE, 301, counts=10714)
+    with pytest.raises(zw.InputError, match=r"got 20000\.5"):
+        q.fast_press(PADDLE, 301, counts=20000.5)
     with pytest.raises(zw.InputError, match="does not exceed 2b/T = 300"):
         q.fast_press(PADDLE, 300)
     with pytest.raises(zw.InputError, match=r"does not exceed 2f_c/Δ = 10714\.3"):
@@ -269,3 +271,15 @@ def test_bad_input(call, message):
     """What the formulas do not cover is refused with a reason."""
     with pytest.raises(zw.InputError, match=message):
         call()
+
+
+def test_catalogue_in_the_plane():
+    """The paddle is a point, a device without published friction a line, one with nothing is left out."""
+    marks = q.catalogue_coordinates(770)
+    point = q.plane_point(PADDLE, 770)
+    assert marks["haptic-paddle"] == (point.viscous, point.dry)
+    beta, sigma = marks["phantom"]
+    assert (beta.fraction, sigma) == (Fraction(27, 77), None)
+    assert "omega.3" not in marks
+    with pytest.raises(zw.InputError, match="stiffness must be > 0"):
+        q.catalogue_coordinates(-1)

@@ -13,14 +13,25 @@ root is irrational it is a float.
 from __future__ import annotations
 
 from fractions import Fraction
-from math import inf, isqrt, sqrt
+from math import inf, sqrt
 from typing import Literal, NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.passivity.delayed_spring import spring_damping, spring_stiffness
+from zwidth.passivity.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, number, positive
 from zwidth.quantity.exact import Exact, RealLike
 
-_NEGATIVE_SPRING = "a negative spring gives out energy without end"
-_NO_CLOCK = "a sampled loop has a sample period"
+__all__ = [
+    "StiffnessLimits",
+    "abbott_okamura_stiffness",
+    "kelvin_voigt_damping",
+    "quantized_kelvin_voigt_friction",
+    "spring_damping",
+    "spring_stiffness",
+    "standard_linear_solid_damping",
+    "window_damping",
+]
+
 _NO_BRANCH = (
     "with 0 the solid is a spring, for which kelvin_voigt_damping(stiffness, 0, sample_period) holds, "
     "and with a negative value H is unstable"
@@ -63,9 +74,9 @@ def kelvin_voigt_damping(stiffness: RealLike, damping: RealLike, sample_period: 
     ----------
     Colgate & Schenkel, Journal of Robotic Systems 14(1), 1997.
     """
-    k = _nonnegative("stiffness", stiffness, _NEGATIVE_SPRING)
-    t = _positive("sample_period", sample_period, _NO_CLOCK)
-    return Exact(k * t / 2 + abs(_number("damping", damping)))
+    k = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
+    t = positive("sample_period", sample_period, NO_CLOCK)
+    return Exact(k * t / 2 + abs(number("damping", damping)))
 
 
 def window_damping(
@@ -104,8 +115,8 @@ def window_damping(
     -----
     Derived for this project, from 2 sin Nφ cos (N+1)φ = sin (2N+1)φ − sin φ.
     """
-    added = _number("damping", damping)
-    n = _number("samples", samples)
+    added = number("damping", damping)
+    n = number("samples", samples)
     if n.denominator != 1 or n < 1:
         raise InputError(f"samples is a whole number ≥ 1, got {samples}: the window spans that many periods")
     if added > 0 and n > 3:
@@ -163,10 +174,10 @@ def standard_linear_solid_damping(
     "A passivity criterion for real-time haptic simulation of viscoelastic soft
     tissues", equations (9) and (22).
     """
-    mu0 = _nonnegative("stiffness", stiffness, _NEGATIVE_SPRING)
-    mu1 = _positive("branch_stiffness", branch_stiffness, _NO_BRANCH)
-    eta1 = _positive("branch_damping", branch_damping, _NO_BRANCH)
-    t = _positive("sample_period", sample_period, _NO_CLOCK)
+    mu0 = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
+    mu1 = positive("branch_stiffness", branch_stiffness, _NO_BRANCH)
+    eta1 = positive("branch_damping", branch_damping, _NO_BRANCH)
+    t = positive("sample_period", sample_period, NO_CLOCK)
     if discretization == "backward":
         return Exact(mu0 * t / 2 + mu1 * eta1 * t / (2 * eta1 + mu1 * t))
     if discretization == "tustin":
@@ -175,79 +186,6 @@ def standard_linear_solid_damping(
         f'the closed form covers "backward" and "tustin", got {discretization!r}; '
         "check the solid itself: the exact engine covers every discretization"
     )
-
-
-def spring_damping(stiffness: RealLike, sample_period: RealLike, delay: RealLike = 0) -> Exact | float:
-    """b ≥ (K T/4) [2d + 1 + 2α + √((2d + 1)² + 8 α (d + 1))] for a spring, delay = (d + α) T.
-
-    Without a fractional part, (2d + 1) K T/2.  The same without a root:
-
-        b² − b (K T/2)(2d + 1 + 2α) − (T²/4) α (1 − α) K² ≥ 0,    b ≥ 0
-
-    Parameters
-    ----------
-    stiffness
-        K ≥ 0 [N/m; N·m/rad], or the largest slope of a nonlinear spring whose
-        slope lies in 0 … K, such as a one-sided wall.
-    sample_period
-        T > 0 [s].
-    delay
-        From the sample to its force, ≥ 0 [s]; d whole, 0 ≤ α < 1.
-
-    Returns
-    -------
-    Exact or float
-        The smallest device damping [N·s/m; N·m·s/rad].
-
-    Raises
-    ------
-    InputError
-        If K < 0, T ≤ 0 or delay < 0.
-
-    Notes
-    -----
-    Derived for this project.  In one interval the hand meets g = f(k−d−1) for
-    αT, then h = f(k−d).  The cheapest way over Δx costs
-
-        (α g + (1 − α) h) Δx + (b/T) Δx² − (T α(1 − α)/4b) (g − h)²
-
-    Sufficient: with V' = f, f(k) Δx ≥ ΔV − ½ K Δx²; a force i samples older
-    differs by at most K times the path since, so that over all intervals
-    the delay costs at most (d + α) K Σ Δx²; and |g − h| ≤ K |Δx|.  Hence
-    b/T ≥ K (½ + d + α) + T α(1 − α) K²/4b is enough.  Necessary: a slow
-    sinusoid inside a linear spring needs that much as ω → 0.
-    """
-    k = _nonnegative("stiffness", stiffness, _NEGATIVE_SPRING)
-    t = _positive("sample_period", sample_period, _NO_CLOCK)
-    return _scaled_bracket(k * t / 4, delay, t)
-
-
-def spring_stiffness(damping: RealLike, sample_period: RealLike, delay: RealLike = 0) -> Exact | float:
-    """K ≤ (4b/T) / [2d + 1 + 2α + √((2d + 1)² + 8 α (d + 1))], the inverse of `spring_damping`.
-
-    Parameters
-    ----------
-    damping
-        b ≥ 0 of the device [N·s/m; N·m·s/rad].
-    sample_period
-        T > 0 [s].
-    delay
-        From the sample to its force, (d + α) T ≥ 0 [s].
-
-    Returns
-    -------
-    Exact or float
-        The largest stiffness [N/m; N·m/rad]; 2b/T without delay.
-
-    Raises
-    ------
-    InputError
-        If b < 0, T ≤ 0 or delay < 0.
-    """
-    b = _nonnegative("damping", damping, "viscous friction takes energy, it never gives any")
-    t = _positive("sample_period", sample_period, _NO_CLOCK)
-    bracket = _scaled_bracket(Fraction(1), delay, t)
-    return Exact(4 * b / t / bracket.fraction) if isinstance(bracket, Exact) else float(4 * b / t) / bracket
 
 
 def abbott_okamura_stiffness(
@@ -280,8 +218,8 @@ def abbott_okamura_stiffness(
     ----------
     Abbott & Okamura, IEEE Transactions on Robotics 21(5), 2005, equation (3).
     """
-    friction = _nonnegative("coulomb_friction", coulomb_friction, "friction takes energy, it never gives any")
-    step = _nonnegative("resolution", resolution, "0 means an ideal encoder")
+    friction = nonnegative("coulomb_friction", coulomb_friction, "friction takes energy, it never gives any")
+    step = nonnegative("resolution", resolution, "0 means an ideal encoder")
     quantization = Exact(2 * friction / step) if step else inf
     return StiffnessLimits(Exact(spring_stiffness(damping, sample_period)), quantization)
 
@@ -325,42 +263,8 @@ def quantized_kelvin_voigt_friction(
     a tiny step over one edge and back gains Δ times the force going out less
     the force coming in, K + 2B/T when made every sample, K after a rest.
     """
-    k = _nonnegative("stiffness", stiffness, _NEGATIVE_SPRING)
-    step = _nonnegative("resolution", resolution, "0 means an ideal encoder")
-    t = _positive("sample_period", sample_period, _NO_CLOCK)
-    rate = _number("damping", damping) / t
+    k = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
+    step = nonnegative("resolution", resolution, "0 means an ideal encoder")
+    t = positive("sample_period", sample_period, NO_CLOCK)
+    rate = number("damping", damping) / t
     return Exact((abs(k + rate) + abs(rate)) * step / 2)
-
-
-def _scaled_bracket(scale: Fraction, delay: RealLike, period: Fraction) -> Exact | float:
-    """scale · [2d + 1 + 2α + √((2d + 1)² + 8 α (d + 1))]."""
-    late = _nonnegative("delay", delay, "a force cannot come before its sample") / period
-    d = late // 1
-    alpha = late - d
-    linear = 2 * d + 1 + 2 * alpha
-    square = Fraction((2 * d + 1) ** 2) + 8 * alpha * (d + 1)
-    p, q = isqrt(square.numerator), isqrt(square.denominator)
-    if p * p == square.numerator and q * q == square.denominator:
-        return Exact(scale * (linear + Fraction(p, q)))
-    return float(scale) * (float(linear) + sqrt(square))
-
-
-def _number(name: str, value: RealLike) -> Fraction:
-    try:
-        return Exact(value).fraction
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
-
-
-def _nonnegative(name: str, value: RealLike, why: str) -> Fraction:
-    number = _number(name, value)
-    if number < 0:
-        raise InputError(f"{name} must be ≥ 0, got {value}: {why}")
-    return number
-
-
-def _positive(name: str, value: RealLike, why: str) -> Fraction:
-    number = _number(name, value)
-    if number <= 0:
-        raise InputError(f"{name} must be > 0, got {value}: {why}")
-    return number
