@@ -77,10 +77,12 @@ def _knobs(device: Device, environment: Environment) -> Iterator[_Knob]:
 
     yield _Knob("rate", float(device.exact("sample_period") ** -1), _rate(device, environment), True, "rate")
     for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False), ("delay", False)):
-        name = {"damping": "device damping", "resolution": "encoder resolution"}.get(key, key.replace("_", " "))
+        name = {"damping": "device damping", "resolution": "encoder resolution"}.get(
+            key, key.replace("_", " ")
+        )
         yield _Knob(key, float(device.exact(key)), on_device(key), more, name)
     if has_stiffness(environment):
-        now = float(getattr(environment, "stiffness"))
+        now = float(environment.stiffness)
         change: Change = lambda k: (device, environment.replace(stiffness=Exact(k)))  # noqa: E731
         yield _Knob("stiffness", now, change, False, "stiffness")
     if isinstance(environment, Wall):

@@ -112,7 +112,9 @@ def verify_document(document: object) -> checker.Verification:
     if document.get("kind") == "corners":
         return _verify_corners(document.get("corners"))
     if "kind" not in document:
-        raise InputError("no certificate or witness found: the object has no key kind, certificate or witness")
+        raise InputError(
+            "no certificate or witness found: the object has no key kind, certificate or witness"
+        )
     return checker.verify(document)
 
 

@@ -103,7 +103,9 @@ def _tightest(decisions: list[Decision]) -> int:
     """The corner that asks for most damping."""
     from zwidth.passivity.supremum import tightest
 
-    return max(range(len(decisions)), key=lambda k: tightest(decisions[k].loop)[0]) if len(decisions) > 1 else 0
+    return (
+        max(range(len(decisions)), key=lambda k: tightest(decisions[k].loop)[0]) if len(decisions) > 1 else 0
+    )
 
 
 def _refute(decision: Decision) -> Witness | None:

@@ -50,9 +50,7 @@ def best_corner(device: Device, environment: Environment) -> Loop | None:
     low, high = ends(environment.damping)
     least = Fraction(0) if low <= 0 <= high else min(low, high, key=abs)
     device = _ends(device, sample_period=0, delay=0)
-    return device, environment.replace(
-        stiffness=Exact(ends(environment.stiffness)[0]), damping=Exact(least)
-    )
+    return device, environment.replace(stiffness=Exact(ends(environment.stiffness)[0]), damping=Exact(least))
 
 
 def device_is_certain(device: Device) -> bool:
@@ -87,9 +85,7 @@ def _box_is_decided_by_corners(device: Device, environment: Environment) -> bool
 
 def _parts_are_certain(environment: Environment, uncertain: set[str]) -> bool:
     """No interval hides in a filter, a branch or an inner environment."""
-    certain = environment.replace(
-        **{name: Exact(ends(getattr(environment, name))[1]) for name in uncertain}
-    )
+    certain = environment.replace(**{name: Exact(ends(getattr(environment, name))[1]) for name in uncertain})
     velocity = getattr(environment, "velocity_filter", None)
     return certain.is_certain and not isinstance(getattr(velocity, "time_constant", None), Interval)
 

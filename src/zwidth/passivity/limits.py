@@ -16,9 +16,8 @@ from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity.boundary import largest_holding, smallest_holding
 from zwidth.passivity.decision import decide
-from zwidth.passivity.linear import LinearProof
+from zwidth.passivity.linear import LinearProof, decide_linear
 from zwidth.passivity.loop import LinearLoop
-from zwidth.passivity.linear import decide_linear
 from zwidth.passivity.supremum import tightest
 from zwidth.quantity.exact import Exact
 
@@ -52,7 +51,7 @@ def max_stiffness(device: Device, environment: Environment) -> float | None:
     """
     if not has_stiffness(environment):
         return None
-    now = float(getattr(environment, "stiffness"))
+    now = float(environment.stiffness)
 
     def change(k: Fraction) -> tuple[Device, Environment]:
         return device, environment.replace(stiffness=Exact(k))
@@ -71,5 +70,3 @@ def max_gain(device: Device, environment: Environment) -> float | None:
 def has_stiffness(environment: Environment) -> bool:
     """True when the law has a parameter that is its stiffness."""
     return any(f.name == "stiffness" for f in fields(environment))
-
-

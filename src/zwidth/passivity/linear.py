@@ -77,9 +77,7 @@ def closed_loop(loop: LinearLoop, offset: Fraction) -> list[int]:
     numerator += [0] * (size - len(numerator))
     denominator += [0] * (size - len(denominator))
     scale = total.denominator * loop.period.denominator
-    return [
-        int((total * y + loop.period * x) * scale) for x, y in zip(numerator, denominator, strict=True)
-    ]
+    return [int((total * y + loop.period * x) * scale) for x, y in zip(numerator, denominator, strict=True)]
 
 
 def _times_one_minus_zeta(a: tuple[int, ...]) -> list[int]:

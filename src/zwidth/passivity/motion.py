@@ -122,9 +122,7 @@ def _switches(
         return force[k] if 0 <= k < len(force) else Fraction(0)
 
     grid = unit / 4096
-    ideal = (
-        x[k] + alpha * (x[k + 1] - x[k]) - gain * (at(k - d - 1) - at(k - d)) for k in range(len(x) - 1)
-    )
+    ideal = (x[k] + alpha * (x[k + 1] - x[k]) - gain * (at(k - d - 1) - at(k - d)) for k in range(len(x) - 1))
     return tuple(round(y / grid) * grid for y in ideal)
 
 

@@ -123,7 +123,7 @@ class Verdict:
     def actuator(self) -> tuple[ActuatorCheck, ...]:
         """Is the actuator close to the ideal that the claim assumes?"""
         stiffness = self.decision.loop.static_stiffness
-        positive = stiffness is not None and 0 < stiffness
+        positive = stiffness is not None and stiffness > 0
         return actuator_checks(self.device, stiffness if positive else None)
 
     def curve(self, points: int = 400) -> tuple[list[float], list[float]]:

@@ -52,9 +52,7 @@ class Setting:
 
     def document(self, motion: Motion, energy: Fraction) -> dict[str, Any]:
         """The motion in this setting as a document for the checker."""
-        loop = loop_document(
-            self.loop, self.coulomb_friction, self.resolution, self.unilateral, self.motion
-        )
+        loop = loop_document(self.loop, self.coulomb_friction, self.resolution, self.unilateral, self.motion)
         document: dict[str, Any] = {"format": FORMAT, "kind": "motion", "loop": loop}
         document[unit_key("sample_period")] = self.loop.period
         document["energy_J"] = energy
@@ -220,9 +218,7 @@ def _on_counts(setting: Setting, one: Motion, unit: Fraction) -> Witness | None:
     for _ in range(4):
         listed = _listed(one, unit)
         last = len(listed) - 1
-        x = tuple(
-            count * round(v / count) + (count / 8 if 0 < k < last else 0) for k, v in enumerate(listed)
-        )
+        x = tuple(count * round(v / count) + (count / 8 if 0 < k < last else 0) for k, v in enumerate(listed))
         grid = count / 1024
         switches = _listed_switches(one, unit)
         y = tuple(grid * round(v / grid) for v in switches)
@@ -260,7 +256,9 @@ def _unit(setting: Setting, one: Motion) -> Fraction | None:
     return unit
 
 
-def _scaled(setting: Setting, unit: Fraction | None, resize: Callable[[Fraction, Fraction], Motion]) -> Witness | None:
+def _scaled(
+    setting: Setting, unit: Fraction | None, resize: Callable[[Fraction, Fraction], Motion]
+) -> Witness | None:
     """The motion at that size or above, on whole counts, once the checker finds that it gains."""
     if unit is None:
         return None

@@ -1,0 +1,313 @@
+"""Certificates re-proved: the criterion from its definition, its sign, and the stability of H(z)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from math import comb, gcd, lcm
+from typing import Any, TypeVar
+
+from .reading import MOST_COEFFICIENTS, Invalid, Loop, get, integer, number, numbers, read_loop
+
+MOST_SPLITS = 20_000
+
+_Exact = TypeVar("_Exact", int, Fraction)
+
+
+def _spring(document: Mapping[str, Any]) -> str:
+    """b² − b (KT/2)(2d+1+2α) ≥ (T²/4) α(1−α) K² and 2 f_c ≥ K Δ, with K ≥ 0.
+
+    V = ½ K (x − Δ/2)² inside is a storage function when there is no delay; each
+    held or delayed force differs from its gradient by what b and f_c absorb.
+    """
+    p = read_loop(document)
+    if any(p.numerator[1:]) or any(p.denominator[1:]):
+        raise Invalid("the law is not a spring: H(z) is not constant")
+    k = p.numerator[0] / p.denominator[0]
+    if k < 0:
+        raise Invalid(f"the stiffness is negative: {float(k):g}")
+    reach = k * p.period / 2 * (2 * p.whole + 1 + 2 * p.part)
+    inside = p.period**2 / 4 * p.part * (1 - p.part) * k**2
+    if p.damping < reach or p.damping * (p.damping - reach) < inside:
+        raise Invalid("the damping is below what the hold and the delay of this spring need")
+    if 2 * p.coulomb_friction < k * p.resolution:
+        raise Invalid("the Coulomb friction is below half a count of this spring, K Δ/2")
+    return "2b/T with delay and 2 f_c/Δ both admit this stiffness"
+
+
+def _linear(document: Mapping[str, Any]) -> str:
+    p = read_loop(document)
+    if p.resolution != 0:
+        raise Invalid("a linear proof covers an ideal encoder only; this one has a resolution")
+    _linear_part(document, p)
+    return "the criterion is nonnegative at every frequency and the environment is stable"
+
+
+def _linear_part(document: Mapping[str, Any], p: Loop) -> None:
+    proof = get(document, "proof")
+    _positivity(get(proof, "positivity"), _criterion(p))
+    _stability(get(proof, "stability"), p)
+    if p.damping == 0 and p.part > 0 and any(p.numerator):
+        raise Invalid("without damping a force that changes inside a sample gives energy for free")
+
+
+def _quantized(document: Mapping[str, Any]) -> str:
+    """The encoder's error is at most Δ/2 about its middle: it moves the force by ≤ ‖h‖₁ Δ/2 ≤ f_c."""
+    p = read_loop(document)
+    _linear_part(document, p)
+    inverse = numbers(get(get(document, "proof"), "inverse"))
+    norm = _one_norm_bound(p, inverse)
+    if norm * p.resolution > 2 * p.coulomb_friction:
+        raise Invalid("the Coulomb friction is below ‖h‖₁ Δ/2")
+    return "as linear, and Coulomb friction covers the largest force error of the encoder"
+
+
+def _one_norm_bound(p: Loop, inverse: list[Fraction]) -> Fraction:
+    """‖N/D‖₁ ≤ ‖N E‖₁/(e − ‖D E − e‖₁), e the first coefficient of D E, for any polynomial E."""
+    if not inverse:
+        raise Invalid("the inverse has no coefficients")
+    product = _multiply(p.denominator, inverse)
+    slack = abs(product[0]) - sum(abs(c) for c in product[1:])
+    if slack <= 0:
+        raise Invalid("the inverse does not bound the impulse response")
+    return sum(abs(c) for c in _multiply(p.numerator, inverse)) / slack
+
+
+def _criterion(p: Loop) -> list[Fraction]:
+    """q(c) of the loop, times b where part > 0, from Chebyshev sums; ascending in c."""
+    alpha, n, d = p.part, _whole(p.numerator, p), _whole(p.denominator, p)
+    m = [0] * p.whole + _multiply(n, [alpha.denominator - alpha.numerator, alpha.numerator])
+    real: dict[int, int] = {}
+    slope: dict[int, int] = {}  # coefficients of (1 + c) U_{j−1}
+    for i, x in enumerate(m):
+        for k, y in enumerate(d):
+            j = i - k
+            real[abs(j)] = real.get(abs(j), 0) + x * y
+            if j:
+                slope[abs(j) - 1] = slope.get(abs(j) - 1, 0) - x * y * (1 if j > 0 else -1)
+    degree = max([*real, *(j + 1 for j in slope), len(d) - 1, len(n) - 1])
+    first, second = _chebyshev(degree)
+    hold = [0] * (degree + 1)
+    for j, x in real.items():
+        _add(hold, first[j], -x)
+    for j, x in slope.items():
+        _add(hold, second[j], x)
+        _add(hold, [0, *second[j]], x)
+    damped = _square_modulus(d, first, degree)
+    b, weight = p.damping, Fraction(1, alpha.denominator)
+    if not alpha:
+        return [2 * b / p.period * x + weight * y for x, y in zip(damped, hold, strict=True)]
+    switched = _square_modulus(n, first, degree)
+    loss = p.period * alpha * (1 - alpha) / 2
+    return [
+        2 * b * b / p.period * x + b * weight * y - loss * w
+        for x, y, w in zip(damped, hold, switched, strict=True)
+    ]
+
+
+def _whole(coefficients: list[Fraction], p: Loop) -> list[int]:
+    """N or D times the integer that makes both whole."""
+    scale = lcm(*(c.denominator for c in (*p.numerator, *p.denominator)))
+    return [int(c * scale) for c in coefficients]
+
+
+def _chebyshev(degree: int) -> tuple[list[list[int]], list[list[int]]]:
+    first, second = [[1], [0, 1]], [[1], [0, 2]]
+    for table in (first, second):
+        while len(table) <= degree:
+            last, before = table[-1], table[-2]
+            twice = [0, *(2 * c for c in last)]
+            table.append([a - b for a, b in zip(twice, [*before, 0, 0], strict=True)])
+    return first, second
+
+
+def _square_modulus(a: list[int], first: list[list[int]], degree: int) -> list[int]:
+    total = [0] * (degree + 1)
+    for j in range(len(a)):
+        lag = sum(a[i] * a[i + j] for i in range(len(a) - j))
+        _add(total, first[j], lag if j == 0 else 2 * lag)
+    return total
+
+
+def _add(total: list[int], terms: Sequence[int], weight: int) -> None:
+    for i, c in enumerate(terms):
+        if c:
+            total[i] += weight * c
+
+
+def _multiply(a: Sequence[_Exact], b: Sequence[_Exact]) -> list[_Exact]:
+    out: list[Any] = [0] * (len(a) + len(b) - 1)
+    for i, x in enumerate(a):
+        if x:
+            for j, y in enumerate(b):
+                out[i + j] += x * y
+    return out
+
+
+def _positivity(proof: Mapping[str, Any], q: list[Fraction]) -> None:
+    """q = (positive) (1 − c)ⁱ (1 + c)ʲ s² g, and g > 0 on [−1, 1]."""
+    at_one, at_minus_one = integer(get(proof, "at_one")), integer(get(proof, "at_minus_one"))
+    square, g = numbers(get(proof, "square")), numbers(get(proof, "factor"))
+    if not g or at_one + at_minus_one > MOST_COEFFICIENTS:
+        raise Invalid("the factors of the criterion are missing")
+    product = _multiply(_multiply(square, square), g) if square else [Fraction(0)]
+    for times, root in ((at_one, Fraction(-1)), (at_minus_one, Fraction(1))):
+        for _ in range(times):
+            product = _multiply(product, [Fraction(1), root])
+    _proportional(q, product)
+    _strictly_positive(g)
+
+
+def _proportional(a: list[Fraction], b: list[Fraction]) -> None:
+    size = max(len(a), len(b))
+    a, b = a + [Fraction(0)] * (size - len(a)), b + [Fraction(0)] * (size - len(b))
+    pivot = next((i for i in range(size) if a[i] or b[i]), None)
+    if pivot is None:
+        return
+    if a[pivot] * b[pivot] <= 0:
+        raise Invalid("the factors do not multiply to the criterion")
+    ratio = a[pivot] / b[pivot]
+    if any(x != ratio * y for x, y in zip(a, b, strict=True)):
+        raise Invalid("the factors do not multiply to the criterion")
+
+
+def _strictly_positive(g: list[Fraction]) -> None:
+    """g > 0 on [−1, 1], by Bernstein coefficients on halved intervals."""
+    work = [_bernstein(g)]
+    splits = 0
+    while work:
+        b = work.pop()
+        if b[0] <= 0 or b[-1] <= 0:
+            raise Invalid("the criterion is not positive where the proof says it is")
+        if all(c >= 0 for c in b):
+            continue
+        splits += 1
+        if splits > MOST_SPLITS:
+            raise Invalid("the sign of the criterion could not be confirmed")
+        work.extend(_split(b))
+
+
+def _bernstein(g: list[Fraction]) -> list[int]:
+    """Bernstein coefficients of g(2t − 1) on [0, 1], times a positive integer."""
+    n = len(g) - 1
+    scale = lcm(*(c.denominator for c in g))
+    in_t = [0]
+    for c in reversed(g):
+        in_t = _multiply(in_t, [-1, 2])
+        in_t[0] += int(c * scale)
+    common = lcm(*(comb(n, k) for k in range(n + 1)))
+    weighted = [in_t[k] * (common // comb(n, k)) for k in range(n + 1)]
+    return [sum(comb(i, k) * weighted[k] for k in range(i + 1)) for i in range(n + 1)]
+
+
+def _split(b: list[int]) -> tuple[list[int], list[int]]:
+    """De Casteljau at the middle, times 2ⁿ."""
+    n = len(b) - 1
+    row, left, right = list(b), [b[0] << n], [b[-1] << n]
+    for level in range(1, n + 1):
+        row = [x + y for x, y in zip(row, row[1:], strict=False)]
+        left.append(row[0] << (n - level))
+        right.append(row[-1] << (n - level))
+    return left, right[::-1]
+
+
+def _stability(proof: Mapping[str, Any], p: Loop) -> None:
+    kind = get(proof, "kind")
+    if kind == "open loop":
+        if not _inside_unit_circle(p.denominator):
+            raise Invalid("H(z) has a pole outside or on the unit circle")
+        if sum(p.numerator) * sum(p.denominator) < 0:
+            raise Invalid("the static stiffness H(1) is negative")
+    elif kind == "closed loop":
+        if p.part:
+            raise Invalid("a closed-loop proof does not cover a delay of part of a sample")
+        offset = number(get(proof, "offset"))
+        if offset <= 0:
+            raise Invalid("the offset must be positive")
+        _require_coprime(p)
+        if not _inside_unit_circle(_positive_real_denominator(p, offset)):
+            raise Invalid("b + T z⁻ᵈ H/(z − 1) is not positive real")
+    else:
+        raise Invalid(f"unknown kind of stability proof: {kind!r}")
+
+
+def _positive_real_denominator(p: Loop, offset: Fraction) -> list[Fraction]:
+    """n + g d of b + T ζ^{d+1} N/((1 − ζ) D), with a common 1 − ζ cancelled."""
+    top = [Fraction(0)] * (p.whole + 1) + [p.period * c for c in p.numerator]
+    bottom = _multiply(p.denominator, [Fraction(1), Fraction(-1)])
+    size = max(len(top), len(bottom))
+    total = p.damping + offset
+    sums = [
+        (top[i] if i < len(top) else 0) + total * (bottom[i] if i < len(bottom) else 0) for i in range(size)
+    ]
+    if sum(p.numerator) == 0:
+        running, out = Fraction(0), []
+        for c in sums[:-1]:
+            running += c
+            out.append(running)
+        return out
+    return [Fraction(c) for c in sums]
+
+
+def _require_coprime(p: Loop) -> None:
+    a, b = _trim(p.numerator), _trim(p.denominator)
+    while b:
+        a, b = b, _remainder(a, b)
+    if len(a) > 1:
+        raise Invalid("numerator and denominator of H(z) have a common factor")
+
+
+def _trim(a: Sequence[Fraction]) -> list[Fraction]:
+    out = list(a)
+    while out and out[-1] == 0:
+        out.pop()
+    return out
+
+
+def _remainder(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
+    a = list(a)
+    while len(a) >= len(b):
+        ratio, shift = a[-1] / b[-1], len(a) - len(b)
+        a = [x - ratio * b[i - shift] if i >= shift else x for i, x in enumerate(a)]
+        a.pop()
+        a = _trim(a)
+    return a
+
+
+def _inside_unit_circle(descending: Sequence[Fraction]) -> bool:
+    """All roots of Σ a_i z^{n−i} inside |z| = 1, by z = (1 + s)/(1 − s) and Routh's table."""
+    n = len(descending) - 1
+    scale = lcm(*(c.denominator for c in descending))
+    p = [0] * (n + 1)
+    for i, c in enumerate(descending):
+        plus, minus = n - i, i
+        row = [int(c * scale)]
+        for _ in range(plus):
+            row = [a + b for a, b in zip([*row, 0], [0, *row], strict=True)]
+        for _ in range(minus):
+            row = [a - b for a, b in zip([*row, 0], [0, *row], strict=True)]
+        p = [a + b for a, b in zip(p, row, strict=True)]
+    return _hurwitz(p[::-1])
+
+
+def _hurwitz(descending: list[int]) -> bool:
+    if descending[0] == 0:
+        return False
+    if descending[0] < 0:
+        descending = [-c for c in descending]
+    upper, lower = descending[0::2], descending[1::2]
+    while lower:
+        if lower[0] <= 0:
+            return False
+        padded = lower + [0] * (len(upper) - len(lower))
+        following = [lower[0] * upper[i + 1] - upper[0] * padded[i + 1] for i in range(len(upper) - 1)]
+        common = gcd(*following) if following else 1
+        upper, lower = lower, [c // common for c in following] if common > 1 else following
+    return upper[0] > 0
+
+
+PROOFS: dict[str, Callable[[Mapping[str, Any]], str]] = {
+    "spring": _spring,
+    "linear": _linear,
+    "quantized": _quantized,
+}

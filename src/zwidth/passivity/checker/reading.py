@@ -1,0 +1,103 @@
+"""Reading a certificate or a witness: plain JSON data into exact numbers, every size bounded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from decimal import Decimal, InvalidOperation
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+MOST_COEFFICIENTS = 2000
+MOST_SAMPLES = 4_000_000
+LONGEST_NUMBER = 20_000
+
+
+class Invalid(Exception):
+    """The document does not prove what it claims; the message says where."""
+
+
+def get(document: Mapping[str, Any], key: str) -> Any:
+    if not isinstance(document, Mapping) or key not in document:
+        raise Invalid(f"{key} is missing")
+    return document[key]
+
+
+def number(value: Any) -> Fraction:
+    if isinstance(value, bool) or not isinstance(value, (int, str, Decimal, float, Fraction)):
+        raise Invalid(f"expected a number, got {type(value).__name__}")
+    if isinstance(value, (int, Fraction)):
+        return Fraction(value)
+    text = repr(value) if isinstance(value, float) else str(value)
+    if len(text) > LONGEST_NUMBER:
+        raise Invalid("a number has too many digits")
+    try:
+        if "/" in text:
+            top, bottom = text.split("/")
+            return Fraction(int(top), int(bottom))
+        decimal = Decimal(text)
+    except (ValueError, InvalidOperation, ZeroDivisionError):
+        raise Invalid(f"expected a number, got {text[:40]!r}") from None
+    if not decimal.is_finite() or (decimal and abs(decimal.adjusted()) > 5000):
+        raise Invalid(f"expected a finite number of ordinary size, got {text[:40]}")
+    return Fraction(decimal)
+
+
+def integer(value: Any, least: int = 0) -> int:
+    number = number(value)
+    if number.denominator != 1 or number < least:
+        raise Invalid(f"expected a whole number of at least {least}, got {number}")
+    return int(number)
+
+
+def numbers(values: Any, most: int = MOST_COEFFICIENTS) -> list[Fraction]:
+    if not isinstance(values, Sequence) or isinstance(values, (str, bytes)):
+        raise Invalid("expected a list of numbers")
+    if len(values) > most:
+        raise Invalid(f"a list has {len(values)} entries, more than {most}")
+    return [number(v) for v in values]
+
+
+class Loop(NamedTuple):
+    numerator: list[Fraction]  # N, D in ascending powers of 1/z
+    denominator: list[Fraction]
+    damping: Fraction
+    coulomb_friction: Fraction
+    resolution: Fraction
+    period: Fraction
+    whole: int
+    part: Fraction
+    unilateral: bool
+
+
+def read_loop(document: Mapping[str, Any]) -> Loop:
+    loop = get(document, "loop")
+
+    def quantity(name: str) -> Fraction:
+        keys = [k for k in loop if k == name or k.startswith(name + "_")]
+        if len(keys) != 1:
+            raise Invalid(f"the loop must give {name} once")
+        return number(loop[keys[0]])
+
+    b, friction, resolution = (quantity(n) for n in ("damping", "coulomb_friction", "resolution"))
+    period, delay = quantity("sample_period"), quantity("delay")
+    if period <= 0 or min(b, friction, resolution, delay) < 0:
+        raise Invalid("T must be > 0 and b, f_c, Δ and the delay ≥ 0")
+    numerator, denominator = numbers(get(loop, "numerator")), numbers(get(loop, "denominator"))
+    numerator = [Fraction(0)] * (len(denominator) - len(numerator)) + numerator
+    if not denominator or denominator[0] == 0 or len(numerator) != len(denominator):
+        raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
+    whole = delay // period
+    unilateral = get(loop, "unilateral")
+    if not isinstance(unilateral, bool):
+        raise Invalid("unilateral must be true or false")
+    return Loop(
+        numerator,
+        denominator,
+        b,
+        friction,
+        resolution,
+        period,
+        int(whole),
+        delay / period - whole,
+        unilateral,
+    )
