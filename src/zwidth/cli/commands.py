@@ -1,0 +1,156 @@
+"""The subcommands.  `COMMANDS` is the registry: a new command is one row and one function."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import NamedTuple
+
+from zwidth.cli.options import Once, add_parameters, overrides
+from zwidth.cli.output import check_new, print_json, writing
+from zwidth.errors import InputError
+
+STATUS = {"passive": 0, "active": 1, "undecided": 3}
+"""Exit status of `check` by outcome; 2 is bad input."""
+
+PICTURES = (".png", ".svg", ".pdf")
+
+
+class Command(NamedTuple):
+    """A subcommand: what it does, how its arguments are set up, and the function that runs it."""
+
+    meaning: str
+    description: str
+    epilog: str
+    configure: Callable[[argparse.ArgumentParser], None]
+    run: Callable[[argparse.Namespace], int]
+
+
+def _configure_check(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both",
+    )
+    output = parser.add_argument_group("output")
+    output.add_argument("--json", action="store_true", help="print the verdict as JSON, units in the keys")
+    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
+    output.add_argument(
+        "-o",
+        "--save",
+        metavar="FILE",
+        action=Once,
+        help="save verdict and evidence as JSON, for zwidth verify",
+    )
+    output.add_argument("--force", action="store_true", help="replace files that exist")
+    add_parameters(parser)
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.specification import load
+    from zwidth.passivity import check
+
+    plot, save = _targets(arguments)
+    loop = load(arguments.sources, overrides(arguments))
+    verdict = check(loop.device, loop.environment)
+    if save is not None:
+        with writing(save):
+            verdict.save(save)
+    if plot is not None:
+        from zwidth.plots import save_check  # matplotlib takes its time
+
+        with writing(plot):
+            save_check(verdict, plot)
+    if arguments.json:
+        print_json(verdict.to_json())
+    else:
+        from zwidth.cli.report import print_verdict
+
+        print_verdict(verdict)
+    return STATUS[verdict.outcome]
+
+
+def _targets(arguments: argparse.Namespace) -> tuple[Path | None, Path | None]:
+    """The files to write, checked before anything is computed."""
+    plot = None if arguments.plot is None else Path(arguments.plot)
+    save = None if arguments.save is None else Path(arguments.save)
+    if plot is not None and plot.suffix.lower() not in PICTURES:
+        raise InputError(f"--plot: the file must end in {', '.join(PICTURES)}, got {str(plot)!r}")
+    if plot is not None and plot == save:
+        raise InputError("--plot and --save name the same file")
+    for path in (plot, save):
+        if path is not None:
+            check_new(path, arguments.force)
+    return plot, save
+
+
+def _configure_devices(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", nargs="?", help="only this device, with every value")
+    parser.add_argument("--json", action="store_true", help="print JSON, units in the keys")
+
+
+def _devices(arguments: argparse.Namespace) -> int:
+    from zwidth.device import catalogue
+
+    names = catalogue.names() if arguments.name is None else (arguments.name,)
+    entries = [catalogue.entry(name) for name in names]
+    from zwidth.cli.devices import entries_json, print_entries
+
+    if arguments.json:
+        print_json(entries_json(entries))
+    else:
+        print_entries(entries, in_full=arguments.name is not None)
+    return 0
+
+
+def _configure_verify(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="certificate, witness or verdict saved as JSON")
+
+
+def _verify(arguments: argparse.Namespace) -> int:
+    from zwidth.passivity.certificate import read_document, verify_document
+
+    document = read_document(arguments.file)
+    verification = verify_document(document)
+    from zwidth.cli.verification import print_verification
+
+    print_verification(document, verification)
+    return 0 if verification.valid else 1
+
+
+COMMANDS: Mapping[str, Command] = MappingProxyType(
+    {
+        "check": Command(
+            "is this device, rendering this environment, passive?",
+            "Prove that the sampled loop is passive, or find the hand motion that takes energy out of it;\n"
+            "say what limits it, by how much, and what to change.",
+            "A plain number is SI; others carry a unit, as in --rate '1 kHz' or --resolution '22.4 um'.\n"
+            "An interval, as in --damping '0.1 .. 0.2', stands for every value in it.\n\n"
+            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided\n\n"
+            "examples:\n"
+            "  zwidth check haptic-paddle --stiffness 300\n"
+            "  zwidth check my-wheel.toml my-bumpstop.toml --json\n"
+            "  zwidth check --damping 0.2 --rate '2 kHz' --stiffness 500 --virtual-damping 0.05",
+            _configure_check,
+            _check,
+        ),
+        "devices": Command(
+            "the catalogue of real devices, each value with its source",
+            "The catalogue of real devices, each value with its source; what none gives is unknown.",
+            "",
+            _configure_devices,
+            _devices,
+        ),
+        "verify": Command(
+            "re-check a saved proof or motion, independently of what made it",
+            "Re-prove a saved certificate, or recompute the energy of a saved motion, in exact arithmetic,\n"
+            "by a checker that shares no code with the prover.",
+            "exit status: 0 valid, 1 not valid, 2 cannot be read",
+            _configure_verify,
+            _verify,
+        ),
+    }
+)

@@ -1,0 +1,49 @@
+"""A device and an environment, each in one line."""
+
+from __future__ import annotations
+
+from zwidth.cli.environments import TYPES, Key
+from zwidth.cli.numerals import shown
+from zwidth.cli.table import plain
+from zwidth.device import Device
+from zwidth.environment import Wall
+from zwidth.environment.environment import Environment
+from zwidth.passivity.advice import describe_estimator
+from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.glossary import GLOSSARY
+
+_OF_A_DEVICE = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
+"""What a verdict depends on."""
+
+
+def device_line(device: Device) -> str:
+    """The device's name and the numbers that a verdict depends on."""
+    name = plain(device.name, 40) or ("rotary device" if device.motion == "rotary" else "device")
+    values = device.parameters()
+    parts = [_named(key, values[key], device.motion) for key in _OF_A_DEVICE if values.get(key)]
+    return f"{name}: {', '.join(parts)}"
+
+
+def environment_line(environment: Environment, motion: str) -> str:
+    """The environment's type and its parameters."""
+    found = next((n for n, t in TYPES.items() if t.class_name == type(environment).__name__), None)
+    if found is None or any(k.form in ("coefficients", "branches") for k in TYPES[found].keys.values()):
+        return environment.describe()
+    parts = [_part(environment, name, key, motion) for name, key in TYPES[found].keys.items()]
+    return f"{found.replace('-', ' ')}: {', '.join(p for p in parts if p)}"
+
+
+def _part(environment: Environment, name: str, key: Key, motion: str) -> str:
+    value = getattr(environment, name)
+    if key.form == "quantity":
+        return _named(key.quantity, value, motion) if value or key.required else ""
+    if key.form == "environment":
+        return f"around {environment_line(value, motion)}"
+    if isinstance(environment, Wall):
+        return describe_estimator(environment) if environment.damping else ""
+    return f"{value} {name}"
+
+
+def _named(key: str, value: Exact | Interval, motion: str) -> str:
+    entry = GLOSSARY[key]
+    return f"{entry.symbol} = {shown(value, entry.unit_for(motion), 6)}"

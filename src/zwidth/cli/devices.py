@@ -1,0 +1,68 @@
+"""The catalogue as a table and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from rich.table import Table
+from rich.text import Text
+
+from zwidth.cli.numerals import shown
+from zwidth.cli.report import page
+from zwidth.device.catalogue import Datum, Entry
+from zwidth.passivity.document import unit_suffix
+
+
+def print_entries(entries: Sequence[Entry], in_full: bool) -> None:
+    """Print devices; in full every unknown value has a row, otherwise they share one line."""
+    with page() as out:
+        for entry in entries:
+            out.print(Text.assemble((entry.name, "bold"), "  ", (entry.title, "dim")))
+            if entry.note:
+                out.print(Text(f"  {entry.note}", style="italic"))
+            out.print(_table(entry, in_full))
+            out.print()
+        if not in_full:
+            out.print(
+                Text("zwidth check NAME takes any of them; give what is unknown yourself.", style="dim")
+            )
+
+
+def _table(entry: Entry, in_full: bool) -> Table:
+    grid = Table.grid(padding=(0, 2))
+    grid.add_column(width=0)
+    grid.add_column(min_width=22, no_wrap=True)
+    grid.add_column(min_width=12, no_wrap=True)
+    grid.add_column(style="dim")
+    unknown = []
+    for key, datum in entry.values.items():
+        name = key.replace("_", " ")
+        if datum.value is not None:
+            grid.add_row("", name, Text(shown(datum.value, datum.unit, 6)), Text(datum.source))
+        elif in_full:
+            grid.add_row("", name, Text("unknown", style="yellow"), Text("no source found"))
+        else:
+            unknown.append(name)
+    if unknown:
+        grid.add_row("", Text("unknown", style="yellow"), "", Text(", ".join(unknown)))
+    return grid
+
+
+def entries_json(entries: Iterable[Entry]) -> str:
+    """Devices by name; each value has its unit in its key, null where no source gives one."""
+    document = {entry.name: _document(entry) for entry in entries}
+    return json.dumps(document, indent=2, ensure_ascii=False)
+
+
+def _document(entry: Entry) -> dict[str, Any]:
+    values = {
+        _key(key, datum): {"value": datum.value, "source": datum.source}
+        for key, datum in entry.values.items()
+    }
+    return {"title": entry.title, "note": entry.note, "values": values}
+
+
+def _key(key: str, datum: Datum) -> str:
+    return key if datum.unit in ("", "1") else f"{key}_{unit_suffix(datum.unit)}"

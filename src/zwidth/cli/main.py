@@ -1,0 +1,120 @@
+"""The command `zwidth`: reads the command line, runs one subcommand, returns the exit status.
+
+Bad input ends in one line on standard error and status 2.  Anything else that
+goes wrong is a mistake of this program and is not hidden.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from zwidth.cli.commands import COMMANDS
+from zwidth.cli.options import joined
+from zwidth.cli.output import quiet_pipe, tolerate_encoding
+from zwidth.cli.table import plain, quoted, suggestion
+from zwidth.errors import InputError
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+_LONGEST_MESSAGE = 1000
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser whose errors are messages like all others."""
+
+    def error(self, message: str) -> NoReturn:
+        """Bad input, with where to read more."""
+        raise InputError(f"{message} (see {self.prog} --help)")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command line.
+
+    Parameters
+    ----------
+    argv
+        The arguments after the program's name; by default those of the process.
+
+    Returns
+    -------
+    int
+        The exit status: of `check` 0 passive, 1 active, 3 undecided; 2 for bad input.
+    """
+    tolerate_encoding()
+    try:
+        return _run(list(sys.argv[1:] if argv is None else argv))
+    except InputError as error:
+        with quiet_pipe(sys.stderr):
+            print(f"zwidth: {plain(str(error), _LONGEST_MESSAGE)}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        return INTERRUPTED
+
+
+def _run(argv: list[str]) -> int:
+    if argv and not argv[0].startswith("-") and argv[0] not in COMMANDS:
+        raise InputError(f"there is no command {quoted(argv[0])}; {suggestion(argv[0], COMMANDS)}")
+    parser = _parser(argv)
+    try:
+        with quiet_pipe():
+            arguments, unknown = parser.parse_known_args(joined(argv))
+    except SystemExit:  # --help and --version end so
+        return 0
+    if unknown:
+        raise InputError(_unknown(unknown, parser, arguments))
+    if arguments.command is None:
+        raise InputError(f"which command? One of {', '.join(COMMANDS)}; zwidth --help says what they do")
+    return COMMANDS[arguments.command].run(arguments)
+
+
+def _parser(argv: Sequence[str]) -> Parser:
+    parser = Parser(
+        prog="zwidth",
+        description="Which virtual walls a haptic device can render without generating energy, proved.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and leave")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)
+    for name, command in COMMANDS.items():
+        child = commands.add_parser(
+            name,
+            help=command.meaning,
+            description=command.description,
+            epilog=command.epilog,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            allow_abbrev=False,
+        )
+        if name in argv:  # the many options of the others need not be built
+            command.configure(child)
+            parser.set_defaults(**{_CHILD: child})
+    return parser
+
+
+_CHILD = "parser of the command"
+
+
+class _Version(argparse.Action):
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import version  # only where it is asked for
+
+        print(f"zwidth {version('zwidth')}")
+        parser.exit()
+
+
+def _unknown(unknown: Sequence[str], parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> str:
+    """What to say of arguments that no command takes."""
+    option = next((u for u in unknown if u.startswith("-")), None)
+    if option is None:
+        return f"too many arguments: {' '.join(unknown)}"
+    name = option.partition("=")[0]
+    child = getattr(arguments, _CHILD, parser)
+    options = [o for a in child._actions for o in a.option_strings if a.help != argparse.SUPPRESS]
+    underscored = name.replace("_", "-")
+    if underscored in options:
+        return f"there is no option {plain(name)}; did you mean {underscored}?"
+    hint = suggestion(name, options).replace('"', "") if len(name) > 2 else "see --help"
+    short = hint if hint.startswith("did") else f"see {child.prog} --help"
+    return f"there is no option {plain(name)}; {short}"

@@ -1,0 +1,143 @@
+"""The command line's options for parameters, made from the glossary and the registry of environments.
+
+Every key of a specification is an option under its own name, `coulomb_friction`
+as `--coulomb-friction`; nothing about a parameter is written twice.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+from zwidth.cli.environments import TYPES, option_keys
+from zwidth.cli.specification import DEVICE_KEYS, ROTARY_KEYS
+from zwidth.errors import InputError
+from zwidth.quantity.glossary import GLOSSARY
+
+BEHIND = "environment."
+"""What stands before a key of the environment behind a coupling."""
+
+_MEANINGS = {
+    "inertia": "moment of inertia of a rotary device",
+    "counts_per_turn": "encoder counts in one turn",
+    "handle_radius": "from the axis to the handle; turns a rotary device into its equivalent there",
+    "motion": "linear or rotary",
+    "name": "name of the device in the report",
+    "catalogue": "device of the catalogue that fills in what is not given",
+}
+"""Keys of a device that are no quantities of the glossary."""
+
+_NEGATIVE = re.compile(r"-\s*(\d|\.\d|inf|nan|∞)", re.IGNORECASE)
+
+
+class Parameter(NamedTuple):
+    """One parameter as an option: its key, what stands for its value, its help."""
+
+    key: str
+    metavar: str
+    help: str
+
+    @property
+    def option(self) -> str:
+        """The option's name, `--coulomb-friction`."""
+        return "--" + self.key.replace("_", "-")
+
+
+class Once(argparse.Action):
+    """Stores a value, and refuses a second one: the first would be ignored."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        """Store the value of one option."""
+        if getattr(namespace, self.dest, None) is not None:
+            raise InputError(f"{option_string} is given twice; which one is meant?")
+        setattr(namespace, self.dest, values)
+
+
+def device_parameters() -> Iterator[Parameter]:
+    """The options of a device."""
+    for key in DEVICE_KEYS:
+        if key in GLOSSARY:
+            yield _quantity(key)
+        else:
+            unit = ROTARY_KEYS.get(key, "")
+            yield Parameter(key, _word(key), _MEANINGS[key] + _bracket(unit))
+
+
+def environment_parameters() -> Iterator[Parameter]:
+    """The options of an environment."""
+    yield Parameter("type", "TYPE", f"{', '.join(TYPES)} (default: wall)")
+    for key, kind in option_keys().items():
+        if kind.quantity:
+            yield _quantity(kind.quantity if key not in GLOSSARY else key)
+        else:
+            yield Parameter(key, _word(key), kind.meaning)
+
+
+def add_parameters(parser: argparse.ArgumentParser) -> None:
+    """Give a command every parameter of a device and of an environment."""
+    device = parser.add_argument_group("device", "override what SOURCE says, or replace it")
+    environment = parser.add_argument_group(
+        "environment", f"a key of the environment behind a coupling is written --{BEHIND}stiffness, …"
+    )
+    for parameter in device_parameters():
+        _add(device, parameter)
+    for parameter in environment_parameters():
+        _add(environment, parameter)
+        inner = parameter._replace(key=BEHIND + parameter.key, help=argparse.SUPPRESS)
+        _add(environment, inner)
+
+
+def overrides(arguments: argparse.Namespace) -> dict[str, str]:
+    """The parameters that were given, by key, as typed."""
+    given = vars(arguments)
+    keys = [p.key for p in (*device_parameters(), *environment_parameters())]
+    every = (*keys, *(BEHIND + key for key in keys))
+    return {key: given[_dest(key)] for key in every if given.get(_dest(key)) is not None}
+
+
+def joined(arguments: Sequence[str]) -> list[str]:
+    """`--option -0.1` as `--option=-0.1`: a value may begin with a minus."""
+    result: list[str] = []
+    for argument in arguments:
+        before = result[-1] if result else ""
+        if _NEGATIVE.match(argument) and before.startswith("--") and before != "--" and "=" not in before:
+            result[-1] = f"{before}={argument}"
+        else:
+            result.append(argument)
+    return result
+
+
+def _add(group: Any, parameter: Parameter) -> None:
+    group.add_argument(
+        parameter.option,
+        dest=_dest(parameter.key),
+        metavar=parameter.metavar,
+        action=Once,
+        help=parameter.help.replace("%", "%%"),
+    )
+
+
+def _dest(key: str) -> str:
+    return f"parameter {key}"  # a blank keeps it apart from every other argument
+
+
+def _quantity(key: str) -> Parameter:
+    entry = GLOSSARY[key]
+    units = entry.unit if entry.unit == entry.rotary_unit else f"{entry.unit}; rotary {entry.rotary_unit}"
+    return Parameter(key, entry.symbol, entry.meaning + _bracket(units))
+
+
+def _word(key: str) -> str:
+    return key.rpartition("_")[2].upper()
+
+
+def _bracket(unit: str) -> str:
+    return f" [{unit}]" if unit not in ("", "1") else ""

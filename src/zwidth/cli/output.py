@@ -1,0 +1,105 @@
+"""Writing to the terminal, to pipes and to files, whatever their encoding and however they end."""
+
+from __future__ import annotations
+
+import codecs
+import json
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
+
+from zwidth.cli.table import plain
+from zwidth.errors import InputError
+
+_ASCII = {
+    "·": "*", "−": "-", "–": "-", "—": "-", "…": "...", "≥": ">=", "≤": "<=", "×": "x", "±": "+-", "→": "->",
+    "²": "^2", "³": "^3", "°": "deg", "µ": "u", "μ": "mu", "Δ": "Delta", "Σ": "sum", "α": "alpha", "β": "beta",
+    "η": "eta", "σ": "sigma", "τ": "tau", "ω": "omega", "∞": "inf", "“": '"', "”": '"', "’": "'", "✓": "+",
+    "✗": "!",
+}  # fmt: skip
+"""How characters of this field are written where the terminal has ASCII only."""
+
+
+def tolerate_encoding() -> None:
+    """Let standard output and error spell out what their encoding lacks, instead of failing."""
+    codecs.register_error("zwidth", _spelled)
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(errors="zwidth")
+
+
+def _spelled(error: UnicodeError) -> tuple[str | bytes, int]:
+    assert isinstance(error, UnicodeEncodeError)
+    lost = error.object[error.start : error.end]
+    return "".join(_ASCII.get(c, "?") for c in lost), error.end
+
+
+def encodes(text: str, stream: TextIO | None = None) -> bool:
+    """True when the stream (by default standard output) can show the text as it is."""
+    encoding = getattr(stream or sys.stdout, "encoding", None) or "utf-8"
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+@contextmanager
+def quiet_pipe(stream: TextIO | None = None) -> Iterator[None]:
+    """Write inside, and do not complain when the reader, such as `head`, has left."""
+    stream = stream or sys.stdout
+    try:
+        yield
+        stream.flush()
+    except BrokenPipeError:
+        # What is buffered must not fail again when Python closes the stream.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def print_json(text: str) -> None:
+    """Print JSON, its non-ASCII characters escaped where the encoding lacks them."""
+    if not encodes(text):
+        text = "".join(c if c.isascii() else json.dumps(c)[1:-1] for c in text)
+    with quiet_pipe():
+        print(text)
+
+
+def check_new(path: Path, force: bool) -> None:
+    """Refuse a path that cannot be written, or where a file would be lost.
+
+    Raises
+    ------
+    InputError
+        If it exists and `force` is False, is a directory, or lies in none.
+    """
+    shown = plain(str(path), 100)
+    try:
+        if path.is_dir():
+            raise InputError(f"{shown} is a directory; name a file")
+        if path.exists() and not force:
+            raise InputError(f"{shown} exists; choose another name, or give --force to replace it")
+        if not path.parent.is_dir():
+            raise InputError(
+                f"{shown} cannot be written: there is no directory {plain(str(path.parent), 100)}"
+            )
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{shown} cannot be written: {_reason(error)}") from None
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Say which file it was that could not be written."""
+    try:
+        yield
+    except OSError as error:
+        raise InputError(f"{plain(str(path), 100)} cannot be written: {_reason(error)}") from None
+
+
+def _reason(error: Exception) -> str:
+    return getattr(error, "strerror", None) or str(error)
