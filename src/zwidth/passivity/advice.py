@@ -1,4 +1,4 @@
-"""What to change: the smallest single change that makes an active loop passive, or the slack of a passive one.
+"""What to change: the smallest change that makes an active loop passive, or the slack of a passive one.
 
 Every value given was itself proved passive, all else as it was.
 """
@@ -15,7 +15,7 @@ from zwidth.device import Device
 from zwidth.environment import BackwardDifference, OnePole, Wall, Window
 from zwidth.environment.environment import Environment
 from zwidth.passivity.boundary import largest_holding, smallest_holding
-from zwidth.passivity.limits import Change, has_stiffness, provable
+from zwidth.passivity.limits import Change, has_stiffness, provable, stiffness_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -82,7 +82,7 @@ def _knobs(device: Device, environment: Environment) -> Iterator[_Knob]:
         )
         yield _Knob(key, float(device.exact(key)), on_device(key), more, name)
     if has_stiffness(environment):
-        now = float(environment.stiffness)
+        now = float(stiffness_of(environment))
         change: Change = lambda k: (device, environment.replace(stiffness=Exact(k)))  # noqa: E731
         yield _Knob("stiffness", now, change, False, "stiffness")
     if isinstance(environment, Wall):

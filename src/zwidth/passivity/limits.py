@@ -51,7 +51,7 @@ def max_stiffness(device: Device, environment: Environment) -> float | None:
     """
     if not has_stiffness(environment):
         return None
-    now = float(environment.stiffness)
+    now = float(stiffness_of(environment))
 
     def change(k: Fraction) -> tuple[Device, Environment]:
         return device, environment.replace(stiffness=Exact(k))
@@ -65,6 +65,12 @@ def max_gain(device: Device, environment: Environment) -> float | None:
     if scaled is None:
         return None
     return largest_holding(lambda g: provable(lambda f: (device, scaled(f)), g), 1.0)
+
+
+def stiffness_of(environment: Environment) -> Exact:
+    """The stiffness of a certain law that has one [N/m; N·m/rad]."""
+    value: Exact = getattr(environment, "stiffness")  # noqa: B009  not every environment has it
+    return value
 
 
 def has_stiffness(environment: Environment) -> bool:

@@ -123,7 +123,7 @@ class LinearLoop:
         if extra == 0:
             return base
         root = (base * base + extra) ** 0.5
-        return (base + root) / 2 if base > 0 else extra / 2 / (root - base)
+        return float((base + root) / 2 if base > 0 else extra / 2 / (root - base))
 
 
 def linear_loop(device: Device, environment: Environment) -> LinearLoop:

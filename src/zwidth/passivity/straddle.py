@@ -77,7 +77,7 @@ def _gain(h: list[float], above: int, below: int, loop: LinearLoop) -> float:
 def straddle(
     loop: LinearLoop, coulomb_friction: Fraction, resolution: Fraction, waits: Waits, cell: int
 ) -> Motion | None:
-    """Go to the edge between counts `cell` and `cell` + 1, then to and fro over it; None if it gains nothing."""
+    """Go to the edge above count `cell`, then to and fro over it; None if that gains nothing."""
     surplus = Fraction(waits.gain) * resolution - 2 * coulomb_friction
     if surplus <= 0:
         return None

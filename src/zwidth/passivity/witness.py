@@ -308,4 +308,4 @@ def _enough_rounds(energy: Callable[[int], Fraction | None]) -> int | None:
     per_round = three - two
     if per_round <= 0:
         return None
-    return 2 if two > 0 else 3 + int(ceil(-2 * two / per_round))
+    return 2 if two > 0 else 3 + ceil(-2 * two / per_round)

@@ -43,10 +43,10 @@ def number(value: Any) -> Fraction:
 
 
 def integer(value: Any, least: int = 0) -> int:
-    number = number(value)
-    if number.denominator != 1 or number < least:
-        raise Invalid(f"expected a whole number of at least {least}, got {number}")
-    return int(number)
+    found = number(value)
+    if found.denominator != 1 or found < least:
+        raise Invalid(f"expected a whole number of at least {least}, got {found}")
+    return int(found)
 
 
 def numbers(values: Any, most: int = MOST_COEFFICIENTS) -> list[Fraction]:
