@@ -1,0 +1,122 @@
+"""Tables of the documentation, written from the registries that the code itself reads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from zwidth import catalogue
+from zwidth.cli.environments import TYPES, Key
+from zwidth.cli.options import Parameter, device_parameters, environment_parameters
+from zwidth.quantity.glossary import GLOSSARY
+
+GENERATED = Path(__file__).parent.parent / "_generated"
+
+
+def markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A Markdown table."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+
+
+def glossary() -> str:
+    """Every quantity: symbol, name, unit, meaning."""
+    return markdown(
+        ("name", "symbol", "unit", "unit if rotary", "meaning"),
+        [
+            (f"`{q.name}`", q.symbol, _unit(q.unit), _unit(q.rotary_unit), q.meaning)
+            for q in GLOSSARY.values()
+        ],
+    )
+
+
+def device_options() -> str:
+    """The parameters of a device, as options of the command line."""
+    return _options(device_parameters())
+
+
+def environment_options() -> str:
+    """The parameters of all environments, as options of the command line."""
+    return _options(environment_parameters())
+
+
+def device_keys() -> str:
+    """Every key that a device table may have."""
+    rows = [(f"`{p.key}`", _pretty(p.help)) for p in device_parameters()]
+    return markdown(("key", "meaning"), rows)
+
+
+def environment_types() -> str:
+    """Every type of environment with its keys in a specification."""
+    rows = []
+    for name, kind in TYPES.items():
+        needed = ", ".join(f"`{k}`" for k, v in kind.keys.items() if v.required)
+        optional = ", ".join(f"`{k}`" for k, v in kind.keys.items() if not v.required)
+        rows.append((f"`{name}`", f"{{class}}`zwidth.{kind.class_name}`", kind.meaning, needed, optional))
+    table = markdown(("type", "class", "what it is", "needs", "may have"), rows)
+    return table.replace("{class}", "{py:class}")
+
+
+def environment_keys() -> str:
+    """Every key that an environment table may have, with its unit."""
+    keys = {key: kind for row in TYPES.values() for key, kind in row.keys.items()}
+    return markdown(
+        ("key", "unit", "meaning"), [(f"`{k}`", _key_unit(v), v.meaning) for k, v in keys.items()]
+    )
+
+
+def devices() -> str:
+    """The catalogue: every device, every value, every source."""
+    return "\n".join(_device(name) for name in catalogue.names())
+
+
+def _device(name: str) -> str:
+    entry = catalogue.entry(name)
+    rows = [
+        (
+            f"`{key}`",
+            "unknown" if datum.value is None else f"{float(datum.value):.6g}",
+            "" if datum.value is None else _unit(datum.unit),
+            datum.source.removeprefix("unknown: "),
+        )
+        for key, datum in entry.values.items()
+    ]
+    note = f"{entry.note}\n\n" if entry.note else ""
+    return f"## `{name}`: {entry.title}\n\n{note}{markdown(('value', '', 'unit', 'source'), rows)}"
+
+
+def _options(parameters: Iterable[Parameter]) -> str:
+    rows = [(f"`{p.option}`", f"`{p.key}`", _pretty(p.help)) for p in parameters]
+    return markdown(("option", "key in a file", "meaning"), rows)
+
+
+def _key_unit(kind: Key) -> str:
+    return _unit(GLOSSARY[kind.quantity].unit) if kind.quantity else ""
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "1" else _pretty(unit)
+
+
+def _pretty(text: str) -> str:
+    return text.replace("*", "·").replace("^2", "²")
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    "device_keys": device_keys,
+    "device_options": device_options,
+    "devices": devices,
+    "environment_keys": environment_keys,
+    "environment_options": environment_options,
+    "environment_types": environment_types,
+    "glossary": glossary,
+}
+
+
+def write() -> None:
+    """Write every table where the pages include it; leave an unchanged one alone."""
+    GENERATED.mkdir(exist_ok=True)
+    for name, table in TABLES.items():
+        path, text = GENERATED / f"{name}.md", table()
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")

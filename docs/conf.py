@@ -1,0 +1,59 @@
+"""The documentation: `sphinx-build -W docs docs/_build/html`."""
+
+from __future__ import annotations
+
+import sys
+from importlib.metadata import version as installed_version
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "_ext"))
+
+import tables  # noqa: E402
+
+tables.write()  # before Sphinx looks for what the pages include
+
+project = "zwidth"
+author = "The zwidth developers"
+copyright = "The zwidth developers, Apache-2.0"
+release = version = installed_version("zwidth")
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.napoleon",
+    "sphinx_gallery.gen_gallery",
+]
+exclude_patterns = ["_build", "_generated", "gallery/GALLERY_HEADER.rst"]
+
+myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # the docstrings say units, which types cannot
+autodoc_class_signature = "separated"
+autoclass_content = "class"
+napoleon_google_docstring = False
+napoleon_use_ivar = True  # attributes are listed once, in the class docstring
+napoleon_use_rtype = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"/plot_",
+    "ignore_pattern": r"/(?!plot_)[^/]*\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "download_all_examples": False,
+    "show_memory": False,
+    "plot_gallery": True,
+    "abort_on_example_error": True,
+    "copyfile_regex": r".*\.toml",
+}
+suppress_warnings = ["config.cache"]  # sphinx-gallery's sort key cannot be pickled
+
+html_theme = "furo"
+html_title = f"zwidth {release}"
+html_static_path = ["_static"]
+html_show_copyright = False
+html_theme_options = {"navigation_with_keys": True}

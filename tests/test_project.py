@@ -1,0 +1,229 @@
+"""What holds of the project as a whole: what it imports, says of itself and ships."""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import inspect
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import zwidth as zw
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCE = ROOT / "src" / "zwidth"
+PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+RESULTS = {"FrictionModel", "InputError", "Verdict", "Witness"}
+"""Classes that zwidth makes and a person only reads."""
+
+CLASSES = [name for name in zw.__all__ if inspect.isclass(getattr(zw, name)) and name not in RESULTS]
+
+
+def _modules_after(statement: str) -> set[str]:
+    code = f"{statement}; import sys; print(*sorted(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(done.stdout.split())
+
+
+@pytest.mark.parametrize("heavy", ["numpy", "scipy", "matplotlib", "rich", "control", "tomllib"])
+def test_importing_zwidth_does_not_import(heavy: str) -> None:
+    """The command line starts fast because only what is used is imported."""
+    assert heavy not in _modules_after("import zwidth")
+
+
+def test_checking_a_wall_needs_no_numerical_library() -> None:
+    """The proof is exact arithmetic: no float array takes part in it."""
+    used = _modules_after(
+        "import zwidth as zw; zw.check(zw.Device(damping=0.15, rate=1000), zw.Wall(stiffness=300)).to_dict()"
+    )
+    assert not {"numpy", "scipy", "matplotlib", "rich"} & used
+
+
+def test_the_checker_imports_the_standard_library_only() -> None:
+    """What re-proves a certificate shares no code with what found it."""
+    tree = ast.parse((SOURCE / "passivity" / "checker.py").read_text(encoding="utf-8"))
+    imported = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            imported |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0
+            imported.add((node.module or "").split(".")[0])
+    assert imported <= sys.stdlib_module_names
+
+
+def test_the_import_order_holds() -> None:
+    """A later chapter may use an earlier one, never the reverse."""
+    contracts = pytest.importorskip("importlinter.cli")
+    assert contracts.lint_imports(config_filename=str(ROOT / "pyproject.toml"), no_cache=True) == 0
+
+
+@pytest.mark.parametrize("name", zw.__all__)
+def test_every_public_name_is_documented(name: str) -> None:
+    """Each name and each public attribute defined in it has a docstring."""
+    thing = getattr(zw, name)
+    assert inspect.getdoc(thing)
+    if inspect.isclass(thing):
+        assert thing.__doc__, f"{name} inherits its docstring"
+        fields = {f.name for f in dataclasses.fields(thing)} if dataclasses.is_dataclass(thing) else set()
+        for key, member in vars(thing).items():
+            if key.startswith("_") or key in fields:
+                continue
+            function = getattr(member, "fget", getattr(member, "func", member))
+            if inspect.isfunction(function):
+                assert inspect.getdoc(getattr(thing, key)), f"{name}.{key}"
+
+
+@pytest.mark.parametrize("name", [*CLASSES, "check", "rotary"])
+def test_every_argument_is_documented(name: str) -> None:
+    """Each argument of a public class or function stands in its docstring."""
+    thing = getattr(zw, name)
+    text = inspect.getdoc(thing) or ""
+    arguments = [p for p in inspect.signature(thing).parameters if p != "self"]
+    missing = [a for a in arguments if not re.search(rf"\b{re.escape(a)}\b", text)]
+    assert not missing, f"{name}: {missing}"
+
+
+def test_names_of_all_are_sorted_and_exist() -> None:
+    """`zwidth.__all__` is a list one can find a name in."""
+    assert list(zw.__all__) == sorted(zw.__all__, key=lambda n: (not n[0].isupper(), n))
+    assert all(hasattr(zw, name) for name in zw.__all__)
+
+
+def test_version_is_the_one_of_the_distribution() -> None:
+    """What is installed is what pyproject.toml declares, and the changelog has an entry for it."""
+    from importlib.metadata import version
+
+    declared = PYPROJECT["project"]["version"]
+    assert version("zwidth") == declared
+    assert f"## {declared}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_what_is_shipped_beside_the_code() -> None:
+    """Type checkers find the marker; the catalogue finds its data."""
+    assert (SOURCE / "py.typed").exists()
+    assert (SOURCE / "device" / "catalogue.toml").exists()
+
+
+def _tracked() -> list[Path]:
+    try:
+        listed = subprocess.run(
+            ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
+        ).stdout
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("not a git checkout")
+    return [ROOT / name for name in listed.split("\0") if name]
+
+
+MACHINE_PATH = re.compile(r"(?<![\w.])/(?:home|Users|root|work|tmp|mnt)/\w")
+
+
+def test_no_file_names_a_path_of_some_machine() -> None:
+    """A clone works anywhere."""
+    found = []
+    for path in _tracked():
+        if path.suffix in {".png", ".svg"} or not path.is_file():
+            continue
+        text = path.read_text(encoding="utf-8")
+        found += [f"{path.name}: {m.group()}" for m in MACHINE_PATH.finditer(text)]
+    assert not found
+
+
+def readme_commands() -> list[str]:
+    """The one-line commands of the README that set up a virtual environment."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    return [line for line in readme.splitlines() if line.startswith("python3 -m venv")]
+
+
+def test_the_readme_has_two_commands() -> None:
+    """One sets up and does the main job, the other sets up and tests."""
+    job, tests = readme_commands()
+    assert "zwidth check" in job
+    assert "pytest" in tests
+
+
+def test_the_readme_table_is_what_its_script_prints() -> None:
+    """The numbers in the README are computed, not remembered."""
+    pytest.importorskip("cvxopt")
+    sys.path.insert(0, str(ROOT / "examples"))
+    try:
+        import python_control_table
+    finally:
+        sys.path.pop(0)
+    assert python_control_table.table() in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def _command_line_page() -> str:
+    """The page with its generated tables in place, as the docs build makes it."""
+    sys.path.insert(0, str(ROOT / "docs" / "_ext"))
+    try:
+        import tables
+    finally:
+        sys.path.pop(0)
+    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    included = re.findall(r"\{include\} _generated/(.+)\.md", page)
+    return "\n".join([page, *(tables.TABLES[name]() for name in included)])
+
+
+def _help(*command: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-m", "zwidth", *command, "--help"], capture_output=True, text=True, check=True
+    )
+    return done.stdout
+
+
+def test_every_parameter_is_on_the_command_line_page() -> None:
+    """Every parameter that `zwidth check` takes stands on its page, and every type of environment."""
+    from zwidth.cli.environments import TYPES, option_keys
+    from zwidth.cli.specification import DEVICE_KEYS
+
+    page = _command_line_page()
+    keys = {*DEVICE_KEYS, *option_keys(), "type"}
+    missing = [key for key in keys if f"`--{key.replace('_', '-')}" not in page]
+    missing += [name for name in TYPES if f"`{name}`" not in page]
+    assert not missing
+
+
+@pytest.mark.parametrize("command", ["check", "devices", "verify"])
+def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:
+    """What `--help` offers, the page explains."""
+    page = _command_line_page()
+    assert f"zwidth {command}" in page
+    options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", _help(command)))
+    assert options
+    missing = [o for o in options if f"`{o}" not in page]
+    assert not missing
+
+
+def test_every_key_of_the_json_is_on_its_page() -> None:
+    """Whoever reads a verdict by program finds each of its keys explained."""
+    page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
+    paddle = zw.catalogue.device("haptic-paddle")
+    delayed = paddle.replace(delay=0.0003)
+    solid = zw.StandardLinearSolid(
+        stiffness=100, branch_stiffness=50, branch_damping=1, discretization="backward"
+    )
+    loops = [
+        (paddle, zw.Wall(stiffness=300)),
+        (delayed, zw.Wall(stiffness=900, damping=0.1)),
+        (paddle, zw.Wall(stiffness=200, damping=0.02)),
+        (paddle.replace(coulomb_friction=0), zw.Wall(stiffness=100)),
+        (paddle.replace(damping=(0.2, 0.3)), solid),
+    ]
+    keys: set[str] = set()
+    for device, environment in loops:
+        keys |= _keys(zw.check(device, environment).to_dict())
+    assert not [key for key in sorted(keys) if f"`{key}`" not in page]
+
+
+def _keys(document: object) -> set[str]:
+    if isinstance(document, dict):
+        return set(document).union(*(_keys(v) for v in document.values()))
+    if isinstance(document, list | tuple):
+        return set().union(*(_keys(v) for v in document))
+    return set()
