@@ -29,6 +29,7 @@ class Command(NamedTuple):
 
 
 def _configure_check(parser: argparse.ArgumentParser) -> None:
+    parser.usage = "%(prog)s [SOURCE ...] [--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] [--force]"
     parser.add_argument(
         "sources",
         metavar="SOURCE",

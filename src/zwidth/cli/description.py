@@ -15,10 +15,13 @@ from zwidth.quantity.glossary import GLOSSARY
 _OF_A_DEVICE = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
 """What a verdict depends on."""
 
+GLUE = "\ue000"
+"""Stands for a blank at which no line may break; whoever prints it puts the blank back."""
+
 
 def device_line(device: Device) -> str:
     """The device's name and the numbers that a verdict depends on."""
-    name = plain(device.name, 40) or ("rotary device" if device.motion == "rotary" else "device")
+    name = plain(device.name, 40) if device.name not in ("", "device") else f"{device.motion} device"
     values = device.parameters()
     parts = [_named(key, values[key], device.motion) for key in _OF_A_DEVICE if values.get(key)]
     return f"{name}: {', '.join(parts)}"
@@ -46,4 +49,4 @@ def _part(environment: Environment, name: str, key: Key, motion: str) -> str:
 
 def _named(key: str, value: Exact | Interval, motion: str) -> str:
     entry = GLOSSARY[key]
-    return f"{entry.symbol} = {shown(value, entry.unit_for(motion), 6)}"
+    return f"{entry.symbol} = {shown(value, entry.unit_for(motion), 6)}".replace(" ", GLUE)

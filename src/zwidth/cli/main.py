@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import textwrap
 from collections.abc import Sequence
 from typing import NoReturn
 
@@ -84,7 +85,7 @@ def _parser(argv: Sequence[str]) -> Parser:
             help=command.meaning,
             description=command.description,
             epilog=command.epilog,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
+            formatter_class=_Help,
             allow_abbrev=False,
         )
         if name in argv:  # the many options of the others need not be built
@@ -94,6 +95,13 @@ def _parser(argv: Sequence[str]) -> Parser:
 
 
 _CHILD = "parser of the command"
+
+
+class _Help(argparse.RawDescriptionHelpFormatter):
+    """Help that never breaks a name such as `virtual-coupling` in two."""
+
+    def _split_lines(self, text: str, width: int) -> list[str]:
+        return textwrap.wrap(text, width, break_on_hyphens=False)
 
 
 class _Version(argparse.Action):

@@ -15,10 +15,10 @@ from zwidth.cli.table import plain
 from zwidth.errors import InputError
 
 _ASCII = {
-    "·": "*", "−": "-", "–": "-", "—": "-", "…": "...", "≥": ">=", "≤": "<=", "×": "x", "±": "+-", "→": "->",
-    "²": "^2", "³": "^3", "°": "deg", "µ": "u", "μ": "mu", "Δ": "Delta", "Σ": "sum", "α": "alpha", "β": "beta",
-    "η": "eta", "σ": "sigma", "τ": "tau", "ω": "omega", "∞": "inf", "“": '"', "”": '"', "’": "'", "✓": "+",
-    "✗": "!",
+    "·": "*", "−": "-", "–": "-", "—": "-", "…": "...", "≥": ">=", "≤": "<=", "×": "x", "±": "+-",
+    "²": "^2", "³": "^3", "°": "deg", "µ": "u", "μ": "mu", "Δ": "Delta", "Σ": "sum", "α": "alpha",
+    "β": "beta", "η": "eta", "σ": "sigma", "τ": "tau", "ω": "omega", "∞": "inf", "“": '"', "”": '"', "’": "'",
+    "✓": "+", "✗": "!", "→": "->",
 }  # fmt: skip
 """How characters of this field are written where the terminal has ASCII only."""
 
@@ -50,14 +50,25 @@ def encodes(text: str, stream: TextIO | None = None) -> bool:
 
 @contextmanager
 def quiet_pipe(stream: TextIO | None = None) -> Iterator[None]:
-    """Write inside, and do not complain when the reader, such as `head`, has left."""
+    """Write inside, and do not complain when the reader, such as `head`, has left.
+
+    Raises
+    ------
+    InputError
+        If the stream cannot be written for another reason, such as a full disk.
+    """
     stream = stream or sys.stdout
+    if stream is None:  # the process was started without it
+        yield
+        return
     try:
         yield
         stream.flush()
-    except BrokenPipeError:
+    except OSError as error:
         # What is buffered must not fail again when Python closes the stream.
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        if not isinstance(error, BrokenPipeError):
+            raise InputError(f"the output cannot be written: {_reason(error)}") from None
 
 
 def print_json(text: str) -> None:

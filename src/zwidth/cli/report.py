@@ -6,8 +6,10 @@ Everything a person typed is printed as text, never read as markup.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from io import StringIO
 
 from rich.console import Console
 from rich.padding import Padding
@@ -15,7 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.bars import PICTURE, bar, levels
-from zwidth.cli.description import device_line, environment_line
+from zwidth.cli.description import GLUE, device_line, environment_line
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.output import encodes, quiet_pipe
 from zwidth.passivity.advice import Advice
@@ -27,6 +29,7 @@ COLOURS = {"passive": "green", "active": "red", "undecided": "yellow"}
 _WIDEST = 100
 _LONGEST_BAR = 34
 _SAMPLES_SHOWN = 48
+_INTERVALS = "holds for every value"
 _ORDER = (
     "stiffness", "virtual_damping", "velocity_filter", "time_constant", "rate", "delay", "damping",
     "resolution", "coulomb_friction",
@@ -37,12 +40,15 @@ _ORDER = (
 @contextmanager
 def page() -> Iterator[Console]:
     """A console that prints text as it is, at a width that reads well, without blanks at line ends."""
-    console = Console(markup=False, highlight=False, emoji=False)
+    terminal = sys.stdout is not None and sys.stdout.isatty()
+    console = Console(
+        file=StringIO(), force_terminal=terminal or None, markup=False, highlight=False, emoji=False
+    )
     console.width = min(console.width, _WIDEST)
-    with console.capture() as captured:
-        yield console
+    yield console
+    text = console.file.getvalue()  # type: ignore[attr-defined]  # it is the StringIO above
     with quiet_pipe():
-        print("\n".join(line.rstrip() for line in captured.get().rstrip().split("\n")))
+        print("\n".join(line.rstrip() for line in text.replace(GLUE, " ").rstrip().split("\n")))
 
 
 def print_verdict(verdict: Verdict) -> None:
@@ -70,8 +76,7 @@ def _headline(verdict: Verdict) -> Padding:
 
 def _claim(verdict: Verdict) -> str:
     if verdict.outcome == "active" and verdict.witness is not None:
-        motion = "The motion below"
-        return f"{motion} takes {_joules(verdict.witness)} out of this loop: it generates energy."
+        return f"The motion below takes {_joules(verdict.witness)} out of this loop, each time it is made."
     return verdict.claim
 
 
@@ -80,6 +85,9 @@ def _loop(verdict: Verdict) -> Padding:
     motion = verdict.device.motion
     grid.add_row(Text("device", style="dim"), Text(device_line(verdict.device)))
     grid.add_row(Text("environment", style="dim"), Text(environment_line(verdict.environment, motion)))
+    intervals = next((a for a in verdict.assumptions if a.startswith(_INTERVALS)), None)
+    if intervals is not None:
+        grid.add_row(Text("intervals", style="dim"), Text(intervals, style="yellow"))
     return _spaced(grid)
 
 
@@ -193,7 +201,12 @@ def _names(advice: Iterable[Advice]) -> str:
 
 def _spelled(name: str) -> str:
     """A parameter's key as words."""
-    return name.replace("_", " ").replace("coulomb", "Coulomb")
+    return _named(name.replace("_", " "))
+
+
+def _named(text: str) -> str:
+    """Coulomb is a name."""
+    return text.replace("coulomb", "Coulomb")
 
 
 def _actuator(verdict: Verdict) -> Iterator[Text]:
@@ -204,11 +217,12 @@ def _actuator(verdict: Verdict) -> Iterator[Text]:
 
 def _assumptions(verdict: Verdict) -> Iterator[Text]:
     for line in verdict.assumptions:
-        yield _item(line, "dim")
+        if not line.startswith(_INTERVALS):  # that one stands beside the loop
+            yield _item(line, "dim")
 
 
 def _item(text: str, style: str = "") -> Text:
-    return Text(f"· {text}", style=style)
+    return Text(f"· {_named(text)}", style=style)
 
 
 def _section(out: Console, title: str, parts: Iterable[Text | Table]) -> None:
