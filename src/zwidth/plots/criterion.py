@@ -1,0 +1,114 @@
+"""The linear criterion against frequency: what damping is asked for, and what is there.
+
+The loop is passive against every sustained motion where the curve stays at or
+below the device's damping b, at every frequency up to half the sample rate.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import cos, inf, isfinite, pi
+from statistics import median
+
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from zwidth.passivity.verdict import Verdict
+from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, label, new_figure, number, unit_text
+
+_NEAR = 120
+"""Extra points on each side of the tightest frequency."""
+
+_FLAT = 1e-6
+
+
+@rc_context(LOOK)
+def criterion(verdict: Verdict, log: bool = False) -> Figure:
+    """Required damping against frequency, 0 … 1/(2T), with the device's damping.
+
+    Parameters
+    ----------
+    verdict
+        What `zwidth.check` returned.
+    log
+        Frequency on a logarithmic axis.
+    """
+    figure = new_figure()
+    draw_criterion(figure.add_subplot(), verdict, log)
+    return figure
+
+
+def draw_criterion(axes: Axes, verdict: Verdict, log: bool = False) -> None:
+    """The same on given axes."""
+    frequencies, needs = refined_curve(verdict)
+    b, motion = float(verdict.decision.loop.damping), verdict.device.motion
+    low, high = _range(needs, b)
+    wanting = [n > b for n in needs]
+    if any(wanting):
+        axes.fill_between(
+            frequencies, b, needs, where=wanting, color=RED, alpha=0.2, lw=0, label="b too small"
+        )
+    axes.plot(frequencies, needs, color=BLUE, label="asked of the device")
+    unit = unit_text("damping", motion)
+    axes.axhline(b, color="black", ls="--", lw=1.4, label=f"device damping b = {number(b)} {unit}")
+    _mark(axes, verdict, needs, (low, high))
+    nyquist = 0.5 / float(verdict.decision.loop.period)
+    if log:
+        axes.set_xscale("log")
+    axes.set_xlim(frequencies[0] if log else 0, nyquist)
+    axes.set_ylim(low, high)
+    axes.set_xlabel(label("frequency"))
+    axes.set_ylabel(label("damping", motion, "required damping"))
+    axes.set_title(f"{verdict.outcome}: {verdict.limit}", color=OUTCOME[verdict.outcome])
+    axes.legend(loc="upper left")
+
+
+def refined_curve(verdict: Verdict, points: int = 400) -> tuple[list[float], list[float]]:
+    """(frequencies [Hz], required damping) with points crowding towards the tightest frequency.
+
+    However narrow the peak, its top and both its sides are among them.
+    """
+    loop = verdict.decision.loop
+    nyquist, peak = 0.5 / float(loop.period), verdict.critical_frequency
+    steps = [nyquist * 10 ** (-10 * k / _NEAR) for k in range(_NEAR)]
+    near = [f for s in steps for f in (peak - s, peak + s) if 0 < f < nyquist]
+    known = dict(zip(*verdict.curve(points), strict=True))
+    known.update((f, loop.required_damping_at(Fraction(cos(pi * f / nyquist)))) for f in near)
+    known[min(peak, nyquist)] = verdict.budget.required
+    frequencies = sorted(known)
+    return frequencies, [known[f] for f in frequencies]
+
+
+def _range(needs: list[float], b: float) -> tuple[float, float]:
+    """Ends of the vertical axis: all of the curve, unless it has no end."""
+    finite = [n for n in needs if isfinite(n)]
+    top = max([b, *finite])
+    if len(finite) < len(needs):
+        top = 10 * max(b, abs(median(finite)) if finite else 1.0)
+    bottom = max(min(0.0, *finite), -top)  # how far it lies below zero is of no interest
+    span = (top - bottom) or 1.0
+    return (bottom - 0.05 * span if bottom < 0 else 0.0), top + 0.38 * span
+
+
+def _mark(axes: Axes, verdict: Verdict, needs: list[float], limits: tuple[float, float]) -> None:
+    peak, need = verdict.critical_frequency, verdict.budget.required
+    unit = unit_text("damping", verdict.device.motion)
+    if limits[0] < 0:
+        axes.axhline(0, color=GREY, lw=0.6)
+    if verdict.required_damping is None and need < inf:
+        axes.text(0.03, 0.66, "no damping is enough", transform=axes.transAxes, fontsize=8.5)
+        return
+    if need == inf:
+        text, height = f"no damping is enough at {number(peak)} Hz", limits[1] * 0.68
+    elif max(needs) - min(needs) <= _FLAT * abs(need):
+        text, height = f"{number(need)} {unit} at every frequency", need
+    else:
+        place = f"at {number(peak)} Hz" if peak else "towards 0 Hz"
+        text, height = f"{number(need)} {unit} {place}", need
+    nyquist = 0.5 / float(verdict.decision.loop.period)
+    across = min(max(peak / nyquist, 0.0), 1.0)
+    axes.plot([peak], [height], "o", color=RED, ms=6, clip_on=False, zorder=5, gid="critical")
+    side = "left" if across < 0.35 else "right" if across > 0.65 else "center"
+    shift = {"left": 6, "right": -6, "center": 0}[side]
+    axes.annotate(text, (peak, height), (shift, 7), textcoords="offset points", ha=side, fontsize=8.5)

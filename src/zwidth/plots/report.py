@@ -1,0 +1,129 @@
+"""Everything about one verdict in one picture, and the file it goes to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+
+from zwidth.errors import InputError
+from zwidth.passivity.verdict import Verdict
+from zwidth.plots.budget import draw_damping, draw_friction, has_friction
+from zwidth.plots.criterion import draw_criterion
+from zwidth.plots.plane import draw_plane, has_plane
+from zwidth.plots.style import LOOK, OUTCOME, new_figure
+from zwidth.plots.witness import draw_witness
+
+ENDINGS = ("png", "svg", "pdf")
+
+_METADATA: dict[str, dict[str, Any]] = {
+    "png": {},
+    "svg": {"Date": None},
+    "pdf": {"CreationDate": None},
+}
+"""No date in a file: the same verdict gives the same bytes."""
+
+_WIDTH = 125
+"""Characters of the heading on one line."""
+
+_Draw = Callable[[Figure, SubplotSpec, Verdict], None]
+
+
+def save_check(verdict: Verdict, path: str | Path, overwrite: bool = False) -> None:
+    """Write `check_figure` to a file; its ending, png, svg or pdf, says how.
+
+    Parameters
+    ----------
+    verdict
+        What `zwidth.check` returned.
+    path
+        The file to write.
+    overwrite
+        Replace a file that is already there.
+
+    Raises
+    ------
+    InputError
+        If the ending is another one, the file exists, or it cannot be written.
+    """
+    target = Path(path)
+    ending = target.suffix.removeprefix(".").lower()
+    if ending not in ENDINGS:
+        raise InputError(
+            f"a picture is written as .png, .svg or .pdf, got {target.name!r}; for example check.png"
+        )
+    if target.exists() and not overwrite:
+        raise InputError(f"{target} exists already and is not replaced; give another name or remove it first")
+    figure = check_figure(verdict)
+    try:
+        with rc_context({"svg.hashsalt": "zwidth"}):
+            figure.savefig(target, format=ending, dpi=160, metadata=_METADATA[ending])
+    except OSError as error:
+        raise InputError(f"{target} cannot be written: {error.strerror or error}") from None
+
+
+@rc_context(LOOK)
+def check_figure(verdict: Verdict) -> Figure:
+    """The criterion, the budget, and where they apply the plane and the witness, in one figure."""
+    panels = _panels(verdict)
+    rows = (len(panels) + 1) // 2
+    figure = new_figure(11.0, 4.4 * rows + 0.7)
+    grid = figure.add_gridspec(rows, 2)
+    for k, draw in enumerate(panels):
+        last_alone = k == len(panels) - 1 and k % 2 == 0
+        draw(figure, grid[k // 2, :] if last_alone else grid[k // 2, k % 2], verdict)
+    figure.suptitle(
+        _lines(f"{verdict.device.name}: {verdict.outcome}. {verdict.claim}"),
+        x=0.01, ha="left", fontsize=11, color=OUTCOME[verdict.outcome],
+    )  # fmt: skip
+    figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
+    return figure
+
+
+def _lines(text: str) -> str:
+    """Text on as few lines as the page allows, of about the same length."""
+    return fill(text, len(text) // ceil(len(text) / _WIDTH) + 12)
+
+
+def _panels(verdict: Verdict) -> list[_Draw]:
+    panels: list[_Draw] = [_criterion]
+    if verdict.decision.is_spring and has_plane(verdict.device) and verdict.decision.loop.numerator[0]:
+        panels.append(_plane)
+    panels.append(_budget)
+    if verdict.witness is not None:
+        panels.append(_witness)
+    return panels
+
+
+def _criterion(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+    draw_criterion(figure.add_subplot(place), verdict)
+
+
+def _plane(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+    draw_plane(figure.add_subplot(place), verdict.device, verdict.decision.loop.static_stiffness)
+
+
+def _budget(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+    if not has_friction(verdict):
+        axes = figure.add_subplot(place)
+        draw_damping(axes, verdict)
+        axes.set_ylim(-1.2, 2.2)  # two bars in the room of four
+        return
+    rows = place.subgridspec(2, 1)
+    draw_damping(figure.add_subplot(rows[0]), verdict)
+    draw_friction(figure.add_subplot(rows[1]), verdict)
+
+
+def _witness(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+    rows = place.subgridspec(3, 1)
+    top = figure.add_subplot(rows[0])
+    others = [figure.add_subplot(rows[k], sharex=top) for k in (1, 2)]
+    for axes in (top, others[0]):
+        axes.tick_params(labelbottom=False)
+    draw_witness([top, *others], verdict)
