@@ -13,9 +13,10 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate, certify
-from zwidth.passivity.corners import best_corner, worst_corners
+from zwidth.passivity.corners import best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.linear import LinearRefutation
+from zwidth.passivity.supremum import tightest
 from zwidth.passivity.verdict import Outcome, Verdict
 from zwidth.passivity.witness import Witness, refute_friction, refute_linear
 from zwidth.quantity.exact import Interval
@@ -50,22 +51,18 @@ def check(device: Device, environment: Environment | Any) -> Verdict:
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
     law = as_environment(environment)
     corners = worst_corners(device, law)
-    if corners is None:
-        raise InputError(
-            "an interval in this combination of parameters has no proof that covers all its values: "
-            "intervals are covered for every device parameter but timing, for K and B of a wall and the "
-            "elastic stiffness of a solid, and for sample_period and delay with a spring; "
-            "give single values for the others and check both ends"
-        )
     decisions = [decide(*corner) for corner in corners]
     failing = [k for k, d in enumerate(decisions) if not d.is_provable]
     if not failing:
-        return _passive(device, law, corners, decisions)
+        if corners_decide(device, law):
+            return _passive(device, law, corners, decisions)
+        return _between(device, law, corners[0], decisions[0])
     worst = failing[0]
     witness = _refute(decisions[worst])
     outcome: Outcome = "undecided"
-    if witness is not None and _active_throughout(device, law):
-        outcome = "active"
+    least = witness if len(corners) == 1 and device.is_certain else _best_witness(device, law)
+    if witness is not None and least is not None:
+        outcome, witness = "active", least
     return _not_passive(outcome, device, law, corners[worst], decisions[worst], witness)
 
 
@@ -86,6 +83,14 @@ def _passive(
     )  # fmt: skip
 
 
+def _between(device: Device, law: Environment, corner: tuple[Device, Environment], at: Decision) -> Verdict:
+    claim = (
+        "Passive at every corner of the intervals; that every value between them is too is not proved "
+        "for intervals of these parameters together."
+    )
+    return Verdict("undecided", claim, _assumptions(device, law, at), *corner, at, None, None)
+
+
 def _at_limit(decision: Decision) -> bool:
     """True when the smallest decrease of b or f_c would lose the proof."""
     friction = decision.sufficient_friction
@@ -101,8 +106,6 @@ def _at_limit(decision: Decision) -> bool:
 
 def _tightest(decisions: list[Decision]) -> int:
     """The corner that asks for most damping."""
-    from zwidth.passivity.supremum import tightest
-
     return (
         max(range(len(decisions)), key=lambda k: tightest(decisions[k].loop)[0]) if len(decisions) > 1 else 0
     )
@@ -115,12 +118,13 @@ def _refute(decision: Decision) -> Witness | None:
     return refute_friction(decision.setting)
 
 
-def _active_throughout(device: Device, law: Environment) -> bool:
+def _best_witness(device: Device, law: Environment) -> Witness | None:
+    """A motion that takes energy out even at the best values within the intervals, or None."""
     best = best_corner(device, law)
     if best is None:
-        return False
+        return None
     decision = decide(*best)
-    return not decision.is_provable and _refute(decision) is not None
+    return None if decision.is_provable else _refute(decision)
 
 
 def _not_passive(

@@ -1,105 +1,163 @@
 """Intervals: which single values of the parameters decide for all of them.
 
 More damping and Coulomb friction never hurt, a finer encoder never hurts, and
-mass plays no part: one end of each decides.  For the parameters of the law and
-the loop's timing the requirement is monotone or convex, so that the corners of
-the box decide, in these cases and no others:
+mass plays no part: one end of each decides.  The other parameters are decided
+by the corners of their box where the requirements are convex or monotone in
+each of them separately, since such a function is largest at a corner:
 
-* K and B of a wall, with any velocity filter and delay, at one T: the required
-  damping is a supremum of convex functions of (K, B), and ‖h‖₁ is convex;
-* the elastic spring of a viscoelastic solid (it adds K to H), likewise;
-* T and delay too, for a spring: b* = (KT/4)[2d+1+2α + √((2d+1)² + 8α(d+1))]
-  increases in K, T and the delay;
-* T for a backward-difference wall without delay: K T/2 + |B| increases and
-  (K + 2|B|/T) Δ/2 decreases in T, so both ends are kept.
+* K and B of a wall with any velocity filter and delay, and the elastic spring
+  of a viscoelastic solid: they enter H linearly, the required damping is a
+  supremum of convex functions of H, and ‖h‖₁ is convex;
+* T and the delay of a spring: b* = (KT/4)[2d+1+2α + √((2d+1)² + 8α(d+1))]
+  increases in K, T and the delay, and K Δ/2 does not depend on them;
+* T of a wall without delay whose velocity filter is fixed in samples: the
+  requirement is K T/2 plus a constant, and ‖h‖₁ is convex in 1/T;
+* T of a fixed H(z) without delay: the requirement is proportional to T;
+* every parameter of a standard linear solid (backward, Tustin) and of a wall
+  with a one-pole filter, without delay and with an ideal encoder: from the
+  closed forms μ0T/2 + μ1η1T/(2η1+μ1T), (T/2)(μ0+μ1) and KT/2 + B T/(2τ+T).
+
+Elsewhere the corners are still looked at, but prove nothing for what is between.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from itertools import product
+from typing import Any
 
 from zwidth.device import Device
-from zwidth.environment import BackwardDifference, GeneralizedMaxwell, StandardLinearSolid, Wall
+from zwidth.environment import (
+    BackwardDifference,
+    GeneralizedMaxwell,
+    OnePole,
+    PulseTransferFunction,
+    StandardLinearSolid,
+    Wall,
+)
 from zwidth.environment.environment import Environment
+from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, ends
 
 Loop = tuple[Device, Environment]
 
+MOST_CORNERS = 64
+_TIMING = ("sample_period", "delay")
 
-def worst_corners(device: Device, environment: Environment) -> list[Loop] | None:
-    """Certain loops that are all passive exactly if every loop in the box is; None if not known."""
-    device = _ends(device, damping=0, coulomb_friction=0, resolution=1)
-    if not _box_is_decided_by_corners(device, environment):
-        return None
-    return list(_corners(device, environment))
+
+def worst_corners(device: Device, environment: Environment) -> list[Loop]:
+    """The certain loops at the corners of the box of parameters.
+
+    Raises
+    ------
+    InputError
+        If more than six parameters of law and timing are intervals.
+    """
+    device = _at_ends(device, damping=0, coulomb_friction=0, resolution=1)
+    timings = [_values(getattr(device, key)) for key in _TIMING]
+    laws = list(_variants(environment))
+    if len(laws) * len(timings[0]) * len(timings[1]) > MOST_CORNERS:
+        raise InputError(
+            f"the intervals have more than {MOST_CORNERS} corners; give single values for some parameters"
+        )
+    return [
+        (device.replace(sample_period=period, delay=delay), law)
+        for period, delay, law in product(*timings, laws)
+    ]
+
+
+def corners_decide(device: Device, environment: Environment) -> bool:
+    """True when passivity at every corner proves it for every value in the box."""
+    uncertain = _uncertain_fields(environment)
+    timing = {key for key in _TIMING if isinstance(getattr(device, key), Interval)}
+    if not uncertain and not timing:
+        return True
+    undelayed = ends(device.delay) == (0, 0)
+    ideal = ends(device.resolution)[1] == 0
+    if isinstance(environment, Wall):
+        return _wall(environment, uncertain, timing, undelayed, ideal)
+    if isinstance(environment, StandardLinearSolid):
+        return (uncertain <= {"stiffness"} and not timing) or (
+            undelayed and ideal and _has_closed_form(environment)
+        )
+    if isinstance(environment, GeneralizedMaxwell):
+        return uncertain <= {"stiffness"} and not timing
+    return isinstance(environment, PulseTransferFunction) and undelayed and not uncertain
+
+
+def _wall(wall: Wall, uncertain: set[str], timing: set[str], undelayed: bool, ideal: bool) -> bool:
+    if wall.spring:
+        return True
+    filter_is_certain = "velocity_filter" not in uncertain
+    if not timing and filter_is_certain:
+        return True
+    if not undelayed:
+        return False
+    if isinstance(wall.velocity_filter, OnePole):
+        return ideal and ends(wall.damping)[0] >= 0
+    return filter_is_certain
+
+
+def _has_closed_form(solid: StandardLinearSolid) -> bool:
+    positive = ends(solid.branch_stiffness)[0] >= 0 and ends(solid.branch_damping)[0] >= 0
+    return positive and str(solid.discretization) in ("backward", "tustin")
 
 
 def best_corner(device: Device, environment: Environment) -> Loop | None:
-    """The loop that is active only if every loop in the box is; None if not known."""
-    device = _ends(device, damping=1, coulomb_friction=1, resolution=0)
-    if device_is_certain(device) and environment.is_certain:
+    """A loop that is active only if every loop in the box is; None where none is known."""
+    device = _at_ends(device, damping=1, coulomb_friction=1, resolution=0)
+    timing = any(isinstance(getattr(device, key), Interval) for key in _TIMING)
+    if not timing and not _uncertain_fields(environment):
         return device, environment
-    spring = environment.spring and isinstance(environment, Wall)
-    backward = isinstance(environment, Wall) and isinstance(environment.velocity_filter, BackwardDifference)
-    if not (spring or (backward and ends(device.delay) == (0, 0) and ends(device.resolution) == (0, 0))):
+    ideal_and_undelayed = ends(device.delay) == (0, 0) and ends(device.resolution) == (0, 0)
+    if not isinstance(environment, Wall):
         return None
-    assert isinstance(environment, Wall)
+    backward = isinstance(environment.velocity_filter, BackwardDifference) and ideal_and_undelayed
+    if not (environment.spring or backward):
+        return None
     low, high = ends(environment.damping)
     least = Fraction(0) if low <= 0 <= high else min(low, high, key=abs)
-    device = _ends(device, sample_period=0, delay=0)
-    return device, environment.replace(stiffness=Exact(ends(environment.stiffness)[0]), damping=Exact(least))
+    stiffness = Exact(ends(environment.stiffness)[0])
+    return (
+        _at_ends(device, sample_period=0, delay=0),
+        environment.replace(stiffness=stiffness, damping=Exact(least)),
+    )
 
 
-def device_is_certain(device: Device) -> bool:
-    """True when nothing that a criterion depends on is an interval."""
-    keys = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
-    return not any(isinstance(getattr(device, key), Interval) for key in keys)
-
-
-def _ends(device: Device, **which: int) -> Device:
+def _at_ends(device: Device, **which: int) -> Device:
     """The device with the low (0) or the high (1) end of the named parameters."""
-    chosen = {key: Exact(ends(getattr(device, key))[end]) for key, end in which.items()}
-    return device.replace(**chosen)
+    uncertain = {key: end for key, end in which.items() if isinstance(getattr(device, key), Interval)}
+    chosen = {key: Exact(ends(getattr(device, key))[end]) for key, end in uncertain.items()}
+    return device.replace(**chosen) if chosen else device
 
 
-def _box_is_decided_by_corners(device: Device, environment: Environment) -> bool:
-    uncertain = {f.name for f in fields(environment) if isinstance(getattr(environment, f.name), Interval)}
-    timing = {key for key in ("sample_period", "delay") if isinstance(getattr(device, key), Interval)}
-    wall = isinstance(environment, Wall)
-    additive = {"stiffness", "damping"} if wall else {"stiffness"}
-    known = isinstance(environment, (Wall, StandardLinearSolid, GeneralizedMaxwell))
-    if not known and not environment.is_certain:
-        return False
-    if uncertain - additive or not _parts_are_certain(environment, uncertain):
-        return False
-    if not timing:
-        return True
-    if environment.spring and wall:
-        return True
-    backward = isinstance(environment, Wall) and isinstance(environment.velocity_filter, BackwardDifference)
-    return backward and timing == {"sample_period"} and ends(device.delay) == (0, 0)
+def _uncertain_fields(part: Any) -> set[str]:
+    """Fields in which an interval is found, at any depth."""
+    return {f.name for f in fields(part) if len(list(_variants(getattr(part, f.name)))) > 1}
 
 
-def _parts_are_certain(environment: Environment, uncertain: set[str]) -> bool:
-    """No interval hides in a filter, a branch or an inner environment."""
-    certain = environment.replace(**{name: Exact(ends(getattr(environment, name))[1]) for name in uncertain})
-    velocity = getattr(environment, "velocity_filter", None)
-    return certain.is_certain and not isinstance(getattr(velocity, "time_constant", None), Interval)
+def _variants(value: Any) -> Iterator[Any]:
+    """The value with every interval in it, at any depth, replaced by either end."""
+    if isinstance(value, Interval):
+        yield from (value.low, value.high)
+    elif isinstance(value, tuple):
+        yield from (tuple(choice) for choice in product(*(list(_variants(v)) for v in value)))
+    elif is_dataclass(value) and not isinstance(value, type):
+        yield from _variants_of_fields(value)
+    else:
+        yield value
 
 
-def _corners(device: Device, environment: Environment) -> Iterator[Loop]:
-    timing = [_values(getattr(device, key)) for key in ("sample_period", "delay")]
-    names = [f.name for f in fields(environment) if isinstance(getattr(environment, f.name), Interval)]
-    laws = [_values(getattr(environment, name)) for name in names]
-    for (period, delay), values in product(product(*timing), product(*laws)):
-        changed = dict(zip(names, values, strict=True))
-        yield (
-            device.replace(sample_period=period, delay=delay),
-            environment.replace(**changed) if changed else environment,
-        )
+def _variants_of_fields(value: Any) -> Iterator[Any]:
+    names = [f.name for f in fields(value)]
+    choices = [list(_variants(getattr(value, name))) for name in names]
+    if all(len(choice) == 1 for choice in choices):
+        yield value
+        return
+    for chosen in product(*choices):
+        yield type(value)(**dict(zip(names, chosen, strict=True)))
 
 
 def _values(value: Exact | Interval) -> list[Exact]:

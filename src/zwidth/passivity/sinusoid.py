@@ -75,7 +75,7 @@ def _inside(loop: LinearLoop, cycle: tuple[int, ...], settled: tuple[int, ...], 
 
 
 def _following(loop: LinearLoop, x: list[float], depth: int, start: float = 0.0) -> tuple[int, ...]:
-    """Whole w that carries the position nearly along x, in parts of the depth, and settles where x ends at 1."""
+    """Whole w that carries the position nearly along x, in parts of the depth, to rest if x ends at 1."""
     d = [c / loop.follower[0] for c in loop.follower]
     gain = sum(loop.follower) / loop.follower[0]
     past = [start] * (len(d) - 1)

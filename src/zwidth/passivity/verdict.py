@@ -19,6 +19,7 @@ from zwidth.passivity.budget import QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import to_json, unit_suffix
+from zwidth.passivity.stability_plane import admissible_speed
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -102,6 +103,22 @@ class Verdict:
         return self.budget.frequency
 
     @cached_property
+    def admissible_speed(self) -> float | None:
+        """Hand speed up to which an active spring wall still gives out no energy [m/s; rad/s].
+
+        v = (2f_c − K Δ)/(K T − 2b), for mean speeds over a sample: Coulomb
+        friction outweighs the hold's leak of slow motions.  None where it does
+        not apply: a passive loop, another law, a delay.
+        """
+        spring, loop = self.decision.is_spring, self.decision.loop
+        if self.outcome != "active" or not spring or loop.whole_delay or loop.part_delay:
+            return None
+        stiffness = loop.static_stiffness
+        assert stiffness is not None
+        speed = float(admissible_speed(self.device, stiffness))
+        return speed if 0 < speed < float("inf") else None
+
+    @cached_property
     def margins(self) -> Mapping[str, float | None]:
         """What is left of damping and of Coulomb friction over what is needed; < 0 if too little.
 
@@ -154,6 +171,9 @@ class Verdict:
             document["max_gain"] = self.max_gain
         document[key("required_damping", "damping")] = self.required_damping
         document["critical_frequency_Hz"] = self.critical_frequency
+        if self.admissible_speed is not None:
+            speed_unit = "rad_per_s" if motion == "rotary" else "m_per_s"
+            document[f"admissible_speed_{speed_unit}"] = self.admissible_speed
         document["margins"] = {key(name, name): value for name, value in self.margins.items()}
         document["advice"] = [advice.to_dict() for advice in self.advice]
         document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
@@ -196,6 +216,9 @@ class Verdict:
         for name, value in self.margins.items():
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
             rows.append((f"margin of {name.replace('_', ' ')}", _text(value, margin_unit)))
+        if self.admissible_speed is not None:
+            per_second = "rad/s" if self.device.motion == "rotary" else "m/s"
+            rows.append(("slower hands are safe up to", _text(self.admissible_speed, per_second)))
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))
         return rows
