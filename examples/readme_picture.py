@@ -1,0 +1,16 @@
+"""The picture of the README: a spring that is too stiff for the paddle, and the motion that shows it.
+
+    python examples/readme_picture.py docs/_static/check.png
+"""
+
+from __future__ import annotations
+
+import sys
+
+import zwidth as zw
+from zwidth import plots
+
+if __name__ == "__main__":
+    paddle = zw.catalogue.device("haptic-paddle")
+    verdict = zw.check(paddle, zw.Wall(stiffness=770))
+    plots.check_figure(verdict).savefig(sys.argv[1], dpi=100)
