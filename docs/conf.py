@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
+from typing import Any
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_ext"))
@@ -42,7 +44,7 @@ sphinx_gallery_conf = {
     "examples_dirs": "../examples",
     "gallery_dirs": "gallery",
     "filename_pattern": r"/plot_",
-    "ignore_pattern": r"/(?!plot_)[^/]*\.py$",
+    "ignore_pattern": r"(^|[/\\])(?!plot_)[^/\\]*\.py$",
     "within_subsection_order": "FileNameSortKey",
     "download_all_examples": False,
     "show_memory": False,
@@ -57,3 +59,29 @@ html_title = f"zwidth {release}"
 html_static_path = ["_static"]
 html_show_copyright = False
 html_theme_options = {"navigation_with_keys": True}
+
+
+def setup(app: Any) -> None:
+    """Read the docstrings as they are written: before numpydoc sections are parsed."""
+    app.connect("autodoc-process-docstring", _as_written, priority=400)
+
+
+def _as_written(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """An indented block is a law, to be shown line by line; |x| is a magnitude."""
+    written: list[str] = []
+    margin, law = 0, False
+    for line in lines:
+        indent = len(line) - len(line.lstrip())
+        if line.strip():
+            if not law and indent >= 4 and margin == 0 and written and not written[-1].strip():
+                written += ["::", ""]
+                law = True
+            law = law and indent >= 4
+            margin = indent
+        written.append(line if law else _with_magnitudes(line))
+    lines[:] = written
+
+
+def _with_magnitudes(line: str) -> str:
+    parts = re.split(r"(`+[^`]*`+)", line)
+    return "".join(p if p.startswith("`") else p.replace("|", "\\|") for p in parts)
