@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from io import BytesIO
 from math import ceil
 from pathlib import Path
 from textwrap import fill
@@ -58,14 +59,18 @@ def save_check(verdict: Verdict, path: str | Path, overwrite: bool = False) -> N
         raise InputError(
             f"a picture is written as .png, .svg or .pdf, got {target.name!r}; for example check.png"
         )
-    if target.exists() and not overwrite:
-        raise InputError(f"{target} exists already and is not replaced; give another name or remove it first")
-    figure = check_figure(verdict)
+    picture = BytesIO()
+    with rc_context({"svg.hashsalt": "zwidth"}):
+        check_figure(verdict).savefig(picture, format=ending, dpi=160, metadata=_METADATA[ending])
     try:
-        with rc_context({"svg.hashsalt": "zwidth"}):
-            figure.savefig(target, format=ending, dpi=160, metadata=_METADATA[ending])
-    except OSError as error:
-        raise InputError(f"{target} cannot be written: {error.strerror or error}") from None
+        with target.open("wb" if overwrite else "xb") as file:
+            file.write(picture.getvalue())
+    except FileExistsError:
+        raise InputError(
+            f"{target} exists already and is not replaced; give another name or remove it first"
+        ) from None
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        raise InputError(f"{target} cannot be written: {getattr(error, 'strerror', error)}") from None
 
 
 @rc_context(LOOK)

@@ -1,0 +1,201 @@
+"""What each picture shows, read back from its artists."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import zwidth as zw
+import zwidth.plots as plots
+from zwidth.plots.criterion import refined_curve
+from zwidth.plots.replay import ROUNDS, replay
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+IDEAL = PADDLE.replace(resolution=0)
+WHEEL = zw.Device(
+    damping=0.01, coulomb_friction=0.1, resolution=0.0015, rate=1000, motion="rotary", name="wheel"
+)
+
+
+def _dashed(axes: Axes) -> float:
+    (line,) = [line for line in axes.lines if line.get_linestyle() == "--"]
+    return float(line.get_ydata()[0])
+
+
+def _by_id(axes: Axes, name: str) -> list:
+    return [a for a in axes.get_children() if a.get_gid() == name]
+
+
+def test_criterion_shows_damping_peak_and_violation():
+    """The dashed line is b, the marked top is the required damping at the critical frequency."""
+    verdict = zw.check(IDEAL, zw.Wall(stiffness=100, damping=0.5, velocity_filter=zw.Window(20)))
+    (axes,) = plots.criterion(verdict).axes
+    assert _dashed(axes) == 0.15
+    (mark,) = _by_id(axes, "critical")
+    assert mark.get_xdata()[0] == verdict.critical_frequency
+    assert mark.get_ydata()[0] == pytest.approx(verdict.required_damping, rel=1e-12)
+    assert len(axes.collections) == 1
+    assert axes.get_title(loc="left").startswith("active")
+    assert axes.get_ylabel() == "required damping b [N·s/m]"
+
+
+def test_criterion_of_a_passive_loop_shades_nothing():
+    """No violation, no shading."""
+    (axes,) = plots.criterion(zw.check(IDEAL, zw.Wall(stiffness=100))).axes
+    assert not axes.collections
+
+
+def test_narrow_peaks_are_drawn_on_both_sides():
+    """A resonance far narrower than the even spacing has points at its top and on its flanks."""
+    law = zw.PulseTransferFunction([100, -190, 99.9], [1, -1.9, 0.99999])
+    verdict = zw.check(IDEAL, law)
+    frequencies, needs = refined_curve(verdict)
+    top = max(needs)
+    assert top == pytest.approx(verdict.required_damping, rel=1e-9)
+    assert sum(n > top / 2 for n in needs) > 10
+    assert frequencies == sorted(frequencies)
+
+
+def test_plane_marks_the_device_and_counts_the_unknown():
+    """The paddle at 770 N/m lies at (b/(K T), f_c/(K Δ)); what has no place is counted."""
+    (axes,) = plots.plane(PADDLE, 770).axes
+    (mark,) = _by_id(axes, "device")
+    assert mark.get_xdata()[0] == pytest.approx(0.15 / 0.77)
+    assert mark.get_ydata()[0] == pytest.approx(0.12 / (770 * 22.4e-6))
+    texts = [t.get_text() for t in axes.texts]
+    assert any(t.startswith(f"{len(zw.catalogue.names()) - 1} devices of the catalogue") for t in texts)
+    assert not _by_id(axes, "catalogue")  # the paddle itself is the only one with a place
+
+
+def test_plane_of_another_device_shows_the_catalogue():
+    """The paddle stands at its limit of 300 N/m, on β = ½."""
+    (axes,) = plots.plane(WHEEL, 10).axes
+    (mark,) = _by_id(axes, "catalogue")
+    assert mark.get_xdata()[0] == pytest.approx(0.5)
+    assert any("300 N/m" in t.get_text() for t in axes.texts)
+    assert any("K = 10 N·m/rad" in t.get_text() for t in axes.texts)
+
+
+@pytest.mark.parametrize("missing", [{"resolution": 0}, {"coulomb_friction": 0}, {"delay": 0.001}])
+def test_plane_refuses_devices_without_a_line(missing):
+    """A logarithmic plane has no place for a zero, and no formula for a delay."""
+    with pytest.raises(zw.InputError, match="the plane has logarithmic axes"):
+        plots.plane(PADDLE.replace(**missing))
+
+
+def test_budget_bars_add_up():
+    """The leaks sum to the required damping, also where one of them is negative."""
+    law = zw.StandardLinearSolid(stiffness=100, branch_stiffness=100, branch_damping=0.2)
+    verdict = zw.check(PADDLE.replace(delay=0.0023), law)
+    damping, friction = plots.budget(verdict).axes
+    leaks = [bar.get_width() for bar in _by_id(damping, "leak")]
+    assert min(leaks) < 0
+    assert sum(leaks) == pytest.approx(verdict.budget.required)
+    assert _by_id(damping, "b")[0].get_width() == 0.15
+    assert _by_id(friction, "f_c")[0].get_width() == 0.12
+    assert _by_id(friction, "leak")[0].get_width() == pytest.approx(verdict.budget.friction_required)
+
+
+def test_budget_leaves_out_an_ideal_encoder():
+    """Without quantization there is one pair of bars."""
+    assert len(plots.budget(zw.check(IDEAL, zw.Wall(stiffness=100))).axes) == 1
+
+
+@pytest.mark.parametrize(
+    ("device", "law"),
+    [
+        (PADDLE, zw.Wall(stiffness=770)),
+        (PADDLE.replace(delay=0.0003), zw.Wall(stiffness=250)),
+        (IDEAL, zw.Wall(stiffness=100, damping=-0.3)),
+        (IDEAL, zw.PulseTransferFunction([100, -190, 99.9], [1, -2.5, 1])),
+    ],
+)
+def test_replay_ends_at_the_energy_of_the_witness(device, law):
+    """Played to its end, a motion takes out what the checker found."""
+    witness = zw.check(device, law).witness
+    played = replay(witness)
+    assert played.caption == "the whole motion"
+    assert played.energies[-1] == pytest.approx(witness.energy, rel=1e-9)
+    assert [played.positions[k] for k in (0, -1)] == [witness.positions[0], witness.positions[-1]]
+    assert len(played.forces) == len(played.times) - 1
+
+
+def test_replay_shows_a_few_rounds():
+    """Of a long repetition three rounds are played, each with the energy of one more round."""
+    witness = zw.check(PADDLE.replace(resolution=22.4e-4), zw.Wall(stiffness=150)).witness
+    played = replay(witness)
+    assert played.caption.startswith(f"{ROUNDS} of ")
+    assert played.energies[-1] == pytest.approx(ROUNDS * witness.energy_per_cycle, rel=0.01)
+
+
+def test_witness_needs_an_active_loop():
+    """A passive loop has no motion to draw."""
+    with pytest.raises(zw.InputError, match="the loop is passive"):
+        plots.witness(zw.check(PADDLE, zw.Wall(stiffness=300)))
+
+
+def test_worst_case_touches_its_lines_at_rest():
+    """J* and its line meet at λ = 0 and part on the side that the sign of α says."""
+    (below,) = plots.worst_case(PADDLE, 250).axes
+    (beyond,) = plots.worst_case(PADDLE, 770).axes
+    for axes, sign in ((below, 1), (beyond, -1)):
+        curve, line = (line.get_ydata() for line in axes.lines[:2])
+        assert curve[len(curve) // 2] == line[len(line) // 2] == 0
+        assert sign * (curve[0] - line[0]) > 0
+        assert sign * (curve[-1] - line[-1]) > 0
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_save_check_writes_by_ending(tmp_path, ending):
+    """The same verdict gives the same bytes."""
+    verdict = zw.check(PADDLE, zw.Wall(stiffness=770))
+    first, second = tmp_path / f"first.{ending}", tmp_path / f"second.{ending.upper()}"
+    plots.save_check(verdict, first)
+    plots.save_check(verdict, str(second))
+    assert first.read_bytes() == second.read_bytes() != b""
+
+
+def test_save_check_refuses(tmp_path):
+    """Another ending, a file that exists, a folder that does not."""
+    verdict = zw.check(WHEEL, zw.Wall(stiffness=10))
+    with pytest.raises(zw.InputError, match=r"\.png, \.svg or \.pdf, got 'check\.jpg'"):
+        plots.save_check(verdict, tmp_path / "check.jpg")
+    kept = tmp_path / "kept.png"
+    kept.write_bytes(b"mine")
+    with pytest.raises(zw.InputError, match="exists already"):
+        plots.save_check(verdict, kept)
+    assert kept.read_bytes() == b"mine"
+    with pytest.raises(zw.InputError, match="cannot be written"):
+        plots.save_check(verdict, tmp_path / "nowhere" / "check.png")
+    plots.save_check(verdict, kept, overwrite=True)
+    assert kept.read_bytes() != b"mine"
+
+
+@pytest.mark.parametrize(
+    ("device", "law", "panels"),
+    [
+        (PADDLE, zw.Wall(stiffness=300), 4),  # criterion, plane, two bars
+        (PADDLE, zw.Wall(stiffness=770), 7),  # and three of the witness
+        (IDEAL, zw.Wall(stiffness=300), 2),
+        (PADDLE, zw.Wall(stiffness=100, damping=0.05), 3),
+        (WHEEL, zw.Wall(stiffness=10), 4),
+        (IDEAL.replace(damping=0), zw.Wall(stiffness=0), 2),
+        (IDEAL, zw.PulseTransferFunction([-100], [1]), 5),
+    ],
+)
+def test_check_figure_has_the_panels_that_apply(device, law, panels):
+    """No panel is empty, and every one has labelled axes."""
+    figure = plots.check_figure(zw.check(device, law))
+    assert isinstance(figure, Figure)
+    assert len(figure.axes) == panels
+    assert all(axes.has_data() for axes in figure.axes)
+
+
+def test_importing_zwidth_does_not_import_matplotlib():
+    """A verdict never waits for a plotting library."""
+    code = "import sys, zwidth; sys.exit('matplotlib' in sys.modules or 'zwidth.plots' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
