@@ -34,11 +34,11 @@ myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings say units, which types cannot
-autodoc_class_signature = "separated"
 autoclass_content = "class"
 napoleon_google_docstring = False
 napoleon_use_ivar = True  # attributes are listed once, in the class docstring
 napoleon_use_rtype = False
+napoleon_attr_annotations = False
 
 sphinx_gallery_conf = {
     "examples_dirs": "../examples",
@@ -57,6 +57,7 @@ suppress_warnings = ["config.cache"]  # sphinx-gallery's sort key cannot be pick
 html_theme = "furo"
 html_title = f"zwidth {release}"
 html_static_path = ["_static"]
+html_css_files = ["tables.css"]
 html_show_copyright = False
 html_theme_options = {"navigation_with_keys": True}
 

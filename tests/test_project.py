@@ -9,11 +9,14 @@ import re
 import subprocess
 import sys
 import tomllib
+from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import zwidth as zw
+from zwidth.passivity import checker
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src" / "zwidth"
@@ -45,16 +48,14 @@ def test_checking_a_wall_needs_no_numerical_library() -> None:
 
 
 def test_the_checker_imports_the_standard_library_only() -> None:
-    """What re-proves a certificate shares no code with what found it."""
-    tree = ast.parse((SOURCE / "passivity" / "checker.py").read_text(encoding="utf-8"))
-    imported = set()
-    for node in ast.walk(tree):
+    """What re-proves a certificate shares no code with what found it; its parts know each other alone."""
+    files = sorted((SOURCE / "passivity" / "checker").glob("*.py"))
+    assert files
+    for node in (node for file in files for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))):
         if isinstance(node, ast.Import):
-            imported |= {alias.name.split(".")[0] for alias in node.names}
+            assert {alias.name.split(".")[0] for alias in node.names} <= sys.stdlib_module_names
         elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0
-            imported.add((node.module or "").split(".")[0])
-    assert imported <= sys.stdlib_module_names
+            assert node.level == 1 or (node.module or "").split(".")[0] in sys.stdlib_module_names
 
 
 def test_the_import_order_holds() -> None:
@@ -219,6 +220,43 @@ def test_every_key_of_the_json_is_on_its_page() -> None:
     for device, environment in loops:
         keys |= _keys(zw.check(device, environment).to_dict())
     assert not [key for key in sorted(keys) if f"`{key}`" not in page]
+
+
+def _unrolled_as_documented(positions: list[Fraction], repeats: list[dict[str, int]]) -> list[Fraction]:
+    page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
+    code = re.search(r"```python\n(def unrolled.+?)```", page, re.DOTALL)
+    assert code
+    names: dict[str, Any] = {}
+    exec(code.group(1), names)
+    result: list[Fraction] = names["unrolled"](positions, repeats)
+    return result
+
+
+def test_unrolling_as_the_json_page_says_keeps_the_energy_of_a_witness() -> None:
+    """Whoever replays a motion from its JSON extracts the energy that it claims."""
+    device = zw.Device(damping=0.15, coulomb_friction=0.01, resolution=0, rate=1000)
+    witness = zw.check(device, zw.Wall(stiffness=120, damping=0.1)).witness
+    assert witness is not None
+    document = {"repeats": [], **witness.to_dict()}
+    document["positions_m"] = _unrolled_as_documented(document["positions_m"], document.pop("repeats"))
+    assert checker.verify(document).energy == witness.exact_energy
+    assert len(document["positions_m"]) == witness.motion.samples + 1
+
+
+def test_unrolling_as_the_json_page_says_carries_an_advance_on() -> None:
+    """A part that ends ahead of its start moves all that follows, as the checker has it."""
+    device = zw.Device(damping=0.15, coulomb_friction=0.01, resolution=0, rate=1000)
+    witness = zw.check(device, zw.PulseTransferFunction([900, -500], [1, 0.2])).witness
+    assert witness is not None
+    document = witness.to_dict()
+    repeats = [{"first": 1, "last": 4, "times": 7}, {"first": 5, "last": 6, "times": 30}]
+    positions = [Fraction(n, 1000) for n in (0, 3, 5, 4, 6, 7, 9, 2, -1)]
+    whole = _unrolled_as_documented(positions, repeats)
+    assert whole[:6] == [*positions[:5], positions[2] + Fraction(3, 1000)]
+    repeated = checker.verify({**document, "positions_m": positions, "repeats": repeats})
+    unrolled = checker.verify({**document, "positions_m": whole, "repeats": []})
+    assert repeated.energy is not None
+    assert repeated.energy == unrolled.energy
 
 
 def _keys(document: object) -> set[str]:
