@@ -1,6 +1,6 @@
 """The picture of the README: a spring that is too stiff for the paddle, and the motion that shows it.
 
-    python examples/readme_picture.py docs/_static/check.png
+Run it as `python examples/readme_picture.py docs/_static/check.png`.
 """
 
 from __future__ import annotations
