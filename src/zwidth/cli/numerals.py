@@ -6,7 +6,7 @@ from math import floor, inf, log10
 
 from zwidth.quantity.exact import Exact, Interval
 
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXED = ("m", "s", "J", "N", "Hz", "m/s")
 """Units that people prefix; N·s/m stays as it is, and 300 N/m too."""
 
@@ -21,7 +21,7 @@ def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) ->
     if abs(number) == inf:
         return "any" if number > 0 else "none"
     power, name = _prefix(number, unit, digits)
-    return f"{_plain(number / 10**power, digits)} {name}".rstrip()
+    return f"{number / 10.0**power:.{digits}g} {name}".rstrip()
 
 
 def unit_text(unit: str) -> str:
@@ -33,14 +33,7 @@ def _prefix(number: float, unit: str, digits: int) -> tuple[int, str]:
     if unit not in _PREFIXED or number == 0:
         return 0, unit_text(unit)
     rounded = float(f"{abs(number):.{digits}g}")
-    power = min(max(3 * floor(floor(log10(rounded)) / 3), -9), 6)
-    if (unit == "m" and power > 0) or (unit == "N" and 0.01 <= rounded < 1000):
+    power = 3 * floor(floor(log10(rounded)) / 3)
+    if (unit == "m" and power > 0) or (unit == "N" and 0.01 <= rounded < 1000) or power not in _PREFIXES:
         return 0, unit  # nobody says kilometres here, nor 120 mN for 0.12 N
     return power, _PREFIXES[power] + unit
-
-
-def _plain(number: float, digits: int) -> str:
-    text = f"{number:.{digits}g}".replace("-", "−")
-    if "e" not in text or abs(number) >= 1e7 or abs(number) < 1e-4:
-        return text
-    return f"{float(f'{number:.{digits}g}'):.0f}".replace("-", "−")

@@ -35,7 +35,13 @@ def tolerate_encoding() -> None:
 def _spelled(error: UnicodeError) -> tuple[str | bytes, int]:
     assert isinstance(error, UnicodeEncodeError)
     lost = error.object[error.start : error.end]
-    return "".join(_ASCII.get(c, "?") for c in lost), error.end
+    return "".join(_ASCII.get(c) or _without_accents(c) for c in lost), error.end
+
+
+def _without_accents(character: str) -> str:
+    from unicodedata import normalize  # only for the few terminals that need it
+
+    return normalize("NFKD", character).encode("ascii", "ignore").decode() or "?"
 
 
 def encodes(text: str, stream: TextIO | None = None) -> bool:
@@ -89,6 +95,8 @@ def check_new(path: Path, force: bool) -> None:
     """
     shown = plain(str(path), 100)
     try:
+        if b"\0" in os.fsencode(path):
+            raise InputError(f"{shown} cannot be written: a name has no zero bytes")
         if path.is_dir():
             raise InputError(f"{shown} is a directory; name a file")
         if path.exists() and not force:

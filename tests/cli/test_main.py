@@ -1,0 +1,367 @@
+"""The command: its exit statuses, its faces, and one clear line on bad input."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from zwidth.cli.bars import bar, levels
+from zwidth.cli.main import main
+from zwidth.cli.numerals import shown
+from zwidth.cli.options import device_parameters, environment_parameters, joined
+from zwidth.device import catalogue
+from zwidth.passivity.verdict import Verdict
+
+PASSIVE = ("check", "haptic-paddle", "--stiffness", "300")
+ACTIVE = ("check", "haptic-paddle", "--stiffness", "770")
+UNDECIDED = ("check", "haptic-paddle", "--stiffness", "100 .. 900")
+
+
+class Result(NamedTuple):
+    """What one command line left behind."""
+
+    status: int
+    out: str
+    err: str
+
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    """Runs a command line in this process."""
+
+    def runner(*argv: str) -> Result:
+        status = main(argv)
+        return Result(status, *capsys.readouterr())
+
+    return runner
+
+
+def process(*argv: str, **environment: str) -> subprocess.CompletedProcess[bytes]:
+    """Runs a command line in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "zwidth", *argv],
+        capture_output=True,
+        env={"PATH": "/usr/bin:/bin", **environment},
+        timeout=60,
+        check=False,
+    )
+
+
+def complaint(result: Result) -> str:
+    """The one line that bad input must end in."""
+    assert result.status == 2
+    assert result.out == ""
+    assert result.err.startswith("zwidth: ")
+    assert result.err.count("\n") == 1
+    return result.err
+
+
+# --- check ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("argv", "status", "word"), [(PASSIVE, 0, "PASSIVE"), (ACTIVE, 1, "ACTIVE"), (UNDECIDED, 3, "UNDECIDED")]
+)
+def test_status_and_report_say_the_outcome(run: Run, argv: tuple[str, ...], status: int, word: str) -> None:
+    result = run(*argv)
+    assert result.status == status
+    assert result.err == ""
+    assert result.out.startswith(f" {word} ")
+
+
+@pytest.mark.parametrize("argv", [PASSIVE, ACTIVE, UNDECIDED, ("devices",), ("devices", "phantom")])
+def test_report_fits_80_columns_without_colour_when_piped(
+    run: Run, argv: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = run(*argv).out.split("\n")
+    assert max(map(len, lines)) <= 80
+    assert all(line == line.rstrip() for line in lines)
+    assert "\x1b" not in "".join(lines)
+
+
+def test_report_of_the_paddle_at_its_limit(run: Run) -> None:
+    out = run(*PASSIVE).out
+    for part in (
+        "equality included",
+        "haptic-paddle: b = 0.15 N·s/m",
+        "K = 300 N/m",
+        "sampling against viscous",
+        "500 Hz",
+    ):
+        assert part in out
+    assert "exactly at the limit: stiffness" in out
+
+
+def test_report_of_an_active_paddle(run: Run) -> None:
+    out = run(*ACTIVE).out
+    assert "takes 1.427 mJ out" in out
+    assert "2 samples in 2 ms" in out
+    assert out.index("lower the stiffness from 770 N/m to 300 N/m") < out.index("no change alone would do")
+
+
+def test_report_of_an_interval_says_so(run: Run) -> None:
+    assert "every value within" in run("check", "haptic-paddle", "--stiffness", "100 .. 200").out
+
+
+def test_json_has_units_in_its_keys(run: Run) -> None:
+    document = json.loads(run(*ACTIVE, "--json").out)
+    assert document["outcome"] == "active"
+    assert document["max_stiffness_N_per_m"] == 300
+    assert document["required_damping_N_s_per_m"] == 0.385
+    assert set(document["margins"]) == {"damping_N_s_per_m", "coulomb_friction_N"}
+    assert {"parameter", "from", "to", "unit"} <= set(document["advice"][0])
+    assert document["witness"]["positions_m"][0] == 0
+    assert document["witness"]["energy_J"] > 0
+
+
+def test_negative_values_are_values(run: Run) -> None:
+    result = run(*ACTIVE, "--virtual-damping", "-1e-3", "--json")
+    assert result.status == 1
+    assert "stiffness must be ≥ 0" in complaint(run("check", "haptic-paddle", "--stiffness", "-0.1 N/m"))
+
+
+def test_joined_leaves_everything_else_alone() -> None:
+    assert joined(["check", "--a", "-1", "-o", "-1", "--b=2", "-3", "--", "-4"]) == [
+        "check", "--a=-1", "-o", "-1", "--b=2", "-3", "--", "-4",
+    ]  # fmt: skip
+
+
+def test_two_files(run: Run, tmp_path: Path) -> None:
+    wheel, stop = tmp_path / "wheel.toml", tmp_path / "stop.toml"
+    wheel.write_text('[device]\ninertia = 0.05\ndamping = 0.2\nrate = "1 kHz"\n')
+    stop.write_text('[environment]\ntype = "wall"\nstiffness = 400\n')
+    result = run("check", str(wheel), str(stop))
+    assert result.status == 0
+    assert "wheel: b = 0.2 N·m·s/rad" in result.out
+    assert run("check", str(wheel), str(stop), "--stiffness", "500").status == 1
+
+
+def test_a_name_is_text_and_never_markup(run: Run) -> None:
+    result = run(*PASSIVE, "--name", "[red]:smile:[/red] \x1b[31m")
+    assert "[red]:smile:[/red] ?[31m" in result.out
+
+
+@pytest.mark.parametrize(
+    ("argv", "parts"),
+    [
+        ((), ("which command", "check, devices, verify")),
+        (("chek",), ("no command", "check")),
+        (("check", "haptic-paddle", "--stifness", "3"), ("--stifness", "did you mean --stiffness")),
+        (("check", "haptic-paddle", "--coulomb_friction=3"), ("did you mean --coulomb-friction",)),
+        (("check", "haptic-paddle", "--stiff", "3"), ("no option --stiff",)),
+        ((*PASSIVE, "--stiffness", "400"), ("twice",)),
+        (("check", "haptic-paddle", "--stiffness"), ("expected one argument",)),
+        (("check", "haptic-padle", "--stiffness", "3"), ("haptic-paddle",)),
+        (("check", "missing.toml"), ("no file",)),
+        (("check", "haptic-paddle"), ("no environment",)),
+        (("check", "touch", "--stiffness", "3"), ("damping", "rate")),
+        (("check",), ("no device",)),
+        ((*PASSIVE, "--rate", "1 kg"), ("rate is in Hz",)),
+        ((*PASSIVE, "--environment.stiffness", "3"), ("behind a coupling",)),
+        ((*PASSIVE, "--plot", "a.txt"), (".png",)),
+        ((*PASSIVE, "--plot", "no/such/folder/a.png"), ("no directory",)),
+        ((*PASSIVE, "-o", "."), ("directory",)),
+        ((*PASSIVE, "-o", "a.svg", "--plot", "a.svg"), ("same file",)),
+        ((*PASSIVE, "-o", "a\0b"), ("cannot be written",)),
+        (("devices", "phanton"), ("phantom",)),
+        (("devices", "phantom", "falcon"), ("too many",)),
+        (("verify",), ("FILE",)),
+        (("verify", "missing.json"), ("missing.json",)),
+    ],
+)
+def test_bad_input_is_one_line(run: Run, argv: tuple[str, ...], parts: tuple[str, ...]) -> None:
+    message = complaint(run(*argv))
+    assert all(part in message for part in parts), message
+
+
+# --- files ------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("argv", "status"), [(PASSIVE, 0), (ACTIVE, 1)])
+def test_a_saved_verdict_is_verified(run: Run, argv: tuple[str, ...], status: int, tmp_path: Path) -> None:
+    path = tmp_path / "verdict.json"
+    assert run(*argv, "-o", str(path)).status == status
+    result = run("verify", str(path))
+    assert result.status == 0
+    assert " VALID " in result.out
+    assert ("mJ" in result.out) == bool(status)
+
+
+def test_an_existing_file_is_not_lost(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "verdict.json"
+    path.write_text("mine")
+    assert "exists" in complaint(run(*PASSIVE, "--save", str(path)))
+    assert path.read_text() == "mine"
+    assert run(*PASSIVE, "--save", str(path), "--force").status == 0
+    assert json.loads(path.read_text())["outcome"] == "passive"
+
+
+def test_a_forged_proof_is_not_valid(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "verdict.json"
+    run(*PASSIVE, "-o", str(path))
+    path.write_text(path.read_text().replace('"300"', '"301"'))
+    result = run("verify", str(path))
+    assert result.status == 1
+    assert "NOT VALID" in result.out
+
+
+@pytest.mark.parametrize(
+    "content", ["", "{", "[]", "3", "{}", '{"outcome": "passive"}', "\x00", "[" * 100_000]
+)
+def test_what_cannot_be_read_is_bad_input(run: Run, content: str, tmp_path: Path) -> None:
+    path = tmp_path / "broken.json"
+    path.write_text(content)
+    complaint(run("verify", str(path)))
+
+
+def test_plot_gets_the_verdict(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[tuple[Verdict, Path]] = []
+    monkeypatch.setattr("zwidth.plots.save_check", lambda v, p: calls.append((v, p)), raising=False)
+    path = tmp_path / "loop.SVG"
+    assert run(*PASSIVE, "--plot", str(path)).status == 0
+    assert calls[0][0].outcome == "passive"
+    assert calls[0][1] == path
+
+
+# --- devices, help ------------------------------------------------------------
+
+
+def test_devices_lists_every_device_and_source(run: Run) -> None:
+    out = " ".join(run("devices").out.split())
+    for name in catalogue.names():
+        assert name in out
+        assert all(d.source[:20] in out for d in catalogue.entry(name).values.values() if d.value is not None)
+
+
+def test_one_device_has_a_row_for_each_value(run: Run) -> None:
+    out = run("devices", "phantom").out
+    assert out.count("unknown") == sum(d.value is None for d in catalogue.entry("phantom").values.values())
+
+
+def test_devices_as_json(run: Run) -> None:
+    document = json.loads(run("devices", "--json").out)
+    assert tuple(document) == catalogue.names()
+    assert document["haptic-paddle"]["values"]["damping_N_s_per_m"]["value"] == 0.15
+    assert document["phantom"]["values"]["mass_kg"]["value"] is None
+
+
+def test_help_names_every_parameter_with_its_unit(run: Run) -> None:
+    out = " ".join(run("check", "--help").out.split())
+    for parameter in (*device_parameters(), *environment_parameters()):
+        assert f"{parameter.option} {parameter.metavar} {parameter.help}" in out
+    for argv in (("--help",), ("devices", "--help"), ("verify", "-h")):
+        assert run(*argv).status == 0
+
+
+def test_version(run: Run) -> None:
+    assert run("--version").out.startswith("zwidth 0.")
+
+
+# --- the process --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("argv", [PASSIVE, ACTIVE, ("devices",), ("check", "--help")])
+def test_ascii_terminal(argv: tuple[str, ...]) -> None:
+    result = process(*argv, PYTHONIOENCODING="ascii", LC_ALL="C")
+    assert result.stderr == b""
+    assert result.stdout.isascii()
+    assert b"?" not in result.stdout.replace(b"passive?", b"")
+
+
+def test_json_on_an_ascii_terminal() -> None:
+    result = process(*ACTIVE, "--json", PYTHONIOENCODING="ascii")
+    assert result.stdout.isascii()
+    assert "N·s/m" in json.loads(result.stdout)["assumptions"][1]
+
+
+def test_colour_only_where_it_is_wanted() -> None:
+    assert b"\x1b[" in process(*PASSIVE, FORCE_COLOR="1", TERM="xterm").stdout
+    assert b"\x1b[" not in process(*PASSIVE, TERM="xterm").stdout
+
+
+def test_reader_that_leaves() -> None:
+    writer = subprocess.Popen(
+        [sys.executable, "-m", "zwidth", *ACTIVE], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    assert writer.stdout is not None
+    assert writer.stderr is not None
+    writer.stdout.close()
+    assert writer.wait(60) == 1
+    assert writer.stderr.read() == b""
+    writer.stderr.close()
+
+
+def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("zwidth.cli.specification.load", interrupted)
+    assert run(*PASSIVE).status == 130
+
+
+@pytest.mark.parametrize(
+    ("code", "absent"),
+    [
+        ("import zwidth", ("numpy", "scipy", "matplotlib", "rich", "argparse", "tomllib")),
+        (
+            "from zwidth.cli.main import main; main(['check', 'haptic-paddle', '--stiffness', '300'])",
+            ("numpy", "scipy", "matplotlib", "zwidth.plots"),
+        ),
+        (
+            "from zwidth.cli.main import main; main(['check', 'phantom', '--stiffness', '300', '--json'])",
+            ("numpy", "scipy", "matplotlib", "rich"),
+        ),
+    ],
+)
+def test_nothing_is_imported_before_it_is_needed(code: str, absent: tuple[str, ...]) -> None:
+    program = f"import sys\n{code}\nsys.exit(str([m for m in {absent} if m in sys.modules] or ''))"
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=60, check=False)
+    assert result.stderr.strip() == b""
+
+
+# --- pieces -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (22.4e-6, "m", "22.4 µm"),
+        (0.12, "N", "0.12 N"),
+        (0.00336, "N", "3.36 mN"),
+        (999.96e-6, "s", "1 ms"),
+        (-0.001427, "J", "-1.427 mJ"),
+        (300, "N/m", "300 N/m"),
+        (0.15, "N*m*s/rad", "0.15 N·m·s/rad"),
+        (5, "1", "5"),
+        (0, "m", "0 m"),
+        (1e30, "J", "1e+30 J"),
+        (5e-324, "J", "4.941e-324 J"),
+        (float("inf"), "N/m", "any"),
+        (None, "N/m", "none"),
+    ],
+)
+def test_numerals(value: float | None, unit: str, text: str) -> None:
+    assert shown(value, unit) == text
+
+
+def test_bars_fill_their_share() -> None:
+    assert bar(0, 1, 1, 10, fancy=True) == "█" * 10
+    assert bar(0.5, 1, 1, 10, fancy=False) == "     #####"
+    assert bar(0, 0.0001, 1, 10, fancy=True) == "▏"
+    assert bar(0, 0, 1, 10, fancy=True) == bar(0, 0, 0, 10, fancy=True) == ""
+    assert bar(0, float("inf"), 1, 3, fancy=False) == "###"
+
+
+def test_levels_span_the_values() -> None:
+    assert levels([0, 1, 0.5], fancy=True) == "▁█▅"
+    assert levels([2, 2], fancy=False) == "__"
