@@ -19,6 +19,7 @@ from typing import Any, Literal
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse
 
 Parameter = RealLike | Interval | tuple[RealLike, RealLike]
 Motion = Literal["linear", "rotary"]
@@ -30,7 +31,7 @@ class Device:
 
     ``m ẍ = f_h − f_a − f_c sgn ẋ − b ẋ``, sampled every T through an encoder of
     resolution Δ.  Every number may be an `Interval` (or a pair of ends); a
-    verdict then holds for every value in it.
+    verdict then holds for every value in it.  A text may carry a unit, "1 kHz".
 
     Parameters
     ----------
@@ -200,10 +201,7 @@ def _period(sample_period: Parameter | None, rate: Parameter | None) -> Paramete
     if sample_period is not None:
         return sample_period
     assert rate is not None
-    try:
-        parameter = as_parameter(rate)
-    except InputError as error:
-        raise InputError(f"rate [Hz]: {error}") from None
+    parameter = _read(rate, "Hz", "rate")
     if ends(parameter)[0] <= 0:
         raise InputError(f"rate must be > 0 Hz, got {parameter}; a loop that never samples renders nothing")
     return _reciprocal(parameter)
@@ -233,12 +231,19 @@ def _validated(key: str, value: Parameter | None, motion: str) -> Exact | Interv
         if key == "damping":
             raise InputError(f"{key} [{unit}] is needed and was not given")
         return None
-    try:
-        parameter = as_parameter(value)
-    except InputError as error:
-        raise InputError(f"{key} [{unit}]: {error}") from None
+    parameter = _read(value, unit, key)
     low = ends(parameter)[0]
     if low < 0 or (strict and low == 0):
         bound = ">" if strict else "≥"
         raise InputError(f"{key} must be {bound} 0 {unit}, got {parameter}: {why}")
     return parameter
+
+
+def _read(value: Parameter, unit: str, key: str) -> Exact | Interval:
+    """A number in SI, or a text with its unit, such as "22.4 um" or "0.1 .. 0.2 N"."""
+    if isinstance(value, (str, tuple, list)):
+        return parse(value, unit, key)
+    try:
+        return as_parameter(value)
+    except InputError as error:
+        raise InputError(f"{key} [{unit}]: {error}") from None
