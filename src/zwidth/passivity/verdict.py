@@ -165,9 +165,8 @@ class Verdict:
             "limit": self.limit,
             "mode": self.mode,
         }
-        if limits.has_stiffness(self.environment):
-            document[key("max_stiffness", "stiffness")] = self.max_stiffness
-        else:
+        document[key("max_stiffness", "stiffness")] = self.max_stiffness
+        if not limits.has_stiffness(self.environment):
             document["max_gain"] = self.max_gain
         document[key("required_damping", "damping")] = self.required_damping
         document["critical_frequency_Hz"] = self.critical_frequency
