@@ -19,7 +19,7 @@ from zwidth.passivity.linear import LinearRefutation
 from zwidth.passivity.supremum import tightest
 from zwidth.passivity.verdict import Outcome, Verdict
 from zwidth.passivity.witness import Witness, refute_friction, refute_linear
-from zwidth.quantity.exact import Interval
+from zwidth.quantity.exact import Interval, ends
 
 
 def check(device: Device, environment: Environment | Any) -> Verdict:
@@ -145,8 +145,22 @@ def _not_passive(
         )
     else:
         claim = _open_claim(decision)
-    assumptions = _assumptions(device, law, decision)
+    assumptions = _assumptions(device, law, decision) + _beyond_the_actuator(device, witness)
     return Verdict(outcome, claim, assumptions, *corner, decision, None, witness)
+
+
+def _beyond_the_actuator(device: Device, witness: Witness | None) -> tuple[str, ...]:
+    """Says where the motion asks for more force than the actuator has."""
+    if witness is None or device.force_limit is None:
+        return ()
+    unit = "N·m" if device.motion == "rotary" else "N"
+    most, needed = float(ends(device.force_limit)[1]), witness.peak_force
+    if needed <= most:
+        return (f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}",)
+    return (
+        f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that limit "
+        "respected no motion is shown, and none is excluded",
+    )
 
 
 def _open_claim(decision: Decision) -> str:

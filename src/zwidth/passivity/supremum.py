@@ -38,7 +38,8 @@ def tightest(loop: LinearLoop) -> tuple[float, Fraction]:
 
 def frequency(cosine: Fraction, period: Fraction) -> float:
     """ω/2π [Hz] of cos ωT."""
-    return acos(max(-1.0, min(1.0, float(cosine)))) / (2 * pi * float(period))
+    turns = acos(max(-1.0, min(1.0, float(cosine)))) / (2 * pi)
+    return turns / float(period)
 
 
 def _best(loop: LinearLoop, cosines: list[Fraction]) -> tuple[float, Fraction]:

@@ -117,6 +117,22 @@ class Witness:
         """Deepest penetration [m; rad]."""
         return float(self.motion.depth)
 
+    @property
+    def peak_force(self) -> float:
+        """Largest actuator force that the motion asks for, to rounding [N; N·m]."""
+        loop = self.setting.loop
+        d = [c / loop.denominator[0] for c in loop.denominator[1:]]
+        n = [c / loop.denominator[0] for c in loop.numerator]
+        past = [0.0] * max(len(d), len(n) - 1)
+        peak = 0.0
+        for x in self.positions:
+            w = x - sum(a * v for a, v in zip(d, past, strict=False))
+            past = [w, *past]
+            peak = max(peak, abs(sum(a * v for a, v in zip(n, past, strict=False))))
+            past.pop()
+        # a part that moves on with every round is listed once: its depth is what counts
+        return max(peak, abs(float(loop.static_stiffness or 0)) * self.depth)
+
     def verify(self) -> bool:
         """True when the independent checker finds the same energy, > 0."""
         return checker.verify(self.to_dict()).valid
@@ -138,7 +154,7 @@ class Witness:
         times = self.motion.rounds
         rounds = f", its cycle {times:.6g} times" if times > 1 and len(self.motion.repeats) == 1 else ""
         return (
-            f"{self.motion.samples:.6g} samples{rounds}, to {self.depth:.4g} {unit} at up to "
+            f"{self.motion.samples:.6g} sample{'s' * (self.motion.samples != 1)}{rounds}, to {self.depth:.4g} {unit} at up to "
             f"{self.peak_speed:.4g} {unit}/s, extracts {self.energy:.4g} J"
         )
 
