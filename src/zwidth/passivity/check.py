@@ -158,8 +158,8 @@ def _beyond_the_actuator(device: Device, witness: Witness | None) -> tuple[str, 
     if needed <= most:
         return (f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}",)
     return (
-        f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that limit "
-        "respected no motion is shown, and none is excluded",
+        f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
+        "limit respected no motion is shown, and none is excluded",
     )
 
 

@@ -154,7 +154,7 @@ class Witness:
         times = self.motion.rounds
         rounds = f", its cycle {times:.6g} times" if times > 1 and len(self.motion.repeats) == 1 else ""
         return (
-            f"{self.motion.samples:.6g} sample{'s' * (self.motion.samples != 1)}{rounds}, to {self.depth:.4g} {unit} at up to "
+            f"{self.motion.samples:.6g} samples{rounds}, to {self.depth:.4g} {unit} at up to "
             f"{self.peak_speed:.4g} {unit}/s, extracts {self.energy:.4g} J"
         )
 
