@@ -4,9 +4,9 @@ Which limit will my device meet first?
 
 In the plane of β = b/(K T) and σ = f_c/(K Δ) a device is a straight line, and
 stiffer walls lie further down and to the left.  It is passive as long as both
-are at least ½.  The line of a smart knob or a steering wheel often leaves
-through the left side (it becomes unstable); a device with little dry friction
-and a coarse encoder leaves through the bottom (it buzzes).
+are at least ½.  Where the line leaves that region says what a hand will feel
+first: through the left side the loop becomes unstable and bounces, through the
+bottom, with a coarse encoder and little dry friction, it buzzes.
 """
 
 import matplotlib.pyplot as plt

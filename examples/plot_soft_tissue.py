@@ -44,7 +44,7 @@ def kelvin_voigt(damping, period):
 # all: its damping alone asks for more than the device has.
 
 dampings = [round(0.01 * k, 2) for k in range(1, 28)]
-periods = [round(0.0005 + 0.00025 * k, 5) for k in range(19)]
+periods = [round(0.0005 + 0.0001 * k, 5) for k in range(46)]
 curves = {
     "a": ([solid(eta, 0.001) for eta in dampings], [kelvin_voigt(damping, 0.001) for damping in dampings]),
     "b": ([solid(0.5, period) for period in periods], [kelvin_voigt(0.5, period) for period in periods]),
@@ -53,13 +53,14 @@ curves = {
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
 for axes, name, x in ((left, "a", dampings), (right, "b", [1000 * period for period in periods])):
     relaxing, stiff = curves[name]
+    every = len(x) // 8
     axes.plot(x, [formula for formula, _ in relaxing], color="#0072B2", label="standard linear solid")
-    axes.plot(x[::3], [exact for _, exact in relaxing[::3]], "o", color="#0072B2", mfc="white", ms=4)
+    axes.plot(x[::every], [exact for _, exact in relaxing[::every]], "o", color="#0072B2", mfc="white", ms=4)
     if any(formula is not None for formula, _ in stiff):
         axes.plot(x, [formula for formula, _ in stiff], "--", color="#D55E00", label="Kelvin–Voigt")
-        axes.plot(x[::3], [exact for _, exact in stiff[::3]], "o", color="#D55E00", mfc="white", ms=4)
+        axes.plot(x[::every], [exact for _, exact in stiff[::every]], "o", color="#D55E00", mfc="white", ms=4)
     axes.set(ylim=(0, None), ylabel="largest passive stiffness [N/m]")
-    axes.legend(loc="center left" if name == "a" else "upper right")
+    axes.legend(loc="lower left" if name == "a" else "upper right")
 left.set(xlim=(0, 0.27), xlabel="damping of the environment [N·s/m]", title="(a) T = 1 ms")
 right.set(xlim=(0.5, 5), xlabel="sample period T [ms]", title="(b) 0.5 N·s/m; Kelvin–Voigt: none")
 

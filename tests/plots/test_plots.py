@@ -71,6 +71,15 @@ def test_plane_marks_the_device_and_counts_the_unknown():
     assert not _by_id(axes, "catalogue")  # the paddle itself is the only one with a place
 
 
+def test_plane_marks_the_limit_as_passive():
+    """Without a stiffness the largest passive one is marked, exactly on the edge and stable."""
+    odd = PADDLE.replace(damping="0.137", sample_period="0.0007")
+    (axes,) = plots.plane(odd).axes
+    (mark,) = _by_id(axes, "device")
+    assert mark.get_xdata()[0] == 0.5
+    assert any(t.get_text().endswith("globally stable") for t in axes.texts)
+
+
 def test_plane_of_another_device_shows_the_catalogue():
     """The paddle stands at its limit of 300 N/m, on β = ½."""
     (axes,) = plots.plane(WHEEL, 10).axes

@@ -87,6 +87,8 @@ def _stack(axes: Axes, shares: list[tuple[float, str, str]]) -> None:
     """Positive shares to the right of zero one after the other, negative ones to the left."""
     ends = {True: 0.0, False: 0.0}
     largest = max(abs(value) for value, _, _ in shares)
+    if largest == 0:
+        axes.text(0.01, 1, "nothing", va="center", transform=axes.get_yaxis_transform())
     for value, text, colour in shares:
         if abs(value) > _TINY * largest:
             axes.barh(
@@ -101,6 +103,8 @@ def _finish(axes: Axes, names: tuple[str, str]) -> None:
     axes.set_ylim(-0.5, 1.5)
     axes.axvline(0, color=GREY, lw=0.8)
     axes.margins(x=0.06)
+    if not any(bar.get_width() for bar in axes.patches):
+        axes.set_xlim(0, 1)
     axes.spines["left"].set_visible(False)
     axes.tick_params(axis="y", length=0)
     handles, _ = axes.get_legend_handles_labels()

@@ -9,7 +9,7 @@ Salisbury (2006).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, floor, inf, log10
+from math import ceil, floor, log10
 
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -31,7 +31,7 @@ from zwidth.plots.style import (
     number,
     unit_text,
 )
-from zwidth.quantity.exact import RealLike
+from zwidth.quantity.exact import Exact, RealLike
 
 _NEEDED = ("damping", "coulomb_friction", "resolution")
 
@@ -73,30 +73,37 @@ def draw_plane(
             "the plane has logarithmic axes b/(K T) and f_c/(K Δ): it needs damping, coulomb_friction "
             "and resolution > 0 and a device without delay"
         )
-    beta, sigma = _unit_point(device)  # at K = 1; both fall as 1/K
-    limit = 2 * min(beta, sigma)
-    k = limit if stiffness is None else float(stiffness)
-    point = plane_point(device, limit if stiffness is None else stiffness)
-    x, y = _span(beta / k, beta / limit), _span(sigma / k, sigma / limit)
+    given = _limit(device) if stiffness is None else Exact(stiffness)
+    point, at_limit = plane_point(device, given), _corner(device)
+    k, beta, sigma = float(given), float(point.viscous), float(point.dry)
+    others = _others(device) if with_catalogue else []
+    x = _span(beta, at_limit[0], *(_corner(other)[0] for other in others))
+    y = _span(sigma, at_limit[1], *(_corner(other)[1] for other in others))
     _regions(axes, x, y, sigma > beta)
+    _mark_others(axes, others)
     if with_catalogue:
-        _catalogue(axes, device, x, y)
-    _line(axes, device, (beta, sigma), x, y)
-    unit = unit_text("stiffness", device.motion)
+        _count_unknown(axes)
+    _line(axes, device, (beta * k, sigma * k), x, y)
     passive = point.region == "globally stable"
-    colour = GREEN if passive else RED
-    axes.plot([beta / k], [sigma / k], "o", color=colour, ms=8, zorder=6, gid="device")
+    axes.plot([beta], [sigma], "o", color=GREEN if passive else RED, ms=8, zorder=6, gid="device")
     axes.annotate(
-        f"{device.name}\nK = {number(k)} {unit}\n{point.region}",
-        (beta / k, sigma / k), (9, -4), textcoords="offset points", va="top", fontsize=8.5,
-        color=BLACK, zorder=7,
+        f"{device.name}\nK = {number(k)} {unit_text('stiffness', device.motion)}\n{point.region}",
+        (beta, sigma), (9, -4), textcoords="offset points", va="top", fontsize=8.5, color=BLACK, zorder=7,
         bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8},
     )  # fmt: skip
     axes.set_title("a stiffer wall lies further down and to the left")
 
 
-def _unit_point(device: Device) -> tuple[float, float]:
+def _limit(device: Device) -> Exact:
+    """The largest passive stiffness, exactly: there the smaller of β and σ is ½."""
     point = plane_point(device, 1)
+    assert isinstance(point.dry, Exact)
+    return Exact(2 * min(point.viscous.fraction, point.dry.fraction))
+
+
+def _corner(device: Device) -> tuple[float, float]:
+    """(β, σ) at the largest passive stiffness."""
+    point = plane_point(device, _limit(device))
     return float(point.viscous), float(point.dry)
 
 
@@ -158,21 +165,25 @@ def _line(
         )
 
 
-def _catalogue(axes: Axes, device: Device, x: tuple[float, float], y: tuple[float, float]) -> None:
-    """Where the catalogue's devices are at their largest passive stiffness."""
-    complete = list(_complete())
-    for other in complete:
-        if _unit_point(other) == _unit_point(device):
-            continue
-        beta, sigma = _unit_point(other)
-        k = 2 * min(beta, sigma)
-        if x[0] <= beta / k <= x[1] and y[0] <= sigma / k <= y[1]:
-            axes.plot([beta / k], [sigma / k], "s", color=GREY, ms=5, gid="catalogue")
-            axes.annotate(
-                f"{other.name} at {number(k)} {unit_text('stiffness', other.motion)}",
-                (beta / k, sigma / k), (7, 5), textcoords="offset points", fontsize=7.5, color=GREY,
-            )  # fmt: skip
-    left_out = len(catalogue.names()) - len(complete)
+def _others(device: Device) -> list[Device]:
+    """The devices of the catalogue that have a line of their own in the plane."""
+    mine = _corner(device), _limit(device)
+    return [other for other in _complete() if (_corner(other), _limit(other)) != mine]
+
+
+def _mark_others(axes: Axes, others: list[Device]) -> None:
+    """Where they are at their largest passive stiffness."""
+    for other in others:
+        k = number(float(_limit(other)))
+        axes.plot(*([v] for v in _corner(other)), "s", color=GREY, ms=5, gid="catalogue")
+        axes.annotate(
+            f"{other.name} at {k} {unit_text('stiffness', other.motion)}",
+            _corner(other), (7, 5), textcoords="offset points", fontsize=7.5, color=GREY,
+        )  # fmt: skip
+
+
+def _count_unknown(axes: Axes) -> None:
+    left_out = len(catalogue.names()) - len(list(_complete()))
     if left_out:
         unknown = low_index("b, T, f_c or Δ is unpublished")
         note(axes, f"{left_out} devices of the catalogue have no place here: {unknown}.")
@@ -185,5 +196,5 @@ def _complete() -> Iterator[Device]:
         timed = "rate" in known or "sample_period" in known
         if timed and all(key in known for key in _NEEDED):
             device = catalogue.device(name)
-            if has_plane(device) and inf not in _unit_point(device):
+            if has_plane(device):
                 yield device

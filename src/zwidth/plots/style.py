@@ -77,7 +77,7 @@ def low_index(text: str) -> str:
 
 def number(value: float) -> str:
     """Four digits, with a minus sign and no exponent where it is readable."""
-    text = f"{value:.4g}"
+    text = f"{value + 0.0:.4g}"  # + 0.0: no negative zero
     if "e" in text:
         mantissa, power = text.split("e")
         text = f"{mantissa}·10{''.join(_SUPERSCRIPT[c] for c in str(int(power)))}"

@@ -1,0 +1,43 @@
+"""Each gallery script runs, makes one figure and prints the number that its page promises."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+NUMBERS = {
+    "plot_buzz_or_bounce": "active tactile: largest passive stiffness 107.1 N/m",
+    "plot_delay": "with 0.3 ms: 174.2 N/m; rounded up to 1 ms: 100 N/m",
+    "plot_how_stiff": "largest passive stiffness at 1 kHz: 300 N/m",
+    "plot_plane": "largest passive stiffness: 26.08 N·m/rad",
+    "plot_soft_tissue": "largest relative difference over 99 points: ",
+    "plot_velocity_filter": "N = 20: b ≥ 0.248 B, tightest at 35 Hz",
+    "plot_worst_case": "admissible speed at 770 N/m: 0.474 m/s",
+}
+
+
+def test_every_script_is_listed():
+    """A new page comes with its number."""
+    assert {path.stem for path in EXAMPLES.glob("plot_*.py")} == set(NUMBERS)
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_script_prints_its_number(name, capsys, monkeypatch):
+    """The figure is one, and the number is the one in the text."""
+    plt.switch_backend("agg")
+    monkeypatch.setattr(plt, "show", lambda: None)
+    try:
+        with plt.rc_context():
+            runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
+        assert len(plt.get_fignums()) == 1
+    finally:
+        plt.close("all")
+    printed = capsys.readouterr().out
+    assert NUMBERS[name] in printed
+    if name == "plot_soft_tissue":
+        assert float(printed.rsplit(" ", 1)[1]) <= 1e-12
