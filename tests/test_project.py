@@ -262,6 +262,7 @@ def test_every_key_of_the_json_is_on_its_page() -> None:
     )
     loops = [
         (paddle, zw.Wall(stiffness=300)),
+        (paddle, zw.Wall(stiffness=770)),
         (delayed, zw.Wall(stiffness=900, damping=0.1)),
         (paddle, zw.Wall(stiffness=200, damping=0.02)),
         (paddle.replace(coulomb_friction=0), zw.Wall(stiffness=100)),
