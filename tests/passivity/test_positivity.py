@@ -1,0 +1,161 @@
+"""Signs on [−1, 1] decided exactly, against polynomials of known roots and against mpmath's roots."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import lcm
+from random import Random
+
+import mpmath
+import pytest
+from flint import fmpz_poly
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from zwidth.passivity.positivity import Positivity, prove_nonnegative
+
+
+def product(*factors):
+    """The product of factors in ascending rational coefficients, as an integer polynomial."""
+    total = [Fraction(1)]
+    for factor in factors:
+        out = [Fraction(0)] * (len(total) + len(factor) - 1)
+        for i, x in enumerate(total):
+            for j, y in enumerate(factor):
+                out[i + j] += x * Fraction(y)
+        total = out
+    scale = 1
+    for c in total:
+        scale = lcm(scale, c.denominator)
+    return fmpz_poly([int(c * scale) for c in total])
+
+
+def value(p, c):
+    """p(c) by Horner, exactly."""
+    total = Fraction(0)
+    for a in reversed(p.coeffs()):
+        total = total * c + int(a)
+    return total
+
+
+def assert_sound(p, nonnegative):
+    """The answer is as expected and carries evidence that can be multiplied or evaluated out."""
+    answer = prove_nonnegative(p)
+    if not nonnegative:
+        assert isinstance(answer, Fraction)
+        assert -1 < answer < 1
+        assert value(p, answer) < 0
+        return
+    assert isinstance(answer, Positivity)
+    ends = [(1, -1)] * answer.at_one + [(1, 1)] * answer.at_minus_one
+    rebuilt = product(*ends, answer.square, answer.square, answer.factor) if answer.square else fmpz_poly([])
+    ratio = {Fraction(int(a), int(b)) for a, b in zip(p.coeffs(), rebuilt.coeffs(), strict=True) if b}
+    assert p == rebuilt or (len(ratio) == 1 and ratio.pop() > 0)
+    assert all(value(fmpz_poly(list(answer.factor)), Fraction(k, 97)) > 0 for k in range(-97, 98))
+
+
+def root(r):
+    """c − r."""
+    return (-Fraction(r), 1)
+
+
+TINY = Fraction(1, 10**30)
+NONNEGATIVE = {
+    "touches inside": [root("0.37"), root("0.37")],
+    "touches both ends": [(1, -1), (1, 1)],
+    "touches an end to third order": [(1, -1)] * 3,
+    "double roots at dyadic points": [root("0.5"), root("0.5"), root("-0.25"), root("-0.25"), (3, 1)],
+    "fourfold root at 0 and a simple one at −1": [root(0)] * 4 + [(1, 1)],
+    "roots just outside": [(1 + TINY, -1), (1 + TINY, 1)],
+    "misses zero by 1e-30": [(Fraction("0.1369") + TINY, Fraction("-0.74"), 1)],
+    "two near misses": [(Fraction("0.25") + TINY, -1, 1), (Fraction("0.0625") + TINY, Fraction("0.5"), 1)],
+    "a positive constant": [(Fraction("0.003"),)],
+    "roots far away": [(7, 2), (11, -3), (5, 1, 1)],
+}
+NEGATIVE = {
+    "c(c − 1/2)": [root(0), root("0.5")],
+    "c²(c − 1/4)": [root(0), root(0), root("0.25")],
+    "(c − 1/2)(c + 1/2)": [root("0.5"), root("-0.5")],
+    "crosses inside": [root("0.37")],
+    "crosses next to an end": [(1 - TINY, -1)],
+    "crosses next to the other end": [(1 - TINY, 1)],
+    "dips by 1e-30": [(Fraction("0.1369") - TINY, Fraction("-0.74"), 1)],
+    "dips at a dyadic point": [(-TINY, 0, 1)],
+    "negative but for the ends": [(-1, 0, 1)],
+    "square times a crossing at the same place": [root("0.625")] * 3,
+    "negative between two double roots": [root("-0.5")] * 2 + [root("0.5")] * 2 + [(-2, 1)],
+    "a negative constant": [(Fraction("-0.003"),)],
+    "negative of a square": [root("0.2"), root("0.2"), (-4,)],
+}
+
+
+@pytest.mark.parametrize("name", NONNEGATIVE)
+def test_nonnegative(name):
+    """Polynomials that are never negative on [−1, 1] are proved, however closely they touch."""
+    assert_sound(product(*NONNEGATIVE[name]), True)
+
+
+@pytest.mark.parametrize("name", NEGATIVE)
+def test_negative_somewhere(name):
+    """Polynomials that are negative somewhere get a point inside where they are."""
+    assert_sound(product(*NEGATIVE[name]), False)
+
+
+def test_zero():
+    """The zero polynomial is nonnegative."""
+    assert isinstance(prove_nonnegative(fmpz_poly([])), Positivity)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_degree_sixty(seed):
+    """Sixty roots: twenty-nine touching pairs inside, then one pair that is or is not a hair apart."""
+    random = Random(seed)
+    places = [Fraction(random.randint(-999, 999), 1000) for _ in range(29)]
+    touching = [f for r in places for f in (root(r), root(r))]
+    last = Fraction(random.randint(-999, 999), 1000)
+    while last in places:
+        last += Fraction(1, 3000)
+    hair = Fraction(1, 10**25)
+    above, below = (((last * last) + s * hair, -2 * last, 1) for s in (1, -1))
+    assert_sound(product(*touching, above), True)
+    assert_sound(product(*touching, below), False)
+
+
+@pytest.mark.filterwarnings("ignore:Descending")
+@pytest.mark.parametrize("seed", range(60))
+def test_against_roots(seed):
+    """Random polynomials agree with the sign between the real roots that mpmath finds."""
+    random = Random(seed)
+    degree = random.randint(1, 14)
+    p = fmpz_poly([random.randint(-50, 50) for _ in range(degree)] + [random.choice([-3, 2, 17])])
+    p = p + random.choice([0, 40, 120])
+    coefficients = [int(c) for c in p.coeffs()]
+    roots = mpmath.polyroots(coefficients[::-1], maxsteps=500, extraprec=500)
+    real = sorted(float(r.real) for r in roots if abs(r.imag) < 1e-20 and abs(r.real) < 1)
+    cuts = [-1.0, *real, 1.0]
+    lowest = min(value(p, Fraction((a + b) / 2)) for a, b in zip(cuts, cuts[1:], strict=False))
+    assert_sound(p, lowest > 0)
+
+
+numbers = st.fractions(-2, 2, max_denominator=64)
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    st.lists(numbers, max_size=5),
+    st.lists(numbers, max_size=4),
+    st.lists(st.tuples(numbers, st.fractions(Fraction(1, 1000), 1)), max_size=3),
+    st.sampled_from([1, -1]),
+)
+def test_products_of_known_factors(simple, double, complex_pairs, sign):
+    """The sign of a product follows from counting the roots of its factors."""
+    factors = [(sign,), *(root(r) for r in simple)]
+    factors += [root(r) for r in double for _ in (1, 2)]
+    factors += [(r * r + s, -2 * r, 1) for r, s in complex_pairs]
+    cuts = sorted({Fraction(-1), Fraction(1), *(r for r in simple if -1 < r < 1)})
+
+    def positive(c):
+        return sign * (-1) ** sum(r > c for r in simple) > 0
+
+    nonnegative = all(positive((a + b) / 2) for a, b in zip(cuts, cuts[1:], strict=False))
+    assert_sound(product(*factors), nonnegative)
