@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from io import BytesIO
 
 import pytest
 from matplotlib.axes import Axes
@@ -133,6 +134,17 @@ def test_replay_ends_at_the_energy_of_the_witness(device, law):
     assert len(played.forces) == len(played.times) - 1
 
 
+def test_long_replay_agrees_with_exact_arithmetic(monkeypatch):
+    """Floating point, taken for long motions, shows the same."""
+    law = zw.StandardLinearSolid(stiffness=100, branch_stiffness=100, branch_damping=0.2)
+    witness = zw.check(PADDLE.replace(delay=0.0023), law).witness
+    exact = replay(witness)
+    monkeypatch.setattr("zwidth.plots.replay._EXACT", 0)
+    fast = replay(witness)
+    assert fast.energies == pytest.approx(exact.energies, rel=1e-9, abs=1e-9)
+    assert fast.forces == pytest.approx(exact.forces, rel=1e-9)
+
+
 def test_replay_shows_a_few_rounds():
     """Of a long repetition three rounds are played, each with the energy of one more round."""
     witness = zw.check(PADDLE.replace(resolution=22.4e-4), zw.Wall(stiffness=150)).witness
@@ -202,6 +214,15 @@ def test_check_figure_has_the_panels_that_apply(device, law, panels):
     assert isinstance(figure, Figure)
     assert len(figure.axes) == panels
     assert all(axes.has_data() for axes in figure.axes)
+
+
+def test_names_are_drawn_as_they_are():
+    """A dollar in a device's name starts no mathematics, and a long name is cut."""
+    device = PADDLE.replace(name="$\\foo$ of\nour lab, " + "x" * 100)
+    figure = plots.check_figure(zw.check(device, zw.Wall(stiffness=300)))
+    figure.savefig(BytesIO())
+    assert figure.get_suptitle().startswith("$\\foo$ of our lab, xxx")
+    plots.worst_case(device, 300).savefig(BytesIO())
 
 
 def test_importing_zwidth_does_not_import_matplotlib():

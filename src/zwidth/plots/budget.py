@@ -103,7 +103,7 @@ def _finish(axes: Axes, names: tuple[str, str]) -> None:
     axes.set_ylim(-0.5, 1.5)
     axes.axvline(0, color=GREY, lw=0.8)
     axes.margins(x=0.06)
-    if not any(bar.get_width() for bar in axes.patches):
+    if not axes.dataLim.width:
         axes.set_xlim(0, 1)
     axes.spines["left"].set_visible(False)
     axes.tick_params(axis="y", length=0)

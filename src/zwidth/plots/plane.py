@@ -29,6 +29,7 @@ from zwidth.plots.style import (
     new_figure,
     note,
     number,
+    shown_name,
     unit_text,
 )
 from zwidth.quantity.exact import Exact, RealLike
@@ -87,8 +88,9 @@ def draw_plane(
     passive = point.region == "globally stable"
     axes.plot([beta], [sigma], "o", color=GREEN if passive else RED, ms=8, zorder=6, gid="device")
     axes.annotate(
-        f"{device.name}\nK = {number(k)} {unit_text('stiffness', device.motion)}\n{point.region}",
+        f"{shown_name(device)}\nK = {number(k)} {unit_text('stiffness', device.motion)}\n{point.region}",
         (beta, sigma), (9, -4), textcoords="offset points", va="top", fontsize=8.5, color=BLACK, zorder=7,
+        parse_math=False,
         bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8},
     )  # fmt: skip
     axes.set_title("a stiffer wall lies further down and to the left")

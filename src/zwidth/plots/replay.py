@@ -1,6 +1,7 @@
 """A witness played back sample by sample: position, held force, energy taken out.
 
-Arithmetic is exact, as in the checker, and becomes floating point at the end.
+Arithmetic is exact for short motions, as in the checker, and in floating point
+for long ones; the encoder's counts are exact in both.
 Only the first few rounds of a repeated part are played.
 """
 
@@ -22,6 +23,9 @@ WHOLE = "the whole motion"
 
 _LEAD = 60
 """Samples before a repeated part up to which they are shown too."""
+
+_EXACT = 300
+"""Samples up to which arithmetic is exact; beyond, digits grow and time with them."""
 
 _FULL = 20_000
 """Samples of a motion with several repeated parts up to which all of it is played."""
@@ -52,20 +56,24 @@ class Replay:
     caption: str
 
 
+_Real = Fraction | float
+
+
 class _Step(NamedTuple):
     """From one instant to the next at constant velocity under one force."""
 
     length: Fraction
-    move: Fraction
-    force: Fraction
+    move: _Real
+    force: _Real
 
 
 def replay(witness: Witness) -> Replay:
     """Play a witness, shortened to what can be seen."""
     x, y, first, caption = _unrolled(witness)
     steps = _steps(witness.setting, x, y)
+    zero: _Real = Fraction(0) if len(x) <= _EXACT else 0.0
     per_sample = 2 if witness.setting.loop.part_delay else 1
-    times, positions, energies = [Fraction(0)], [x[0]], [Fraction(0)]
+    times, positions, energies = [zero], [zero + x[0]], [zero]
     setting = witness.setting
     for step in steps:
         times.append(times[-1] + step.length)
@@ -82,10 +90,10 @@ def replay(witness: Witness) -> Replay:
     )
 
 
-def _gain(setting: Setting, step: _Step) -> Fraction:
+def _gain(setting: Setting, step: _Step) -> _Real:
     """−f Δx − f_c |Δx| − b Δx²/Δt."""
-    rubbed = setting.coulomb_friction * abs(step.move)
-    viscous = setting.loop.damping * step.move**2 / step.length
+    rubbed = setting.coulomb_friction * (step.move if step.move > 0 else -step.move)
+    viscous = setting.loop.damping * step.move * step.move / step.length
     return -step.force * step.move - rubbed - viscous
 
 
@@ -131,7 +139,7 @@ def _steps(setting: Setting, x: Sequence[Fraction], y: Sequence[Fraction]) -> li
     loop, forces = setting.loop, _forces(setting, x)
     late, alpha = loop.whole_delay, loop.part_delay
 
-    def applied(k: int) -> Fraction:
+    def applied(k: int) -> _Real:
         return forces[k] if k >= 0 else Fraction(0)
 
     steps = []
@@ -143,15 +151,16 @@ def _steps(setting: Setting, x: Sequence[Fraction], y: Sequence[Fraction]) -> li
     return steps
 
 
-def _forces(setting: Setting, x: Sequence[Fraction]) -> list[Fraction]:
+def _forces(setting: Setting, x: Sequence[Fraction]) -> list[_Real]:
     """f(k) by the direct form D w = x, f = N w, from the position that the encoder reads."""
     n, d, count = setting.loop.numerator, setting.loop.denominator, setting.resolution
-    past: list[Fraction] = []  # w, the newest last
+    zero: _Real = Fraction(0) if len(x) <= _EXACT else 0.0
+    past: list[_Real] = []  # w, the newest last
     forces = []
     for position in x:
         read = count * (position // count) if count else position
         inside = max(read, Fraction(0)) if setting.unilateral else read
-        w = inside - sum((a * past[-i] for i, a in enumerate(d) if 0 < i <= len(past)), Fraction(0))
+        w = inside - sum((a * past[-i] for i, a in enumerate(d) if 0 < i <= len(past)), zero)
         past.append(w / d[0])
-        forces.append(sum((a * past[-1 - i] for i, a in enumerate(n) if i < len(past)), Fraction(0)))
+        forces.append(sum((a * past[-1 - i] for i, a in enumerate(n) if i < len(past)), zero))
     return forces

@@ -18,7 +18,7 @@ from zwidth.passivity.verdict import Verdict
 from zwidth.plots.budget import draw_damping, draw_friction, has_friction
 from zwidth.plots.criterion import draw_criterion
 from zwidth.plots.plane import draw_plane, has_plane
-from zwidth.plots.style import LOOK, OUTCOME, new_figure
+from zwidth.plots.style import LOOK, OUTCOME, new_figure, shown_name
 from zwidth.plots.witness import draw_witness
 
 ENDINGS = ("png", "svg", "pdf")
@@ -84,8 +84,8 @@ def check_figure(verdict: Verdict) -> Figure:
         last_alone = k == len(panels) - 1 and k % 2 == 0
         draw(figure, grid[k // 2, :] if last_alone else grid[k // 2, k % 2], verdict)
     figure.suptitle(
-        _lines(f"{verdict.device.name}: {verdict.outcome}. {verdict.claim}"),
-        x=0.01, ha="left", fontsize=11, color=OUTCOME[verdict.outcome],
+        _lines(f"{shown_name(verdict.device)}: {verdict.outcome}. {verdict.claim}"),
+        x=0.01, ha="left", fontsize=11, color=OUTCOME[verdict.outcome], parse_math=False,
     )  # fmt: skip
     figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
     return figure

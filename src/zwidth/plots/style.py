@@ -14,6 +14,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from zwidth.device import Device
 from zwidth.quantity.glossary import GLOSSARY
 
 BLACK, GREY = "#222222", "#777777"
@@ -37,6 +38,9 @@ LOOK: Any = {
     "ytick.labelsize": 8.5,
 }
 """Settings under which every picture is drawn."""
+
+_LONGEST = 36
+"""Characters of a device's name that are drawn."""
 
 _PREFIXES = {0: "", -3: "m", -6: "µ", -9: "n", -12: "p", 3: "k", 6: "M"}
 _SCALED = ("m", "s", "J", "N", "rad", "N*m")
@@ -100,6 +104,12 @@ def quantity_text(value: float, name: str, motion: str = "linear") -> str:
     """A value with its unit, such as "6.6 µJ" or "0.15 N·s/m"."""
     factor, unit = scale([value], GLOSSARY[name].unit_for(motion))
     return f"{number(value * factor)} {unit}"
+
+
+def shown_name(device: Device) -> str:
+    """The name of a device on one short line; it is drawn as it is, without mathematics."""
+    name = " ".join(device.name.split())
+    return name if len(name) <= _LONGEST else name[: _LONGEST - 1] + "…"
 
 
 def note(axes: Axes, text: str) -> None:

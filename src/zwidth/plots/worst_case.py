@@ -19,7 +19,18 @@ from zwidth.device import Device
 from zwidth.errors import InputError
 from zwidth.passivity.quantization import linear_worst_case, plane_point
 from zwidth.passivity.quantization import worst_case as worst_case_at
-from zwidth.plots.style import BLUE, GREY, LOOK, ORANGE, label, new_figure, number, scale, unit_text
+from zwidth.plots.style import (
+    BLUE,
+    GREY,
+    LOOK,
+    ORANGE,
+    label,
+    new_figure,
+    number,
+    scale,
+    shown_name,
+    unit_text,
+)
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -72,7 +83,9 @@ def draw_worst_case(axes: Axes, device: Device, stiffness: RealLike, span: RealL
     axes.set_xlabel(f"way out in one sample λ [{metres}]")
     axes.set_ylabel(label("energy", text="beyond an ideal spring,", unit=joules).replace(" W ", " J* "))
     unit = unit_text("stiffness", device.motion)
-    axes.set_title(f"{device.name}, K = {number(float(stiffness))} {unit}: {region}")
+    axes.set_title(
+        f"{shown_name(device)}, K = {number(float(Exact(stiffness)))} {unit}: {region}", parse_math=False
+    )
     axes.margins(y=0.12)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2)
 
