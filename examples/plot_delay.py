@@ -4,7 +4,7 @@ What does a fraction of a sample of delay cost?
 
 Between reading the encoder and switching the motor a computer needs time, most
 often less than a sample.  Rounding that up to a whole sample is safe and gives
-away much.  The exact condition for a spring and any delay (d + α) T is
+away much.  The exact condition for a spring and any delay (d + α) T is ::
 
     K ≤ (4b/T) / [2d + 1 + 2α + √((2d + 1)² + 8 α (d + 1))]
 """

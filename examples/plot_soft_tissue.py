@@ -6,7 +6,7 @@ Tissue that relaxes, a standard linear solid, is easier to render than a spring
 with a damper beside it (Kelvin–Voigt).  This is figure 4 of "A passivity
 criterion for real-time haptic simulation of viscoelastic soft tissues"
 recomputed: a PHANToM with b = 0.27 N·s/m, a series spring of μ1 = 10 N/m.
-The largest parallel stiffness by backward Euler is
+The largest parallel stiffness by backward Euler is ::
 
     μ0 ≤ 2b/T − 2 μ1 η1/(2 η1 + μ1 T),      K ≤ 2 (b − |B|)/T  for Kelvin–Voigt
 
