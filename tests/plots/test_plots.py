@@ -50,6 +50,16 @@ def test_criterion_of_a_passive_loop_shades_nothing():
     assert not axes.collections
 
 
+@pytest.mark.parametrize("damping", [0.5, -0.3])
+def test_criterion_on_a_logarithmic_axis(damping):
+    """A top towards 0 Hz is marked at the left end, another where it is."""
+    verdict = zw.check(IDEAL, zw.Wall(stiffness=100, damping=damping, velocity_filter=zw.Window(20)))
+    (axes,) = plots.criterion(verdict, log_frequency=True).axes
+    (mark,) = _by_id(axes, "critical")
+    assert mark.get_xdata()[0] == max(verdict.critical_frequency, axes.get_xlim()[0])
+    assert axes.get_xlim()[0] > 0
+
+
 def test_narrow_peaks_are_drawn_on_both_sides():
     """A resonance far narrower than the even spacing has points at its top and on its flanks."""
     law = zw.PulseTransferFunction([100, -190, 99.9], [1, -1.9, 0.99999])

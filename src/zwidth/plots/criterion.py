@@ -7,7 +7,7 @@ below the device's damping b, at every frequency up to half the sample rate.
 from __future__ import annotations
 
 from fractions import Fraction
-from math import cos, inf, isfinite, pi
+from math import cos, inf, isfinite, log, pi
 from statistics import median
 
 from matplotlib import rc_context
@@ -24,22 +24,22 @@ _FLAT = 1e-6
 
 
 @rc_context(LOOK)
-def criterion(verdict: Verdict, log: bool = False) -> Figure:
+def criterion(verdict: Verdict, log_frequency: bool = False) -> Figure:
     """Required damping against frequency, 0 … 1/(2T), with the device's damping.
 
     Parameters
     ----------
     verdict
         What `zwidth.check` returned.
-    log
+    log_frequency
         Frequency on a logarithmic axis.
     """
     figure = new_figure()
-    draw_criterion(figure.add_subplot(), verdict, log)
+    draw_criterion(figure.add_subplot(), verdict, log_frequency)
     return figure
 
 
-def draw_criterion(axes: Axes, verdict: Verdict, log: bool = False) -> None:
+def draw_criterion(axes: Axes, verdict: Verdict, log_frequency: bool = False) -> None:
     """The same on given axes."""
     frequencies, needs = refined_curve(verdict)
     b, motion = float(verdict.decision.loop.damping), verdict.device.motion
@@ -52,12 +52,14 @@ def draw_criterion(axes: Axes, verdict: Verdict, log: bool = False) -> None:
     axes.plot(frequencies, needs, color=BLUE, label="asked of the device")
     unit = unit_text("damping", motion)
     axes.axhline(b, color="black", ls="--", lw=1.4, label=f"device damping b = {number(b)} {unit}")
-    _mark(axes, verdict, needs, (low, high))
     nyquist = 0.5 / float(verdict.decision.loop.period)
-    if log:
+    slowest = nyquist / 1000 if log_frequency else 0.0
+    if log_frequency:
+        slowest = min(slowest, verdict.critical_frequency / 10 or slowest)
         axes.set_xscale("log")
-    axes.set_xlim(frequencies[0] if log else 0, nyquist)
+    axes.set_xlim(slowest, nyquist)
     axes.set_ylim(low, high)
+    _mark(axes, verdict, needs, (low, high))
     axes.set_xlabel(label("frequency"))
     axes.set_ylabel(label("damping", motion, "required damping"))
     axes.set_title(f"{verdict.outcome}: {verdict.limit}", color=OUTCOME[verdict.outcome])
@@ -88,7 +90,7 @@ def _range(needs: list[float], b: float) -> tuple[float, float]:
         top = 10 * max(b, abs(median(finite)) if finite else 1.0)
     bottom = max(min(0.0, *finite), -top)  # how far it lies below zero is of no interest
     span = (top - bottom) or 1.0
-    return (bottom - 0.05 * span if bottom < 0 else 0.0), top + 0.38 * span
+    return (bottom - 0.05 * span if bottom < 0 else 0.0), top + 0.45 * span
 
 
 def _mark(axes: Axes, verdict: Verdict, needs: list[float], limits: tuple[float, float]) -> None:
@@ -107,8 +109,10 @@ def _mark(axes: Axes, verdict: Verdict, needs: list[float], limits: tuple[float,
         place = f"at {number(peak)} Hz" if peak else "towards 0 Hz"
         text, height = f"{number(need)} {unit} {place}", need
     nyquist = 0.5 / float(verdict.decision.loop.period)
-    across = min(max(peak / nyquist, 0.0), 1.0)
-    axes.plot([peak], [height], "o", color=RED, ms=6, clip_on=False, zorder=5, gid="critical")
+    slowest = axes.get_xlim()[0]
+    at = max(peak, slowest)
+    across = log(at / slowest) / log(nyquist / slowest) if slowest else min(at / nyquist, 1.0)
+    axes.plot([at], [height], "o", color=RED, ms=6, clip_on=False, zorder=5, gid="critical")
     side = "left" if across < 0.35 else "right" if across > 0.65 else "center"
     shift = {"left": 6, "right": -6, "center": 0}[side]
-    axes.annotate(text, (peak, height), (shift, 7), textcoords="offset points", ha=side, fontsize=8.5)
+    axes.annotate(text, (at, height), (shift, 7), textcoords="offset points", ha=side, fontsize=8.5)
