@@ -1,0 +1,270 @@
+"""The linear criterion decided: poles anywhere, equality, narrow resonances, random laws."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import acos, pi
+from random import Random
+
+import numpy as np
+import pytest
+
+from zwidth.environment.environment import RationalFunction
+from zwidth.passivity import checker
+from zwidth.passivity.boundary import smallest_holding
+from zwidth.passivity.certificate import certify
+from zwidth.passivity.decision import Decision
+from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity.loop import loop_from
+from zwidth.passivity.supremum import frequency, tightest
+from zwidth.passivity.witness import Setting, refute_linear
+
+T = Fraction(1, 1000)
+BILLIONTH = Fraction(1, 10**9)
+
+
+def multiply(*factors):
+    """The product of polynomials in descending rational coefficients."""
+    total = [Fraction(1)]
+    for factor in factors:
+        out = [Fraction(0)] * (len(total) + len(factor) - 1)
+        for i, x in enumerate(total):
+            for j, y in enumerate(factor):
+                out[i + j] += x * Fraction(y)
+        total = out
+    return tuple(total)
+
+
+def add(a, b):
+    """The sum of two polynomials in descending coefficients."""
+    size = max(len(a), len(b))
+    padded = [(Fraction(0),) * (size - len(p)) + tuple(p) for p in (a, b)]
+    return tuple(x + y for x, y in zip(*padded, strict=True))
+
+
+def law(numerator, denominator, damping, delay=Fraction(0), period=T):
+    """The loop of H(z) given by descending coefficients."""
+    h = RationalFunction(tuple(map(Fraction, numerator)), tuple(map(Fraction, denominator)))
+    return loop_from(h, Fraction(damping), period, Fraction(delay))
+
+
+def setting(loop):
+    """The loop with an ideal encoder, without Coulomb friction and in contact on both sides."""
+    return Setting(loop, Fraction(0), Fraction(0), False)
+
+
+def assert_passive(loop):
+    """Proved, and the checker accepts the certificate."""
+    assert isinstance(decide_linear(loop), LinearProof)
+    verification = checker.verify(certify(Decision(setting(loop))))
+    assert verification.valid, verification.reason
+
+
+def assert_active(loop, reason=None):
+    """Refuted, and a motion extracts energy in exact arithmetic."""
+    refutation = decide_linear(loop)
+    assert isinstance(refutation, LinearRefutation)
+    assert reason in (None, refutation.reason)
+    witness = refute_linear(setting(loop), refutation.reason)
+    assert witness is not None
+    assert witness.exact_energy > 0
+    assert witness.verify()
+
+
+def required(loop):
+    """The smallest double b that is proved."""
+    guess, _ = tightest(loop)
+    return smallest_holding(lambda b: isinstance(decide_linear(loop.with_damping(b)), LinearProof), guess)
+
+
+@pytest.mark.parametrize(("k", "cosine"), [("37.5", "0.4"), ("220", "-0.85"), ("3.1", "0.992")])
+def test_lossless_resonator_on_the_circle(k, cosine):
+    """k (z − 1)(c₀z − 1)/(z² − 2c₀z + 1): passive iff b ≥ kT/2 for k > 0, at no b for k < 0.
+
+    T H/(z − 1) = kT (c₀z − 1)/(z² − 2c₀z + 1) has real part −kT/2 on the circle.
+    """
+    k, cosine = Fraction(k), Fraction(cosine)
+    numerator = [c * k for c in multiply((1, -1), (cosine, -1))]
+    denominator = (1, -2 * cosine, 1)
+    limit = k * T / 2
+    assert_passive(law(numerator, denominator, limit))
+    assert_passive(law(numerator, denominator, limit * 2))
+    assert_active(law(numerator, denominator, limit * (1 - BILLIONTH)))
+    negative = [-c for c in numerator]
+    for damping in (limit, 100 * limit):
+        assert_active(law(negative, denominator, damping), "unstable environment")
+
+
+def test_poles_on_the_circle_need_whole_samples():
+    """With a delay of part of a sample a lossless resonator is active at any damping."""
+    numerator, denominator = multiply((30, -30), ("0.4", -1)), (1, "-0.8", 1)
+    assert isinstance(decide_linear(law(numerator, denominator, 50, T / 3)), LinearRefutation)
+
+
+QUARTER_TURN = pytest.mark.xfail(raises=ValueError, reason="a pole at cos ωT = −1, 0 or 1 asks for inf there")
+
+
+@pytest.mark.parametrize("k", [pytest.param("12.5", marks=QUARTER_TURN), "-12.5"])
+def test_integrator_of_position(k):
+    """k/(z − 1) alone builds up force without end: active for either sign."""
+    assert_active(law([k], (1, -1), "0.7"))
+
+
+@QUARTER_TURN
+@pytest.mark.parametrize("quarter", [(1, 1), (1, 0, 1), (1, 0, 0, 0, -1)])
+def test_poles_at_quarter_turns(quarter):
+    """Poles at −1, ±j and the fourth roots of one are places like any other: a supremum and a decision."""
+    loop = law((12, "-3.5"), quarter, "0.7")
+    decision = decide_linear(loop)
+    need, cosine = tightest(loop)
+    assert need > 0
+    assert -1 <= cosine <= 1
+    if isinstance(decision, LinearProof):
+        assert_passive(loop)
+    else:
+        assert_active(loop)
+
+
+def test_negative_static_stiffness():
+    """H(1) < 0 gives energy to a slow press, although the criterion itself is met."""
+    numerator = add((Fraction(-3), Fraction("1.2")), multiply((20,), (1, -1)))
+    loop = law(numerator, (1, "-0.4"), 2)
+    assert loop.static_stiffness < 0
+    assert_active(loop, "negative static stiffness")
+
+
+def test_zero_static_stiffness_is_allowed():
+    """A pure damper, H(1) = 0, is passive from b = |B| on."""
+    b = Fraction("0.35")
+    damper = (b / T, -b / T)
+    assert_passive(law(damper, (1, 0), b))
+    assert_active(law(damper, (1, 0), b * (1 - BILLIONTH)))
+
+
+@pytest.mark.parametrize("place", ["0.6", "1", "-1", "1.7", "-2.5"])
+def test_cancelled_poles_play_no_part(place):
+    """A pole under a zero, inside, on or outside the circle: the force is that of the law without it."""
+    common = (1, -Fraction(place))
+    numerator, denominator = multiply((300, -120), common), multiply((1, "-0.3"), common)
+    plain = law((300, -120), (1, "-0.3"), 1)
+    limit = Fraction(repr(required(plain)))
+    assert required(law(numerator, denominator, 1)) == required(plain)
+    assert_passive(law(numerator, denominator, limit * (1 + BILLIONTH)))
+    assert_active(law(numerator, denominator, limit * (1 - BILLIONTH)))
+
+
+@pytest.mark.parametrize("place", ["1", "-1", "1.0000001", "-1.4"])
+def test_poles_not_quite_cancelled(place):
+    """A zero 1e-9 beside a pole on or outside the circle does not hide it."""
+    pole, zero = (1, -Fraction(place)), (1, -Fraction(place) - BILLIONTH)
+    loop = law(multiply((300,), zero), multiply((1,), pole), 50)
+    assert isinstance(decide_linear(loop), LinearRefutation)
+
+
+def test_strict_and_equal():
+    """b = KT/2 is passive, one part in 10³⁰ less is not; each claim has its evidence."""
+    k = Fraction("412.7")
+    hair = Fraction(1, 10**30)
+    assert_passive(law([k], [1], k * T / 2))
+    assert_passive(law([k], [1], k * T / 2 * (1 + hair)))
+    assert_active(law([k], [1], k * T / 2 * (1 - hair)))
+
+
+@pytest.mark.parametrize(("whole", "expected"), [(0, "0.25"), (1, "0.75"), (2, "1.25")])
+def test_whole_sample_delay(whole, expected):
+    """A spring of 500 N/m at 1 kHz needs (2d + 1) K T/2."""
+    limit = Fraction(expected)
+    assert_passive(law([500], [1], limit, whole * T))
+    assert_active(law([500], [1], limit * (1 - BILLIONTH), whole * T))
+
+
+def resonance(radius, hertz, gain):
+    """300 + gain (z − 1)²/(z² − 2 r cos φ z + r²)."""
+    r, c = Fraction(radius), Fraction(f"{np.cos(2 * pi * hertz / 1000):.12f}")
+    denominator = (Fraction(1), -2 * r * c, r * r)
+    return add(multiply((300,), denominator), multiply((Fraction(gain),), (1, -1), (1, -1))), denominator
+
+
+def test_resonance_that_a_grid_misses():
+    """A resonance narrower than the spacing of 10⁶ grid points is found, proved above and refuted below."""
+    numerator, denominator = resonance(1 - Fraction(1, 10**8), 175.00021, "2e-6")
+    loop = law(numerator, denominator, 1)
+    b = required(loop)
+    theta = np.pi * np.arange(1, 10**6 + 1) / 10**6
+    z = np.exp(1j * theta)
+    h = np.polyval([float(c) for c in numerator], z) / np.polyval([float(c) for c in denominator], z)
+    grid = float(np.max(0.0005 * ((1 - 1 / z) * h).real / (1 - np.cos(theta))))
+    assert b > grid * 1.005
+    assert frequency(tightest(loop)[1], T) == pytest.approx(175.00021, abs=1e-3)
+    assert_passive(loop.with_damping(Fraction(repr(b)) * (1 + BILLIONTH)))
+    refuted = decide_linear(loop.with_damping(Fraction(repr(grid)) * (1 + BILLIONTH)))
+    assert isinstance(refuted, LinearRefutation)
+
+
+def test_published_narrow_peak():
+    """H = 300 and a resonance at 175 Hz of pole radius 1 − 1e-5: the supremum lies far above a 10⁴ grid's."""
+    numerator, denominator = resonance(1 - Fraction(1, 10**5), 175, "0.0002")
+    loop = law(numerator, denominator, 1)
+    b = required(loop)
+    theta = 2 * np.pi * 0.175 + np.linspace(-1e-3, 1e-3, 400001)
+    z = np.exp(1j * theta)
+    h = np.polyval([float(c) for c in numerator], z) / np.polyval([float(c) for c in denominator], z)
+    close = float(np.max(0.0005 * ((1 - 1 / z) * h).real / (1 - np.cos(theta))))
+    assert b == pytest.approx(close, rel=1e-6)
+
+
+def test_order_forty():
+    """A law of order 40 with poles near the circle: proved above its limit, refuted below, one hair apart."""
+    random = Random(40)
+    factors = [(1, -2 * r * Fraction(k, 21), r * r) for k in range(-19, 21, 2) for r in [Fraction("0.97")]]
+    denominator = multiply(*factors)
+    numerator = [Fraction(f"{random.gauss(0, 1):.6f}") for _ in range(41)]
+    if sum(numerator) * sum(denominator) < 0:
+        numerator = [-c for c in numerator]
+    loop = law(numerator, denominator, 1)
+    b = Fraction(repr(required(loop)))
+    assert_passive(loop.with_damping(b * (1 + BILLIONTH)))
+    assert_active(loop.with_damping(b * (1 - BILLIONTH)))
+
+
+def random_law(seed):
+    """A stable H(z) of order 1 to 10 with H(1) ≥ 0, and a delay of none, one or broken samples."""
+    random = np.random.default_rng(seed)
+    order, roots = int(random.integers(1, 11)), []
+    while len(roots) < order:
+        if order - len(roots) >= 2 and random.random() < 0.8:
+            root = 0.97 * np.sqrt(random.random()) * np.exp(1j * pi * random.random())
+            roots += [root, root.conj()]
+        else:
+            roots.append(random.uniform(-0.97, 0.97))
+    denominator, numerator = np.real(np.poly(roots)), random.normal(size=order + 1)
+    if numerator.sum() * denominator.sum() < 0:
+        numerator = -numerator
+    delay = [Fraction(0), T, Fraction(int(random.integers(1, 3000)), 10**6)][seed % 3]
+    return law(*([repr(float(c)) for c in part] for part in (numerator, denominator)), 5, delay)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_random_laws(seed):
+    """At b (1 + 1e-9) the checker accepts the certificate; at b (1 − 1e-9) a motion gains, exactly."""
+    loop = random_law(seed)
+    limit = Fraction(repr(required(loop)))
+    assert_passive(loop.with_damping(limit * (1 + BILLIONTH)))
+    assert_active(loop.with_damping(limit * (1 - BILLIONTH)))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_supremum_against_a_fine_grid(seed):
+    """No frequency of a grid asks for more than the supremum, and one near it asks for nearly as much."""
+    loop = random_law(501 + 3 * seed)
+    top, cosine = tightest(loop)
+    theta = np.linspace(1e-3, pi, 20001)
+    z = np.exp(1j * theta)
+    n, d = (np.polyval(np.array(part[::-1], float), 1 / z) for part in (loop.numerator, loop.denominator))
+    late = z ** -float(loop.whole_delay) * n / d
+    grid = 0.0005 * ((1 - 1 / z) * late).real / (1 - np.cos(theta))
+    assert grid.max() <= top * (1 + 1e-9) + 1e-15
+    assert grid.max() >= top * (1 - 1e-3)
+    place = theta[grid.argmax()]
+    at_place = loop.required_damping_at(Fraction(np.cos(place)))
+    assert abs(acos(float(cosine)) - place) < 1e-2 or at_place > top * (1 - 1e-3)

@@ -1,0 +1,113 @@
+"""The bound on ‖h‖₁: never below the sum of the impulse response, and close above it."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from random import Random
+
+import mpmath
+import pytest
+
+import zwidth as zw
+from zwidth.passivity import checker
+from zwidth.passivity.certificate import certify
+from zwidth.passivity.checker.proofs import _one_norm_bound
+from zwidth.passivity.checker.reading import Invalid, read_loop
+from zwidth.passivity.decision import Decision
+from zwidth.passivity.loop import linear_loop
+from zwidth.passivity.one_norm import bound_one_norm
+from zwidth.passivity.witness import Setting
+
+
+def summed(loop, terms=6000):
+    """Σ |h(k)| of the difference equation at 50 digits."""
+    with mpmath.workdps(50):
+        n, d = ([mpmath.mpf(c) for c in part] for part in (loop.numerator, loop.denominator))
+        h, total = [], mpmath.mpf(0)
+        for k in range(terms):
+            value = n[k] if k < len(n) else mpmath.mpf(0)
+            value -= sum(d[i] * h[k - i] for i in range(1, min(k, len(d) - 1) + 1))
+            h.append(value / d[0])
+            total += abs(h[-1])
+            if k > 60 and max(abs(v) for v in h[-8:]) < total * mpmath.mpf(10) ** -40:
+                break
+        return total
+
+
+def draw(random, low, high):
+    """A decimal as a person types it."""
+    return Fraction(f"{random.uniform(low, high):.4f}")
+
+
+def random_law(random):
+    """A wall with any estimator, a solid, or a random stable H(z)."""
+    k, b = draw(random, 5, 900), draw(random, -1, 1)
+    filters = [
+        zw.BackwardDifference(),
+        zw.Window(random.randint(2, 9)),
+        zw.OnePole(draw(random, 0.001, 0.02)),
+    ]
+    if random.random() < 0.6:
+        return zw.Wall(k, b, random.choice(filters))
+    if random.random() < 0.5:
+        return zw.StandardLinearSolid(k, draw(random, 5, 900), draw(random, 0.1, 3))
+    r, c = draw(random, 0.1, 0.93), draw(random, -1, 1)
+    return zw.PulseTransferFunction([draw(random, -9, 9) for _ in range(3)], [1, -2 * r * c, r * r])
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_bound_holds_and_is_tight(seed):
+    """‖h‖₁ ≤ bound ≤ ‖h‖₁ (1 + 1e-8)."""
+    random = Random(seed)
+    loop = linear_loop(zw.Device(damping="0.3", rate=1000), random_law(random))
+    found = bound_one_norm(loop)
+    assert found is not None
+    with mpmath.workdps(50):
+        true = summed(loop)
+        bound = mpmath.mpf(found.bound.numerator) / found.bound.denominator
+        assert true * (1 - mpmath.mpf(10) ** -35) <= bound <= true * (1 + mpmath.mpf(10) ** -8)
+
+
+def test_closed_forms():
+    """A spring has K, a damped wall K + 2B/T, a damped wall with negative B max(K, 2|B|/T − K)."""
+    device = zw.Device(damping="0.3", sample_period="0.002")
+
+    def norm(law):
+        return bound_one_norm(linear_loop(device, law)).bound
+
+    assert norm(zw.Wall("123.4")) == Fraction("123.4")
+    assert norm(zw.Wall("123.4", "0.05")) == Fraction("123.4") + 2 * Fraction("0.05") / Fraction("0.002")
+    assert norm(zw.Wall("123.4", "-0.05")) == Fraction("123.4")
+    assert norm(zw.Wall("13.4", "-0.05")) == 2 * Fraction("0.05") / Fraction("0.002") - Fraction("13.4")
+
+
+@pytest.mark.parametrize("denominator", [[1, -1], [1, 1], [1, "-1.01"], [1, "-0.8", 1]])
+def test_no_bound_for_laws_that_do_not_decay(denominator):
+    """A pole on or outside the circle has no bound, and nothing is claimed."""
+    law = zw.PulseTransferFunction(["5.5", "2.5"], denominator)
+    assert bound_one_norm(linear_loop(zw.Device(damping="0.3", rate=1000), law)) is None
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_checker_finds_the_same_bound(seed):
+    """The checker's own arithmetic gives the same rational, and any other inverse only a larger one."""
+    random = Random(100 + seed)
+    device = zw.Device(damping=40, rate=1000, coulomb_friction=30, resolution="0.0003")
+    law = zw.Wall(draw(random, 5, 900), draw(random, 0.001, 1), zw.OnePole(draw(random, 0.001, 0.02)))
+    loop = linear_loop(device, law)
+    decision = Decision(Setting(loop, Fraction(30), Fraction("0.0003"), True))
+    document = certify(decision)
+    assert document["kind"] == "quantized"
+    assert checker.verify(document).valid
+    inverse = [Fraction(c) for c in document["proof"]["inverse"]]
+    assert _one_norm_bound(read_loop(document), inverse) == decision.norm.bound
+    true = summed(loop)
+    for _ in range(5):
+        k = random.randrange(len(inverse))
+        other = list(inverse)
+        other[k] += inverse[0] * Fraction(random.randint(-200, 200), 1000)
+        try:
+            bound = _one_norm_bound(read_loop(document), other)
+        except Invalid:  # it bounds nothing, and says so
+            continue
+        assert float(bound) >= float(true) * (1 - 1e-12)
