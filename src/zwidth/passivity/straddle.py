@@ -75,20 +75,21 @@ def _gain(h: list[float], above: int, below: int, loop: LinearLoop) -> float:
 
 
 def straddle(
-    loop: LinearLoop, coulomb_friction: Fraction, resolution: Fraction, waits: Waits, cell: int
+    loop: LinearLoop, coulomb_friction: Fraction, resolution: Fraction, waits: Waits, edge: int
 ) -> Motion | None:
-    """Go to the edge above count `cell`, then to and fro over it; None if that gains nothing."""
+    """To and fro over the edge `edge` counts from x = 0, going there first; None if that gains nothing."""
     surplus = Fraction(waits.gain) * resolution - 2 * coulomb_friction
     if surplus <= 0:
         return None
     step = resolution / 4
     if loop.damping > 0:
         step = min(step, round_up(surplus * loop.period / (4 * loop.damping)) / 2)
-    edge = (cell + 1) * resolution
-    below, above = edge - step / 2, edge + step / 2
-    approach = [below * k / _APPROACH for k in range(_APPROACH + 1)]
-    wait = loop.whole_delay + 2
-    lead = approach + [below] * wait
+    at = edge * resolution
+    below, above = at - step, at  # the floor is taken at the edge itself
+    if edge:
+        below, above = at - step / 2, at + step / 2
+    approach = [below * k / _APPROACH for k in range(_APPROACH + 1)] if edge else [above]
+    lead = approach + [below] * (loop.whole_delay + 2)
     cycle = [above] * waits.above + [below] * waits.below
     x = tuple(lead + cycle * 2)
     first = len(lead) + len(cycle) - 1

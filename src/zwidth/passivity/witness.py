@@ -177,11 +177,30 @@ def refute_linear(setting: Setting, reason: str) -> Witness | None:
 
 def refute_friction(setting: Setting) -> Witness | None:
     """A witness that Coulomb friction does not cover one encoder count, or None."""
-    waits = best_waits(setting.loop)
-    memory = len(setting.loop.numerator) + len(setting.loop.denominator) > 2
-    cell = 3 if memory else 0  # a law with memory is straddled inside the wall
-    motion = straddle(setting.loop, setting.coulomb_friction, setting.resolution, waits, cell)
-    return None if motion is None else _repeated(setting, motion)
+    loop = setting.loop
+    memory = len(loop.numerator) + len(loop.denominator) > 2
+    edge = (2 if memory else 1) if setting.unilateral else 0  # a law with memory is kept in contact
+    motion = straddle(loop, setting.coulomb_friction, setting.resolution, best_waits(loop), edge)
+    if motion is None:
+        return None
+    if len(loop.follower) == 1:
+        return _repeated(setting, motion)
+    return _in_full(setting, motion)
+
+
+def _in_full(setting: Setting, motion: Motion) -> Witness | None:
+    """The motion with every round listed: with a filter no round is quite like another."""
+    part = motion.repeats[0]
+    rounds = 1
+    while len(motion.positions) + (rounds - 1) * (part.last - part.first) <= _MOST_ROUNDED:
+        full = motion.repeated(rounds)
+        x = tuple(_listed(full, Fraction(1)))
+        listed = Motion(x, tuple(_listed_switches(full, Fraction(1))))
+        energy = setting.energy(listed)
+        if energy is not None and energy > 0:
+            return Witness(setting, listed, energy)
+        rounds *= 4
+    return None
 
 
 def _first(candidates: Iterator[Witness | None]) -> Witness | None:

@@ -4,21 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from math import lcm
+from math import gcd, lcm
 from typing import Any, NamedTuple
 
-from .reading import MOST_SAMPLES, Invalid, Loop, get, integer, numbers, read_loop
-
-
-class _State(NamedTuple):
-    """What a sampled loop remembers: the filter's past and the forces on their way.
-
-    `ahead` is how far repeated parts have carried the hand beyond the list.
-    """
-
-    memory: tuple[int | Fraction, ...]
-    forces: tuple[int | Fraction, ...]
-    ahead: int
+from .reading import MOST_BITS, MOST_EFFORT, MOST_SAMPLES, Invalid, Loop, get, integer, numbers, read_loop
 
 
 def motion_energy(document: Mapping[str, Any]) -> Fraction:
@@ -81,156 +70,143 @@ def _repeats(document: Mapping[str, Any], size: int) -> list[_Repeat]:
     return parts
 
 
-class _Counts(NamedTuple):
-    """The motion and the law in whole numbers of one small length, so that long motions stay fast."""
-
-    x: list[int]
-    y: list[int]
-    encoder: int  # the encoder's resolution, 0 if ideal
-    numerator: list[int]
-    denominator: list[int]
-
-
-class _Sums(NamedTuple):
-    """What an energy is made of, in counts: Σ f Δx, Σ |Δx| and Σ Δx² before and after the switch."""
-
-    work: int | Fraction
-    path: int
-    early: int
-    late: int
-
-    def plus(self, other: _Sums) -> _Sums:
-        """Both stretches together."""
-        return _Sums(
-            self.work + other.work, self.path + other.path, self.early + other.early, self.late + other.late
-        )
-
-
 def _energy_of(p: Loop, x: list[Fraction], y: list[Fraction], repeats: list[_Repeat]) -> Fraction:
     """Energy the hand takes out over the whole motion [J]."""
     per_unit = lcm(p.resolution.denominator, *(v.denominator for v in x), *(v.denominator for v in y))
     scale = lcm(*(c.denominator for c in (*p.numerator, *p.denominator)))
-    counts = _Counts(
+    denominator = [int(c * scale) for c in p.denominator]
+    content = gcd(*denominator)
+    run = _Run(
+        p,
         [int(v * per_unit) for v in x],
         [int(v * per_unit) for v in y],
         int(p.resolution * per_unit),
         [int(c * scale) for c in p.numerator],
-        [int(c * scale) for c in p.denominator],
+        [c // content for c in denominator],
     )
-    state = _State((0,) * (len(p.denominator) - 1), (0,) * (p.whole + 2), 0)
-    sums = _Sums(0, 0, 0, 0)
     before = 0
-    for part in [*repeats, _Repeat(len(x) - 1, len(x) - 1, 1)]:
-        gained, state = _run(p, counts, before, part.first, state)
-        sums = sums.plus(gained)
-        gained, state = _rounds(p, counts, part, state)
-        sums = sums.plus(gained)
+    for part in repeats:
+        run.forward(before, part.first)
+        run.rounds(part)
         before = part.last
-    squares = sums.early / p.part + sums.late / (1 - p.part) if p.part else sums.late
+    run.forward(before, len(x) - 1)
+    sums = run.sums
+    squares = sums[_EARLY] / p.part + sums[_LATE] / (1 - p.part) if p.part else Fraction(sums[_LATE])
+    work = Fraction(sums[_WORK], run.scale * content)
     unit = Fraction(1, per_unit)
-    force_work = sums.work + p.damping / p.period * squares
-    return -(unit**2) * force_work - p.coulomb_friction * unit * sums.path
+    return -(unit**2) * (work + p.damping / p.period * squares) - p.coulomb_friction * unit * sums[_PATH]
 
 
-def _rounds(p: Loop, c: _Counts, part: _Repeat, state: _State) -> tuple[_Sums, _State]:
-    """All rounds of a repeated part: one by one until the loop has settled, then in closed form.
+_WORK, _PATH, _EARLY, _LATE = range(4)
 
-    A law linear in x that has gone a constant distance on, all of it, does the
-    same again with every force larger by the same amount.
+
+class _Run:
+    """The loop in whole numbers of one small length, run sample by sample.
+
+    The filter is in its direct form II: D w = x, f = N w, with D free of common
+    factors.  Motions made as x = D w keep w whole however long they are; for
+    others w, the forces and the work are kept over a common power of D's first
+    coefficient, `scale`.  `ahead` is how far repeated parts have carried the
+    hand beyond the list of positions.
     """
-    advance = c.x[part.last] - c.x[part.first]
-    sums, done = _Sums(0, 0, 0, 0), 0
-    while done < part.times and part.first < part.last:
-        gained, following = _run(p, c, part.first, part.last, state)
-        push = _uniform_push(p, c, part, state, following, part.times - done)
-        left = part.times - done if push is not None else 1
-        if push is not None:
-            growth = push * advance * (left * (left - 1) // 2)
-            gained = _Sums(
-                left * gained.work + growth, left * gained.path, left * gained.early, left * gained.late
-            )
-            following = _State(
-                tuple(w + (left - 1) * (w - v) for v, w in zip(state.memory, following.memory, strict=True)),
-                tuple(f + (left - 1) * push for f in following.forces),
-                state.ahead + left * advance,
-            )
-        else:
-            following = following._replace(ahead=state.ahead + advance)
-        sums, state, done = sums.plus(gained), following, done + left
-        if done > 1000 + len(c.x) and done < part.times:
-            raise Invalid("a repeated part does not settle into a cycle")
-    # x in the list after the part stands one advance ahead already
-    return sums, state._replace(ahead=state.ahead - advance)
 
+    def __init__(
+        self, p: Loop, x: list[int], y: list[int], encoder: int, numerator: list[int], denominator: list[int]
+    ) -> None:
+        self.p, self.x, self.y, self.encoder = p, x, y, encoder
+        self.numerator, self.denominator = numerator, denominator
+        self.memory = [0] * (len(denominator) - 1)
+        self.forces = [0] * (p.whole + 2)
+        self.scale = 1
+        self.ahead = 0
+        self.sums = [0, 0, 0, 0]  # Σ f Δx over scale, Σ |Δx|, Σ Δx² before and after the switch
+        self.effort = 0.0
 
-def _uniform_push(
-    p: Loop, c: _Counts, part: _Repeat, state: _State, following: _State, left: int
-) -> int | Fraction | None:
-    """By how much every force grows from this round to each later one; None if not yet settled."""
-    advance = c.x[part.last] - c.x[part.first]
-    if advance == 0:
-        same = following.memory == state.memory and following.forces == state.forces
-        return 0 if same else None
-    lowest = min(c.x[part.first : part.last + 1]) + state.ahead + min(0, advance * (left - 1))
-    if (p.unilateral and lowest <= 0) or (c.encoder and advance % c.encoder):
-        return None
-    shift = Fraction(advance, sum(c.denominator)) if sum(c.denominator) else None
-    if shift is None or any(w - v != shift for v, w in zip(state.memory, following.memory, strict=True)):
-        return None
-    push = sum(c.numerator) * shift
-    if any(g - f != push for f, g in zip(state.forces, following.forces, strict=True)):
-        return None
-    return push
+    def forward(self, start: int, stop: int) -> None:
+        """Run from sample `start` to `stop`."""
+        d, inside_sample, sums = self.p.whole, self.p.part != 0, self.sums
+        for k in range(start, stop):
+            here = self.x[k] + self.ahead
+            self._sample(self.encoder * (here // self.encoder) if self.encoder else here)
+            late = self.x[k + 1] - self.x[k]
+            if inside_sample:
+                early, late = self.y[k] - self.x[k], self.x[k + 1] - self.y[k]
+                sums[_WORK] += self.forces[d + 1] * early
+                sums[_PATH] += abs(early)
+                sums[_EARLY] += early * early
+            sums[_WORK] += self.forces[d] * late
+            sums[_PATH] += abs(late)
+            sums[_LATE] += late * late
 
+    def _sample(self, x: int) -> None:
+        """Take the measured position x, compute its force and send it on its way."""
+        if self.p.unilateral and x <= 0:
+            if any(self.memory):
+                raise Invalid("the motion leaves the wall, where a law with memory is not defined")
+            x = 0
+        w = x * self.scale
+        for a, past in zip(self.denominator[1:], self.memory, strict=True):
+            if past:
+                w -= a * past
+        w, rest = divmod(w, self.denominator[0])
+        if rest:
+            w = w * self.denominator[0] + rest
+            self._rescale(self.denominator[0])
+        force = self.numerator[0] * w
+        for b, past in zip(self.numerator[1:], self.memory, strict=True):
+            if past:
+                force += b * past
+        self.forces = [force, *self.forces[:-1]]
+        if self.memory:
+            self.memory = [w, *self.memory[:-1]]
+        bits = w.bit_length() + self.scale.bit_length()
+        self.effort += (len(self.denominator) + 2) * (1 + bits / 2000)
+        if self.effort > MOST_EFFORT or bits > MOST_BITS:
+            raise Invalid("the motion is too long, or its exact numbers grow too long, to be checked")
 
-def _run(p: Loop, c: _Counts, start: int, stop: int, state: _State) -> tuple[_Sums, _State]:
-    """The sums of one stretch of the motion, and the state after it.
+    def _rescale(self, factor: int) -> None:
+        self.scale *= factor
+        self.memory = [factor * w for w in self.memory]
+        self.forces = [factor * f for f in self.forces]
+        self.sums[_WORK] *= factor
 
-    The filter runs in its direct form II: D w = x, f = N w, so that motions
-    made as x = D w keep short numbers however long they are.
-    """
-    memory, forces = list(state.memory), list(state.forces)
-    work: int | Fraction = 0
-    path = early_squares = late_squares = 0
-    inside_sample = p.part != 0
-    for k in range(start, stop):
-        here = c.x[k] + state.ahead
-        measured = c.encoder * (here // c.encoder) if c.encoder else here
-        forces = [_force(p, c, measured, memory), *forces[:-1]]
-        early, late = (c.y[k] - c.x[k], c.x[k + 1] - c.y[k]) if inside_sample else (0, c.x[k + 1] - c.x[k])
-        work += forces[p.whole] * late
-        path += abs(early) + abs(late)
-        late_squares += late * late
-        if early:
-            work += forces[p.whole + 1] * early
-            early_squares += early * early
-    sums = _Sums(work, path, early_squares, late_squares)
-    return sums, _State(tuple(memory), tuple(forces), state.ahead)
+    def rounds(self, part: _Repeat) -> None:
+        """All rounds of a repeated part: one by one until the loop has settled, then in closed form.
 
+        A law linear in x that has gone a constant distance on, all of it, does
+        the same again with every force larger by the same amount.
+        """
+        advance = self.x[part.last] - self.x[part.first]
+        for done in range(1, part.times + 1):
+            memory, forces, scale, sums = self.memory, self.forces, self.scale, list(self.sums)
+            lowest = min(self.x[part.first : part.last + 1]) + self.ahead
+            self.forward(part.first, part.last)
+            self.ahead += advance
+            left = part.times - done
+            lowest += min(0, advance * left)
+            push = self._push(memory, forces, advance, lowest) if scale == self.scale else None
+            if push is not None:
+                shifts = [w - v for v, w in zip(memory, self.memory, strict=True)]
+                self.memory = [w + left * shift for w, shift in zip(self.memory, shifts, strict=True)]
+                self.forces = [f + left * push for f in self.forces]
+                self.ahead += left * advance
+                self.sums = [now + left * (now - was) for was, now in zip(sums, self.sums, strict=True)]
+                self.sums[_WORK] += push * advance * (left * (left + 1) // 2)
+                break
+        self.ahead -= advance  # the list after the part stands one advance ahead already
 
-def _force(p: Loop, c: _Counts, x: int, memory: list[int | Fraction]) -> int | Fraction:
-    """f(k) from the measured position; updates the memory in place."""
-    if p.unilateral and x <= 0:
-        if any(memory):
-            raise Invalid("the motion leaves the wall, where a law with memory is not defined")
-        x = 0
-    w: int | Fraction = x
-    for a, past in zip(c.denominator[1:], memory, strict=True):
-        if past:
-            w -= a * past
-    w = _divide(w, c.denominator[0])
-    force = c.numerator[0] * w
-    for b, past in zip(c.numerator[1:], memory, strict=True):
-        if past:
-            force += b * past
-    if memory:
-        memory.insert(0, w)
-        memory.pop()
-    return force
-
-
-def _divide(a: int | Fraction, b: int) -> int | Fraction:
-    if isinstance(a, int):
-        quotient, rest = divmod(a, b)
-        return quotient if rest == 0 else Fraction(a, b)
-    return a / b
+    def _push(self, memory: list[int], forces: list[int], advance: int, lowest: int) -> int | None:
+        """By how much every force grows from round to round; None while the loop has not settled."""
+        if advance == 0:
+            return 0 if memory == self.memory and forces == self.forces else None
+        if (self.p.unilateral and lowest <= 0) or (self.encoder and advance % self.encoder):
+            return None
+        at_one = sum(self.denominator)
+        if at_one == 0 or advance * self.scale % at_one:
+            return None
+        shift = advance * self.scale // at_one
+        push = sum(self.numerator) * shift
+        settled = all(w - v == shift for v, w in zip(memory, self.memory, strict=True)) and all(
+            g - f == push for f, g in zip(forces, self.forces, strict=True)
+        )
+        return push if settled else None

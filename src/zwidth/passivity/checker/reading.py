@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 MOST_COEFFICIENTS = 2000
 MOST_SAMPLES = 4_000_000
 LONGEST_NUMBER = 20_000
+MOST_EFFORT = 5e7
+MOST_BITS = 400_000
 
 
 class Invalid(Exception):
