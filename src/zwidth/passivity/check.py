@@ -15,7 +15,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate, certify
 from zwidth.passivity.corners import best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.linear import LinearRefutation
+from zwidth.passivity.linear import LinearProof, LinearRefutation
 from zwidth.passivity.supremum import tightest
 from zwidth.passivity.verdict import Outcome, Verdict
 from zwidth.passivity.witness import Witness, refute_friction, refute_linear
@@ -113,6 +113,8 @@ def _tightest(decisions: list[Decision]) -> int:
 
 def _refute(decision: Decision) -> Witness | None:
     """A checked motion that takes energy out, or None."""
+    if isinstance(decision.viscous, LinearProof) and decision.friction_covers:
+        return None
     if isinstance(decision.viscous, LinearRefutation):
         return refute_linear(decision.setting, decision.viscous.reason)
     return refute_friction(decision.setting)
@@ -172,6 +174,12 @@ def _open_claim(decision: Decision) -> str:
                 "frequencies that no motion short enough to list was found."
             )
         return f"Passivity cannot be proved ({decision.viscous.reason}), and no motion was found that gains."
+    if not decision.loop.hidden_modes_decay:
+        return (
+            "Numerator and denominator of H(z) share a root on or outside the unit circle. The port does not "
+            "see it, but the controller as written carries a mode that never dies out: cancel it and check "
+            "again."
+        )
     need, least = decision.sufficient_friction, decision.necessary_friction
     bound = "no bound is known above" if need is None else f"enough is {float(need):.6g}"
     return (

@@ -89,8 +89,9 @@ class Decision:
 
     @property
     def is_provable(self) -> bool:
-        """True when both conditions hold, so that a certificate exists."""
-        return isinstance(self.viscous, LinearProof) and self.friction_covers
+        """True when both conditions hold and no hidden mode grows, so that a certificate exists."""
+        proved = isinstance(self.viscous, LinearProof) and self.loop.hidden_modes_decay
+        return proved and self.friction_covers
 
 
 def decide(device: Device, environment: Environment) -> Decision:

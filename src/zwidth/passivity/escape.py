@@ -10,7 +10,7 @@ from __future__ import annotations
 from cmath import phase
 from collections.abc import Iterator
 from fractions import Fraction
-from math import cos
+from math import cos, log
 
 from flint import fmpz_poly
 
@@ -19,6 +19,7 @@ from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion, Pattern, convolve
 
 _LENGTHS = (8, 32, 128, 512, 2048, 8192, 32768)
+_SIZE = 1024
 
 
 def slow_presses(loop: LinearLoop) -> Iterator[Pattern]:
@@ -28,34 +29,54 @@ def slow_presses(loop: LinearLoop) -> Iterator[Pattern]:
         yield Pattern((*range(length + 1), *hold), ())
 
 
-def buildups(loop: LinearLoop) -> Iterator[Motion]:
+def buildups(loop: LinearLoop, unilateral: bool) -> Iterator[Motion]:
     """Motions that follow an unstable or lossless mode of the law, then let the force do work."""
     offset = loop.damping or Fraction(1)
     seen = fmpz_poly(list(loop.denominator[::-1])).complex_roots()
     if loop.part_delay == 0:
         seen = seen + fmpz_poly(closed_loop(loop, offset)[::-1]).complex_roots()
     modes = [complex(float(root.real), float(root.imag)) for root, _ in seen]
+    base = _way_in(loop) if unilateral else (0,)
+    if base is None:
+        return
     for mode in modes:
         if abs(mode) > 1 - 1e-9 and mode.imag >= -1e-12:
             for length in _LENGTHS[:5]:
-                yield _buildup(loop, mode, length, growing=abs(mode) <= 1 + 1e-9)
+                yield _buildup(loop, mode, length, base)
 
 
-def _buildup(loop: LinearLoop, mode: complex, length: int, growing: bool) -> Motion:
+def _way_in(loop: LinearLoop) -> tuple[int, ...] | None:
+    """Whole w to a depth at which the start of a mode leaves x > 0; None where D(1) ≤ 0."""
+    at_one = sum(loop.follower)
+    if at_one <= 0:
+        return None
+    depth = 4 * _SIZE * sum(abs(c) for c in loop.follower) // at_one + 1
+    ramp = 16 * len(loop.follower)
+    return (*(depth * k // ramp for k in range(ramp + 1)), *[depth] * len(loop.follower))
+
+
+def _buildup(loop: LinearLoop, mode: complex, length: int, base: tuple[int, ...]) -> Motion:
     """w = ρᵏ cos φk (or k cos φk on the unit circle), then one step with the force."""
     rate, angle = abs(mode), phase(mode)
-    if not growing:  # keep numbers below 2^60: start late rather than overflow
-        length = min(length, max(4, int(40 / max(rate - 1, 1e-9))))
-    size = 1024.0
-    w = [0]
+    lossless = rate <= 1 + 1e-9
+    if not lossless:  # an envelope beyond 1e18 would need more digits than it is worth
+        length = min(length, max(4, int(41 / log(rate))))
+    w = list(base)
     for k in range(length):
-        envelope = size * (k if growing else min(rate**k, 1e18))
-        w.append(round(envelope * cos(angle * k)))
+        w.append(base[-1] + round(_SIZE * (k if lossless else rate**k) * cos(angle * k)))
     x = [Fraction(v) for v in convolve(loop.follower, tuple(w))]
+    x.append(x[-1] + _release(loop, convolve(loop.numerator, tuple(w))))
+    if not loop.part_delay:
+        return Motion(tuple(x))
+    return Motion(tuple(x), tuple(a + loop.part_delay * (b - a) for a, b in zip(x, x[1:], strict=False)))
+
+
+def _release(loop: LinearLoop, forces: list[int]) -> Fraction:
+    """The last move: −f T/2b with the mean force f of the interval, where it gains most."""
     content = Fraction(loop.denominator[0], loop.follower[0])
-    forces = [f / content for f in convolve(loop.numerator, tuple(w))]
-    b = loop.damping or max(abs(forces[-1]), Fraction(1)) * loop.period / 1024
-    late = forces[-1 - loop.whole_delay] if loop.whole_delay < len(forces) else Fraction(0)
-    x.append(x[-1] - round(late * loop.period / (2 * b)))
-    switches = tuple(a + loop.part_delay * (c - a) for a, c in zip(x, x[1:], strict=False))
-    return Motion(tuple(x), switches if loop.part_delay else ())
+    d, alpha = loop.whole_delay, loop.part_delay
+    late = forces[-1 - d] if d < len(forces) else 0
+    early = forces[-2 - d] if d + 1 < len(forces) else 0
+    mean = (alpha * early + (1 - alpha) * late) / content
+    b = loop.damping or max(abs(mean), Fraction(1)) * loop.period / (2 * _SIZE)
+    return -Fraction(round(mean * loop.period / (2 * b)))

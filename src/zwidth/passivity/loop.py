@@ -16,7 +16,7 @@ Everything is rational: N, D, b, T, α are the decimals that were typed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd, lcm
@@ -26,6 +26,7 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 from zwidth.device import Device
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.errors import InputError
+from zwidth.passivity.schur import is_schur
 
 LARGEST_DEGREE = 400
 """The order of H plus the delay in samples that is still decided."""
@@ -43,6 +44,9 @@ class LinearLoop:
         b [N·s/m] and T [s].
     whole_delay, part_delay
         d and α of delay = (d + α) T.
+    hidden_modes_decay
+        False when a factor that N and D had in common has a root on or outside
+        the unit circle: the port does not see that mode, the controller carries it.
     """
 
     numerator: tuple[int, ...]
@@ -51,6 +55,7 @@ class LinearLoop:
     period: Fraction
     whole_delay: int
     part_delay: Fraction
+    hidden_modes_decay: bool = True
 
     @property
     def order(self) -> int:
@@ -71,9 +76,7 @@ class LinearLoop:
 
     def with_damping(self, damping: Fraction) -> LinearLoop:
         """The same loop on a device with another b."""
-        return LinearLoop(
-            self.numerator, self.denominator, damping, self.period, self.whole_delay, self.part_delay
-        )
+        return replace(self, damping=damping)
 
     @cached_property
     def dissipation(self) -> fmpq_poly:
@@ -142,7 +145,7 @@ def linear_loop(device: Device, environment: Environment) -> LinearLoop:
 
 def loop_from(h: RationalFunction, damping: Fraction, period: Fraction, delay: Fraction) -> LinearLoop:
     """The exact loop of H(z), b [N·s/m], T [s] and a delay [s]."""
-    numerator, denominator = _coprime(h)
+    numerator, denominator, decay = _coprime(h)
     whole = delay // period
     degree = len(denominator) - 1 + whole
     if degree > LARGEST_DEGREE:
@@ -150,15 +153,15 @@ def loop_from(h: RationalFunction, damping: Fraction, period: Fraction, delay: F
             f"the order of the environment plus the delay in samples is {degree}; at most "
             f"{LARGEST_DEGREE} can be certified: shorten the delay or lower the rate"
         )
-    return LinearLoop(numerator, denominator, damping, period, int(whole), delay / period - whole)
+    return LinearLoop(numerator, denominator, damping, period, int(whole), delay / period - whole, decay)
 
 
 def _q(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
 
 
-def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """N and D as coprime integer polynomials in ζ; D(1) > 0 where it is not 0."""
+def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...], bool]:
+    """N and D as coprime integer polynomials in ζ, D(1) ≥ 0, and whether what was cancelled decays."""
     scale = lcm(*(c.denominator for c in (*h.numerator, *h.denominator)))
     n = fmpz_poly([int(c * scale) for c in reversed(h.numerator)])
     d = fmpz_poly([int(c * scale) for c in reversed(h.denominator)])
@@ -167,6 +170,7 @@ def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...]]:
     if n.degree() > d.degree():
         raise InputError("H(z) has more zeros than poles: it would need samples that are still to come")
     common = n.gcd(d)
+    decay = n.degree() < 0 or is_schur([int(c) for c in common.coeffs()])
     n, d = n // common, d // common
     size = d.degree() + 1
     top_down_n = [int(n[size - 1 - i]) for i in range(size)]
@@ -178,7 +182,7 @@ def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...]]:
         top_down_n.pop()
     while len(top_down_d) > 1 and top_down_d[-1] == 0:
         top_down_d.pop()
-    return tuple(top_down_n), tuple(top_down_d)
+    return tuple(top_down_n), tuple(top_down_d), decay
 
 
 def _autocorrelation(a: tuple[int, ...]) -> list[fmpq]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, floor, log10
+from math import ceil, floor, inf, log10
 from typing import NamedTuple
 
 from zwidth.passivity.loop import LinearLoop
@@ -113,7 +113,7 @@ def _switches(
     There the net work of the interval is least.  Without damping any b will do.
     """
     alpha, d = loop.part_delay, loop.whole_delay
-    b = loop.damping or Fraction(max(tightest(loop)[0], 1e-9)).limit_denominator(10**12) / 100
+    b = loop.damping or _any_damping(loop)
     gain = loop.period / (2 * b) * alpha * (1 - alpha)
     content = Fraction(loop.denominator[0], loop.follower[0])
     force = [unit * f / content for f in convolve(loop.numerator, w)]
@@ -124,6 +124,12 @@ def _switches(
     grid = unit / 4096
     ideal = (x[k] + alpha * (x[k + 1] - x[k]) - gain * (at(k - d - 1) - at(k - d)) for k in range(len(x) - 1))
     return tuple(round(y / grid) * grid for y in ideal)
+
+
+def _any_damping(loop: LinearLoop) -> Fraction:
+    """A size for the moves inside a sample of a device without damping, where every size gains."""
+    need = tightest(loop)[0]
+    return Fraction(need if 0 < need < inf else 1.0).limit_denominator(10**12) / 100 or Fraction(1, 10**12)
 
 
 def round_up(target: Fraction) -> Fraction:

@@ -16,6 +16,8 @@ from flint import arb, ctx, fmpq, fmpz_poly
 
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Pattern, Repeat
+from zwidth.passivity.positivity import prove_nonnegative
+from zwidth.passivity.schur import is_schur
 from zwidth.passivity.supremum import tightest
 
 LONGEST_PERIOD = 500_000
@@ -46,8 +48,8 @@ def sinusoids(loop: LinearLoop, unilateral: bool) -> Iterator[Pattern]:
     cycle = _cycle(loop, turn)
     settled = cycle * (1 + (_memory(loop) + 1) // len(cycle)) if _memory(loop) else ()
     if unilateral and len(loop.numerator) + len(loop.denominator) > 2:
-        if sum(loop.follower) <= 0:
-            return
+        if sum(loop.follower) <= 0 or not is_schur(loop.denominator[::-1]):
+            return  # an unstable filter cannot be led in to rest
         for ramp in _RAMPS:
             yield _inside(loop, cycle, settled, ramp)
         return
@@ -120,8 +122,11 @@ def _negative_band(loop: LinearLoop) -> tuple[Fraction, Fraction] | None:
     criterion = loop.criterion
     _, cosine = tightest(loop)
     at = fmpq(cosine.numerator, cosine.denominator)
-    if criterion(at) >= 0:
-        return None
+    if criterion(at) >= 0:  # beside a pole on the unit circle the need has no largest value
+        point = prove_nonnegative(criterion)
+        if not isinstance(point, Fraction):
+            return None
+        at = fmpq(point.numerator, point.denominator)
     low, high = Fraction(0), Fraction(1, 2)
     saved = ctx.prec
     try:

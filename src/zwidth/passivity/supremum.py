@@ -14,6 +14,7 @@ from math import acos, inf, pi
 from flint import ctx, fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.loop import LinearLoop
+from zwidth.passivity.schur import is_schur
 
 _FLAT = 1e-12
 """Relative difference below which two frequencies are equally tight."""
@@ -25,7 +26,7 @@ def tightest(loop: LinearLoop) -> tuple[float, Fraction]:
     Of equally tight frequencies the highest is given: there the motion that
     shows a violation is the shortest.
     """
-    best, cosine = _best(loop, [Fraction(-1), Fraction(0), Fraction(1)])
+    best, cosine = _best(loop, [Fraction(-1), Fraction(0), Fraction(1), *_poles_on_circle(loop)])
     for _ in range(12):
         candidates = _stationary(loop.with_damping(_rational(max(best, 0.0))))
         value, at = _best(loop, [*candidates, cosine])
@@ -45,8 +46,15 @@ def frequency(cosine: Fraction, period: Fraction) -> float:
 def _best(loop: LinearLoop, cosines: list[Fraction]) -> tuple[float, Fraction]:
     needs = [(loop.required_damping_at(c), c) for c in cosines]
     top = max(need for need, _ in needs)
-    margin = abs(top) * _FLAT
-    return top, min(c for need, c in needs if need >= top - margin)
+    least = top if top == inf else top - abs(top) * _FLAT
+    return top, min(c for need, c in needs if need >= least)
+
+
+def _poles_on_circle(loop: LinearLoop) -> list[Fraction]:
+    """Where |D|² vanishes, and the need may be without bound."""
+    if is_schur(loop.denominator[::-1]):
+        return []
+    return [c for c in _real_roots(loop.dissipation.numer()) if -1 <= c <= 1]
 
 
 def _stationary(loop: LinearLoop) -> list[Fraction]:

@@ -20,6 +20,7 @@ from zwidth.passivity.document import loop_document, to_json, unit_key
 from zwidth.passivity.escape import buildups, slow_presses
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion, Pattern, realize, round_up
+from zwidth.passivity.schur import is_schur
 from zwidth.passivity.sinusoid import sinusoids
 from zwidth.passivity.straddle import best_waits, straddle
 
@@ -167,11 +168,14 @@ def rounded_energy(document: dict[str, Any]) -> dict[str, Any]:
 def refute_linear(setting: Setting, reason: str) -> Witness | None:
     """A witness against the linear criterion or an unstable environment, or None if none is found."""
     if reason == "criterion":
-        return _shortest(setting, sinusoids(setting.loop, setting.unilateral))
+        witness = _shortest(setting, sinusoids(setting.loop, setting.unilateral))
+        if witness is not None or is_schur(setting.loop.denominator[::-1]):
+            return witness
     if reason == "negative static stiffness":
         return _first(_sized(setting, pattern) for pattern in slow_presses(setting.loop))
     return _first(
-        _scaled(setting, _unit(setting, one), partial(_multiplied, one)) for one in buildups(setting.loop)
+        _scaled(setting, _unit(setting, one), partial(_multiplied, one))
+        for one in buildups(setting.loop, setting.unilateral)
     )
 
 
