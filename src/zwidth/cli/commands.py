@@ -112,12 +112,11 @@ def _configure_verify(parser: argparse.ArgumentParser) -> None:
 
 
 def _verify(arguments: argparse.Namespace) -> int:
-    from zwidth.passivity.certificate import read_document, verify_document
+    from zwidth.cli.verification import checked, print_verification
+    from zwidth.passivity.certificate import read_document
 
     document = read_document(arguments.file)
-    verification = verify_document(document)
-    from zwidth.cli.verification import print_verification
-
+    verification = checked(document)
     print_verification(document, verification)
     return 0 if verification.valid else 1
 
