@@ -317,3 +317,12 @@ def _keys(document: object) -> set[str]:
     if isinstance(document, list | tuple):
         return set().union(*(_keys(v) for v in document))
     return set()
+
+
+def test_every_file_that_the_newcomers_page_names_exists() -> None:
+    """One contact through every folder: a file that moves takes its line along."""
+    page = (ROOT / "docs" / "one-contact.md").read_text(encoding="utf-8")
+    named = re.findall(r"\*\*`([a-z_/]+(?:\.py|/))`\*\*", page)
+    assert len(named) > 15
+    missing = [n for n in named if not (SOURCE / n).exists() and not (SOURCE / "passivity" / n).exists()]
+    assert not missing
