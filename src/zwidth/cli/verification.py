@@ -63,7 +63,7 @@ def _rows(document: object, verification: Verification) -> Iterator[tuple[str, s
     evidence = _evidence(document)
     corners = _corners(document)
     if corners:
-        yield "corner", f"1 of {len(corners)}; the proofs cover all between them"
+        yield "corner", f"1 of {len(corners)}, each with a proof of its own"
     if "kind" in evidence:
         yield "kind", plain(str(evidence["kind"]))
     loop = evidence.get("loop")
