@@ -116,9 +116,7 @@ class VelocityFilter:
         """F(z) (z − 1)/(T z) [1/s]."""
         num = tuple(c.fraction for c in self.numerator)
         den = tuple(c.fraction for c in self.denominator)
-        return RationalFunction(
-            multiply(num, (_ONE, -_ONE)), multiply(den, (period, Fraction(0)))
-        )
+        return RationalFunction(multiply(num, (_ONE, -_ONE)), multiply(den, (period, Fraction(0))))
 
 
 VelocityEstimator = BackwardDifference | Window | OnePole | VelocityFilter

@@ -14,7 +14,7 @@ from typing import Literal
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference, OnePole, Wall, Window
 from zwidth.environment.environment import Environment
-from zwidth.passivity.boundary import largest_holding, smallest_holding
+from zwidth.passivity.boundary import SMALLEST, largest_holding, smallest_holding
 from zwidth.passivity.limits import Change, has_stiffness, provable, stiffness_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
@@ -28,7 +28,7 @@ class Advice:
 
     `kind` is "change" for a loop that is not passive and "slack" for one that
     is; `to` is None where no value of this parameter alone would do, and inf
-    where it may grow without bound.
+    ("any" as plain data) where it may have any value.
     """
 
     parameter: str
@@ -40,7 +40,7 @@ class Advice:
 
     def to_dict(self) -> dict[str, object]:
         """As plain data: parameter, from, to, unit, kind, text."""
-        to = None if isinstance(self.to, float) and isinf(self.to) else self.to
+        to = "any" if isinstance(self.to, float) and isinf(self.to) else self.to
         return {
             "parameter": self.parameter,
             "from": self.current,
@@ -111,6 +111,8 @@ def _time_constant(device: Device, wall: Wall) -> Iterator[_Knob]:
 def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"]) -> Advice:
     search = smallest_holding if knob.more else largest_holding
     to = search(lambda value: provable(knob.change, value), knob.current or 1e-4)
+    if knob.more and to is not None and to <= SMALLEST:
+        to = inf if knob.parameter == "rate" else 0.0
     if kind == "change" and to is not None and not _is_change(knob, to):
         to = None
     unit = GLOSSARY[knob.parameter].unit_for(motion)

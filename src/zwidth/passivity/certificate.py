@@ -106,22 +106,23 @@ def verify_document(document: object) -> checker.Verification:
     """
     if not isinstance(document, Mapping):
         raise InputError("expected a JSON object with a certificate or a witness")
-    for key in ("certificate", "witness"):
-        if isinstance(document.get(key), Mapping):
-            return verify_document(document[key])
-    if document.get("kind") == "corners":
-        return _verify_corners(document.get("corners"))
-    if "kind" not in document:
+    inner = next(
+        (document[k] for k in ("certificate", "witness") if isinstance(document.get(k), Mapping)), None
+    )
+    evidence = document if inner is None else inner
+    if evidence.get("kind") == "corners":
+        return _verify_corners(evidence.get("corners"))
+    if "kind" not in evidence:
         raise InputError(
             "no certificate or witness found: the object has no key kind, certificate or witness"
         )
-    return checker.verify(document)
+    return checker.verify(evidence)
 
 
 def _verify_corners(corners: object) -> checker.Verification:
     if not isinstance(corners, list) or not corners:
         raise InputError("corners must be a list of certificates")
-    results = [verify_document(corner) for corner in corners]
+    results = [checker.verify(corner) for corner in corners]
     failed = next((r for r in results if not r.valid or r.energy is not None), None)
     return failed or checker.Verification(True, f"all {len(results)} corners: {results[0].reason}")
 

@@ -16,17 +16,20 @@ from flint import fmpz_poly
 
 from zwidth.passivity.linear import closed_loop
 from zwidth.passivity.loop import LinearLoop
-from zwidth.passivity.motion import Motion, Pattern, convolve
+from zwidth.passivity.motion import Motion, Pattern, Repeat, convolve
 
-_LENGTHS = (8, 32, 128, 512, 2048, 8192, 32768)
+_LENGTHS = (8, 32, 128, 512, 2048)
 _SIZE = 1024
 
 
-def slow_presses(loop: LinearLoop) -> Iterator[Pattern]:
-    """Ways in at constant speed, slower and slower, ending at rest inside."""
-    for length in _LENGTHS:
-        hold = (length,) * (len(loop.numerator) + len(loop.denominator) + loop.whole_delay + 1)
-        yield Pattern((*range(length + 1), *hold), ())
+def slow_press(loop: LinearLoop) -> Pattern:
+    """A way in at constant speed, ending at rest inside; the repeated sample makes it as long as need be."""
+    settle = len(loop.numerator) + len(loop.denominator) + loop.whole_delay + 2
+    steady = range(settle + 2)
+    return Pattern((*steady, *[settle + 1] * settle), (Repeat(settle, settle + 1, 1),))
+
+
+PRESS_LENGTHS = tuple(4**k for k in range(1, 40))
 
 
 def buildups(loop: LinearLoop, unilateral: bool) -> Iterator[Motion]:
@@ -41,7 +44,7 @@ def buildups(loop: LinearLoop, unilateral: bool) -> Iterator[Motion]:
         return
     for mode in modes:
         if abs(mode) > 1 - 1e-9 and mode.imag >= -1e-12:
-            for length in _LENGTHS[:5]:
+            for length in _LENGTHS:
                 yield _buildup(loop, mode, length, base)
 
 

@@ -56,7 +56,20 @@ def max_stiffness(device: Device, environment: Environment) -> float | None:
     def change(k: Fraction) -> tuple[Device, Environment]:
         return device, environment.replace(stiffness=Exact(k))
 
-    return largest_holding(lambda k: provable(change, k), now or 1.0)
+    def holds(k: Fraction) -> bool:
+        return provable(change, k)
+
+    found = largest_holding(holds, now or 1.0)
+    if found:
+        return found
+    # with negative virtual damping a softer wall may ask for more friction: look among stiffer ones
+    stiffer = next((k for k in _stiffer(now) if holds(Exact(k).fraction)), None)
+    return found if stiffer is None else largest_holding(holds, stiffer)
+
+
+def _stiffer(stiffness: float) -> list[float]:
+    """Stiffnesses above a given one, up to a million times as large [N/m; N·m/rad]."""
+    return [(stiffness or 1.0) * 1.25**step for step in range(1, 62)]
 
 
 def max_gain(device: Device, environment: Environment) -> float | None:

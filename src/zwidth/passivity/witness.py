@@ -17,7 +17,7 @@ from typing import Any
 
 from zwidth.passivity import checker
 from zwidth.passivity.document import loop_document, to_json, unit_key
-from zwidth.passivity.escape import buildups, slow_presses
+from zwidth.passivity.escape import PRESS_LENGTHS, buildups, slow_press
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion, Pattern, realize, round_up
 from zwidth.passivity.schur import is_schur
@@ -172,7 +172,8 @@ def refute_linear(setting: Setting, reason: str) -> Witness | None:
         if witness is not None or is_schur(setting.loop.denominator[::-1]):
             return witness
     if reason == "negative static stiffness":
-        return _first(_sized(setting, pattern) for pattern in slow_presses(setting.loop))
+        press = slow_press(setting.loop)
+        return _first(_sized(setting, press, times) for times in PRESS_LENGTHS)
     return _first(
         _scaled(setting, _unit(setting, one), partial(_multiplied, one))
         for one in buildups(setting.loop, setting.unilateral)

@@ -199,7 +199,8 @@ class _Run:
         """By how much every force grows from round to round; None while the loop has not settled."""
         if advance == 0:
             return 0 if memory == self.memory and forces == self.forces else None
-        if (self.p.unilateral and lowest <= 0) or (self.encoder and advance % self.encoder):
+        count = self.encoder or 1
+        if (self.p.unilateral and lowest < count) or advance % count:
             return None
         at_one = sum(self.denominator)
         if at_one == 0 or advance * self.scale % at_one:

@@ -73,6 +73,8 @@ class Loop(NamedTuple):
 
 def read_loop(document: Mapping[str, Any]) -> Loop:
     loop = get(document, "loop")
+    if not isinstance(loop, Mapping) or not all(isinstance(key, str) for key in loop):
+        raise Invalid("the loop must be an object")
 
     def quantity(name: str) -> Fraction:
         keys = [k for k in loop if k == name or k.startswith(name + "_")]
@@ -89,6 +91,8 @@ def read_loop(document: Mapping[str, Any]) -> Loop:
     if not denominator or denominator[0] == 0 or len(numerator) != len(denominator):
         raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
     whole = delay // period
+    if whole > MOST_COEFFICIENTS:
+        raise Invalid(f"the delay is {float(whole):g} samples, more than {MOST_COEFFICIENTS}")
     unilateral = get(loop, "unilateral")
     if not isinstance(unilateral, bool):
         raise Invalid("unilateral must be true or false")
