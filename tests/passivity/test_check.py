@@ -386,7 +386,6 @@ def test_hidden_unstable_mode_is_not_passive():
     assert assert_evidence(zw.check(PADDLE, decaying)).outcome == "passive"
 
 
-@pytest.mark.xfail(reason="the search assumes that a softer wall needs less, which ‖h‖₁ with B < 0 breaks")
 def test_largest_stiffness_where_softer_walls_need_more_friction():
     """With B < 0 an encoder asks for (2|B|/T − K)Δ/2 of soft walls: 60 N/m is passive though 1 N/m is not."""
     device = zw.Device(damping="0.5", coulomb_friction="0.03", resolution="0.001", sample_period="0.001")
@@ -498,6 +497,19 @@ def test_rounded_coefficients_are_said():
     rounded = zw.check(device, zw.StandardLinearSolid(50, 20, 0.1, "zoh"))
     assert not any("rounded" in line for line in exact.assumptions)
     assert any("rounded" in line for line in rounded.assumptions)
+
+
+ROUNDED = pytest.mark.xfail(reason="rounding each branch moves the zero at z = 1: H(1) = −1e-14 N/m")
+
+
+@pytest.mark.parametrize(
+    "discretization", ["backward", "tustin", "zoh", pytest.param("matched", marks=ROUNDED)]
+)
+def test_rounding_does_not_make_a_solid_active(discretization):
+    """Maxwell branches alone have no static stiffness: no discretization of them is active for H(1) < 0."""
+    law = zw.GeneralizedMaxwell(0, [("12.42", "2.993"), ("33.08", "0.2232")], discretization)
+    device = zw.Device(damping="2.04", sample_period="0.003447")
+    assert assert_evidence(zw.check(device, law)).outcome == "passive"
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0007"])

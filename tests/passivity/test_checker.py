@@ -347,20 +347,13 @@ def test_malformed_documents_never_raise(data):
         data.draw(st.sampled_from(["spring", "linear", "quantized", "press", "closed loop"]))
     ]
     places = [p for p in [*leaves(document), *lists(document)] if "delay_s" not in p]
-    places += [("kind",), *([("proof",), ("proof", "positivity")] if "proof" in document else [])]
+    places += [("loop",), ("kind",), *([("proof",), ("proof", "positivity")] if "proof" in document else [])]
     tampered = put(document, data.draw(st.sampled_from(places)), lambda _: data.draw(JSON))
     verification = checker.verify(tampered)
     assert isinstance(verification.reason, str)
 
 
-NO_KEYS = pytest.param(
-    [7], marks=pytest.mark.xfail(raises=AttributeError, reason="a list of numbers has no keys to search")
-)
-
-
-@pytest.mark.parametrize(
-    "loop", [None, [], "text", 3, {}, {"damping": "1", "damping_N_s_per_m": "1"}, NO_KEYS]
-)
+@pytest.mark.parametrize("loop", [None, [], "text", 3, {}, {"damping": "1", "damping_N_s_per_m": "1"}, [7]])
 @pytest.mark.parametrize("name", ["spring", "linear", "press"])
 def test_malformed_loops_never_raise(name, loop):
     """What stands for the loop may be anything: the document is rejected."""
@@ -501,7 +494,6 @@ def test_motion_must_start_at_rest_outside():
     assert setting.energy(Motion((Fraction(1, 10), Fraction(0)))) is None
 
 
-@pytest.mark.xfail(reason="rounds in closed form look at the position, not at the count")
 def test_rounds_that_back_out_of_a_wall_with_memory():
     """Backing out count by count is judged alike with rounds and with every round listed: not in count 0."""
     law = zw.PulseTransferFunction([25, -11], [1, 0])
@@ -523,7 +515,6 @@ def test_law_with_memory_is_not_judged_outside():
     assert setting.energy(Motion(x)) is None
 
 
-@pytest.mark.xfail(raises=MemoryError, reason="the delay's samples are laid out before they are counted")
 @pytest.mark.parametrize("kind", ["motion", "linear"])
 @pytest.mark.parametrize("delay", ["1e9"])
 def test_absurd_delay_is_rejected(kind, delay):
@@ -532,7 +523,6 @@ def test_absurd_delay_is_rejected(kind, delay):
     assert not checker.verify(put(DOCUMENTS[name], ("loop", "delay_s"), lambda _: delay)).valid
 
 
-@pytest.mark.xfail(raises=RecursionError, reason="nested documents are followed without a bound")
 @pytest.mark.parametrize("key", ["corners", "certificate"])
 def test_deeply_nested_documents(key):
     """A document inside a document, thousands deep, is an input error or a rejection."""
