@@ -99,15 +99,43 @@ def test_checker_finds_the_same_bound(seed):
     document = certify(decision)
     assert document["kind"] == "quantized"
     assert checker.verify(document).valid
-    inverse = [Fraction(c) for c in document["proof"]["inverse"]]
-    assert _one_norm_bound(read_loop(document), inverse) == decision.norm.bound
-    true = summed(loop)
+    proof = document["proof"]["norm"]
+    assert _one_norm_bound(read_loop(document), proof) == decision.norm.bound
+    true, inverse = float(summed(loop)), [Fraction(c) for c in proof["inverse"]]
     for _ in range(5):
-        k = random.randrange(len(inverse))
         other = list(inverse)
-        other[k] += inverse[0] * Fraction(random.randint(-200, 200), 1000)
+        other[random.randrange(len(inverse))] += inverse[0] * Fraction(random.randint(-200, 200), 1000)
         try:
-            bound = _one_norm_bound(read_loop(document), other)
+            bound = _one_norm_bound(read_loop(document), {**proof, "inverse": other})
         except Invalid:  # it bounds nothing, and says so
             continue
-        assert float(bound) >= float(true) * (1 - 1e-12)
+        assert float(bound) >= true * (1 - 1e-12)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_number_of_the_norm_proof_binds(seed):
+    """Modes and rest must sum to H(z): any of their numbers changed, dropped or doubled is rejected."""
+    random = Random(200 + seed)
+    device = zw.Device(damping=40, rate=1000, coulomb_friction=90, resolution="0.0003")
+    law = zw.Wall(draw(random, 5, 900), draw(random, 0.001, 1), zw.OnePole(draw(random, 0.01, 0.02)))
+    decision = Decision(Setting(linear_loop(device, law), Fraction(90), Fraction("0.0003"), True))
+    document = certify(decision)
+    proof = document["proof"]["norm"]
+    broken = []
+    for key in ("rest_numerator", "rest_denominator"):
+        for k, value in enumerate(proof[key]):
+            changed = list(proof[key])
+            changed[k] = str(Fraction(value) + Fraction(random.randint(1, 99), 7))
+            broken.append({**proof, key: changed})
+        broken.append({**proof, key: []})
+        broken.append({**proof, key: ["0"]})
+    for k, mode in enumerate(proof["modes"]):
+        rest = proof["modes"][:k] + proof["modes"][k + 1 :]
+        for key in mode:
+            changed = {**mode, key: str(Fraction(mode[key]) * Fraction("1.01"))}
+            broken.append({**proof, "modes": [*rest, changed]})
+        broken += [{**proof, "modes": rest}, {**proof, "modes": [*proof["modes"], mode]}]
+    broken.append({**proof, "rest_numerator": ["0"], "rest_denominator": ["0"], "modes": []})
+    for norm in broken:
+        with pytest.raises(Invalid):
+            _one_norm_bound(read_loop(document), norm)

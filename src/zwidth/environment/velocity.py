@@ -18,6 +18,9 @@ from zwidth.environment.environment import RationalFunction, certain, multiply
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
 
+LONGEST_TIME_CONSTANT = 1000
+"""Largest time constant of a velocity filter [s]."""
+
 _ONE = Fraction(1)
 
 
@@ -71,9 +74,15 @@ class OnePole:
 
     def __init__(self, time_constant: RealLike | Interval | tuple[RealLike, RealLike]) -> None:
         value = as_parameter(time_constant)
-        if ends(value)[0] < 0:
+        low, high = ends(value)
+        if low < 0:
             raise InputError(
                 f"time_constant must be ≥ 0 s, got {value}: a filter with a negative one grows without bound"
+            )
+        if high > LONGEST_TIME_CONSTANT:
+            raise InputError(
+                f"time_constant must be at most {LONGEST_TIME_CONSTANT} s, got {value}: such a filter never "
+                "follows a hand; check the unit, or leave the virtual damping out"
             )
         object.__setattr__(self, "time_constant", value)
 

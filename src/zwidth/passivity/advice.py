@@ -14,7 +14,7 @@ from typing import Literal
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference, OnePole, Wall, Window
 from zwidth.environment.environment import Environment
-from zwidth.passivity.boundary import SMALLEST, largest_holding, smallest_holding
+from zwidth.passivity.boundary import COARSE, SMALLEST, Holds, largest_holding, smallest_holding
 from zwidth.passivity.limits import Change, has_stiffness, provable, stiffness_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
@@ -109,8 +109,11 @@ def _time_constant(device: Device, wall: Wall) -> Iterator[_Knob]:
 
 
 def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"]) -> Advice:
+    holds: Holds = lambda value: provable(knob.change, value)  # noqa: E731
     search = smallest_holding if knob.more else largest_holding
-    to = search(lambda value: provable(knob.change, value), knob.current or 1e-4)
+    to = search(holds, knob.current or 1e-4, COARSE)
+    if to is not None and SMALLEST < to < inf:
+        to = _simplest_near(to, holds, knob.more)
     if knob.more and to is not None and to <= SMALLEST:
         to = inf if knob.parameter == "rate" else 0.0
     if kind == "change" and to is not None and not _is_change(knob, to):
@@ -120,9 +123,19 @@ def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"]) -> Advice:
     return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind))
 
 
+def _simplest_near(value: float, holds: Holds, more: bool) -> float:
+    """The shortest decimal within a grain of the boundary, if it is proved too."""
+    beyond = value * (1 - 2**-21 if more else 1 + 2**-21)
+    for digits in range(1, 9):
+        short = float(f"{value:.{digits}g}")
+        if min(value, beyond) <= short <= max(value, beyond) and holds(Exact(short).fraction):
+            return short
+    return value
+
+
 def _is_change(knob: _Knob, to: float) -> bool:
     """A remedy must lie on the safer side of where the parameter is and be something one can set."""
-    if to == inf or (to == 0 and knob.parameter in ("stiffness",)):
+    if to == inf or (to == 0 and knob.parameter in ("stiffness", "resolution")):
         return False
     return to > knob.current if knob.more else to < knob.current
 

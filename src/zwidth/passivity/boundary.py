@@ -16,34 +16,39 @@ from zwidth.quantity.exact import Exact
 SMALLEST, LARGEST = 1e-15, 1e15
 """Search range for a positive parameter in SI units."""
 
+COARSE = 1 << 30
+"""A grain of 2^30 doubles, 2.4e-7 of the value: near enough for advice, in half the decisions."""
+
 Holds = Callable[[Fraction], bool]
 
 
-def largest_holding(holds: Holds, guess: float) -> float | None:
+def largest_holding(holds: Holds, guess: float, grain: int = 1) -> float | None:
     """The largest double in range where `holds` is true, true below and false above it.
 
     Returns 0.0 if it holds at 0 but nowhere in range, inf if it holds
-    throughout, None if it fails even at 0.
+    throughout, None if it fails even at 0.  With a `grain` the answer is only
+    that many doubles near.
     """
-    return _search(holds, guess, upward=True)
+    return _search(holds, guess, True, grain)
 
 
-def smallest_holding(holds: Holds, guess: float) -> float | None:
+def smallest_holding(holds: Holds, guess: float, grain: int = 1) -> float | None:
     """The smallest double in range where `holds` is true, false below and true above it.
 
-    Returns 0.0 if it holds at 0, None if it holds nowhere in range.
+    Returns 0.0 if it holds at 0, None if it holds nowhere in range; `grain` as
+    for `largest_holding`.
     """
     if holds(Fraction(0)):
         return 0.0
-    return _search(holds, guess, upward=False)
+    return _search(holds, guess, False, grain)
 
 
-def _search(holds: Holds, guess: float, upward: bool) -> float | None:
+def _search(holds: Holds, guess: float, upward: bool, grain: int) -> float | None:
     """Gallop outward from the guess in ordered doubles, then halve."""
     start = _index(min(max(guess, SMALLEST), LARGEST))
     here = _at(holds, start)
     outward = here == upward  # which way the boundary lies: True is to larger values
-    step, inside = 1, start
+    step, inside = grain, start
     bottom, top = _index(SMALLEST), _index(LARGEST)
     while True:
         probe = min(inside + step, top) if outward else max(inside - step, bottom)
@@ -53,7 +58,7 @@ def _search(holds: Holds, guess: float, upward: bool) -> float | None:
             return _beyond(holds, probe == top, here, upward)
         inside, step = probe, step * 16
     low, high = sorted((inside, probe))
-    while high - low > 1:
+    while high - low > grain:
         middle = (low + high) // 2
         if _at(holds, middle) == upward:
             low = middle

@@ -18,6 +18,7 @@ from zwidth.passivity import checker
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import loop_document, to_json
 from zwidth.passivity.linear import LinearProof
+from zwidth.passivity.one_norm import NormBound
 
 FORMAT = "zwidth certificate 1"
 LARGEST_FILE = 200_000_000
@@ -76,8 +77,17 @@ def certify(decision: Decision) -> dict[str, Any]:
     document["proof"] = _proof(proof)
     if decision.kind == "quantized":
         assert decision.norm is not None
-        document["proof"]["inverse"] = [str(c) for c in decision.norm.inverse]
+        document["proof"]["norm"] = _norm(decision.norm)
     return document
+
+
+def _norm(norm: NormBound) -> dict[str, Any]:
+    return {
+        "modes": [{"pole": str(mode.pole), "residue": str(mode.residue)} for mode in norm.modes],
+        "rest_numerator": [str(c) for c in norm.rest_numerator],
+        "rest_denominator": [str(c) for c in norm.rest_denominator],
+        "inverse": [str(c) for c in norm.inverse],
+    }
 
 
 def _proof(proof: LinearProof) -> dict[str, Any]:

@@ -28,7 +28,7 @@ from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.errors import InputError
 from zwidth.passivity.schur import is_schur
 
-LARGEST_DEGREE = 400
+LARGEST_DEGREE = 120
 """The order of H plus the delay in samples that is still decided."""
 
 

@@ -4,8 +4,10 @@ With the encoder's middle as reference its error is at most Δ/2, so the force
 of H(z) is off by at most ‖h‖₁ Δ/2, h the impulse response.  Coulomb friction
 of that size takes out whatever work the error does, at every instant.
 
-For any polynomial E, ‖N/D‖₁ ≤ ‖N E‖₁/(|e₀| − ‖D E − e₀‖₁), e₀ = (D E)(0), as
-1/(1 + ε) has norm at most 1/(1 − ‖ε‖₁).  E is 1/D, cut off and rounded.
+Slow real poles, such as those of tissues that relax over seconds, are split
+off first: r/(1 − p ζ) has norm |r|/(1 − |p|).  For the rest, R/S, and for any
+polynomial E, ‖R/S‖₁ ≤ ‖R E‖₁/(|e₀| − ‖S E − e₀‖₁), e₀ = (S E)(0), as
+1/(1 + ε) has norm at most 1/(1 − ‖ε‖₁).  E is 1/S, cut off and rounded.
 """
 
 from __future__ import annotations
@@ -13,38 +15,76 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import fmpz_poly
+from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.loop import LinearLoop
 
 LONGEST = 1500
-"""Coefficients of 1/D kept; a law that remembers longer than this stays unbounded."""
+"""Coefficients of 1/S kept; a rest that remembers longer than this stays unbounded."""
 
+_SLOW = Fraction(9, 10)
 _BITS = 80
 
 
+class Mode(NamedTuple):
+    """r/(1 − p ζ), |p| < 1."""
+
+    pole: Fraction
+    residue: Fraction
+
+
 class NormBound(NamedTuple):
-    """‖h‖₁ ≤ bound [N/m], by the coefficients of E in ascending powers of z⁻¹."""
+    """‖h‖₁ ≤ bound [N/m] for H = Σ modes + R/S; coefficients in ascending powers of ζ = z⁻¹."""
 
     bound: Fraction
+    modes: tuple[Mode, ...]
+    rest_numerator: tuple[Fraction, ...]
+    rest_denominator: tuple[Fraction, ...]
     inverse: tuple[int, ...]
 
 
 def bound_one_norm(loop: LinearLoop) -> NormBound | None:
-    """An exact upper bound on ‖h‖₁, tight to about 1e-9; None where 1/D decays too slowly."""
+    """An exact upper bound on ‖h‖₁; None where too slow a part is left."""
+    numerator, denominator = fmpq_poly(list(loop.numerator)), fmpq_poly(list(loop.denominator))
     if len(loop.denominator) == 1:
-        return _bound(loop, (1,))
+        return _bound((), numerator, denominator, (1,))
+    modes, numerator, denominator = _split_slow(numerator, denominator)
+    whole = [int(c) for c in denominator.numer().coeffs()]
     length = 64
     while length <= LONGEST:
-        found = _bound(loop, _series(loop.denominator, length))
+        found = _bound(modes, numerator, denominator, _series(whole, length))
         if found is not None:
             return found
-        length = length * 2 if length * 2 <= LONGEST or length == LONGEST else LONGEST
+        length = LONGEST if length < LONGEST < 2 * length else 2 * length
     return None
 
 
-def _series(d: tuple[int, ...], length: int) -> tuple[int, ...]:
-    """2^_BITS d₀/D, rounded, first `length` coefficients."""
+def _split_slow(n: fmpq_poly, d: fmpq_poly) -> tuple[tuple[Mode, ...], fmpq_poly, fmpq_poly]:
+    """N/D as slow simple modes with rational poles, and the rest."""
+    modes, rest = [], d
+    for factor, times in fmpz_poly(d.numer()).factor()[1]:
+        if factor.degree() != 1 or times != 1:
+            continue
+        pole = Fraction(-int(factor[1]), int(factor[0])) if factor[0] != 0 else Fraction(0)
+        if not _SLOW < abs(pole) < 1:
+            continue
+        line = fmpq_poly([1, _q(-pole)])
+        others = d // line
+        at = 1 / _q(pole)
+        residue = n(at) / others(at)
+        modes.append(Mode(pole, Fraction(int(residue.p), int(residue.q))))
+        rest //= line
+    for pole, residue in modes:
+        n -= _q(residue) * (d // fmpq_poly([1, _q(-pole)]))
+    return tuple(modes), n // (d // rest), rest
+
+
+def _q(value: Fraction) -> fmpq:
+    return fmpq(value.numerator, value.denominator)
+
+
+def _series(d: list[int], length: int) -> tuple[int, ...]:
+    """2^_BITS d₀/S, rounded, first `length` coefficients."""
     scale = 1 << _BITS
     e: list[int] = []
     for k in range(length):
@@ -54,11 +94,20 @@ def _series(d: tuple[int, ...], length: int) -> tuple[int, ...]:
     return tuple(e)
 
 
-def _bound(loop: LinearLoop, inverse: tuple[int, ...]) -> NormBound | None:
-    e = fmpz_poly(list(inverse))
-    head, *tail = (abs(int(c)) for c in (fmpz_poly(list(loop.denominator)) * e).coeffs())
-    rest = sum(tail)
-    if rest * 10**9 > head:
+def _bound(
+    modes: tuple[Mode, ...], numerator: fmpq_poly, denominator: fmpq_poly, inverse: tuple[int, ...]
+) -> NormBound | None:
+    e = fmpq_poly(list(inverse))
+    head, *tail = (abs(c) for c in _fractions(denominator * e))
+    left_over = sum(tail, Fraction(0))
+    if left_over * 10**9 > head:
         return None
-    total = sum(abs(int(c)) for c in (fmpz_poly(list(loop.numerator)) * e).coeffs())
-    return NormBound(Fraction(total, head - rest), inverse)
+    rest = sum((abs(c) for c in _fractions(numerator * e)), Fraction(0)) / (head - left_over)
+    slow = sum((abs(mode.residue) / (1 - abs(mode.pole)) for mode in modes), Fraction(0))
+    return NormBound(
+        rest + slow, modes, tuple(_fractions(numerator)), tuple(_fractions(denominator)), inverse
+    )
+
+
+def _fractions(p: fmpq_poly) -> list[Fraction]:
+    return [Fraction(int(c.p), int(c.q)) for c in p.coeffs()]

@@ -26,6 +26,9 @@ LONGEST_PERIOD = 500_000
 LONGEST_LISTED = 5_000
 """Samples in one slow period beyond which a wave of constant speeds is used instead."""
 
+LONGEST_WAY_IN = 50_000
+"""Samples in which a filter must come to rest inside the wall."""
+
 _PIECES, _SPEED = 64, 1000
 _RAMPS = (1, 16, 256)
 
@@ -51,7 +54,9 @@ def sinusoids(loop: LinearLoop, unilateral: bool) -> Iterator[Pattern]:
         if sum(loop.follower) <= 0 or not is_schur(loop.denominator[::-1]):
             return  # an unstable filter cannot be led in to rest
         for ramp in _RAMPS:
-            yield _inside(loop, cycle, settled, ramp)
+            pattern = _inside(loop, cycle, settled, ramp)
+            if pattern is not None:
+                yield pattern
         return
     first = len(settled)
     w = (0, *settled, *cycle, *(0,) * (len(loop.denominator) - 1))
@@ -63,31 +68,40 @@ def _memory(loop: LinearLoop) -> int:
     return len(loop.numerator) + len(loop.denominator) - 2 + loop.whole_delay + (loop.part_delay > 0)
 
 
-def _inside(loop: LinearLoop, cycle: tuple[int, ...], settled: tuple[int, ...], ramp: int) -> Pattern:
+def _inside(loop: LinearLoop, cycle: tuple[int, ...], settled: tuple[int, ...], ramp: int) -> Pattern | None:
     """The cycle on top of a depth: a way in of `ramp` samples, the rounds, a way out, and a last step."""
     at_one = sum(loop.follower)
     depth = max(cycle) * sum(abs(c) for c in loop.follower) // at_one + 1
     rise = [k / ramp for k in range(1, ramp + 1)]
-    lead = (0, *_following(loop, rise, depth), *(depth + w for w in settled))
+    way_in = _following(loop, rise, depth)
     fall = _following(loop, [1 - v for v in rise[:-1]], depth, start=1.0) if ramp > 1 else ()
+    if way_in is None or fall is None:
+        return None
+    lead = (0, *way_in, *(depth + w for w in settled))
     hold = (depth,) * (_memory(loop) + 1)
     w = (*lead, *(depth + v for v in cycle), *hold, *fall)
     first = len(lead) - 1
     return Pattern(w, (Repeat(first, first + len(cycle), 1),), True)
 
 
-def _following(loop: LinearLoop, x: list[float], depth: int, start: float = 0.0) -> tuple[int, ...]:
-    """Whole w that carries the position nearly along x, in parts of the depth, to rest if x ends at 1."""
-    d = [c / loop.follower[0] for c in loop.follower]
-    gain = sum(loop.follower) / loop.follower[0]
-    past = [start] * (len(d) - 1)
+def _following(loop: LinearLoop, x: list[float], depth: int, start: float = 0.0) -> tuple[int, ...] | None:
+    """Whole w that carries the position nearly along x, in parts of the depth, to rest if x ends at 1.
+
+    None where the filter is too slow, or too badly conditioned, to come to rest.
+    """
+    d, at_one = loop.follower, sum(loop.follower)
+    scale = 1 << (64 + 16 * len(d))  # clustered poles cancel many digits
+    past = [round(start * scale)] * (len(d) - 1)
     w: list[int] = []
-    while len(w) < len(x) or (x[-1] == 1 and len(w) < LONGEST_PERIOD):
+    while len(w) < len(x) or x[-1] == 1:
         target = x[len(w)] if len(w) < len(x) else 1.0
-        value = target * gain - sum(a * v for a, v in zip(d[1:], past, strict=True))
+        value = round(target * (1 << 60)) * (scale >> 60) * at_one
+        value = (value - sum(a * v for a, v in zip(d[1:], past, strict=True))) // d[0]
+        if abs(value) > 2**40 * scale or len(w) > LONGEST_WAY_IN:
+            return None
         past = [value, *past[:-1]] if past else []
-        w.append(round(depth * Fraction(value)))
-        if len(w) >= len(x) and all(abs(v - 1) * depth < 0.5 for v in past):
+        w.append((depth * value + scale // 2) // scale)
+        if len(w) >= len(x) and all(abs(v - scale) * depth * 2 < scale for v in past):
             break
     if x[-1] == 1:
         w += [depth] * (_memory(loop) + 1)

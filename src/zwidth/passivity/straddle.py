@@ -47,17 +47,15 @@ def best_waits(loop: LinearLoop) -> Waits:
 
 
 def _impulse_response(loop: LinearLoop) -> list[float]:
+    """h(k) to rounding, from whole numbers: clustered poles cancel many digits."""
     d, n = loop.denominator, loop.numerator
-    scaled_d = [c / d[0] for c in d]
-    scaled_n = [Fraction(c, d[0]) for c in n]
-    h: list[float] = []
+    bits = 64 + 16 * len(d)
+    h: list[int] = []
     for k in range(_HORIZON):
-        value = float(scaled_n[k]) if k < len(n) else 0.0
-        value -= sum(a * h[k - i] for i, a in enumerate(scaled_d) if 0 < i <= k)
-        if abs(value) > 1e100:
-            break
-        h.append(value)
-    return h
+        value = (n[k] << bits) if k < len(n) else 0
+        value -= sum(d[i] * h[k - i] for i in range(1, min(k, len(d) - 1) + 1))
+        h.append(value // d[0])
+    return [float(Fraction(v, 1 << bits)) if abs(v) >> bits < 10**100 else 0.0 for v in h]
 
 
 def _gain(h: list[float], above: int, below: int, loop: LinearLoop) -> float:

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from .reading import MOST_COEFFICIENTS, Invalid, Loop, get, integer, number, numbers, read_loop
 
 MOST_SPLITS = 20_000
+MOST_MODES = 60
 
 _Exact = TypeVar("_Exact", int, Fraction)
 
@@ -55,22 +56,41 @@ def _quantized(document: Mapping[str, Any]) -> str:
     """The encoder's error is at most Δ/2 about its middle: it moves the force by ≤ ‖h‖₁ Δ/2 ≤ f_c."""
     p = read_loop(document)
     _linear_part(document, p)
-    inverse = numbers(get(get(document, "proof"), "inverse"))
-    norm = _one_norm_bound(p, inverse)
+    norm = _one_norm_bound(p, get(get(document, "proof"), "norm"))
     if norm * p.resolution > 2 * p.coulomb_friction:
         raise Invalid("the Coulomb friction is below ‖h‖₁ Δ/2")
     return "as linear, and Coulomb friction covers the largest force error of the encoder"
 
 
-def _one_norm_bound(p: Loop, inverse: list[Fraction]) -> Fraction:
-    """‖N/D‖₁ ≤ ‖N E‖₁/(e − ‖D E − e‖₁), e the first coefficient of D E, for any polynomial E."""
-    if not inverse:
-        raise Invalid("the inverse has no coefficients")
-    product = _multiply(p.denominator, inverse)
+def _one_norm_bound(p: Loop, norm: Mapping[str, Any]) -> Fraction:
+    """‖H‖₁ ≤ Σ|r|/(1 − |p|) + ‖R E‖₁/(|e₀| − ‖S E − e₀‖₁) where H = Σ r/(1 − p ζ) + R/S, any polynomial E."""
+    top, bottom, inverse = (
+        numbers(get(norm, k)) or [Fraction(0)] for k in ("rest_numerator", "rest_denominator", "inverse")
+    )
+    modes = get(norm, "modes")
+    if not isinstance(modes, list) or len(modes) > MOST_MODES:
+        raise Invalid("the modes must be a short list")
+    product = _multiply(bottom, inverse)
     slack = abs(product[0]) - sum(abs(c) for c in product[1:])
     if slack <= 0:
         raise Invalid("the inverse does not bound the impulse response")
-    return sum(abs(c) for c in _multiply(p.numerator, inverse)) / slack
+    bound = sum(abs(c) for c in _multiply(top, inverse)) / slack
+    for mode in modes:
+        pole, residue = number(get(mode, "pole")), number(get(mode, "residue"))
+        if abs(pole) >= 1:
+            raise Invalid("a mode does not decay")
+        bound += abs(residue) / (1 - abs(pole))
+        line = [Fraction(1), -pole]
+        top, bottom = _sum(_multiply(top, line), [residue * c for c in bottom]), _multiply(bottom, line)
+    left, right = _multiply(top, p.denominator), _multiply(p.numerator, bottom)
+    if any(_sum(left, [-c for c in right])):
+        raise Invalid("the modes and the rest do not sum to H(z)")
+    return bound
+
+
+def _sum(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+    size = max(len(a), len(b))
+    return [(a[i] if i < len(a) else Fraction(0)) + (b[i] if i < len(b) else 0) for i in range(size)]
 
 
 def _criterion(p: Loop) -> list[Fraction]:
