@@ -45,7 +45,7 @@ def zero_order_hold(numerator: Polynomial, denominator: Polynomial, period: Frac
         num, den = _transfer(phi, gamma, output)
         return _with_direct([flint.arb(0), *num], den, direct), den
 
-    return _rounded(compute, denominator)
+    return _at_rest(_rounded(compute, denominator), numerator, denominator)
 
 
 def impulse_invariant(numerator: Polynomial, denominator: Polynomial, period: Fraction) -> RationalFunction:
@@ -83,7 +83,7 @@ def matched(numerator: Polynomial, denominator: Polynomial, period: Fraction) ->
         gain = _ball(num[-1] / den[-1]) * _value_at_1(den) / (_value_at_1(num) * 2**missing)
         return [gain * c for c in top], bottom
 
-    return _rounded(compute, denominator)
+    return _at_rest(_rounded(compute, denominator), numerator, denominator)
 
 
 def _in_periods(polynomial: Polynomial, period: Fraction) -> Polynomial:
@@ -184,6 +184,17 @@ def _rounded(compute: Callable[[], tuple[Balls, Balls]], denominator: Polynomial
         "H(s) has modes so fast against the sample period that no double holds the coefficients of H(z); "
         "check the unit of the coefficients"
     )
+
+
+def _at_rest(rounded: RationalFunction, numerator: Polynomial, denominator: Polynomial) -> RationalFunction:
+    """With H(0) = 0 the last coefficient of N(z) is set so that N(1) = 0 in spite of the rounding.
+
+    A law that relaxes to no force must not be left with a static stiffness of −1e-14.
+    """
+    top = rounded.numerator
+    if numerator[-1] != 0 or denominator[-1] == 0:
+        return rounded
+    return RationalFunction((*top[:-1], -sum(top[:-1], Fraction(0))), rounded.denominator)
 
 
 def _nearest_double(ball: Any) -> float | None:

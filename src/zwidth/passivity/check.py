@@ -170,8 +170,8 @@ def _open_claim(decision: Decision) -> str:
     if isinstance(decision.viscous, LinearRefutation):
         if decision.viscous.reason == "criterion":
             return (
-                "The linear criterion is violated, so passivity cannot be proved, but no motion was found that "
-                "shows it: the band of frequencies is very narrow, or the law very slow."
+                "The linear criterion is violated, so passivity cannot be proved, but no motion was found "
+                "that shows it: the band of frequencies is very narrow, or the law very slow."
             )
         return f"Passivity cannot be proved ({decision.viscous.reason}), and no motion was found that gains."
     if not decision.loop.hidden_modes_decay:
