@@ -76,11 +76,8 @@ def _passive(
     claim = "No motion of the hand, however fast or skilled, can take energy out of this loop"
     if any(_at_limit(d) for d in decisions):
         claim += "; it is exactly at its limit, equality included"
-    (at, law_at) = corners[tight]
-    return Verdict(
-        "passive", claim + ".", _assumptions(device, law, decisions[tight]), at, law_at, decisions[tight],
-        certificate, None,
-    )  # fmt: skip
+    assumptions = _assumptions("passive", device, law, decisions[tight])
+    return Verdict("passive", f"{claim}.", assumptions, *corners[tight], decisions[tight], certificate, None)
 
 
 def _between(device: Device, law: Environment, corner: tuple[Device, Environment], at: Decision) -> Verdict:
@@ -88,7 +85,7 @@ def _between(device: Device, law: Environment, corner: tuple[Device, Environment
         "Passive at every corner of the intervals; that every value between them is too is not proved "
         "for intervals of these parameters together."
     )
-    return Verdict("undecided", claim, _assumptions(device, law, at), *corner, at, None, None)
+    return Verdict("undecided", claim, _assumptions("undecided", device, law, at), *corner, at, None, None)
 
 
 def _at_limit(decision: Decision) -> bool:
@@ -147,7 +144,7 @@ def _not_passive(
         )
     else:
         claim = _open_claim(decision)
-    assumptions = _assumptions(device, law, decision) + _beyond_the_actuator(device, witness)
+    assumptions = _assumptions(outcome, device, law, decision) + _beyond_the_actuator(device, witness)
     return Verdict(outcome, claim, assumptions, *corner, decision, None, witness)
 
 
@@ -181,19 +178,25 @@ def _open_claim(decision: Decision) -> str:
             "again."
         )
     need, least = decision.sufficient_friction, decision.necessary_friction
-    bound = "no bound is known above" if need is None else f"enough is {float(need):.6g}"
+    has = float(decision.setting.coulomb_friction)
+    enough = "no amount is proved enough" if need is None else f"{float(need):.6g} is enough"
+    below = (
+        f"straddling an encoder edge should gain below {least:.6g}, yet no such motion was found short enough"
+        if has < least
+        else f"straddling an encoder edge gains only below {least:.6g}"
+    )
     return (
         "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
-        f"is proved: too little is below {least:.6g}, {bound}, and the device has "
-        f"{float(decision.setting.coulomb_friction):.6g}."
+        f"is proved: {enough}, {below}, and the device has {has:.6g}."
     )
 
 
-def _assumptions(device: Device, law: Environment, decision: Decision) -> tuple[str, ...]:
+def _assumptions(outcome: Outcome, device: Device, law: Environment, decision: Decision) -> tuple[str, ...]:
     unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
     loop = decision.loop
     lines = [
-        "contact made and broken at any instant; the same holds for every spring law of slope 0 to K"
+        "contact made and broken at any instant"
+        + ("; the same holds for every spring law of slope 0 to K" if outcome == "passive" else "")
         if decision.is_spring
         else "sustained contact: the law is linear while the hand stays inside; making and breaking contact "
         "is not covered",
@@ -213,5 +216,6 @@ def _assumptions(device: Device, law: Environment, decision: Decision) -> tuple[
     intervals = [k for k, v in device.parameters().items() if isinstance(v, Interval)]
     if intervals or not law.is_certain:
         named = ", ".join(intervals) or "the environment's intervals"
-        lines.append(f"holds for every value within {named}; numbers are given for the worst corner")
+        holds = "" if outcome == "undecided" else f"holds for every value within {named}; "
+        lines.append(holds + "numbers are given for the worst corner of the intervals")
     return tuple(lines)

@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import gcd, lcm
+from math import gcd, inf, lcm
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
@@ -117,16 +117,23 @@ class LinearLoop:
         ½ [A + √(A² + T² α(1−α) |H|²)],  A = (T/2) (R − (1 + c) S)/|D|².
         """
         point = _q(c)
-        scale = float(self.dissipation(point))
+        scale = self.dissipation(point)
         if scale == 0:
-            return float("inf")
-        base = -float(self.period) / 2 * float(self.hold(point)) / scale
-        alpha = float(self.part_delay)
-        extra = float(self.period) ** 2 * alpha * (1 - alpha) * float(self.switching(point)) / scale
+            return inf
+        try:
+            base = -float(self.period) / 2 * _float(self.hold(point) / scale)
+            alpha = float(self.part_delay)
+            extra = float(self.period) ** 2 * alpha * (1 - alpha) * _float(self.switching(point) / scale)
+        except OverflowError:
+            return inf
         if extra == 0:
             return base
         root = (base * base + extra) ** 0.5
         return float((base + root) / 2 if base > 0 else extra / 2 / (root - base))
+
+
+def _float(value: fmpq) -> float:
+    return float(Fraction(int(value.p), int(value.q)))
 
 
 def linear_loop(device: Device, environment: Environment) -> LinearLoop:

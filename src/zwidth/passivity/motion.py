@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, floor, inf, log10
+from math import ceil, floor, log10
 from typing import NamedTuple
 
 from zwidth.passivity.loop import LinearLoop
-from zwidth.passivity.supremum import tightest
 
 
 class Repeat(NamedTuple):
@@ -127,9 +126,9 @@ def _switches(
 
 
 def _any_damping(loop: LinearLoop) -> Fraction:
-    """A size for the moves inside a sample of a device without damping, where every size gains."""
-    need = tightest(loop)[0]
-    return Fraction(need if 0 < need < inf else 1.0).limit_denominator(10**12) / 100 or Fraction(1, 10**12)
+    """A damping that makes the moves inside a sample large: without damping every size gains."""
+    stiffness = Fraction(sum(abs(c) for c in loop.numerator), sum(abs(c) for c in loop.denominator))
+    return (stiffness * loop.period * loop.part_delay * (1 - loop.part_delay) or Fraction(1)) / 10**6
 
 
 def round_up(target: Fraction) -> Fraction:

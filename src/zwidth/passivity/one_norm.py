@@ -22,7 +22,7 @@ from zwidth.passivity.loop import LinearLoop
 LONGEST = 1500
 """Coefficients of 1/S kept; a rest that remembers longer than this stays unbounded."""
 
-_SLOW = Fraction(9, 10)
+_SLOW = Fraction(985, 1000)
 _BITS = 80
 
 

@@ -20,7 +20,7 @@ from zwidth.passivity.positivity import prove_nonnegative
 from zwidth.passivity.schur import is_schur
 from zwidth.passivity.supremum import tightest
 
-LONGEST_PERIOD = 500_000
+LONGEST_PERIOD = 100_000
 """Samples in one period; a criterion violated in a narrower band stays undecided."""
 
 LONGEST_LISTED = 5_000
@@ -53,7 +53,7 @@ def sinusoids(loop: LinearLoop, unilateral: bool) -> Iterator[Pattern]:
     if unilateral and len(loop.numerator) + len(loop.denominator) > 2:
         if sum(loop.follower) <= 0 or not is_schur(loop.denominator[::-1]):
             return  # an unstable filter cannot be led in to rest
-        for ramp in _RAMPS:
+        for ramp in _RAMPS if len(cycle) < LONGEST_LISTED else _RAMPS[1:2]:
             pattern = _inside(loop, cycle, settled, ramp)
             if pattern is not None:
                 yield pattern

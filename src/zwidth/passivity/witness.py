@@ -51,6 +51,20 @@ class Setting:
         """Energy the hand takes out [J], by the checker; None if the motion is not admitted."""
         return checker.verify(self.document(motion, Fraction(0))).energy
 
+    @property
+    def stored(self) -> Fraction:
+        """Energy that even a passive loop may give out once from rest: H(1) Δ²/8, 0 for a spring wall [J]."""
+        memory = len(self.loop.numerator) + len(self.loop.denominator) > 2
+        static = self.loop.static_stiffness
+        if (self.unilateral and not memory) or static is None:
+            return Fraction(0)
+        return max(static, Fraction(0)) * self.resolution**2 / 8
+
+    def witness(self, motion: Motion) -> Witness | None:
+        """The motion as a witness if the checker finds that it takes out more than was stored."""
+        energy = self.energy(motion)
+        return None if energy is None or energy <= self.stored else Witness(self, motion, energy)
+
     def document(self, motion: Motion, energy: Fraction) -> dict[str, Any]:
         """The motion in this setting as a document for the checker."""
         loop = loop_document(self.loop, self.coulomb_friction, self.resolution, self.unilateral, self.motion)
@@ -201,9 +215,9 @@ def _in_full(setting: Setting, motion: Motion) -> Witness | None:
         full = motion.repeated(rounds)
         x = tuple(_listed(full, Fraction(1)))
         listed = Motion(x, tuple(_listed_switches(full, Fraction(1))))
-        energy = setting.energy(listed)
-        if energy is not None and energy > 0:
-            return Witness(setting, listed, energy)
+        witness = setting.witness(listed)
+        if witness is not None:
+            return witness
         rounds *= 4
     return None
 
@@ -262,10 +276,9 @@ def _on_counts(setting: Setting, one: Motion, unit: Fraction) -> Witness | None:
         grid = count / 1024
         switches = _listed_switches(one, unit)
         y = tuple(grid * round(v / grid) for v in switches)
-        motion = Motion(x, y)
-        energy = setting.energy(motion)
-        if energy is not None and energy > 0:
-            return Witness(setting, motion, energy)
+        witness = setting.witness(Motion(x, y))
+        if witness is not None:
+            return witness
         unit *= 4
     return None
 
@@ -307,9 +320,9 @@ def _scaled(
         if setting.resolution:
             unit = setting.resolution * ceil(unit / setting.resolution)
         motion = resize(unit, setting.resolution / 8)
-        energy = setting.energy(motion)
-        if energy is not None and energy > 0:
-            return Witness(setting, motion, energy)
+        witness = setting.witness(motion)
+        if witness is not None:
+            return witness
         unit *= 4
     return None
 
@@ -328,11 +341,12 @@ def _path(setting: Setting, one: Motion, gain: Fraction) -> Fraction:
 
 
 def _repeated(setting: Setting, motion: Motion) -> Witness | None:
-    times = _enough_rounds(lambda n: setting.energy(motion.repeated(n)))
-    if times is None:
-        return None
-    energy = setting.energy(motion.repeated(times))
-    return Witness(setting, motion.repeated(times), energy) if energy is not None and energy > 0 else None
+    def gain(rounds: int) -> Fraction | None:
+        energy = setting.energy(motion.repeated(rounds))
+        return None if energy is None else energy - setting.stored
+
+    times = _enough_rounds(gain)
+    return None if times is None else setting.witness(motion.repeated(times))
 
 
 def _enough_rounds(energy: Callable[[int], Fraction | None]) -> int | None:

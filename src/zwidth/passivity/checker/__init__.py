@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from .motions import motion_energy
+from .motions import motion_energy, stored_at_start
 from .proofs import PROOFS
 from .reading import Invalid, get, number
 
@@ -45,11 +45,14 @@ def verify(document: Mapping[str, Any]) -> Verification:
 
 
 def _motion(document: Mapping[str, Any]) -> Verification:
-    """A motion is a witness if energy comes out, as much as it says."""
-    energy = motion_energy(document)
+    """A motion is a witness if more energy comes out than was in, and as much as it says."""
+    energy, stored = motion_energy(document), stored_at_start(document)
     claimed = number(get(document, "energy_J"))
-    if energy <= 0:
-        return Verification(False, f"the motion extracts no energy: {float(energy):g} J", energy)
+    if energy <= stored:
+        reason = (
+            f"the motion extracts {float(energy):g} J, no more than the {float(stored):g} J stored before"
+        )
+        return Verification(False, reason, energy)
     if abs(claimed - energy) > abs(energy) / 10**9:
         return Verification(False, f"the energy is {float(energy):g} J, not {float(claimed):g} J", energy)
     return Verification(True, f"the motion extracts {float(energy):g} J", energy)

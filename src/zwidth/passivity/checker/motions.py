@@ -26,6 +26,20 @@ def motion_energy(document: Mapping[str, Any]) -> Fraction:
     return _energy_of(p, positions, switches, repeats)
 
 
+def stored_at_start(document: Mapping[str, Any]) -> Fraction:
+    """What even a passive loop may give out once from rest: H(1) Δ²/8, half a count of its spring.
+
+    Nothing for an ideal encoder, nor for a spring wall touched from outside: its
+    storage ½ K max(x − Δ/2, 0)² is 0 there.
+    """
+    p = read_loop(document)
+    spring_wall = p.unilateral and not any(p.numerator[1:]) and not any(p.denominator[1:])
+    at_one = sum(p.denominator)
+    if spring_wall or p.resolution == 0 or at_one == 0:
+        return Fraction(0)
+    return max(sum(p.numerator) / at_one, Fraction(0)) * p.resolution**2 / 8
+
+
 def _key(document: Mapping[str, Any], name: str) -> str:
     for unit in ("m", "rad"):
         if f"{name}_{unit}" in document:
