@@ -8,7 +8,6 @@ from zwidth.cli.table import plain
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
-from zwidth.passivity.advice import describe_estimator
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -31,7 +30,7 @@ def environment_line(environment: Environment, motion: str) -> str:
     """The environment's type and its parameters."""
     found = next((n for n, t in TYPES.items() if t.class_name == type(environment).__name__), None)
     if found is None or any(k.form in ("coefficients", "branches") for k in TYPES[found].keys.values()):
-        return environment.describe()
+        return environment.describe(motion)
     parts = [_part(environment, name, key, motion) for name, key in TYPES[found].keys.items()]
     return f"{found.replace('-', ' ')}: {', '.join(p for p in parts if p)}"
 
@@ -43,7 +42,7 @@ def _part(environment: Environment, name: str, key: Key, motion: str) -> str:
     if key.form == "environment":
         return f"around {environment_line(value, motion)}"
     if isinstance(environment, Wall):
-        return describe_estimator(environment) if environment.damping else ""
+        return environment.velocity_filter.describe() if environment.damping else ""
     return f"{value} {name}"
 
 

@@ -7,6 +7,7 @@ criteria need; what happens at the surface is said by `unilateral`.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from typing import Any, NamedTuple, Self
@@ -23,11 +24,11 @@ class RationalFunction(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Environment:
+class Environment(ABC):
     """What renders a force from sampled positions.
 
     A subclass is a frozen data class of `Exact`, `Interval` or other frozen
-    parts, and implements `pulse_transfer_function`.
+    parts, and implements `pulse_transfer_function` and `describe`.
     """
 
     @property
@@ -40,6 +41,7 @@ class Environment:
         """True when the law is a memoryless spring, f = K x."""
         return False
 
+    @abstractmethod
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
         """H(z) in sustained contact for the sample period T [s].
 
@@ -48,7 +50,6 @@ class Environment:
         InputError
             If the law has no H(z) at this period, or a parameter is an interval.
         """
-        raise NotImplementedError
 
     def replace(self, **changes: Any) -> Self:
         """The same environment with some parameters changed."""
@@ -59,9 +60,14 @@ class Environment:
         """True when no parameter, here or in a part, is an interval."""
         return not any(_uncertain(getattr(self, f.name)) for f in fields(self))
 
-    def describe(self) -> str:
-        """The law with its numbers, on one line."""
-        return repr(self)
+    @property
+    def coefficients_rounded(self) -> bool:
+        """True when H(z) holds doubles nearest to numbers that no decimal can write."""
+        return False
+
+    @abstractmethod
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line, in linear or rotary units."""
 
 
 def _uncertain(value: object) -> bool:

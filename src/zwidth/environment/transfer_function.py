@@ -93,8 +93,8 @@ class PulseTransferFunction(Environment):
         """The law factor · H(z), exactly."""
         return self.replace(numerator=tuple(c.fraction * factor for c in self.numerator))
 
-    def describe(self) -> str:
-        """The law with its numbers, on one line."""
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line; coefficients carry no unit of their own."""
         period = "" if self.sample_period is None else f", T = {float(self.sample_period):.6g} s"
         return f"H(z) = {_ratio(self.numerator, self.denominator, 'z')}{period}"
 
@@ -167,8 +167,8 @@ class ContinuousTransferFunction(Environment):
         """The law factor · H(s), exactly."""
         return self.replace(numerator=tuple(c.fraction * factor for c in self.numerator))
 
-    def describe(self) -> str:
-        """The law with its numbers, on one line."""
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line; coefficients carry no unit of their own."""
         ratio = _ratio(self.numerator, self.denominator, "s")
         return f"H(s) = {ratio}, discretization {self.discretization}"
 

@@ -28,6 +28,10 @@ _ONE = Fraction(1)
 class BackwardDifference:
     """v(k) = (x(k) − x(k−1))/T."""
 
+    def describe(self) -> str:
+        """In words."""
+        return "backward difference"
+
     def transfer(self, period: Fraction) -> RationalFunction:
         """(z − 1)/(T z) [1/s]."""
         return RationalFunction((_ONE, -_ONE), (period, Fraction(0)))
@@ -53,6 +57,10 @@ class Window:
                 "a longer one is better written as a one-pole filter"
             )
         object.__setattr__(self, "samples", int(number))
+
+    def describe(self) -> str:
+        """In words."""
+        return f"window of {self.samples} samples"
 
     def transfer(self, period: Fraction) -> RationalFunction:
         """(zᴺ − 1)/(N T zᴺ) [1/s]."""
@@ -85,6 +93,11 @@ class OnePole:
                 "follows a hand; check the unit, or leave the virtual damping out"
             )
         object.__setattr__(self, "time_constant", value)
+
+    def describe(self) -> str:
+        """In words."""
+        tau = self.time_constant
+        return f"one-pole filter of {tau if isinstance(tau, Interval) else f'{float(tau):.6g}'} s"
 
     def transfer(self, period: Fraction) -> RationalFunction:
         """(z − 1)/((T + τ) z − τ) [1/s]."""
@@ -120,6 +133,10 @@ class VelocityFilter:
             )
         object.__setattr__(self, "numerator", num)
         object.__setattr__(self, "denominator", den)
+
+    def describe(self) -> str:
+        """In words."""
+        return f"velocity filter of order {len(self.denominator) - 1}"
 
     def transfer(self, period: Fraction) -> RationalFunction:
         """F(z) (z − 1)/(T z) [1/s]."""

@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from zwidth.environment.environment import Environment, RationalFunction, add, certain, multiply
 from zwidth.environment.velocity import BackwardDifference, VelocityEstimator
+from zwidth.environment.wording import with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
 
@@ -77,3 +78,10 @@ class Wall(Environment):
         b = certain(self.damping, "damping")
         num, den = self.velocity_filter.transfer(sample_period)
         return RationalFunction(add(multiply((k,), den), multiply((b,), num)), den)
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line, in linear or rotary units."""
+        parts = [with_unit("stiffness", self.stiffness, motion)]
+        if not self.spring:
+            parts += [with_unit("virtual_damping", self.damping, motion), self.velocity_filter.describe()]
+        return f"wall, {', '.join(parts)}"

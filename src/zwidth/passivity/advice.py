@@ -12,7 +12,7 @@ from math import ceil, floor, inf, isinf, log10
 from typing import Literal
 
 from zwidth.device import Device
-from zwidth.environment import BackwardDifference, OnePole, Wall, Window
+from zwidth.environment import OnePole, Wall, Window
 from zwidth.environment.environment import Environment
 from zwidth.passivity.boundary import COARSE, SMALLEST, Holds, largest_holding, smallest_holding
 from zwidth.passivity.limits import Change, has_stiffness, provable, stiffness_of
@@ -166,7 +166,7 @@ def _text(knob: _Knob, to: float | None, unit: str, kind: str) -> str:
 
 def _estimators(device: Device, wall: Wall) -> Iterator[Advice]:
     """Another velocity estimator that makes the loop passive, if one of the usual does."""
-    now = describe_estimator(wall)
+    now = wall.velocity_filter.describe()
     for samples in _WINDOWS:
         law = wall.replace(velocity_filter=Window(samples))
         if provable(lambda _, law=law: (device, law), Fraction(0)):  # type: ignore[misc]
@@ -193,15 +193,3 @@ def _first_scanned(change: Change, device: Device) -> float | None:
         if holds(Exact(period * 2**power).fraction):
             return smallest_holding(holds, period * 2**power)
     return None
-
-
-def describe_estimator(wall: Wall) -> str:
-    """The wall's velocity estimator in words."""
-    velocity = wall.velocity_filter
-    if isinstance(velocity, BackwardDifference):
-        return "backward difference"
-    if isinstance(velocity, Window):
-        return f"window of {velocity.samples} samples"
-    if isinstance(velocity, OnePole):
-        return f"one-pole filter of {velocity.time_constant} s"
-    return "velocity filter"

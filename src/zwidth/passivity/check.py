@@ -211,7 +211,7 @@ def _assumptions(outcome: Outcome, device: Device, law: Environment, decision: D
     else:
         lines.append("ideal position sensor: no quantization")
     lines.extend(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed)
-    if getattr(law, "coefficients_rounded", False):
+    if law.coefficients_rounded:
         lines.append("H(z) has the coefficients of its discretization rounded to double precision")
     intervals = [k for k, v in device.parameters().items() if isinstance(v, Interval)]
     if intervals or not law.is_certain:

@@ -70,7 +70,7 @@ class VirtualCoupling(Environment):
     @property
     def coefficients_rounded(self) -> bool:
         """True when the environment has coefficients rounded to doubles."""
-        return bool(getattr(self.environment, "coefficients_rounded", False))
+        return self.environment.coefficients_rounded
 
     @property
     def _undamped(self) -> bool:
@@ -103,7 +103,7 @@ class VirtualCoupling(Environment):
         """The law with its numbers, on one line."""
         k = with_unit("stiffness", self.stiffness, motion)
         b = with_unit("virtual_damping", self.damping, motion)
-        return f"virtual coupling, {k} and {b}, before {self.environment.describe()}"
+        return f"virtual coupling, {k} and {b}, before {self.environment.describe(motion)}"
 
 
 def _read(key: str, value: Parameter) -> Exact | Interval:
