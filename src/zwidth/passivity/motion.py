@@ -48,6 +48,28 @@ class Motion:
         """The same motion with another number of rounds in every repeated part."""
         return replace(self, repeats=tuple(r._replace(times=times) for r in self.repeats))
 
+    def listed(self) -> Motion:
+        """The same motion with every round listed, and no repeated part left."""
+        x, y = list(self.positions[:1]), []
+        ahead, before = Fraction(0), 0
+        for part in (*self.repeats, Repeat(len(self.positions) - 1, len(self.positions) - 1, 1)):
+            stretches = [(before, part.first), *[(part.first, part.last)] * part.times]
+            advance = self.positions[part.last] - self.positions[part.first]
+            for k, (start, stop) in enumerate(stretches):
+                ahead += advance if k > 1 else 0  # the list itself holds the first round's advance
+                x += [v + ahead for v in self.positions[start + 1 : stop + 1]]
+                y += [v + ahead for v in self.switch_positions[start:stop]]
+            before = part.last
+        return Motion(tuple(x), tuple(y))
+
+    def scaled(self, unit: Fraction) -> Motion:
+        """The same motion, so many times as large."""
+        return replace(
+            self,
+            positions=tuple(unit * v for v in self.positions),
+            switch_positions=tuple(unit * v for v in self.switch_positions),
+        )
+
     @property
     def rounds(self) -> int:
         """How often the repeated parts are done; 1 if none is."""

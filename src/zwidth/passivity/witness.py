@@ -28,6 +28,9 @@ FORMAT = "zwidth witness 1"
 _AMPLITUDE = Fraction(1, 1000)
 """Penetration of a witness that friction does not force to be larger [m; rad]."""
 
+MOST_LISTED = 20_000
+"""Samples up to which a witness is written down in full, repeated parts and all."""
+
 _FEW_ROUNDS = 1000
 _MOST_ROUNDED = 2500
 """Samples up to which a motion off the law's whole numbers is recomputed exactly."""
@@ -100,8 +103,13 @@ class Witness:
 
     @property
     def positions(self) -> tuple[float, ...]:
-        """Positions at the samples [m; rad]; the repeated part once."""
-        return tuple(float(x) for x in self.motion.positions)
+        """Positions at the samples [m; rad]; in a very long motion each repeated part once."""
+        return tuple(float(x) for x in self._told.positions)
+
+    @property
+    def _told(self) -> Motion:
+        """The motion as it is written down: every round, unless there are very many."""
+        return self.motion.listed() if self.motion.samples <= MOST_LISTED else self.motion
 
     @property
     def sample_period(self) -> float:
@@ -154,7 +162,7 @@ class Witness:
 
     def to_dict(self) -> dict[str, Any]:
         """The witness as plain data; positions are exact rationals."""
-        return self.setting.document(self.motion, self.exact_energy)
+        return self.setting.document(self._told, self.exact_energy)
 
     def save(self, path: str | Path) -> None:
         """Write the witness as JSON for `zwidth verify`."""
@@ -213,9 +221,7 @@ def _in_full(setting: Setting, motion: Motion) -> Witness | None:
     rounds = 1
     while len(motion.positions) + (rounds - 1) * (part.last - part.first) <= _MOST_ROUNDED:
         full = motion.repeated(rounds)
-        x = tuple(_listed(full, Fraction(1)))
-        listed = Motion(x, tuple(_listed_switches(full, Fraction(1))))
-        witness = setting.witness(listed)
+        witness = setting.witness(full.listed())
         if witness is not None:
             return witness
         rounds *= 4
@@ -270,32 +276,19 @@ def _on_counts(setting: Setting, one: Motion, unit: Fraction) -> Witness | None:
     count = setting.resolution
     unit = max(unit, 50 * count / one.depth)
     for _ in range(4):
-        listed = _listed(one, unit)
-        last = len(listed) - 1
-        x = tuple(count * round(v / count) + (count / 8 if 0 < k < last else 0) for k, v in enumerate(listed))
+        listed = one.scaled(unit).listed()
+        last = listed.samples
+        x = tuple(
+            count * round(v / count) + (count / 8 if 0 < k < last else 0)
+            for k, v in enumerate(listed.positions)
+        )
         grid = count / 1024
-        switches = _listed_switches(one, unit)
-        y = tuple(grid * round(v / grid) for v in switches)
+        y = tuple(grid * round(v / grid) for v in listed.switch_positions)
         witness = setting.witness(Motion(x, y))
         if witness is not None:
             return witness
         unit *= 4
     return None
-
-
-def _listed(one: Motion, unit: Fraction) -> list[Fraction]:
-    """All positions of a motion whose single repeated part returns to its start."""
-    x = [unit * v for v in one.positions]
-    for part in reversed(one.repeats):
-        x[part.last : part.last] = x[part.first : part.last] * (part.times - 1)
-    return x
-
-
-def _listed_switches(one: Motion, unit: Fraction) -> list[Fraction]:
-    y = [unit * v for v in one.switch_positions]
-    for part in reversed(one.repeats if y else ()):
-        y[part.last : part.last] = y[part.first : part.last] * (part.times - 1)
-    return y
 
 
 def _unit(setting: Setting, one: Motion) -> Fraction | None:
