@@ -7,18 +7,21 @@ part that is positive on [−1, 1], and what proves the environment stable.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.passivity import checker
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.document import loop_document, to_json
+from zwidth.passivity.delay_interval import Piece
+from zwidth.passivity.document import exact_text, loop_document, to_json
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.one_norm import NormBound
+from zwidth.passivity.positivity import Positivity
 
 FORMAT = "zwidth certificate 1"
 LARGEST_FILE = 200_000_000
@@ -42,7 +45,7 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """ "spring", "linear" or "quantized"."""
+        """ "spring", "linear", "quantized" or "delays"."""
         return str(self.documents[0]["kind"])
 
     def to_dict(self) -> dict[str, Any]:
@@ -81,6 +84,23 @@ def certify(decision: Decision) -> dict[str, Any]:
     return document
 
 
+def certify_delays(decision: Decision, pieces: Sequence[Piece], longest: Fraction) -> dict[str, Any]:
+    """The proof document of a provable decision for every delay up to `longest` [s]."""
+    document = certify(decision)
+    proof = document["proof"]
+    del proof["positivity"]
+    proof["pieces"] = [
+        {
+            "low": str(piece.low),
+            "high": str(piece.high),
+            "at_low": _positivity(piece.at_low),
+            "at_high": _positivity(piece.at_high),
+        }
+        for piece in pieces
+    ]
+    return {**document, "kind": "delays", "delay_high_s": exact_text(longest)}
+
+
 def _norm(norm: NormBound) -> dict[str, Any]:
     return {
         "modes": [{"pole": str(mode.pole), "residue": str(mode.residue)} for mode in norm.modes],
@@ -94,15 +114,15 @@ def _proof(proof: LinearProof) -> dict[str, Any]:
     stability: dict[str, Any] = {"kind": proof.stability}
     if proof.offset is not None:
         stability["offset"] = str(proof.offset)
-    sign = proof.positivity
+    return {"stability": stability, "positivity": _positivity(proof.positivity)}
+
+
+def _positivity(sign: Positivity) -> dict[str, Any]:
     return {
-        "stability": stability,
-        "positivity": {
-            "at_one": sign.at_one,
-            "at_minus_one": sign.at_minus_one,
-            "square": [str(c) for c in sign.square],
-            "factor": [str(c) for c in sign.factor],
-        },
+        "at_one": sign.at_one,
+        "at_minus_one": sign.at_minus_one,
+        "square": [str(c) for c in sign.square],
+        "factor": [str(c) for c in sign.factor],
     }
 
 

@@ -12,14 +12,15 @@ from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
-from zwidth.passivity.certificate import Certificate, certify
-from zwidth.passivity.corners import best_corner, corners_decide, worst_corners
+from zwidth.passivity.certificate import Certificate, certify, certify_delays
+from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
+from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.linear import LinearProof, LinearRefutation
 from zwidth.passivity.supremum import tightest
 from zwidth.passivity.verdict import Outcome, Verdict
 from zwidth.passivity.witness import Witness, refute_friction, refute_linear
-from zwidth.quantity.exact import Interval, ends
+from zwidth.quantity.exact import Exact, Interval, ends
 
 
 def check(device: Device, environment: Environment | Any) -> Verdict:
@@ -54,8 +55,9 @@ def check(device: Device, environment: Environment | Any) -> Verdict:
     decisions = [decide(*corner) for corner in corners]
     failing = [k for k, d in enumerate(decisions) if not d.is_provable]
     if not failing:
-        if corners_decide(device, law):
-            return _passive(device, law, corners, decisions)
+        proofs = _proofs(device, law, corners, decisions)
+        if proofs is not None:
+            return _passive(device, law, corners, decisions, proofs)
         return _between(device, law, corners[0], decisions[0])
     worst = failing[0]
     witness = _refute(decisions[worst])
@@ -66,10 +68,36 @@ def check(device: Device, environment: Environment | Any) -> Verdict:
     return _not_passive(outcome, device, law, corners[worst], decisions[worst], witness)
 
 
+def _proofs(
+    device: Device, law: Environment, corners: list[Loop], decisions: list[Decision]
+) -> list[dict[str, Any]] | None:
+    """Proofs that together cover the whole box of parameters, or None."""
+    if corners_decide(device, law):
+        return [certify(d) for d in decisions]
+    shortest, longest = ends(device.delay)
+    if shortest == longest or not corners_decide(device.replace(delay=Exact(shortest)), law):
+        return None
+    proofs = []
+    for corner, decision in zip(corners, decisions, strict=True):
+        if decision.is_spring:  # the longest delay decides; both ends are among the corners
+            proofs.append(certify(decision))
+        elif corner[0].exact("delay") == shortest:
+            assert isinstance(decision.viscous, LinearProof), "provable decisions only"
+            pieces = prove_delays(decision.loop, decision.viscous, longest)
+            if pieces is None:
+                return None
+            proofs.append(certify_delays(decision, pieces, longest))
+    return proofs
+
+
 def _passive(
-    device: Device, law: Environment, corners: list[tuple[Device, Environment]], decisions: list[Decision]
+    device: Device,
+    law: Environment,
+    corners: list[Loop],
+    decisions: list[Decision],
+    proofs: list[dict[str, Any]],
 ) -> Verdict:
-    certificate = Certificate(tuple(certify(d) for d in decisions))
+    certificate = Certificate(tuple(proofs))
     if not certificate.verify():  # never claim what the checker does not accept
         raise AssertionError("the prover's certificate was rejected by the checker")
     tight = _tightest(decisions)

@@ -105,11 +105,13 @@ class LinearLoop:
         b, t, alpha = self.damping, self.period, self.part_delay
         if alpha == 0:
             return (_q(2 * b / t) * self.dissipation + self.hold).numer()
-        return (
-            _q(2 * b * b / t) * self.dissipation
-            + _q(b) * self.hold
-            - _q(t * alpha * (1 - alpha) / 2) * self.switching
-        ).numer()
+        return self.bounded_criterion(alpha * (1 - alpha))
+
+    def bounded_criterion(self, share: Fraction) -> fmpz_poly:
+        """b q(c), times a positive integer, with `share` in the place of α(1−α)."""
+        b, t = self.damping, self.period
+        damped = _q(2 * b * b / t) * self.dissipation + _q(b) * self.hold
+        return (damped - _q(t * share / 2) * self.switching).numer()
 
     def required_damping_at(self, c: Fraction) -> float:
         """The damping that the criterion asks for at cos ωT = c, to rounding [N·s/m].

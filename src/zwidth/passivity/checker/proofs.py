@@ -56,10 +56,52 @@ def _quantized(document: Mapping[str, Any]) -> str:
     """The encoder's error is at most Δ/2 about its middle: it moves the force by ≤ ‖h‖₁ Δ/2 ≤ f_c."""
     p = read_loop(document)
     _linear_part(document, p)
-    norm = _one_norm_bound(p, get(get(document, "proof"), "norm"))
-    if norm * p.resolution > 2 * p.coulomb_friction:
-        raise Invalid("the Coulomb friction is below ‖h‖₁ Δ/2")
+    _friction(p, get(document, "proof"))
     return "as linear, and Coulomb friction covers the largest force error of the encoder"
+
+
+def _delays(document: Mapping[str, Any]) -> str:
+    """Every delay from the loop's own to `delay_high_s`, piece by piece.
+
+    On a piece α(1−α) is at most its tangent at the middle, and with the tangent
+    the criterion is affine in α: nonnegative if it is at both ends.
+    """
+    p = read_loop(document)
+    proof, high = get(document, "proof"), number(get(document, "delay_high_s"))
+    if p.damping == 0 or get(get(proof, "stability"), "kind") != "open loop":
+        raise Invalid("delays within an interval need damping and a law that is stable by itself")
+    _stability(get(proof, "stability"), p)
+    pieces = get(proof, "pieces")
+    if not isinstance(pieces, list) or high / p.period > MOST_COEFFICIENTS:
+        raise Invalid("the pieces of the interval must be a list, its delays of ordinary size")
+    reached = p.whole + p.part
+    for piece in pieces:
+        if number(get(piece, "low")) != reached:
+            raise Invalid("the pieces do not follow one another")
+        reached = _delay_piece(p, piece)
+    if reached != high / p.period:
+        raise Invalid("the pieces do not cover the interval of delays")
+    if p.resolution:
+        _friction(p, proof)
+    return "the criterion is nonnegative at every frequency for every delay, and the environment is stable"
+
+
+def _delay_piece(p: Loop, piece: Mapping[str, Any]) -> Fraction:
+    low, high = number(get(piece, "low")), number(get(piece, "high"))
+    whole = low // 1
+    if not low < high <= whole + 1:
+        raise Invalid("a piece must lie within one sample")
+    middle = (low + high) / 2 - whole
+    for end, name in ((low, "at_low"), (high, "at_high")):
+        part = end - whole
+        tangent = middle * (1 - middle) + (1 - 2 * middle) * (part - middle)
+        _positivity(get(piece, name), _bounded_criterion(p._replace(whole=whole, part=part), tangent))
+    return high
+
+
+def _friction(p: Loop, proof: Mapping[str, Any]) -> None:
+    if _one_norm_bound(p, get(proof, "norm")) * p.resolution > 2 * p.coulomb_friction:
+        raise Invalid("the Coulomb friction is below ‖h‖₁ Δ/2")
 
 
 def _one_norm_bound(p: Loop, norm: Mapping[str, Any]) -> Fraction:
@@ -94,7 +136,21 @@ def _sum(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
 
 
 def _criterion(p: Loop) -> list[Fraction]:
-    """q(c) of the loop, times b where part > 0, from Chebyshev sums; ascending in c."""
+    """q(c) of the loop, times b where part > 0; ascending in c."""
+    if p.part:
+        return _bounded_criterion(p, p.part * (1 - p.part))
+    damped, hold, _ = _cosine_sums(p)
+    return [2 * p.damping / p.period * x + y for x, y in zip(damped, hold, strict=True)]
+
+
+def _bounded_criterion(p: Loop, share: Fraction) -> list[Fraction]:
+    """b q(c) with `share` in the place of α(1−α), α = part."""
+    gain, b, loss = 2 * p.damping**2 / p.period, p.damping, p.period * share / 2
+    return [gain * x + b * y - loss * z for x, y, z in zip(*_cosine_sums(p), strict=True)]
+
+
+def _cosine_sums(p: Loop) -> tuple[list[int], list[Fraction], list[int]]:
+    """|D|², −R + (1 + c) S and |N|², from Chebyshev sums; ascending in c."""
     alpha, n, d = p.part, _whole(p.numerator, p), _whole(p.denominator, p)
     m = [0] * p.whole + _multiply(n, [alpha.denominator - alpha.numerator, alpha.numerator])
     real: dict[int, int] = {}
@@ -113,16 +169,8 @@ def _criterion(p: Loop) -> list[Fraction]:
     for j, x in slope.items():
         _add(hold, second[j], x)
         _add(hold, [0, *second[j]], x)
-    damped = _square_modulus(d, first, degree)
-    b, weight = p.damping, Fraction(1, alpha.denominator)
-    if not alpha:
-        return [2 * b / p.period * x + weight * y for x, y in zip(damped, hold, strict=True)]
-    switched = _square_modulus(n, first, degree)
-    loss = p.period * alpha * (1 - alpha) / 2
-    return [
-        2 * b * b / p.period * x + b * weight * y - loss * w
-        for x, y, w in zip(damped, hold, switched, strict=True)
-    ]
+    weight = Fraction(1, alpha.denominator)
+    return _square_modulus(d, first, degree), [weight * x for x in hold], _square_modulus(n, first, degree)
 
 
 def _whole(coefficients: list[Fraction], p: Loop) -> list[int]:
@@ -330,4 +378,5 @@ PROOFS: dict[str, Callable[[Mapping[str, Any]], str]] = {
     "spring": _spring,
     "linear": _linear,
     "quantized": _quantized,
+    "delays": _delays,
 }
