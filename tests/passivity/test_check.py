@@ -349,11 +349,10 @@ def box(device, law):
 
 
 UNPROVED = {
-    "delay of a damped wall": (PADDLE.replace(delay=(0, 0.0002)), zw.Wall(80, 0.02)),
-    "timing of a filter with an encoder": (
-        PADDLE.replace(sample_period=(0.0005, 0.001)), zw.Wall(80, 0.02, zw.OnePole("0.003"))
+    "timing of a filter with a delay": (
+        PADDLE.replace(sample_period=(0.0005, 0.001), delay="0.0002"), zw.Wall(80, 0.02, zw.OnePole("0.003"))
     ),
-    "filter with an encoder": (PADDLE, zw.Wall(80, 0.02, zw.OnePole((0.001, 0.002)))),
+    "filter with a delay": (PADDLE.replace(delay="0.0001"), zw.Wall(80, 0.02, zw.OnePole((0.001, 0.002)))),
     "branch with a delay": (PADDLE.replace(delay="0.0001"), zw.StandardLinearSolid(10, (20, 30), 0.1)),
     "a Prony series": (PADDLE.replace(resolution=0), zw.GeneralizedMaxwell(10, [((20, 30), 0.1), (9, 1)])),
 }  # fmt: skip

@@ -14,8 +14,9 @@ each of them separately, since such a function is largest at a corner:
   requirement is K T/2 plus a constant, and ‖h‖₁ is convex in 1/T;
 * T of a fixed H(z) without delay: the requirement is proportional to T;
 * every parameter of a standard linear solid (backward, Tustin) and of a wall
-  with a one-pole filter, without delay and with an ideal encoder: from the
-  closed forms μ0T/2 + μ1η1T/(2η1+μ1T), (T/2)(μ0+μ1) and KT/2 + B T/(2τ+T).
+  with a one-pole filter and B ≥ 0, without delay: the required damping is
+  μ0T/2 + μ1η1T/(2η1+μ1T), (T/2)(μ0+μ1) and KT/2 + B T/(2τ+T), and ‖h‖₁ is
+  μ0 + 2μ1η1/(μ1T+η1), μ0 + μ1 max(1, 4η1/(μ1T+2η1)) and K + 2B/(T+τ).
 
 Elsewhere the corners are still looked at, but prove nothing for what is between.
 """
@@ -75,19 +76,16 @@ def corners_decide(device: Device, environment: Environment) -> bool:
     if not uncertain and not timing:
         return True
     undelayed = ends(device.delay) == (0, 0)
-    ideal = ends(device.resolution)[1] == 0
     if isinstance(environment, Wall):
-        return _wall(environment, uncertain, timing, undelayed, ideal)
+        return _wall(environment, uncertain, timing, undelayed)
     if isinstance(environment, StandardLinearSolid):
-        return (uncertain <= {"stiffness"} and not timing) or (
-            undelayed and ideal and _has_closed_form(environment)
-        )
+        return (uncertain <= {"stiffness"} and not timing) or (undelayed and _has_closed_form(environment))
     if isinstance(environment, GeneralizedMaxwell):
         return uncertain <= {"stiffness"} and not timing
     return isinstance(environment, PulseTransferFunction) and undelayed and not uncertain
 
 
-def _wall(wall: Wall, uncertain: set[str], timing: set[str], undelayed: bool, ideal: bool) -> bool:
+def _wall(wall: Wall, uncertain: set[str], timing: set[str], undelayed: bool) -> bool:
     if wall.spring:
         return True
     filter_is_certain = "velocity_filter" not in uncertain
@@ -96,7 +94,7 @@ def _wall(wall: Wall, uncertain: set[str], timing: set[str], undelayed: bool, id
     if not undelayed:
         return False
     if isinstance(wall.velocity_filter, OnePole):
-        return ideal and ends(wall.damping)[0] >= 0
+        return ends(wall.damping)[0] >= 0
     return filter_is_certain
 
 
