@@ -26,6 +26,7 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
+    "sphinx-mathjax-offline",  # formulas are drawn without a network
 ]
 exclude_patterns = ["_build", "_generated", "gallery/GALLERY_HEADER.rst"]
 
