@@ -16,8 +16,9 @@ from zwidth.passivity.certificate import certify
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.loop import loop_from
+from zwidth.passivity.refutation import refute_linear
 from zwidth.passivity.supremum import frequency, tightest
-from zwidth.passivity.witness import Setting, refute_linear
+from zwidth.passivity.witness import Setting
 
 T = Fraction(1, 1000)
 BILLIONTH = Fraction(1, 10**9)

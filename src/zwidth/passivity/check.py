@@ -13,14 +13,16 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate, certify, certify_delays
+from zwidth.passivity.claims import assumptions, beyond_the_actuator, open_claim
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.linear import LinearProof, LinearRefutation
+from zwidth.passivity.refutation import refute_friction, refute_linear
 from zwidth.passivity.supremum import tightest
 from zwidth.passivity.verdict import Outcome, Verdict
-from zwidth.passivity.witness import Witness, refute_friction, refute_linear
-from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.passivity.witness import Witness
+from zwidth.quantity.exact import Exact, ends
 
 
 def check(device: Device, environment: Environment | Any) -> Verdict:
@@ -98,14 +100,17 @@ def _passive(
     proofs: list[dict[str, Any]],
 ) -> Verdict:
     certificate = Certificate(tuple(proofs))
-    if not certificate.verify():  # never claim what the checker does not accept
-        raise AssertionError("the prover's certificate was rejected by the checker")
     tight = _tightest(decisions)
+    at, decision = corners[tight], decisions[tight]
+    if not certificate.verify():  # nothing is claimed that the checker does not accept
+        claim = "A proof was found, but the independent checker did not confirm it within its bounds."
+        assumed = assumptions("undecided", device, law, decision)
+        return Verdict("undecided", claim, assumed, *at, decision, None, None)
     claim = "No motion of the hand, however fast or skilled, can take energy out of this loop"
     if any(_at_limit(d) for d in decisions):
         claim += "; it is exactly at its limit, equality included"
-    assumptions = _assumptions("passive", device, law, decisions[tight])
-    return Verdict("passive", f"{claim}.", assumptions, *corners[tight], decisions[tight], certificate, None)
+    assumed = assumptions("passive", device, law, decision)
+    return Verdict("passive", f"{claim}.", assumed, *at, decision, certificate, None)
 
 
 def _between(device: Device, law: Environment, corner: tuple[Device, Environment], at: Decision) -> Verdict:
@@ -113,7 +118,7 @@ def _between(device: Device, law: Environment, corner: tuple[Device, Environment
         "Passive at every corner of the intervals; that every value between them is too is not proved "
         "for intervals of these parameters together."
     )
-    return Verdict("undecided", claim, _assumptions("undecided", device, law, at), *corner, at, None, None)
+    return Verdict("undecided", claim, assumptions("undecided", device, law, at), *corner, at, None, None)
 
 
 def _at_limit(decision: Decision) -> bool:
@@ -171,79 +176,6 @@ def _not_passive(
             "worst corner, and for other values none is known to."
         )
     else:
-        claim = _open_claim(decision)
-    assumptions = _assumptions(outcome, device, law, decision) + _beyond_the_actuator(device, witness)
-    return Verdict(outcome, claim, assumptions, *corner, decision, None, witness)
-
-
-def _beyond_the_actuator(device: Device, witness: Witness | None) -> tuple[str, ...]:
-    """Says where the motion asks for more force than the actuator has."""
-    if witness is None or device.force_limit is None:
-        return ()
-    unit = "N·m" if device.motion == "rotary" else "N"
-    most, needed = float(ends(device.force_limit)[1]), witness.peak_force
-    if needed <= most:
-        return (f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}",)
-    return (
-        f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
-        "limit respected no motion is shown, and none is excluded",
-    )
-
-
-def _open_claim(decision: Decision) -> str:
-    """What is proved on both sides where the loop itself is neither proved nor refuted."""
-    if isinstance(decision.viscous, LinearRefutation):
-        if decision.viscous.reason == "criterion":
-            return (
-                "The linear criterion is violated, so passivity cannot be proved, but no motion was found "
-                "that shows it: the band of frequencies is very narrow, or the law very slow."
-            )
-        return f"Passivity cannot be proved ({decision.viscous.reason}), and no motion was found that gains."
-    if not decision.loop.hidden_modes_decay:
-        return (
-            "Numerator and denominator of H(z) share a root on or outside the unit circle. The port does not "
-            "see it, but the controller as written carries a mode that never dies out: cancel it and check "
-            "again."
-        )
-    need, least = decision.sufficient_friction, decision.necessary_friction
-    has = float(decision.setting.coulomb_friction)
-    enough = "no amount is proved enough" if need is None else f"{float(need):.6g} is enough"
-    below = (
-        f"straddling an encoder edge should gain below {least:.6g}, yet no such motion was found short enough"
-        if has < least
-        else f"straddling an encoder edge gains only below {least:.6g}"
-    )
-    return (
-        "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
-        f"is proved: {enough}, {below}, and the device has {has:.6g}."
-    )
-
-
-def _assumptions(outcome: Outcome, device: Device, law: Environment, decision: Decision) -> tuple[str, ...]:
-    unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
-    loop = decision.loop
-    lines = [
-        "contact made and broken at any instant"
-        + ("; the same holds for every spring law of slope 0 to K" if outcome == "passive" else "")
-        if decision.is_spring
-        else "sustained contact: the law is linear while the hand stays inside; making and breaking contact "
-        "is not covered",
-        f"the device takes out at least b = {float(loop.damping):.6g} {unit['b']} of viscous and "
-        f"f_c = {float(decision.setting.coulomb_friction):.6g} {unit['N']} of Coulomb friction",
-        "a hand without limits on speed and force; the mass of the device plays no part",
-        "ideal actuator: force limit, converter steps, current rise and added filters are not in the claim",
-        "a constant sample period and delay, no missed samples",
-    ]
-    if decision.setting.resolution:
-        lines.append("encoder counts of one size, their phase against the surface unknown")
-    else:
-        lines.append("ideal position sensor: no quantization")
-    lines.extend(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed)
-    if law.coefficients_rounded:
-        lines.append("H(z) has the coefficients of its discretization rounded to double precision")
-    intervals = [k for k, v in device.parameters().items() if isinstance(v, Interval)]
-    if intervals or not law.is_certain:
-        named = ", ".join(intervals) or "the environment's intervals"
-        holds = "" if outcome == "undecided" else f"holds for every value within {named}; "
-        lines.append(holds + "numbers are given for the worst corner of the intervals")
-    return tuple(lines)
+        claim = open_claim(decision)
+    assumed = assumptions(outcome, device, law, decision) + beyond_the_actuator(device, witness)
+    return Verdict(outcome, claim, assumed, *corner, decision, None, witness)

@@ -1,0 +1,84 @@
+"""What a verdict says in words: the claim, and what it takes for granted."""
+
+from __future__ import annotations
+
+from zwidth.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.passivity.decision import Decision
+from zwidth.passivity.linear import LinearRefutation
+from zwidth.passivity.verdict import Outcome
+from zwidth.passivity.witness import Witness
+from zwidth.quantity.exact import Interval, ends
+
+
+def open_claim(decision: Decision) -> str:
+    """What is proved on both sides where the loop itself is neither proved nor refuted."""
+    if isinstance(decision.viscous, LinearRefutation):
+        if decision.viscous.reason == "criterion":
+            return (
+                "The linear criterion is violated, so passivity cannot be proved, but no motion was found "
+                "that shows it: the band of frequencies is very narrow, or the law very slow."
+            )
+        return f"Passivity cannot be proved ({decision.viscous.reason}), and no motion was found that gains."
+    if not decision.loop.hidden_modes_decay:
+        return (
+            "Numerator and denominator of H(z) share a root on or outside the unit circle. The port does not "
+            "see it, but the controller as written carries a mode that never dies out: cancel it and check "
+            "again."
+        )
+    need, least = decision.sufficient_friction, decision.necessary_friction
+    has = float(decision.setting.coulomb_friction)
+    enough = "no amount is proved enough" if need is None else f"{float(need):.6g} is enough"
+    below = (
+        f"straddling an encoder edge should gain below {least:.6g}, yet no such motion was found short enough"
+        if has < least
+        else f"straddling an encoder edge gains only below {least:.6g}"
+    )
+    return (
+        "Viscous damping is enough, but for an encoder with this law no exact condition on Coulomb friction "
+        f"is proved: {enough}, {below}, and the device has {has:.6g}."
+    )
+
+
+def assumptions(outcome: Outcome, device: Device, law: Environment, decision: Decision) -> tuple[str, ...]:
+    unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
+    loop = decision.loop
+    lines = [
+        "contact made and broken at any instant"
+        + ("; the same holds for every spring law of slope 0 to K" if outcome == "passive" else "")
+        if decision.is_spring
+        else "sustained contact: the law is linear while the hand stays inside; making and breaking contact "
+        "is not covered",
+        f"the device takes out at least b = {float(loop.damping):.6g} {unit['b']} of viscous and "
+        f"f_c = {float(decision.setting.coulomb_friction):.6g} {unit['N']} of Coulomb friction",
+        "a hand without limits on speed and force; the mass of the device plays no part",
+        "ideal actuator: force limit, converter steps, current rise and added filters are not in the claim",
+        "a constant sample period and delay, no missed samples",
+    ]
+    if decision.setting.resolution:
+        lines.append("encoder counts of one size, their phase against the surface unknown")
+    else:
+        lines.append("ideal position sensor: no quantization")
+    lines.extend(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed)
+    if law.coefficients_rounded:
+        lines.append("H(z) has the coefficients of its discretization rounded to double precision")
+    intervals = [k for k, v in device.parameters().items() if isinstance(v, Interval)]
+    if intervals or not law.is_certain:
+        named = ", ".join(intervals) or "the environment's intervals"
+        holds = "" if outcome == "undecided" else f"holds for every value within {named}; "
+        lines.append(holds + "numbers are given for the worst corner of the intervals")
+    return tuple(lines)
+
+
+def beyond_the_actuator(device: Device, witness: Witness | None) -> tuple[str, ...]:
+    """Says where the motion asks for more force than the actuator has."""
+    if witness is None or device.force_limit is None:
+        return ()
+    unit = "N·m" if device.motion == "rotary" else "N"
+    most, needed = float(ends(device.force_limit)[1]), witness.peak_force
+    if needed <= most:
+        return (f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}",)
+    return (
+        f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
+        "limit respected no motion is shown, and none is excluded",
+    )
