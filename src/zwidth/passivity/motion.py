@@ -134,7 +134,7 @@ def _switches(
     There the net work of the interval is least.  Without damping any b will do.
     """
     alpha, d = loop.part_delay, loop.whole_delay
-    b = loop.damping or _any_damping(loop)
+    b = loop.damping or any_damping(loop)
     gain = loop.period / (2 * b) * alpha * (1 - alpha)
     content = Fraction(loop.denominator[0], loop.follower[0])
     force = [unit * f / content for f in convolve(loop.numerator, w)]
@@ -147,7 +147,7 @@ def _switches(
     return tuple(round(y / grid) * grid for y in ideal)
 
 
-def _any_damping(loop: LinearLoop) -> Fraction:
+def any_damping(loop: LinearLoop) -> Fraction:
     """A damping that makes the moves inside a sample large: without damping every size gains."""
     stiffness = Fraction(sum(abs(c) for c in loop.numerator), sum(abs(c) for c in loop.denominator))
     return (stiffness * loop.period * loop.part_delay * (1 - loop.part_delay) or Fraction(1)) / 10**6

@@ -15,6 +15,7 @@ from math import ceil
 from zwidth.passivity.escape import PRESS_LENGTHS, buildups, slow_press
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion, Pattern, realize, round_up
+from zwidth.passivity.oscillation import oscillations
 from zwidth.passivity.schur import is_schur
 from zwidth.passivity.sinusoid import sinusoids
 from zwidth.passivity.straddle import best_waits, straddle
@@ -25,6 +26,9 @@ _AMPLITUDE = Fraction(1, 1000)
 
 _FEW_ROUNDS = 1000
 
+_SHORT = 200
+"""Samples up to which a motion is preferred that does not return the law to its state."""
+
 _MOST_ROUNDED = 2500
 """Samples up to which a motion off the law's whole numbers is recomputed exactly."""
 
@@ -32,7 +36,7 @@ _MOST_ROUNDED = 2500
 def refute_linear(setting: Setting, reason: str) -> Witness | None:
     """A witness against the linear criterion or an unstable environment, or None if none is found."""
     if reason == "criterion":
-        witness = _shortest(setting, sinusoids(setting.loop, setting.unilateral))
+        witness = _refute_criterion(setting)
         if witness is not None or is_schur(setting.loop.denominator[::-1]):
             return witness
     if reason == "negative static stiffness":
@@ -42,6 +46,21 @@ def refute_linear(setting: Setting, reason: str) -> Witness | None:
         _scaled(setting, _unit(setting, one), partial(_multiplied, one))
         for one in buildups(setting.loop, setting.unilateral)
     )
+
+
+def _refute_criterion(setting: Setting) -> Witness | None:
+    """A motion at a frequency where the criterion is negative: a short one, a periodic one, or a long one."""
+    loop = setting.loop
+    memory = len(loop.numerator) + len(loop.denominator) > 2
+    return (
+        (_oscillating(setting, _SHORT) if memory else None)
+        or _shortest(setting, sinusoids(loop, setting.unilateral))
+        or _oscillating(setting, _MOST_ROUNDED)
+    )
+
+
+def _oscillating(setting: Setting, longest: int) -> Witness | None:
+    return _first(_from_positions(setting, one) for one in oscillations(setting.loop, longest))
 
 
 def refute_friction(setting: Setting) -> Witness | None:
@@ -68,6 +87,16 @@ def _in_full(setting: Setting, motion: Motion) -> Witness | None:
             return witness
         rounds *= 4
     return None
+
+
+def _from_positions(setting: Setting, one: Motion) -> Witness | None:
+    """A motion given by whole positions, large enough for friction and encoder."""
+    unit = _unit(setting, one)
+    if unit is None:
+        return None
+    if setting.resolution:
+        return _on_counts(setting, one, unit)
+    return _scaled(setting, unit, partial(_multiplied, one))
 
 
 def _first(candidates: Iterator[Witness | None]) -> Witness | None:

@@ -39,10 +39,10 @@ def sinusoids(loop: LinearLoop, unilateral: bool) -> Iterator[Pattern]:
     A law with memory behind a unilateral surface is kept in contact: the
     pattern first goes in, the slower the later.
     """
-    band = _negative_band(loop)
+    band = negative_band(loop)
     if band is None:
         return
-    turn = _simplest_between(*band)
+    turn = simplest_between(*band)
     if band[0] <= turn and turn.numerator == 1 and turn.denominator > LONGEST_LISTED:
         yield _slow_wave(loop, unilateral)
         return
@@ -131,7 +131,7 @@ def _slow_wave(loop: LinearLoop, unilateral: bool) -> Pattern:
     return Pattern(tuple(w), tuple(repeats), stands)
 
 
-def _negative_band(loop: LinearLoop) -> tuple[Fraction, Fraction] | None:
+def negative_band(loop: LinearLoop) -> tuple[Fraction, Fraction] | None:
     """Turns per sample ωT/2π, low to high, well inside a band where the criterion is negative."""
     criterion = loop.criterion
     _, cosine = tightest(loop)
@@ -162,7 +162,7 @@ def _turn(cosine: arb) -> Fraction:
     return Fraction(int(value.p), int(value.q))
 
 
-def _simplest_between(low: Fraction, high: Fraction) -> Fraction:
+def simplest_between(low: Fraction, high: Fraction) -> Fraction:
     """The fraction of smallest denominator in [low, high], 0 ≤ low < high."""
     whole = ceil(low)
     if whole <= high and whole > 0:
@@ -170,7 +170,7 @@ def _simplest_between(low: Fraction, high: Fraction) -> Fraction:
     below = whole - 1 if whole > low else whole
     if low == below:  # only with low = 0
         return below + Fraction(1, ceil(1 / (high - below)))
-    return below + 1 / _simplest_between(1 / (high - below), 1 / (low - below))
+    return below + 1 / simplest_between(1 / (high - below), 1 / (low - below))
 
 
 def _cycle(loop: LinearLoop, turn: Fraction) -> tuple[int, ...]:
