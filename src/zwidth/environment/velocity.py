@@ -44,16 +44,16 @@ class Window:
     Parameters
     ----------
     samples
-        N, 1 ≤ N ≤ 200; 1 is the backward difference.
+        N, 1 ≤ N ≤ 100; 1 is the backward difference.
     """
 
     samples: int
 
     def __post_init__(self) -> None:
         number = Exact(self.samples).fraction
-        if number.denominator != 1 or not 1 <= number <= 200:
+        if number.denominator != 1 or not 1 <= number <= 100:
             raise InputError(
-                f"a velocity window has a whole number of samples from 1 to 200, got {self.samples}; "
+                f"a velocity window has a whole number of samples from 1 to 100, got {self.samples}; "
                 "a longer one is better written as a one-pole filter"
             )
         object.__setattr__(self, "samples", int(number))

@@ -37,7 +37,8 @@ class Wall(Environment):
     Raises
     ------
     InputError
-        If K < 0: a negative spring pushes the hand in and its energy has no floor.
+        If K < 0: a negative spring pulls the hand in and its energy has no floor; or
+        if velocity_filter is none of these.
     """
 
     stiffness: Exact | Interval
@@ -56,11 +57,15 @@ class Wall(Environment):
                 f"stiffness must be ≥ 0, got {k}: a negative spring pulls the hand in "
                 "and gives out energy without end"
             )
+        velocity = BackwardDifference() if velocity_filter is None else velocity_filter
+        if not isinstance(velocity, VelocityEstimator):
+            raise InputError(
+                f"velocity_filter is BackwardDifference(), Window(samples), OnePole(time_constant) or "
+                f"VelocityFilter(numerator, denominator), got {type(velocity).__name__}"
+            )
         object.__setattr__(self, "stiffness", k)
         object.__setattr__(self, "damping", b)
-        object.__setattr__(
-            self, "velocity_filter", BackwardDifference() if velocity_filter is None else velocity_filter
-        )
+        object.__setattr__(self, "velocity_filter", velocity)
 
     @property
     def unilateral(self) -> bool:

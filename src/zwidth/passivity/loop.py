@@ -156,7 +156,7 @@ def loop_from(h: RationalFunction, damping: Fraction, period: Fraction, delay: F
     """The exact loop of H(z), b [N·s/m], T [s] and a delay [s]."""
     numerator, denominator, decay = _coprime(h)
     whole = delay // period
-    degree = len(denominator) - 1 + whole
+    degree = max(len(numerator), len(denominator)) - 1 + whole
     if degree > LARGEST_DEGREE:
         raise InputError(
             f"the order of the environment plus the delay in samples is {degree}; at most "
