@@ -8,6 +8,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from polynomials import product
 
 from zwidth.environment.environment import RationalFunction
 from zwidth.passivity import checker
@@ -26,13 +27,7 @@ BILLIONTH = Fraction(1, 10**9)
 
 def multiply(*factors):
     """The product of polynomials in descending rational coefficients."""
-    total = [Fraction(1)]
-    for factor in factors:
-        out = [Fraction(0)] * (len(total) + len(factor) - 1)
-        for i, x in enumerate(total):
-            for j, y in enumerate(factor):
-                out[i + j] += x * Fraction(y)
-        total = out
+    total = product(*factors)
     return tuple(total)
 
 

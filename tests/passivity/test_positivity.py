@@ -7,6 +7,7 @@ from math import lcm
 from random import Random
 
 import mpmath
+import polynomials
 import pytest
 from flint import fmpz_poly
 from hypothesis import given, settings
@@ -17,13 +18,7 @@ from zwidth.passivity.positivity import Positivity, prove_nonnegative
 
 def product(*factors):
     """The product of factors in ascending rational coefficients, as an integer polynomial."""
-    total = [Fraction(1)]
-    for factor in factors:
-        out = [Fraction(0)] * (len(total) + len(factor) - 1)
-        for i, x in enumerate(total):
-            for j, y in enumerate(factor):
-                out[i + j] += x * Fraction(y)
-        total = out
+    total = polynomials.product(*factors)
     scale = 1
     for c in total:
         scale = lcm(scale, c.denominator)

@@ -7,6 +7,7 @@ from math import lcm
 from random import Random
 
 import pytest
+from polynomials import product
 
 from zwidth.passivity.checker.proofs import _inside_unit_circle
 from zwidth.passivity.schur import is_schur
@@ -14,13 +15,7 @@ from zwidth.passivity.schur import is_schur
 
 def polynomial(*factors):
     """The product of factors in descending coefficients, as integers."""
-    total = [Fraction(1)]
-    for factor in factors:
-        out = [Fraction(0)] * (len(total) + len(factor) - 1)
-        for i, x in enumerate(total):
-            for j, y in enumerate(factor):
-                out[i + j] += x * Fraction(y)
-        total = out
+    total = product(*factors)
     scale = lcm(*(c.denominator for c in total))
     return [int(c * scale) for c in total]
 
