@@ -535,3 +535,12 @@ def test_no_damping_is_active(delay):
     """Without viscous damping any spring is active, with Coulomb friction too: a large motion wins."""
     device = zw.Device(damping=0, coulomb_friction="0.2", resolution="0.0001", rate=1000, delay=delay)
     assert assert_evidence(zw.check(device, zw.Wall(40))).outcome == "active"
+
+
+@pytest.mark.parametrize(("damping", "said"), [("0.0005", True), ("0.01", False)])
+def test_the_limit_is_claimed_only_at_the_limit(damping, said):
+    """A lossless resonator touches zero at its pole whatever b is: the limit is b = kT/2 alone."""
+    resonator = zw.PulseTransferFunction(["0.8", "-1.8", 1], [1, "-1.6", 1])
+    verdict = zw.check(zw.Device(damping=damping, rate=1000), resonator)
+    assert assert_evidence(verdict).outcome == "passive"
+    assert ("exactly at its limit" in verdict.claim) is said

@@ -6,6 +6,7 @@ the independent checker accepts, "active" a motion whose energy it recomputes.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 from zwidth.device import Device
@@ -17,7 +18,7 @@ from zwidth.passivity.claims import assumptions, beyond_the_actuator, open_claim
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.delay_interval import prove_delays
-from zwidth.passivity.linear import LinearProof, LinearRefutation
+from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.refutation import refute_friction, refute_linear
 from zwidth.passivity.supremum import tightest
 from zwidth.passivity.verdict import Outcome, Verdict
@@ -122,16 +123,21 @@ def _between(device: Device, law: Environment, corner: tuple[Device, Environment
 
 
 def _at_limit(decision: Decision) -> bool:
-    """True when the smallest decrease of b or f_c would lose the proof."""
-    friction = decision.sufficient_friction
-    setting = decision.setting
-    if friction and friction == setting.coulomb_friction:
+    """True when the smallest decrease of b or f_c would lose the proof.
+
+    A criterion that touches zero may do so at a pole on the unit circle, whatever
+    b is: so a slightly smaller b is decided too.
+    """
+    friction, loop = decision.sufficient_friction, decision.loop
+    if friction and friction == decision.setting.coulomb_friction:
         return True
     positivity = getattr(decision.viscous, "positivity", None)
-    touches = positivity is not None and (
-        positivity.at_one or positivity.at_minus_one or len(positivity.square) != 1
-    )
-    return bool(touches) and any(setting.loop.numerator)
+    if positivity is None or not any(loop.numerator):
+        return False
+    if not (positivity.at_one or positivity.at_minus_one or len(positivity.square) != 1):
+        return False
+    less = loop.with_damping(loop.damping * (1 - Fraction(1, 10**12)))
+    return loop.damping == 0 or isinstance(decide_linear(less), LinearRefutation)
 
 
 def _tightest(decisions: list[Decision]) -> int:
