@@ -1,0 +1,1 @@
+"""The operator: the hand that moves the device."""
