@@ -1,0 +1,175 @@
+"""The sampled loop: measure, compute, apply after the delay, hold, move.
+
+Sample k is taken at t_k, the beginning of interval k.  Its command is applied
+`offset` into the interval `late` samples on and held until the next one is
+applied.  Between two changes of force `advance` moves the plant exactly.
+"""
+
+from __future__ import annotations
+
+from zwidth.loop.carry import carry
+from zwidth.loop.compiled import compiled
+from zwidth.loop.law import PHASE, RESOLUTION, law_force, measured
+from zwidth.loop.plant import (
+    ACTUATOR_WORK,
+    COULOMB,
+    FORCE,
+    GOAL,
+    HAND_LOSS,
+    HAND_WORK,
+    POSITION,
+    SOURCE_WORK,
+    VELOCITY,
+    VISCOUS,
+    Plant,
+)
+from zwidth.loop.step import advance
+
+# The record: one row per quantity, one column per instant.
+R_POSITION, R_VELOCITY, R_READING, R_COMMAND, R_ACTUATOR = range(5)
+R_HAND_WORK, R_ACTUATOR_WORK, R_VISCOUS, R_COULOMB, R_SOURCE_WORK, R_HAND_LOSS = range(5, 11)
+RECORDED = 11
+
+_NEVER = 1e300
+
+
+@compiled
+def packed_plant(p) -> Plant:
+    """The plant from the numbers of its array."""
+    return Plant(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8])
+
+
+@compiled
+def run(
+    first, last, points, state, numbers, law, memory, work,
+    late, offset, lengths, arrivals, missed, force, anchor, target, switch, commands, record,
+) -> None:  # fmt: skip
+    """Run the intervals `first` … `last` − 1, and sample N when last is N + 1; can be called again.
+
+    Parameters
+    ----------
+    points
+        Instants recorded per interval.
+    state, numbers, law, memory, work
+        See `plant`, `law` and `series`; state, memory and work are changed.
+    late, offset
+        d and α T of a delay (d + α) T, when the clock is regular.
+    lengths
+        Of the intervals [s]: one value when all are the same.
+    arrivals
+        When the clock is irregular: for every command the interval, and the time
+        into it, at which it is applied, 2 × (N + 1); else 2 × 0.
+    missed
+        1 where a sample is not taken; empty if none is.
+    force, anchor, target, switch
+        What the hand does, see `operator.Signals`; empty where it does not.
+    commands
+        The command of every sample, N + 1 of them, filled in.
+    record
+        RECORDED × (N·points + 1), filled in.
+    """
+    plant = packed_plant(numbers)
+    kinematic, tied, bent = target.shape[0] > 0, anchor.shape[0] > 0, switch.shape[0] > 0
+    samples = commands.shape[0] - 1
+    due = first_due(first, late, arrivals)
+    for k in range(first, last):
+        final = k == samples
+        h = 0.0 if final else (lengths[0] if lengths.shape[0] == 1 else lengths[k])
+        sample(k, points, state, law, memory, missed, commands, record)
+        begin = state[POSITION]
+        goal = target[k + 1] if kinematic and not final else begin
+        middle = switch[k] if bent and not final else begin
+        push = force[k] if force.shape[0] > 0 and not final else 0.0
+        here = anchor[k] if tied else 0.0
+        speed = (anchor[k + 1] - here) / h if tied and not final else 0.0
+        now = 0.0
+        at = arrival(due, k, late, offset, arrivals)
+        for point in range(points):
+            end = h if point == points - 1 else h * (point + 1) / points
+            while at <= now:
+                apply(state, plant, commands[due])
+                due += 1
+                at = arrival(due, k, late, offset, arrivals)
+            note(state, k * points + point, record)
+            if final:
+                return
+            while now < end:
+                until = min(at, end)
+                if kinematic:
+                    if bent and now < offset:
+                        until = min(until, offset)
+                    carry(state, plant, on_the_way(begin, middle, goal, bent, offset, until, h), until - now)
+                else:
+                    advance(state, plant, push, here + speed * now, speed, until - now, work)
+                now = until
+                while at <= now and now < end:
+                    apply(state, plant, commands[due])
+                    due += 1
+                    at = arrival(due, k, late, offset, arrivals)
+
+
+@compiled
+def sample(k, points, state, law, memory, missed, commands, record) -> None:
+    """Measure and compute; a missed sample leaves the law and its command as they were."""
+    if missed.shape[0] > 0 and missed[k] > 0.0:
+        reading = record[R_READING, (k - 1) * points] if k > 0 else 0.0
+        commands[k] = commands[k - 1] if k > 0 else 0.0
+    else:
+        reading = measured(state[POSITION], law[RESOLUTION], law[PHASE])
+        commands[k] = law_force(law, memory, reading)
+    for column in range(k * points, min((k + 1) * points, record.shape[1])):
+        record[R_READING, column] = reading
+        record[R_COMMAND, column] = commands[k]
+
+
+@compiled
+def first_due(first, late, arrivals) -> int:
+    """The first command that is applied in interval `first` or later."""
+    if arrivals.shape[1] == 0:
+        return max(0, first - late)
+    due = 0
+    while due < arrivals.shape[1] and arrivals[0, due] < first:
+        due += 1
+    return due
+
+
+@compiled
+def arrival(due, k, late, offset, arrivals) -> float:
+    """When, in interval k, the command `due` is applied [s]; never, if not in this one."""
+    if arrivals.shape[1] == 0:
+        return offset if due + late == k else _NEVER
+    return arrivals[1, due] if due < arrivals.shape[1] and arrivals[0, due] == k else _NEVER
+
+
+@compiled
+def apply(state, plant: Plant, command: float) -> None:
+    """A new command reaches the amplifier."""
+    state[GOAL] = command
+    if plant.lag == 0.0 and plant.slew == 0.0:
+        state[FORCE] = command
+
+
+@compiled
+def on_the_way(begin, middle, goal, bent, offset, until, h) -> float:
+    """The prescribed position at the time `until` of an interval."""
+    if until == h:
+        return goal
+    if not bent:
+        return begin + (goal - begin) * (until / h)
+    if until <= offset:
+        return begin + (middle - begin) * (until / offset)
+    return middle + (goal - middle) * ((until - offset) / (h - offset))
+
+
+@compiled
+def note(state, column, record) -> None:
+    """Write the state at one instant."""
+    record[R_POSITION, column] = state[POSITION]
+    record[R_VELOCITY, column] = state[VELOCITY]
+    record[R_ACTUATOR, column] = state[FORCE]
+    record[R_HAND_WORK, column] = state[HAND_WORK]
+    record[R_ACTUATOR_WORK, column] = state[ACTUATOR_WORK]
+    record[R_VISCOUS, column] = state[VISCOUS]
+    record[R_COULOMB, column] = state[COULOMB]
+    record[R_SOURCE_WORK, column] = state[SOURCE_WORK]
+    record[R_HAND_LOSS, column] = state[HAND_LOSS]

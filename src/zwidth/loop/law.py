@@ -1,0 +1,65 @@
+"""The environment as the loop runs it, sample by sample.
+
+    x_m = Δ floor(x/Δ + φ)              what the encoder reads, φ its phase
+    f   = g x_m + Σ (sections)          H(z), each section a transposed direct form
+    f   = ΔF round(f/ΔF), |f| ≤ F_max   what the converter gives
+
+A wall's velocity estimator runs on every measured position; a viscoelastic
+solid, which can be left, on the penetration max(x_m, 0).  Neither pushes where
+x_m ≤ 0.
+"""
+
+from __future__ import annotations
+
+from math import floor
+
+from zwidth.loop.compiled import compiled
+
+BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
+"""At the surface: a law without one; one fed with max(x_m, 0); one fed with x_m.  Both push inside only."""
+
+# The packed law: gate, encoder resolution, phase, force step, force limit (0: none), number of
+# sections; then for each section its order n, b_0 … b_n, a_1 … a_n.
+GATE, RESOLUTION, PHASE, STEP, LIMIT, SECTIONS = range(6)
+HEADER = 6
+
+
+@compiled
+def measured(x: float, resolution: float, phase: float) -> float:
+    """What an encoder reads: Δ floor(x/Δ + φ); x itself if Δ = 0."""
+    # a quotient, not a product with 1/Δ: they differ by a count at an edge
+    return resolution * floor(x / resolution + phase) if resolution > 0.0 else x
+
+
+@compiled
+def converted(f: float, step: float, limit: float) -> float:
+    """What the converter and the actuator make of a command: the nearest step, within the limit."""
+    if step > 0.0:
+        f = step * floor(f / step + 0.5)
+    if limit > 0.0:
+        f = min(limit, max(-limit, f))
+    return f
+
+
+@compiled
+def law_force(law, memory, reading: float) -> float:
+    """The force that the law commands at a measured position; its memory moves on."""
+    gate = law[GATE]
+    x = max(reading, 0.0) if gate == PENETRATION else reading
+    f = 0.0
+    at, slot = HEADER, 0
+    for _ in range(int(law[SECTIONS])):
+        order = int(law[at])
+        b, a = at + 1, at + 1 + order  # b_i at b + i, a_i at a + i
+        y = law[b] * x
+        if order > 0:
+            y += memory[slot]
+            for i in range(1, order):
+                memory[slot + i - 1] = memory[slot + i] + law[b + i] * x - law[a + i] * y
+            memory[slot + order - 1] = law[b + order] * x - law[a + order] * y
+        f += y
+        at += 2 * order + 2
+        slot += order
+    if gate != BILATERAL and reading <= 0.0:
+        f = 0.0
+    return converted(f, law[STEP], law[LIMIT])
