@@ -1,1 +1,54 @@
 """The operator: the hand that moves the device."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from zwidth.operator.constant_force import ConstantForce
+from zwidth.operator.cycle import Cycle
+from zwidth.operator.dowel import Dowel
+from zwidth.operator.finger import Finger
+from zwidth.operator.guide import Guide
+from zwidth.operator.operator import LinearHand, Operator, Signals
+from zwidth.operator.parameter import ParametricOperator
+from zwidth.operator.prescribed_motion import PrescribedMotion
+from zwidth.operator.recorded_force import RecordedForce
+from zwidth.operator.soft_touch import SoftTouch
+from zwidth.operator.touches import MaliciousTouch, TypicalTouch
+from zwidth.operator.tracking import Tracking
+from zwidth.operator.witness_motion import WitnessMotion
+
+OPERATORS: Mapping[str, type[ParametricOperator]] = MappingProxyType(
+    {
+        "constant-force": ConstantForce,
+        "cycle": Cycle,
+        "dowel": Dowel,
+        "finger": Finger,
+        "guide": Guide,
+        "malicious": MaliciousTouch,
+        "soft": SoftTouch,
+        "typical": TypicalTouch,
+    }
+)
+"""The operators that are a few numbers, by the name under which a command line knows them."""
+
+__all__ = [
+    "OPERATORS",
+    "ConstantForce",
+    "Cycle",
+    "Dowel",
+    "Finger",
+    "Guide",
+    "LinearHand",
+    "MaliciousTouch",
+    "Operator",
+    "ParametricOperator",
+    "PrescribedMotion",
+    "RecordedForce",
+    "Signals",
+    "SoftTouch",
+    "Tracking",
+    "TypicalTouch",
+    "WitnessMotion",
+]

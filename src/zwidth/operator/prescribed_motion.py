@@ -1,0 +1,83 @@
+"""A prescribed position: the hand goes there, whatever force that takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from zwidth.errors import InputError
+from zwidth.operator.motion import UNIT, as_path, first, sampled
+from zwidth.operator.operator import Signals
+from zwidth.operator.record import RecordedOperator, as_record
+from zwidth.quantity.glossary import GLOSSARY
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from zwidth.operator.motion import Path
+    from zwidth.operator.operator import Signal
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class PrescribedMotion(RecordedOperator):
+    """``x(kT) = x_k``, at constant velocity between the samples.
+
+    Parameters
+    ----------
+    positions
+        x_k [m; rad], one for each sample instant of the touch, so duration/T + 1
+        of them; or a function of the time [s] that gives them.
+    switch_positions
+        Position in each interval when the force changes, duration/T of them
+        [m; rad]; None for a straight line.
+
+    Raises
+    ------
+    InputError
+        If the values are not one row of finite numbers; later, if they are
+        more or fewer than the touch has instants.
+    """
+
+    positions: Signal | Callable[[float], float]
+    switch_positions: Signal | None
+
+    def __init__(self, positions: Path, *, switch_positions: ArrayLike | None = None) -> None:
+        switches = None if switch_positions is None else as_record(switch_positions, "switch positions", UNIT)
+        object.__setattr__(self, "positions", as_path(positions))
+        object.__setattr__(self, "switch_positions", switches)
+
+    @property
+    def kinematic(self) -> bool:
+        """True."""
+        return True
+
+    @property
+    def initial_position(self) -> float:
+        """x_0 [m; rad]."""
+        return first(self.positions)
+
+    def signals(self, times: Signal) -> Signals:
+        """The positions; a record's length must be that of the touch."""
+        if not callable(self.positions):
+            _same_length("positions", len(self.positions), len(times), "sample instants")
+        if self.switch_positions is not None:
+            _same_length("switch_positions", len(self.switch_positions), len(times) - 1, "sample intervals")
+        switches = None if self.switch_positions is None else self.switch_positions.copy()
+        return Signals(position=sampled(self.positions, times), switch_position=switches)
+
+    def describe(self, motion: str = "linear") -> str:
+        """How long the motion is and where it starts."""
+        unit = GLOSSARY["position"].unit_for(motion)
+        if callable(self.positions):
+            return f"prescribed motion, a function of time, from {self.initial_position:.6g} {unit}"
+        low, high = self.positions.min(), self.positions.max()
+        return f"prescribed motion, {len(self.positions)} positions, {low:.6g} to {high:.6g} {unit}"
+
+
+def _same_length(what: str, given: int, wanted: int, of: str) -> None:
+    if given != wanted:
+        raise InputError(
+            f"{what} has {given} values, but the touch has {wanted} {of}: each has one position; "
+            f"give {wanted} values, or another duration"
+        )
