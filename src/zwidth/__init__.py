@@ -1,5 +1,8 @@
 """Which virtual walls a haptic device can render without generating energy, proved."""
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from zwidth.device import Device, FrictionCurve, FrictionModel, catalogue
 from zwidth.device.rotary import rotary
 from zwidth.environment import (
@@ -19,6 +22,12 @@ from zwidth.passivity import Certificate, Verdict, Witness, check, closed_forms,
 from zwidth.quantity import Exact, Interval
 from zwidth.rendering import VirtualCoupling
 
+if TYPE_CHECKING:
+    from zwidth import operator as operators
+    from zwidth.device import amplifier as amplifiers
+    from zwidth.loop.simulate import simulate
+    from zwidth.loop.timing import Timing
+
 __all__ = [
     "BackwardDifference",
     "Certificate",
@@ -34,15 +43,40 @@ __all__ = [
     "OnePole",
     "PulseTransferFunction",
     "StandardLinearSolid",
+    "Timing",
     "VelocityFilter",
     "Verdict",
     "VirtualCoupling",
     "Wall",
     "Window",
     "Witness",
+    "amplifiers",
     "catalogue",
     "check",
     "closed_forms",
+    "operators",
     "quantization",
     "rotary",
+    "simulate",
 ]
+
+_LATER = {
+    "Timing": "zwidth.loop.timing",
+    "amplifiers": "zwidth.device.amplifier",
+    "operators": "zwidth.operator",
+    "simulate": "zwidth.loop.simulate",
+}
+"""Where a name is found when it is first used: the simulator's libraries take their time to load."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module 'zwidth' has no attribute {name!r}")
+    module = import_module(_LATER[name])
+    thing = getattr(module, name, module)
+    globals()[name] = thing
+    return thing
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

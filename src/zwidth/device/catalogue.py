@@ -27,6 +27,7 @@ PROPERTIES = (
     "mass",
     "damping",
     "coulomb_friction",
+    "stiction",
     "resolution",
     "sample_period",
     "rate",

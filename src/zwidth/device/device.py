@@ -42,6 +42,9 @@ class Device:
         Viscous friction b of the device itself, ≥ 0 [N·s/m; N·m·s/rad].
     coulomb_friction
         Coulomb friction f_c, ≥ 0 [N; N·m]. Not given: taken as 0, see `assumed`.
+    stiction
+        Largest friction at rest, ≥ f_c [N; N·m]; None: f_c. Only a simulated motion needs
+        it: a hand that proves or refutes passivity overcomes it by an impulse.
     resolution
         Encoder resolution Δ at the handle, ≥ 0, 0 for an ideal sensor [m; rad].
         Not given: taken as 0, see `assumed`.
@@ -70,6 +73,7 @@ class Device:
     mass: Exact | Interval | None
     damping: Exact | Interval
     coulomb_friction: Exact | Interval
+    stiction: Exact | Interval | None
     resolution: Exact | Interval
     sample_period: Exact | Interval
     delay: Exact | Interval
@@ -87,6 +91,7 @@ class Device:
         mass: Parameter | None = None,
         damping: Parameter,
         coulomb_friction: Parameter | None = None,
+        stiction: Parameter | None = None,
         resolution: Parameter | None = None,
         sample_period: Parameter | None = None,
         rate: Parameter | None = None,
@@ -106,6 +111,7 @@ class Device:
             "mass": mass,
             "damping": damping,
             "coulomb_friction": coulomb_friction,
+            "stiction": stiction,
             "resolution": resolution,
             "sample_period": period,
             "delay": delay,
@@ -119,6 +125,7 @@ class Device:
         given.update(dict.fromkeys(assumed, 0))
         for key, value in given.items():
             object.__setattr__(self, key, _validated(key, value, motion))
+        _check_stiction(self)
         object.__setattr__(self, "_assumed", assumed)
         object.__setattr__(self, "motion", motion)
         object.__setattr__(self, "name", str(name))
@@ -207,12 +214,21 @@ def _period(sample_period: Parameter | None, rate: Parameter | None) -> Paramete
     return _reciprocal(parameter)
 
 
+def _check_stiction(device: Device) -> None:
+    if device.stiction is not None and ends(device.stiction)[0] < ends(device.coulomb_friction)[0]:
+        raise InputError(
+            f"stiction must be ≥ coulomb_friction, got {device.stiction} below {device.coulomb_friction}: "
+            "friction at rest is at least that of sliding; leave it out if both are the same"
+        )
+
+
 _ZERO_IF_UNKNOWN = ("coulomb_friction", "resolution", "delay")
 
 _WHY = {
     "mass": (True, "a device has inertia; the criteria do not depend on it, the motions do"),
     "damping": (False, "negative friction would itself generate energy"),
     "coulomb_friction": (False, "negative friction would itself generate energy"),
+    "stiction": (False, "it is the friction that holds the device at rest; leave it out if unknown"),
     "resolution": (False, "it is the size of one encoder count; use 0 for an ideal sensor"),
     "sample_period": (True, "the force is held for T; a continuous loop has no hold to certify"),
     "delay": (False, "a force cannot be applied before its sample is taken"),

@@ -25,6 +25,7 @@ def rotary(
     inertia: Parameter | None = None,
     damping: Parameter,
     coulomb_friction: Parameter | None = None,
+    stiction: Parameter | None = None,
     resolution: Parameter | None = None,
     counts_per_turn: Parameter | None = None,
     handle_radius: Parameter | None = None,
@@ -42,6 +43,8 @@ def rotary(
         Viscous friction b, ≥ 0 [N·m·s/rad].
     coulomb_friction
         Coulomb friction torque τ_c, ≥ 0 [N·m].
+    stiction
+        Largest friction torque at rest, ≥ τ_c [N·m]; None: τ_c.
     resolution, counts_per_turn
         Δθ [rad], or N > 0 and then Δθ = 2π/N to double precision; one of the
         two at most. N is counts, not lines: with quadrature decoding an
@@ -70,6 +73,7 @@ def rotary(
         "mass": _inertia(inertia),
         "damping": damping,
         "coulomb_friction": coulomb_friction,
+        "stiction": stiction,
         "resolution": resolution,
         "force_limit": force_limit,
         "force_resolution": force_resolution,
@@ -90,6 +94,7 @@ _POWER = {
     "mass": -2,
     "damping": -2,
     "coulomb_friction": -1,
+    "stiction": -1,
     "resolution": 1,
     "force_limit": -1,
     "force_resolution": -1,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import expm1
 
-from zwidth.loop.compiled import compiled
+from zwidth.loop.compiled import Array, compiled
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
@@ -25,7 +25,7 @@ from zwidth.loop.plant import (
 
 
 @compiled
-def carry(state, plant: Plant, target: float, h: float) -> None:
+def carry(state: Array, plant: Plant, target: float, h: float) -> None:
     """Go to `target` in h seconds; the state is changed in place."""
     moved = target - state[POSITION]
     v0, v1 = state[VELOCITY], moved / h
@@ -44,7 +44,7 @@ def carry(state, plant: Plant, target: float, h: float) -> None:
 
 
 @compiled
-def _advance_force(state, plant: Plant, h: float) -> float:
+def _advance_force(state: Array, plant: Plant, h: float) -> float:
     """Move the actuator force on by h; returns its mean over that time."""
     start, goal = state[FORCE], state[GOAL]
     gap = goal - start

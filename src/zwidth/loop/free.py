@@ -59,4 +59,3 @@ def free_stop(rate: float, velocity: float, acceleration: float) -> float:
     if z >= 1.0:  # by rounding only: the asymptote itself
         return ratio * 1e3
     return -ratio * log1p(-z) / z
-

@@ -8,7 +8,7 @@ applied.  Between two changes of force `advance` moves the plant exactly.
 from __future__ import annotations
 
 from zwidth.loop.carry import carry
-from zwidth.loop.compiled import compiled
+from zwidth.loop.compiled import Array, compiled
 from zwidth.loop.law import PHASE, RESOLUTION, law_force, measured
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
@@ -34,16 +34,33 @@ _NEVER = 1e300
 
 
 @compiled
-def packed_plant(p) -> Plant:
+def packed_plant(p: Array) -> Plant:
     """The plant from the numbers of its array."""
     return Plant(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8])
 
 
 @compiled
 def run(
-    first, last, points, state, numbers, law, memory, work,
-    late, offset, lengths, arrivals, missed, force, anchor, target, switch, commands, record,
-) -> None:  # fmt: skip
+    first: int,
+    last: int,
+    points: int,
+    state: Array,
+    numbers: Array,
+    law: Array,
+    memory: Array,
+    work: Array,
+    late: int,
+    offset: float,
+    lengths: Array,
+    arrivals: Array,
+    missed: Array,
+    force: Array,
+    anchor: Array,
+    target: Array,
+    switch: Array,
+    commands: Array,
+    record: Array,
+) -> None:
     """Run the intervals `first` … `last` − 1, and sample N when last is N + 1; can be called again.
 
     Parameters
@@ -109,7 +126,16 @@ def run(
 
 
 @compiled
-def sample(k, points, state, law, memory, missed, commands, record) -> None:
+def sample(
+    k: int,
+    points: int,
+    state: Array,
+    law: Array,
+    memory: Array,
+    missed: Array,
+    commands: Array,
+    record: Array,
+) -> None:
     """Measure and compute; a missed sample leaves the law and its command as they were."""
     if missed.shape[0] > 0 and missed[k] > 0.0:
         reading = record[R_READING, (k - 1) * points] if k > 0 else 0.0
@@ -123,7 +149,7 @@ def sample(k, points, state, law, memory, missed, commands, record) -> None:
 
 
 @compiled
-def first_due(first, late, arrivals) -> int:
+def first_due(first: int, late: int, arrivals: Array) -> int:
     """The first command that is applied in interval `first` or later."""
     if arrivals.shape[1] == 0:
         return max(0, first - late)
@@ -134,7 +160,7 @@ def first_due(first, late, arrivals) -> int:
 
 
 @compiled
-def arrival(due, k, late, offset, arrivals) -> float:
+def arrival(due: int, k: int, late: int, offset: float, arrivals: Array) -> float:
     """When, in interval k, the command `due` is applied [s]; never, if not in this one."""
     if arrivals.shape[1] == 0:
         return offset if due + late == k else _NEVER
@@ -142,7 +168,7 @@ def arrival(due, k, late, offset, arrivals) -> float:
 
 
 @compiled
-def apply(state, plant: Plant, command: float) -> None:
+def apply(state: Array, plant: Plant, command: float) -> None:
     """A new command reaches the amplifier."""
     state[GOAL] = command
     if plant.lag == 0.0 and plant.slew == 0.0:
@@ -150,7 +176,9 @@ def apply(state, plant: Plant, command: float) -> None:
 
 
 @compiled
-def on_the_way(begin, middle, goal, bent, offset, until, h) -> float:
+def on_the_way(
+    begin: float, middle: float, goal: float, bent: bool, offset: float, until: float, h: float
+) -> float:
     """The prescribed position at the time `until` of an interval."""
     if until == h:
         return goal
@@ -162,7 +190,7 @@ def on_the_way(begin, middle, goal, bent, offset, until, h) -> float:
 
 
 @compiled
-def note(state, column, record) -> None:
+def note(state: Array, column: int, record: Array) -> None:
     """Write the state at one instant."""
     record[R_POSITION, column] = state[POSITION]
     record[R_VELOCITY, column] = state[VELOCITY]

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from math import floor
 
-from zwidth.loop.compiled import compiled
+from zwidth.loop.compiled import Array, compiled
 
 BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 """At the surface: a law without one; one fed with max(x_m, 0); one fed with x_m.  Both push inside only."""
@@ -42,7 +42,7 @@ def converted(f: float, step: float, limit: float) -> float:
 
 
 @compiled
-def law_force(law, memory, reading: float) -> float:
+def law_force(law: Array, memory: Array, reading: float) -> float:
     """The force that the law commands at a measured position; its memory moves on."""
     gate = law[GATE]
     x = max(reading, 0.0) if gate == PENETRATION else reading

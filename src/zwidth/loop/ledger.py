@@ -13,7 +13,7 @@ stretch), e0 the slack x_a − x at the start and u the speed of the anchor,
 
 from __future__ import annotations
 
-from zwidth.loop.compiled import compiled
+from zwidth.loop.compiled import Array, compiled
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
@@ -21,29 +21,42 @@ from zwidth.loop.plant import (
     HAND_WORK,
     SOURCE_WORK,
     VISCOUS,
+    Drive,
     Plant,
 )
 
 
 @compiled
-def book(state, plant: Plant, force, slack, speed, t, moved, area, squares, pull, v0, v1) -> None:
-    """Add the energies of a stretch of sliding to the state."""
+def book(
+    state: Array,
+    plant: Plant,
+    drive: Drive,
+    t: float,
+    moved: float,
+    area: float,
+    squares: float,
+    pull: float,
+    v0: float,
+    v1: float,
+) -> None:
+    """Add the energies of a stretch of sliding to the state; `pull` is ∫ f_a v dt."""
     k, c = plant.stiffness, plant.hand_damping
+    slack, speed = drive.slack, drive.speed
     state[VISCOUS] += plant.damping * squares
     state[COULOMB] += plant.coulomb * abs(moved)
     state[ACTUATOR_WORK] -= pull
     spring = k * (moved * (slack - 0.5 * moved) + speed * (t * moved - area))
     damper = c * (speed * moved - squares)
     inertia = 0.5 * plant.hand_mass * (v1 - v0) * (v1 + v0)
-    state[HAND_WORK] += force * moved + spring + damper - inertia
+    state[HAND_WORK] += drive.force * moved + spring + damper - inertia
     anchor = speed * (k * (slack * t + 0.5 * speed * t * t - area) + c * (speed * t - moved))
-    state[SOURCE_WORK] += force * moved + anchor
+    state[SOURCE_WORK] += drive.force * moved + anchor
     state[HAND_LOSS] += c * (speed * speed * t - 2.0 * speed * moved + squares)
 
 
 @compiled
-def book_rest(state, plant: Plant, slack, speed, t) -> None:
+def book_rest(state: Array, plant: Plant, drive: Drive, t: float) -> None:
     """Add the energies of a stretch at rest: only the anchor moves."""
-    k, c = plant.stiffness, plant.hand_damping
-    state[SOURCE_WORK] += speed * (k * (slack * t + 0.5 * speed * t * t) + c * speed * t)
+    k, c, speed = plant.stiffness, plant.hand_damping, drive.speed
+    state[SOURCE_WORK] += speed * (k * (drive.slack * t + 0.5 * speed * t * t) + c * speed * t)
     state[HAND_LOSS] += c * speed * speed * t

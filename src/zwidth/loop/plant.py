@@ -31,6 +31,25 @@ class Plant(NamedTuple):
     slew: float
 
 
+class Drive(NamedTuple):
+    """What acts on the plant during one stretch, from its beginning at t = 0.
+
+    `force` F, `slack` x_a − x, `speed` ẋ_a; then the external force at rest,
+
+        F_e = push + rate t − transient e^{−t/lag}
+
+    and `ramp`, the part of −rate that is the actuator's own change df_a/dt.
+    """
+
+    force: float
+    slack: float
+    speed: float
+    push: float
+    rate: float
+    ramp: float
+    transient: float
+
+
 # The state.  DIRECTION is the sign of the velocity, 0 at rest; FORCE the actuator force now, GOAL the
 # force it goes to.  From HAND_WORK on: the energies since the start [J].
 POSITION, VELOCITY, DIRECTION, FORCE, GOAL = range(5)

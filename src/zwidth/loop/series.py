@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from math import ceil, sqrt
 
-from zwidth.loop.compiled import compiled
+from zwidth.loop.compiled import Array, compiled
 from zwidth.loop.plant import Plant
 
 TERMS = 28
@@ -37,7 +37,7 @@ def pieces(plant: Plant, h: float) -> float:
 
 
 @compiled
-def expand(plant: Plant, v0: float, push: float, ramp: float, transient: float, h: float, work) -> int:
+def expand(plant: Plant, v0: float, push: float, ramp: float, transient: float, h: float, work: Array) -> int:
     """Fill `work` with the coefficients of v, ξ and φ; returns how many of each.
 
     `push` G0 [N], `ramp` G1 [N/s], `transient` φ(0) [N].
@@ -66,7 +66,7 @@ def expand(plant: Plant, v0: float, push: float, ramp: float, transient: float, 
 
 
 @compiled
-def value(work, start: int, terms: int, u: float) -> float:
+def value(work: Array, start: int, terms: int, u: float) -> float:
     """Σ cₙ uⁿ."""
     total = 0.0
     for n in range(terms - 1, -1, -1):
@@ -75,7 +75,7 @@ def value(work, start: int, terms: int, u: float) -> float:
 
 
 @compiled
-def integral(work, start: int, terms: int, u: float) -> float:
+def integral(work: Array, start: int, terms: int, u: float) -> float:
     """∫₀ᵘ Σ cₙ uⁿ."""
     total = 0.0
     for n in range(terms - 1, -1, -1):
@@ -84,7 +84,7 @@ def integral(work, start: int, terms: int, u: float) -> float:
 
 
 @compiled
-def product_integral(work, first: int, second: int, terms: int, u: float) -> float:
+def product_integral(work: Array, first: int, second: int, terms: int, u: float) -> float:
     """∫₀ᵘ of the product of two series, each term of it integrated."""
     total = 0.0
     for m in range(2 * terms - 2, -1, -1):
@@ -98,7 +98,7 @@ def product_integral(work, first: int, second: int, terms: int, u: float) -> flo
 
 
 @compiled
-def first_zero(work, terms: int, sign: float) -> float:
+def first_zero(work: Array, terms: int, sign: float) -> float:
     """The first u in (0, 1] where v is 0, or 2 if there is none; `sign` · v ≥ 0 at first.
 
     A zero at u = 0, from which the motion starts, is divided out.  With

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from math import exp, log
 
-from zwidth.loop.compiled import compiled
+from zwidth.loop.compiled import Array, compiled
 from zwidth.loop.free import free_response, free_stop
 from zwidth.loop.ledger import book, book_rest
 from zwidth.loop.plant import (
@@ -21,6 +21,7 @@ from zwidth.loop.plant import (
     POSITION,
     STOPS,
     VELOCITY,
+    Drive,
     Plant,
 )
 from zwidth.loop.series import (
@@ -38,7 +39,9 @@ _BISECTIONS = 200
 
 
 @compiled
-def advance(state, plant: Plant, force: float, anchor: float, anchor_speed: float, h: float, work) -> None:
+def advance(
+    state: Array, plant: Plant, force: float, anchor: float, anchor_speed: float, h: float, work: Array
+) -> None:
     """Move the plant by h seconds under a constant hand force and an anchor at constant speed.
 
     Parameters
@@ -76,7 +79,7 @@ def advance(state, plant: Plant, force: float, anchor: float, anchor_speed: floa
 
 
 @compiled
-def _slewing(state, plant: Plant) -> tuple[float, float]:
+def _slewing(state: Array, plant: Plant) -> tuple[float, float]:
     """(df_a/dt, time until the goal): a force that a limited voltage drives; (0, ∞) otherwise."""
     gap = state[GOAL] - state[FORCE]
     if plant.slew == 0.0 or gap == 0.0:
@@ -85,32 +88,35 @@ def _slewing(state, plant: Plant) -> tuple[float, float]:
 
 
 @compiled
-def _stretch(state, plant: Plant, force, anchor, speed, ramp, h, work) -> float:
+def _stretch(
+    state: Array, plant: Plant, force: float, anchor: float, speed: float, ramp: float, h: float, work: Array
+) -> float:
     """Move by at most h seconds, up to the first stop; returns the time used."""
     slack = anchor - state[POSITION]
     transient = state[FORCE] - state[GOAL] if plant.lag > 0.0 else 0.0
     settled = state[GOAL] if plant.lag > 0.0 else state[FORCE]
     push = force + plant.stiffness * slack + plant.hand_damping * speed - settled
-    rate = plant.stiffness * speed - ramp
+    drive = Drive(force, slack, speed, push, plant.stiffness * speed - ramp, ramp, transient)
     if state[DIRECTION] == 0.0:
-        now = push - transient
-        if abs(now) <= plant.stiction:
-            wait, side = breakaway(push, rate, transient, plant.lag, plant.stiction, h)
-            book_rest(state, plant, slack, speed, wait)
+        external = push - transient
+        if abs(external) <= plant.stiction:
+            wait, side = breakaway(drive, plant, h)
+            book_rest(state, plant, drive, wait)
             state[DIRECTION] = side
             return wait
-        state[DIRECTION] = 1.0 if now > 0.0 else -1.0
-    if rate == 0.0 and transient == 0.0 and plant.stiffness == 0.0:
-        return _slide_free(state, plant, force, speed, slack, push, h)
-    return _slide_tied(state, plant, force, speed, slack, push, rate, transient, h, work)
+        state[DIRECTION] = 1.0 if external > 0.0 else -1.0
+    if drive.rate == 0.0 and transient == 0.0 and plant.stiffness == 0.0:
+        return _slide_free(state, plant, drive, h)
+    return _slide_tied(state, plant, drive, h, work)
 
 
 @compiled
-def breakaway(push, rate, transient, lag, stiction, h) -> tuple[float, float]:
-    """When |push + rate t − transient e^{−t/lag}| exceeds the stiction: (time, side), or (h, 0).
+def breakaway(drive: Drive, plant: Plant, h: float) -> tuple[float, float]:
+    """When |F_e| exceeds the stiction, which at t = 0 it does not: (time, side), or (h, 0).
 
-    At t = 0 it does not.  The force has one turning point at most.
+    F_e has one turning point at most.
     """
+    rate, transient, lag = drive.rate, drive.transient, plant.lag
     if rate == 0.0 and transient == 0.0:
         return h, 0.0
     turn = h
@@ -118,31 +124,30 @@ def breakaway(push, rate, transient, lag, stiction, h) -> tuple[float, float]:
         turn = min(h, max(0.0, lag * log(-transient / (lag * rate))))
     start = 0.0
     for end in (turn, h):
-        if end > start or end == h:
-            level = _external(push, rate, transient, lag, end)
-            if abs(level) > stiction:
-                side = 1.0 if level > 0.0 else -1.0
-                return _crossing(push, rate, transient, lag, stiction * side, side, start, end), side
-            start = end
+        level = _external(drive, lag, end)
+        if abs(level) > plant.stiction:
+            side = 1.0 if level > 0.0 else -1.0
+            return _crossing(drive, lag, plant.stiction * side, side, start, end), side
+        start = end
     return h, 0.0
 
 
 @compiled
-def _external(push, rate, transient, lag, t) -> float:
-    fading = transient * exp(-t / lag) if lag > 0.0 else 0.0
-    return push + rate * t - fading
+def _external(drive: Drive, lag: float, t: float) -> float:
+    fading = drive.transient * exp(-t / lag) if lag > 0.0 else 0.0
+    return drive.push + drive.rate * t - fading
 
 
 @compiled
-def _crossing(push, rate, transient, lag, level, side, start, end) -> float:
+def _crossing(drive: Drive, lag: float, level: float, side: float, start: float, end: float) -> float:
     """The time in [start, end] at which the monotone external force passes `level`."""
-    if transient == 0.0:
-        return min(end, max(start, (level - push) / rate))
+    if drive.transient == 0.0:
+        return min(end, max(start, (level - drive.push) / drive.rate))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (start + end)
         if middle <= start or middle >= end:
             break
-        if side * (_external(push, rate, transient, lag, middle) - level) > 0.0:
+        if side * (_external(drive, lag, middle) - level) > 0.0:
             end = middle
         else:
             start = middle
@@ -150,71 +155,58 @@ def _crossing(push, rate, transient, lag, level, side, start, end) -> float:
 
 
 @compiled
-def _slide_free(state, plant: Plant, force, speed, slack, push, h) -> float:
+def _slide_free(state: Array, plant: Plant, drive: Drive, h: float) -> float:
     mass = plant.mass + plant.hand_mass
     drag = plant.damping + plant.hand_damping
     side, v0 = state[DIRECTION], state[VELOCITY]
-    a0 = (push - side * plant.coulomb - drag * v0) / mass
-    lam = drag / mass
+    a0 = (drive.push - side * plant.coulomb - drag * v0) / mass
     t = h
-    h1, h2, h3 = free_response(lam, t)
+    h1, h2, h3 = free_response(drag / mass, t)
     v1 = v0 + a0 * h1
     stopped = v1 * side <= 0.0 and a0 * side < 0.0
     if stopped:
-        t = min(h, free_stop(lam, v0, a0))
-        h1, h2, h3 = free_response(lam, t)
+        t = min(h, free_stop(drag / mass, v0, a0))
+        h1, h2, h3 = free_response(drag / mass, t)
         v1 = 0.0
     moved = v0 * t + a0 * h2
     squares = v0 * v0 * t + 2.0 * v0 * a0 * h2 + a0 * a0 * h3
-    pull = state[FORCE] * moved
-    book(state, plant, force, slack, speed, t, moved, 0.0, squares, pull, v0, v1)
-    state[POSITION] += moved
-    state[VELOCITY] = v1
-    if stopped:
-        _stop(state)
+    book(state, plant, drive, t, moved, 0.0, squares, state[FORCE] * moved, v0, v1)
+    _arrive(state, moved, v1, stopped)
     return t
 
 
 @compiled
-def _slide_tied(state, plant: Plant, force, speed, slack, push, rate, transient, h, work) -> float:
-    t = h / pieces(plant, h)
+def _slide_tied(state: Array, plant: Plant, drive: Drive, h: float, work: Array) -> float:
+    length = h / pieces(plant, h)
     side, v0 = state[DIRECTION], state[VELOCITY]
-    if v0 == 0.0 and abs(push - transient) <= plant.stiction:  # it has just broken away
-        push = side * (plant.stiction - plant.coulomb) + transient
-    else:
-        push -= side * plant.coulomb
-    terms = expand(plant, v0, push, rate, transient, t, work)
+    push = drive.push - side * plant.coulomb
+    if v0 == 0.0 and abs(drive.push - drive.transient) <= plant.stiction:  # it has just broken away
+        push = side * (plant.stiction - plant.coulomb) + drive.transient
+    terms = expand(plant, v0, push, drive.rate, drive.transient, length, work)
     u = first_zero(work, terms, side)
     stopped = u <= 1.0
     if not stopped:
         u = 1.0
+    t = length if u == 1.0 else u * length
     v1 = value(work, 0, terms, u)
     if stopped or v1 * side <= 0.0:
         stopped, v1 = True, 0.0
     moved = value(work, TERMS, terms, u)
-    squares = t * product_integral(work, 0, 0, terms, u)
-    area = t * integral(work, TERMS, terms, u)
-    used = h if u == 1.0 and t == h else u * t
-    pull = _actuator_pull(state, plant, rate, speed, transient, moved, area, used, terms, u, work, t)
-    book(state, plant, force, slack, speed, used, moved, area, squares, pull, v0, v1)
-    state[POSITION] += moved
-    state[VELOCITY] = v1
-    if stopped:
-        _stop(state)
-    return used
-
-
-@compiled
-def _actuator_pull(state, plant: Plant, rate, speed, transient, moved, area, used, terms, u, work, t) -> float:
-    """∫ f_a v dt of a constant, ramping or lagging force."""
+    squares = length * product_integral(work, 0, 0, terms, u)
+    area = length * integral(work, TERMS, terms, u)
     if plant.lag > 0.0:
-        return state[GOAL] * moved + t * product_integral(work, 0, 2 * TERMS, terms, u)
-    ramp = plant.stiffness * speed - rate
-    return state[FORCE] * moved + ramp * (used * moved - area)
+        pull = state[GOAL] * moved + length * product_integral(work, 0, 2 * TERMS, terms, u)
+    else:
+        pull = state[FORCE] * moved + drive.ramp * (t * moved - area)
+    book(state, plant, drive, t, moved, area, squares, pull, v0, v1)
+    _arrive(state, moved, v1, stopped)
+    return t
 
 
 @compiled
-def _stop(state) -> None:
-    state[DIRECTION] = 0.0
-    state[STOPS] += 1.0
-
+def _arrive(state: Array, moved: float, velocity: float, stopped: bool) -> None:
+    state[POSITION] += moved
+    state[VELOCITY] = velocity
+    if stopped:
+        state[DIRECTION] = 0.0
+        state[STOPS] += 1.0

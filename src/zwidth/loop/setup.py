@@ -1,0 +1,340 @@
+"""From device, environment, operator and clock to the arrays that the kernel runs on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zwidth.device.amplifier import Amplifier, CurrentAmplifier
+from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell
+from zwidth.environment.wall import Wall
+from zwidth.errors import InputError
+from zwidth.loop import law as laws
+from zwidth.loop.kernel import RECORDED
+from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, Plant
+from zwidth.loop.series import WORK
+from zwidth.loop.timing import Timing
+from zwidth.operator.operator import Operator, Signals
+from zwidth.quantity.exact import Exact, RealLike
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+MOST_PIECES = 1000
+"""Into how many parts a sample may have to be cut for a stiff hand or a quick amplifier."""
+
+MOST_BYTES = 4 << 30
+"""A longer record would not fit into the memory of many machines."""
+
+_NONE = np.empty(0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Setup:
+    """One loop, ready to run: descriptions for people, arrays for the kernel."""
+
+    device: Device
+    environment: Environment
+    operator: Operator
+    amplifier: Amplifier
+    timing: Timing | None
+    samples: int
+    points: int
+    encoder_phase: float
+    plant: Plant
+    law: Array
+    memory: Array
+    state: Array
+    late: int
+    offset: float
+    times: Array
+    lengths: Array
+    arrivals: Array
+    missed: Array
+    signals: Signals
+
+    @property
+    def columns(self) -> int:
+        """Instants in the record."""
+        return self.samples * self.points + 1
+
+    @property
+    def plant_numbers(self) -> Array:
+        """The plant as the kernel reads it."""
+        return np.array(self.plant)
+
+    def optional(self) -> tuple[Array, Array, Array, Array]:
+        """Force, anchor, target and switch as arrays, empty where there is none."""
+        s = self.signals
+        given = (s.force, s.anchor, s.position, s.switch_position)
+        force, anchor, target, switch = (_NONE if v is None else v for v in given)
+        return force, anchor, target, switch
+
+
+def prepare(
+    device: Device,
+    environment: object,
+    operator: Operator,
+    duration: RealLike,
+    *,
+    initial_position: float | None = None,
+    initial_velocity: float = 0.0,
+    encoder_phase: float = 0.0,
+    amplifier: Amplifier | None = None,
+    timing: Timing | None = None,
+    points_per_sample: int = 1,
+) -> Setup:
+    """Check everything and lay it out; arguments as of `simulate`.
+
+    Raises
+    ------
+    InputError
+        If anything cannot be simulated.
+    """
+    if not isinstance(device, Device):
+        raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
+    if not isinstance(operator, Operator):
+        raise InputError(
+            f"operator is a hand, such as zwidth.operators.Finger(), got {type(operator).__name__}"
+        )
+    law = as_environment(environment)
+    drive = CurrentAmplifier() if amplifier is None else amplifier
+    if not isinstance(drive, Amplifier):
+        raise InputError(f"amplifier is one of zwidth.amplifiers, got {type(drive).__name__}")
+    period = device.exact("sample_period")
+    samples = _samples(duration, period)
+    points = _points(points_per_sample, samples)
+    actuation = drive.actuation(device)
+    hand = operator.hand
+    plant = Plant(
+        mass=_mass(device, operator),
+        hand_mass=hand.mass,
+        damping=float(device.exact("damping")),
+        coulomb=float(device.exact("coulomb_friction")),
+        stiction=_stiction(device),
+        stiffness=hand.stiffness,
+        hand_damping=hand.damping,
+        lag=actuation.lag,
+        slew=actuation.slew,
+    )
+    _check_pieces(plant, float(period), operator.kinematic)
+    phase = _number(encoder_phase, "encoder_phase")
+    if not 0 <= phase < 1:
+        raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
+    times, lengths, arrivals, missed = _clock(timing, samples, period, device.exact("delay"))
+    signals = operator.signals(times)
+    _check_signals(signals, samples)
+    start = operator.initial_position if initial_position is None else initial_position
+    if operator.kinematic:
+        assert signals.position is not None
+        _refuse_start(initial_position, initial_velocity)
+        start = float(signals.position[0])
+    state = np.zeros(STATE_SIZE)
+    state[POSITION] = _number(start, "initial_position")
+    state[VELOCITY] = _number(initial_velocity, "initial_velocity")
+    state[DIRECTION] = np.sign(state[VELOCITY])
+    sections = sections_of(law, period)
+    header = [_gate(law), float(device.exact("resolution")), phase, actuation.step, actuation.limit]
+    packed = np.array([*header, len(sections), *(c for s in sections for c in s)])
+    delay = device.exact("delay") / period
+    late = delay.numerator // delay.denominator
+    if signals.switch_position is not None and timing is not None:
+        raise InputError("a motion with switch positions needs a regular clock: leave timing out")
+    return Setup(
+        device=device,
+        environment=law,
+        operator=operator,
+        amplifier=drive,
+        timing=timing,
+        samples=samples,
+        points=points,
+        encoder_phase=phase,
+        plant=plant,
+        law=packed,
+        memory=at_rest(packed, laws.measured(state[POSITION], header[1], phase)),
+        state=state,
+        late=late,
+        offset=float((delay - late) * period),
+        times=times,
+        lengths=lengths,
+        arrivals=arrivals,
+        missed=missed,
+        signals=signals,
+    )
+
+
+def sections_of(environment: Environment, period: Fraction) -> list[list[float]]:
+    """The law as a sum of direct forms, each n, b_0 … b_n, a_1 … a_n.
+
+    The branches of a Prony series stand side by side: multiplied out, slow ones
+    would lose each other's digits.
+    """
+    parts: list[Environment] = [environment]
+    if isinstance(environment, GeneralizedMaxwell) and environment.discretization != "matched":
+        branches = [
+            Maxwell(stiffness=mu, damping=eta, discretization=environment.discretization)
+            for mu, eta in environment.branches
+        ]
+        parts = [Wall(environment.stiffness), *branches]
+    return [_section(part, period) for part in parts]
+
+
+def _section(environment: Environment, period: Fraction) -> list[float]:
+    numerator, denominator = environment.pulse_transfer_function(period)
+    lead = denominator[0]
+    order = len(denominator) - 1
+    b = [Fraction(0)] * (order + 1 - len(numerator)) + [c / lead for c in numerator]
+    a = [c / lead for c in denominator[1:]]
+    return [float(order), *map(float, b), *map(float, a)]
+
+
+def at_rest(law: Array, reading: float) -> Array:
+    """The law's memory after it has read this position for ever; 0 where it would not settle."""
+    gate, at = law[laws.GATE], laws.HEADER
+    x = max(reading, 0.0) if gate == laws.PENETRATION else reading
+    slots: list[float] = []
+    for _ in range(int(law[laws.SECTIONS])):
+        order = int(law[at])
+        b, a = law[at + 1 : at + 2 + order], np.concatenate(([1.0], law[at + 2 + order : at + 2 + 2 * order]))
+        gain = float(a.sum())
+        y = float(b.sum()) / gain * x if gain != 0.0 else 0.0
+        later = 0.0
+        own: list[float] = []
+        for i in range(order, 0, -1):
+            later += float(b[i]) * x - float(a[i]) * y
+            own.append(later if gain != 0.0 else 0.0)
+        slots += reversed(own)
+        at += 2 * order + 2
+    return np.array(slots or [0.0])
+
+
+def _gate(environment: Environment) -> float:
+    if not environment.unilateral:
+        return laws.BILATERAL
+    return laws.SURFACE if isinstance(environment, Wall) else laws.PENETRATION
+
+
+def _samples(duration: RealLike, period: Fraction) -> int:
+    length = _number(duration, "duration")
+    if length <= 0:
+        raise InputError(f"duration must be > 0 s, got {length:g}")
+    samples = Exact(duration).fraction / period
+    whole = samples.numerator // samples.denominator
+    if whole < 1:
+        raise InputError(f"duration must be one sample period {float(period):g} s at least, got {length:g} s")
+    return whole
+
+
+def _points(given: int, samples: int) -> int:
+    points = _number(given, "points_per_sample")
+    if points != int(points) or points < 1:
+        raise InputError(f"points_per_sample is a whole number ≥ 1, got {given}")
+    size = samples * int(points) * (RECORDED + 6) * 8
+    if size > MOST_BYTES:
+        raise InputError(
+            f"{samples:,} samples with {int(points)} points each take {size / 2**30:.1f} GiB, more than "
+            f"{MOST_BYTES / 2**30:.0f} GiB: shorten the duration or record fewer points"
+        )
+    return int(points)
+
+
+def _mass(device: Device, operator: Operator) -> float:
+    if device.mass is None:
+        if operator.kinematic:
+            return 0.0
+        raise InputError(
+            "mass is needed to simulate a motion and the device has none: the criteria do not depend on it, "
+            "what a hand feels does; give mass [kg], or prescribe the motion"
+        )
+    return float(device.exact("mass"))
+
+
+def _stiction(device: Device) -> float:
+    return float(device.exact("coulomb_friction" if device.stiction is None else "stiction"))
+
+
+def _check_pieces(plant: Plant, period: float, kinematic: bool) -> None:
+    if kinematic:
+        return
+    mass = plant.mass + plant.hand_mass
+    drag = plant.damping + plant.hand_damping
+    rates = {
+        "the damping of device and hand over their mass": drag / mass,
+        "the frequency of the hand's spring with the mass": sqrt(plant.stiffness / mass),
+        "the amplifier": 1 / plant.lag if plant.lag else 0.0,
+    }
+    name, rate = max(rates.items(), key=lambda item: item[1])
+    tied = plant.stiffness > 0 or plant.lag > 0 or plant.slew > 0
+    if tied and ceil(rate * period) > MOST_PIECES:
+        raise InputError(
+            f"{name} gives a time constant of {1 / rate:.3g} s, over {MOST_PIECES} times shorter than the "
+            f"sample period {period:g} s: on this scale it is rigid; prescribe the motion, or leave it out"
+        )
+
+
+def _clock(
+    timing: Timing | None, samples: int, period: Fraction, delay: Fraction
+) -> tuple[Array, Array, Array, Array]:
+    step = float(period)
+    regular: Array = np.arange(samples + 1) * np.float64(step)
+    if timing is None:
+        return regular, np.array([step]), np.empty((2, 0)), _NONE
+    if not isinstance(timing, Timing):
+        raise InputError(f"timing is a zwidth.Timing, got {type(timing).__name__}")
+    late, missed = timing.late(samples, step), timing.skipped(samples)
+    if not late.any():
+        return regular, np.array([step]), np.empty((2, 0)), missed
+    times = regular + late
+    lengths = np.diff(times)
+    applied = times + float(delay)
+    interval = np.searchsorted(times, applied, side="right") - 1
+    into = applied - times[interval]
+    over = (interval < samples) & (into >= np.append(lengths, np.inf)[interval])
+    interval[over], into[over] = interval[over] + 1, 0.0
+    return times, lengths, np.stack([interval.astype(np.float64), into]), missed
+
+
+def _check_signals(signals: Signals, samples: int) -> None:
+    wanted = {"force": samples, "anchor": samples + 1, "position": samples + 1, "switch_position": samples}
+    for name, length in wanted.items():
+        values = getattr(signals, name)
+        if values is None:
+            continue
+        if values.dtype != np.float64 or values.shape != (length,):
+            raise InputError(
+                f"the operator's {name} has shape {values.shape}; {samples} samples need ({length},) numbers"
+            )
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size:
+            raise InputError(f"the operator's {name} at sample {bad[0]} is {values[bad[0]]}, not a number")
+
+
+def _refuse_start(position: float | None, velocity: float) -> None:
+    if position is not None or velocity != 0.0:
+        raise InputError(
+            "a prescribed motion says itself where it starts: leave initial_position and initial_velocity out"
+        )
+
+
+def _number(value: object, what: str) -> float:
+    try:
+        number = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise InputError(f"{what} is a number, got {value!r}") from None
+    if not np.isfinite(number):
+        raise InputError(f"{what} must be finite, got {number}")
+    return number
+
+
+def empty_record(setup: Setup) -> tuple[Array, Array, Array]:
+    """(commands, record, work) to run into."""
+    return np.zeros(setup.samples + 1), np.empty((RECORDED, setup.columns)), np.zeros(WORK)

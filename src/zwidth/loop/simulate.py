@@ -1,0 +1,138 @@
+"""What happens when a hand touches the wall: the loop simulated without time-step error.
+
+Between two changes of force the motion has a closed form, and so have its
+energies; nothing is integrated numerically.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from zwidth.device.amplifier import Amplifier
+from zwidth.device.device import Device
+from zwidth.errors import InputError
+from zwidth.loop.kernel import run
+from zwidth.loop.plant import FAULT, STOPS
+from zwidth.loop.setup import Setup, empty_record, prepare
+from zwidth.loop.timing import Timing
+from zwidth.loop.trace import build_trace
+from zwidth.operator.operator import Operator
+from zwidth.quantity.exact import RealLike
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+    from numpy.typing import NDArray
+
+Progress = Callable[[int, int], None]
+"""Told (done, total) samples now and then."""
+
+_STRIDE = 20_000
+"""Samples between two looks at progress and Ctrl-C."""
+
+
+def simulate(
+    device: Device,
+    environment: object,
+    operator: Operator,
+    duration: RealLike,
+    *,
+    initial_position: float | None = None,
+    initial_velocity: float = 0.0,
+    encoder_phase: float = 0.0,
+    amplifier: Amplifier | None = None,
+    timing: Timing | None = None,
+    points_per_sample: int = 1,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Simulate a hand on the device, ``m ẍ = f_h − f_a − f_c sgn ẋ − b ẋ``, exactly.
+
+    Parameters
+    ----------
+    device
+        With a mass; every number certain.
+    environment
+        An `Environment`, or a discrete system of python-control or scipy.signal.
+    operator
+        The hand, see `zwidth.operators`.
+    duration
+        At least one sample period [s]; whole samples of it are simulated.
+    initial_position
+        x at t = 0 [m; rad], > 0 inside the wall; by default where the operator starts.
+    initial_velocity
+        ẋ at t = 0 [m/s; rad/s].
+    encoder_phase
+        φ in x_m = Δ floor(x/Δ + φ), 0 ≤ φ < 1 [counts].
+    amplifier
+        See `zwidth.amplifiers`; by default the force limit and the converter's steps where the
+        device knows them.
+    timing
+        Late and missed samples; by default none.
+    points_per_sample
+        Instants recorded per sample; more of them show the motion between samples. The motion
+        itself does not depend on it.
+    progress
+        Called with (samples done, samples in all).
+
+    Returns
+    -------
+    xarray.Dataset
+        Position, velocity, forces and energies along `time`, units in the attributes.
+        Interrupted by Ctrl-C, what was finished; its attribute `interrupted_at_s` says so.
+
+    Raises
+    ------
+    InputError
+        If something is missing, not finite, of the wrong length, or out of its bounds.
+    """
+    setup = prepare(
+        device,
+        environment,
+        operator,
+        duration,
+        initial_position=initial_position,
+        initial_velocity=initial_velocity,
+        encoder_phase=encoder_phase,
+        amplifier=amplifier,
+        timing=timing,
+        points_per_sample=points_per_sample,
+    )
+    commands, record, work = empty_record(setup)
+    state, memory = setup.state.copy(), setup.memory.copy()
+    done = run_setup(setup, state, memory, work, commands, record, progress)
+    if state[FAULT] != 0.0:
+        raise InputError(
+            "the motion has too many stops in one sample to be followed: device, hand and forces differ by "
+            "so many orders of magnitude that rounding decides; scale them closer together"
+        )
+    return build_trace(setup, record, done, stops=int(state[STOPS]))
+
+
+def run_setup(
+    setup: Setup,
+    state: NDArray[np.float64],
+    memory: NDArray[np.float64],
+    work: NDArray[np.float64],
+    commands: NDArray[np.float64],
+    record: NDArray[np.float64],
+    progress: Progress | None,
+) -> int:
+    """Run all of it, or what Ctrl-C leaves; returns the number of samples finished."""
+    total = setup.samples + 1
+    done = 0
+    try:
+        while done < total:
+            stop = min(total, done + _STRIDE)
+            run(
+                done, stop, setup.points, state, setup.plant_numbers, setup.law, memory, work,
+                setup.late, setup.offset, setup.lengths, setup.arrivals, setup.missed,
+                *setup.optional(), commands, record,
+            )  # fmt: skip
+            done = stop
+            if progress is not None:
+                progress(min(done, setup.samples), setup.samples)
+    except KeyboardInterrupt:
+        if done < 1:
+            raise
+    return done

@@ -1,0 +1,204 @@
+"""The record of a simulation as labelled data: an xarray.Dataset along `time`.
+
+Values stand at instants.  At a jump (a force applied, an impulse of a
+kinematic hand) position, velocity and energies are those before it, forces
+those just after it.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from zwidth.loop import kernel
+from zwidth.loop.setup import Setup
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+FORMAT = "zwidth trace 1"
+
+UNITS = {"linear": ("m", "m/s", "N"), "rotary": ("rad", "rad/s", "N*m")}
+
+
+class Variable(NamedTuple):
+    """A variable of a trace: its symbol, what it means, and 0 position, 1 velocity, 2 force or 3 energy."""
+
+    symbol: str
+    long_name: str
+    kind: int
+
+
+VARIABLES = {
+    "position": Variable("x", "position, positive inside the wall", 0),
+    "velocity": Variable("v", "velocity", 1),
+    "measured_position": Variable("x_m", "position as the encoder read it last", 0),
+    "commanded_force": Variable("f", "force that the newest sample asks for, positive out of the wall", 2),
+    "actuator_force": Variable("f_a", "force of the actuator, positive out of the wall", 2),
+    "hand_force": Variable("f_h", "force of the hand on the device, positive into the wall", 2),
+    "anchor_position": Variable("x_a", "position that the muscles want", 0),
+    "hand_work": Variable("W_h", "energy from the hand into the device", 3),
+    "actuator_work": Variable("W_a", "energy from the actuator into the device", 3),
+    "viscous_loss": Variable("E_b", "energy lost in the device's viscous friction", 3),
+    "coulomb_loss": Variable("E_c", "energy lost in the device's Coulomb friction", 3),
+    "kinetic_energy": Variable("E_k", "kinetic energy of the device", 3),
+    "hand_source_work": Variable("W_s", "energy from the muscles into the hand", 3),
+    "hand_spring_energy": Variable("E_s", "energy in the hand's spring", 3),
+    "hand_damper_loss": Variable("E_d", "energy lost in the hand's damper", 3),
+    "hand_kinetic_energy": Variable("E_m", "kinetic energy of the hand's mass", 3),
+}
+"""Every variable of a trace, in the order of its files."""
+
+
+def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> xr.Dataset:
+    """The Dataset of the first `done` samples of a record."""
+    columns = min(setup.columns, done * setup.points if done <= setup.samples else setup.columns)
+    values = _values(setup, record, columns)
+    device = setup.device
+    units = (*UNITS[device.motion], "J")
+    variables = {
+        name: ("time", values[name], _attributes(variable, units))
+        for name, variable in VARIABLES.items()
+        if name in values
+    }
+    time = _instants(setup)[:columns]
+    sampled = np.arange(columns) % setup.points == 0
+    coordinates = {
+        "time": ("time", time, {"units": "s", "long_name": "time since sample 0", "symbol": "t"}),
+        "sampled": ("time", sampled, {"long_name": "a sample is taken at this instant"}),
+    }
+    attributes = _attrs(setup, stops)
+    if columns < setup.columns:
+        attributes["interrupted_at_s"] = float(time[-1])
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _attributes(variable: Variable, units: tuple[str, ...]) -> dict[str, str]:
+    return {"units": units[variable.kind], "long_name": variable.long_name, "symbol": variable.symbol}
+
+
+def _instants(setup: Setup) -> Array:
+    if setup.points == 1:
+        return setup.times
+    share = np.arange(setup.points) / setup.points
+    inside = setup.times[:-1, None] + np.diff(setup.times)[:, None] * share
+    return np.append(inside.ravel(), setup.times[-1])
+
+
+def _values(setup: Setup, record: Array, columns: int) -> dict[str, Array]:
+    k, p = kernel, setup.plant
+    rows = {
+        "position": k.R_POSITION,
+        "velocity": k.R_VELOCITY,
+        "measured_position": k.R_READING,
+        "commanded_force": k.R_COMMAND,
+        "actuator_force": k.R_ACTUATOR,
+        "hand_work": k.R_HAND_WORK,
+        "actuator_work": k.R_ACTUATOR_WORK,
+        "viscous_loss": k.R_VISCOUS,
+        "coulomb_loss": k.R_COULOMB,
+        "hand_source_work": k.R_SOURCE_WORK,
+        "hand_damper_loss": k.R_HAND_LOSS,
+    }
+    values = {name: record[row, :columns] for name, row in rows.items()}
+    x, v = values["position"], values["velocity"]
+    values["kinetic_energy"] = 0.5 * p.mass * v * v
+    values["hand_kinetic_energy"] = 0.5 * p.hand_mass * v * v
+    anchor, speed = _anchor(setup, columns)
+    if anchor is None:
+        values["hand_spring_energy"] = np.zeros(columns)
+    else:
+        values["anchor_position"] = anchor
+        values["hand_spring_energy"] = 0.5 * p.stiffness * (anchor - x) ** 2
+    if setup.operator.kinematic:
+        values["hand_force"] = _needed_force(setup, values)
+    else:
+        values["hand_force"] = _hand_force(setup, values, anchor, speed)
+    return values
+
+
+def _held(values: Array, points: int, columns: int) -> Array:
+    """One value per interval at every instant; the last interval's at the end."""
+    repeated = np.repeat(values, points)
+    return np.append(repeated, repeated[-1])[:columns]
+
+
+def _anchor(setup: Setup, columns: int) -> tuple[Array | None, Array | float]:
+    anchor = setup.signals.anchor
+    if anchor is None:
+        return None, 0.0
+    speed = np.diff(anchor) / np.diff(setup.times)
+    if setup.points == 1:
+        return anchor[:columns], _held(speed, 1, columns)
+    share = np.arange(setup.points) / setup.points
+    inside = anchor[:-1, None] + np.diff(anchor)[:, None] * share
+    return np.append(inside.ravel(), anchor[-1])[:columns], _held(speed, setup.points, columns)
+
+
+def _hand_force(setup: Setup, values: dict[str, Array], anchor: Array | None, speed: Array | float) -> Array:
+    """F + k (x_a − x) + c (ẋ_a − v) − m_h v̇, with v̇ just after the instant."""
+    p, v = setup.plant, values["velocity"]
+    columns = v.size
+    applied: Array = np.zeros(columns) if anchor is None else p.stiffness * (anchor - values["position"])
+    applied = applied + p.hand_damping * (speed - v)
+    if setup.signals.force is not None:
+        applied = applied + _held(setup.signals.force, setup.points, columns)
+    if p.hand_mass == 0.0:
+        return applied
+    external = applied - values["actuator_force"]
+    resting = (v == 0.0) & (np.abs(external) <= p.stiction)
+    side = np.where(v != 0.0, np.sign(v), np.sign(external))
+    acceleration = (external - p.damping * v - p.coulomb * side) / (p.mass + p.hand_mass)
+    return applied - p.hand_mass * np.where(resting, 0.0, acceleration)
+
+
+def _needed_force(setup: Setup, values: dict[str, Array]) -> Array:
+    """What a prescribed motion takes just after the instant, impulses left out: f_a + f_c sgn v + b v."""
+    p, columns = setup.plant, values["position"].size
+    target, bend = setup.signals.position, setup.signals.switch_position
+    assert target is not None
+    h = np.diff(setup.times)
+    if bend is None:
+        speed = _held(np.diff(target) / h, setup.points, columns)
+    else:
+        before = _held((bend - target[:-1]) / setup.offset, setup.points, columns)
+        after = _held((target[1:] - bend) / (h - setup.offset), setup.points, columns)
+        into = np.arange(columns) % setup.points / setup.points * float(setup.lengths[0])
+        speed = np.where(into < setup.offset, before, after)
+    return values["actuator_force"] + p.coulomb * np.sign(speed) + p.damping * speed
+
+
+def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
+    device, plant = setup.device, setup.plant
+    length = UNITS[device.motion][0]
+    turn = device.motion == "rotary"
+    result: dict[str, Any] = {
+        "format": FORMAT,
+        "zwidth_version": version("zwidth"),
+        "device": device.name,
+        "environment": setup.environment.describe(device.motion),
+        "operator": setup.operator.describe(),
+        "amplifier": setup.amplifier.describe(),
+        "timing": "regular" if setup.timing is None else setup.timing.describe(),
+        "motion": device.motion,
+        "sample_period_s": float(device.exact("sample_period")),
+        "delay_s": float(device.exact("delay")),
+        f"resolution_{length}": float(device.exact("resolution")),
+        "encoder_phase_counts": setup.encoder_phase,
+        "mass_kg_m2" if turn else "mass_kg": plant.mass,
+        "damping_N_m_s_per_rad" if turn else "damping_N_s_per_m": plant.damping,
+        "coulomb_friction_N_m" if turn else "coulomb_friction_N": plant.coulomb,
+        "stiction_N_m" if turn else "stiction_N": plant.stiction,
+        "hand_mass_kg_m2" if turn else "hand_mass_kg": plant.hand_mass,
+        "hand_stiffness_N_m_per_rad" if turn else "hand_stiffness_N_per_m": plant.stiffness,
+        "hand_damping_N_m_s_per_rad" if turn else "hand_damping_N_s_per_m": plant.hand_damping,
+        "stops": stops,
+    }
+    if device.force_limit is not None:
+        result["force_limit_N_m" if turn else "force_limit_N"] = float(device.exact("force_limit"))
+    return result
