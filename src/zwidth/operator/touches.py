@@ -59,8 +59,8 @@ class MaliciousTouch(Finger):
     frequency of the device on the wall. The defaults are tuned to the haptic
     paddle on 770 N/m: √(K/m)/2π = 23.3 Hz, k = 128 N/m for 0.006 kg. Whoever
     presses lower on the device is felt less at the handle, hence the low
-    damping; its value follows from the experiment: a finger could not sustain
-    vibrations at K = 770 N/m, so c was not much below K T/2 − b = 0.235 N·s/m.
+    damping: just above K T/2 − b = 0.235 N·s/m, where at K = 770 N/m every
+    vibration still dies out, as it did under the finger of the experiment.
     Abbott & Okamura (2005, section IV-C) print no numbers; these are chosen
     by that argument, and speed, force and start freely.
 

@@ -1,0 +1,128 @@
+"""Operators that are a few numbers: units, bounds, comparison."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+from zwidth import operator as operators
+from zwidth.errors import InputError
+from zwidth.operator import OPERATORS, ParametricOperator
+from zwidth.quantity.units import parse_number
+
+TIMES = np.arange(801) * 0.0025
+EACH = pytest.mark.parametrize("kind", OPERATORS.values(), ids=list(OPERATORS))
+
+
+@EACH
+def test_works_as_it_is(kind: type[ParametricOperator]) -> None:
+    """Every hand of the registry needs no argument and gives finite signals of the right lengths."""
+    hand = kind()
+    force, anchor, position, switches = hand.signals(TIMES)
+    assert force is None or force.shape == (800,)
+    assert anchor is None or anchor.shape == (801,)
+    assert position is None or position.shape == (801,)
+    assert switches is None
+    given = [signal for signal in (force, anchor, position) if signal is not None]
+    assert given
+    assert all(np.isfinite(signal).all() and signal.dtype == np.float64 for signal in given)
+    assert hand.kinematic == (position is not None)
+
+
+@EACH
+def test_a_spring_or_damper_has_an_anchor(kind: type[ParametricOperator]) -> None:
+    """The loop is told where the spring and the damper end, and only where there is one."""
+    hand = kind()
+    tied = hand.hand.stiffness > 0 or hand.hand.damping > 0
+    assert (hand.signals(TIMES).anchor is not None) == tied
+
+
+@EACH
+def test_starts_where_its_signals_start(kind: type[ParametricOperator]) -> None:
+    """At t = 0 the anchor, or the prescribed position, is at the handle: no force comes from nowhere."""
+    hand = kind()
+    signals = hand.signals(TIMES)
+    for start in (s[0] for s in (signals.anchor, signals.position) if s is not None):
+        assert start == hand.initial_position
+
+
+@EACH
+def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind: type[Any]) -> None:
+    """A command line can offer each number with its unit; a reader finds it in the docstring or the parent's."""
+    text = "".join(inspect.getdoc(k) or "" for k in kind.__mro__)
+    for field in dataclasses.fields(kind):
+        quantity = kind.parameters()[field.name]
+        assert quantity.name == field.name
+        assert field.metadata["unit"] == quantity.unit
+        assert parse_number(f"3 {quantity.unit}", quantity.unit, "x") == 3
+        assert parse_number(f"3 {quantity.rotary_unit}", quantity.rotary_unit, "x") == 3
+        assert quantity.meaning
+        assert re.search(rf"\b{field.name}\b", text)
+
+
+@EACH
+def test_equal_numbers_are_equal_hands(kind: type[Any]) -> None:
+    """Hands are values: equal, hashable, and rebuilt by their repr."""
+    first = dataclasses.fields(kind)[0].name
+    value = 0.75 * getattr(kind(), first)
+    hand, same = kind(**{first: value}), kind(**{first: value})
+    assert hand == same
+    assert hash(hand) == hash(same)
+    assert hand != kind()
+    assert eval(repr(hand), vars(operators)) == hand
+
+
+@EACH
+def test_describes_itself_with_every_number(kind: type[ParametricOperator]) -> None:
+    """One line, in linear or rotary units."""
+    hand = kind()
+    for motion in ("linear", "rotary"):
+        line = hand.describe(motion)
+        assert "\n" not in line
+        for name, quantity in kind.parameters().items():
+            assert f"{getattr(hand, name):.6g} {quantity.unit_for(motion)}" in line
+
+
+@EACH
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), "soon", None, True, [1, 2]])
+def test_a_number_must_be_finite(kind: type[Any], bad: object) -> None:
+    """What is no finite number is refused by the name of the argument."""
+    for name in kind.parameters():
+        with pytest.raises(InputError, match=name):
+            kind(**{name: bad})
+
+
+@EACH
+def test_each_bound_holds_from_both_sides(kind: type[Any]) -> None:
+    """The bound itself is allowed where it says so; just past it the message says why."""
+    for field in dataclasses.fields(kind):
+        bound = field.metadata["bound"]
+        if not bound:
+            continue
+        past = 1e-12 if bound == "≤ 0" else -1e-12
+        with pytest.raises(InputError, match=rf"{field.name} must be {bound} .*got .*: \w+"):
+            kind(**{field.name: past})
+        if bound == "> 0":
+            with pytest.raises(InputError, match=field.name):
+                kind(**{field.name: 0})
+        else:
+            assert getattr(kind(**{field.name: 0}), field.name) == 0
+
+
+def test_a_number_may_carry_its_unit() -> None:
+    """ "250 mN" is 0.25 N; for a rotary device a torque is taken; a length is refused."""
+    assert operators.Dowel(force="250 mN").force == 0.25  # type: ignore[arg-type]
+    assert operators.Dowel(force="30 mN*m").force == 0.03  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="force is in N"):
+        operators.Dowel(force="250 mm")  # type: ignore[arg-type]
+
+
+def test_the_registry_cannot_be_changed() -> None:
+    """Whoever adds a hand adds a line to the package."""
+    with pytest.raises(TypeError):
+        OPERATORS["mine"] = operators.Dowel  # type: ignore[index]
