@@ -57,8 +57,8 @@ def test_a_finger_presses_with_its_force_on_a_rigid_wall() -> None:
     assert wall * depth == pytest.approx(2.3 * wall / (wall + 420), rel=1e-14)
 
 
-def test_the_fingers_numbers_are_the_published_ones_and_the_chosen_damping_ratio() -> None:
-    """0.006 kg and 500 N/m (Gillespie & Cutkosky 1996); the damping is half of critical, to its two digits."""
+def test_the_finger_has_the_published_numbers_and_the_chosen_damping_ratio() -> None:
+    """0.006 kg and 500 N/m (Gillespie & Cutkosky 1996); the damping is half of critical."""
     mass, stiffness, damping = Finger().hand
     assert (mass, stiffness) == (0.006, 500)
     assert damping / (2 * math.sqrt(mass * stiffness)) == pytest.approx(0.5, abs=0.01)

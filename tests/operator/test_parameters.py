@@ -53,7 +53,7 @@ def test_starts_where_its_signals_start(kind: type[ParametricOperator]) -> None:
 
 @EACH
 def test_every_number_has_units_a_meaning_and_a_place_in_the_docstring(kind: type[Any]) -> None:
-    """A command line can offer each number with its unit; a reader finds it in the docstring or the parent's."""
+    """A command line can offer each number with its unit; a reader finds it in a docstring."""
     text = "".join(inspect.getdoc(k) or "" for k in kind.__mro__)
     for field in dataclasses.fields(kind):
         quantity = kind.parameters()[field.name]

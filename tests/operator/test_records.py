@@ -105,9 +105,9 @@ def test_prescribed_positions_fit_the_touch() -> None:
     assert signals.position.tolist() == [0, 1, 2, 1, 0]
     assert signals.switch_position.tolist() == [0.5, 1.5, 1.5, 0.5]
     assert motion.kinematic
-    with pytest.raises(InputError, match="positions has 4 values.*5 sample instants"):
+    with pytest.raises(InputError, match=r"positions has 4 values.*5 sample instants"):
         PrescribedMotion([0, 1, 2, 1]).signals(TIMES)
-    with pytest.raises(InputError, match="switch_positions has 5 values.*4 sample intervals"):
+    with pytest.raises(InputError, match=r"switch_positions has 5 values.*4 sample intervals"):
         PrescribedMotion([0, 1, 2, 1, 0], switch_positions=[0] * 5).signals(TIMES)
 
 
@@ -169,10 +169,15 @@ def test_tracking_validates_its_numbers(bad: dict[str, float]) -> None:
 DEVICE = zw.Device(damping=0.15, coulomb_friction=0.01, resolution=0, rate=1000)
 
 
-def _witness(**changes: Any) -> zw.Witness:
-    witness = zw.check(DEVICE.replace(**changes), zw.Wall(stiffness=120, damping=0.1)).witness
+def _witness(stiffness: float = 120, damping: float = 0.1, **changes: Any) -> zw.Witness:
+    witness = zw.check(DEVICE.replace(**changes), zw.Wall(stiffness=stiffness, damping=damping)).witness
     assert witness is not None
     return witness
+
+
+def _repeating() -> zw.Witness:
+    """A motion that straddles an encoder edge again and again."""
+    return _witness(240, 0, resolution=2.24e-3, coulomb_friction=0.12)
 
 
 def test_a_witness_is_replayed_position_by_position() -> None:
@@ -204,7 +209,7 @@ def test_the_energy_of_a_replayed_witness_is_what_it_claims() -> None:
 
 def test_rounds_of_a_witness_can_be_limited() -> None:
     """The repeated part so many times, and no more."""
-    witness = _witness()
+    witness = _repeating()
     assert witness.motion.rounds > 3
     hand = WitnessMotion(witness, rounds=3)
     assert hand.intervals == witness.motion.repeated(3).samples
@@ -217,7 +222,7 @@ def test_rounds_of_a_witness_can_be_limited() -> None:
 
 def test_switch_positions_of_a_witness_are_replayed() -> None:
     """Where a delayed force changes within the interval, so does the motion; then it stays."""
-    witness = _witness(delay=0.0004)
+    witness = _witness(900, 0, delay=0.0003)
     hand = WitnessMotion(witness, rounds=2)
     listed = witness.motion.repeated(2).listed()
     assert listed.switch_positions
@@ -247,7 +252,7 @@ def test_rounds_are_whole(rounds: Any) -> None:
 def test_a_motion_too_long_to_list_is_refused() -> None:
     """The message says how to shorten it."""
     with pytest.raises(InputError, match="rounds=100"):
-        WitnessMotion(_witness(), rounds=10**9)
+        WitnessMotion(_repeating(), rounds=10**9)
 
 
 def test_a_passive_loop_has_no_witness() -> None:
