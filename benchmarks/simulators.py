@@ -62,8 +62,10 @@ ROWS = (
     Rival("Drake, C++ diagram, v_s = 1e-3 m/s, accuracy 1e-3", ("drake_diagram", "1e-3", "1e-3"), "drake"),
     Rival("Drake, C++ diagram, v_s = 1e-4 m/s, accuracy 1e-6", ("drake_diagram", "1e-6", "1e-4"), "drake"),
     Rival("Drake, Python system with witness, accuracy 1e-9", ("drake_witness",), "drake"),
-    Rival("MuJoCo, frictionloss, hardened, dt = T", ("mujoco_frictionloss", "1"), "mujoco"),
-    Rival("MuJoCo, frictionloss, hardened, dt = T/10", ("mujoco_frictionloss", "10"), "mujoco"),
+    Rival("MuJoCo, hardened frictionloss, dt = T", ("mujoco_frictionloss", "Euler", "1"), "mujoco"),
+    Rival("MuJoCo, hardened frictionloss, dt = T/10", ("mujoco_frictionloss", "Euler", "10"), "mujoco"),
+    Rival("MuJoCo, the same with RK4, dt = T", ("mujoco_frictionloss", "RK4", "1"), "mujoco"),
+    Rival("MuJoCo, the same with RK4, dt = T/10", ("mujoco_frictionloss", "RK4", "10"), "mujoco"),
     Rival("scipy solve_ivp per sample, RK45, rtol 1e-9, events", ("scipy_per_sample",), "scipy"),
     Rival("python-control, restarted per sample, v_s = 1e-4 m/s", ("control_per_sample",), "control"),
     Rival("semi-implicit Euler in Python, h = T", ("euler", "1")),
@@ -89,7 +91,8 @@ def install(again: bool) -> dict[str, str]:
 
 def failure(command: list[str]) -> str:
     """Run it; "" or the last line of its complaint."""
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    quiet = os.environ | {"PIP_DISABLE_PIP_VERSION_CHECK": "1", "PIP_NO_INPUT": "1"}
+    run = subprocess.run(command, capture_output=True, text=True, check=False, env=quiet)
     return "" if run.returncode == 0 else last_line(run.stderr)
 
 

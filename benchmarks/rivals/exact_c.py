@@ -36,7 +36,8 @@ def compiled(folder: str) -> CDLL:
         sys.exit("no C compiler: neither gcc nor cc is there, and CC is not set")
     library = Path(folder) / "exact.so"
     source = Path(__file__).with_name("exact.c")
-    subprocess.run([compiler, *FLAGS, str(source), "-o", str(library), "-lm"], check=True)
+    if subprocess.run([compiler, *FLAGS, str(source), "-o", str(library), "-lm"], check=False).returncode:
+        sys.exit(f"{compiler} does not compile {source.name}")
     return CDLL(str(library))
 
 
