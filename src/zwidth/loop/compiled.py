@@ -4,11 +4,17 @@ They take scalars and float64 arrays, neither allocate nor raise, and are the
 same for the processor and for CUDA, which compiles what this decorator wraps.
 Rounding is that of the source: no contraction, no reassociation, so that one
 loop and a thousand side by side give the same bits.
+
+What is kept on disk is keyed by the file of each function alone, although one
+function holds the code of all that it calls.  So whatever is older than the
+youngest source here is thrown away first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -16,6 +22,17 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+
+def _discard_stale(folder: Path) -> None:
+    youngest = max(path.stat().st_mtime for path in folder.glob("*.py"))
+    for index in (folder / "__pycache__").glob("*.nbi"):
+        with suppress(OSError):
+            if index.stat().st_mtime < youngest:
+                index.unlink()
+
+
+_discard_stale(Path(__file__).parent)
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -19,6 +19,8 @@ from zwidth.loop.compiled import compiled
 
 _SERIES_UP_TO = 1.0
 _TERMS = 40
+_OVER = (0.0, *(1.0 / n for n in range(1, _TERMS + 3)))
+"""1/n: a product takes a third of the time of a quotient."""
 
 
 @compiled
@@ -32,16 +34,16 @@ def free_response(rate: float, t: float) -> tuple[float, float, float]:
         return h1, h2, h3
     # h1 = t Σ (−z)ⁿ/(n+1)!,  h2 = t² Σ (−z)ⁿ/(n+2)!,  h3 = t³ Σ (−z)ⁿ (2ⁿ⁺² − 2)/((n+3) (n+2)!)
     s1, s2, s3 = 1.0, 0.5, 1.0 / 3.0
-    power, factorial, two = 1.0, 2.0, 4.0  # (−z)ⁿ, (n+2)!, 2ⁿ⁺² at n = 0
+    term, two = 1.0, 4.0  # (−z)ⁿ/(n+1)! and 2ⁿ⁺², at n = 0
     for n in range(1, _TERMS):
-        power *= -z
-        s1 += power / factorial
-        factorial *= n + 2.0
-        two *= 2.0
-        s2 += power / factorial
-        term = power * (two - 2.0) / ((n + 3.0) * factorial)
-        s3 += term
-        if abs(term) < 1e-18:
+        term *= -z * _OVER[n + 1]
+        two += two
+        further = term * _OVER[n + 2]
+        last = further * ((two - 2.0) * _OVER[n + 3])
+        s1 += term
+        s2 += further
+        s3 += last
+        if abs(last) < 1e-18:
             break
     return t * s1, t * t * s2, t * t * t * s3
 

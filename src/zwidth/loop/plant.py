@@ -58,4 +58,6 @@ STOPS = 11
 """How often the mass came to rest or turned round."""
 FAULT = 12
 """Not 0 if the step functions gave up: too many events in one stretch."""
-STATE_SIZE = 13
+INSIDE, SATURATED = 13, 14
+"""How many samples were taken inside the surface; for how many the command went beyond the force limit."""
+STATE_SIZE = 15

@@ -68,6 +68,15 @@ class Setup:
         return self.samples * self.points + 1
 
     @property
+    def plain(self) -> bool:
+        """True where `plain.run_plain` runs it: free mass, spring, regular clock, one force an interval."""
+        p = self.plant
+        free = p.stiffness == 0.0 and p.hand_damping == 0.0 and p.lag == 0.0 and p.slew == 0.0
+        memoryless = self.law[laws.SECTIONS] == 1 and self.law[laws.HEADER] == 0
+        clock = self.offset == 0.0 and self.points == 1 and not self.arrivals.size and not self.missed.size
+        return free and memoryless and clock and self.signals.position is None
+
+    @property
     def plant_numbers(self) -> Array:
         """The plant as the kernel reads it."""
         return np.array(self.plant)

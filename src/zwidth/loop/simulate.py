@@ -9,10 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from zwidth.device.amplifier import Amplifier
 from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.loop.kernel import run
+from zwidth.loop.plain import run_plain
 from zwidth.loop.plant import FAULT, STOPS
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
@@ -21,14 +24,13 @@ from zwidth.operator.operator import Operator
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
-    import numpy as np
     import xarray as xr
     from numpy.typing import NDArray
 
 Progress = Callable[[int, int], None]
 """Told (done, total) samples now and then."""
 
-_STRIDE = 20_000
+_STRIDE = 200_000
 """Samples between two looks at progress and Ctrl-C."""
 
 
@@ -124,11 +126,7 @@ def run_setup(
     try:
         while done < total:
             stop = min(total, done + _STRIDE)
-            run(
-                done, stop, setup.points, state, setup.plant_numbers, setup.law, memory, work,
-                setup.late, setup.offset, setup.lengths, setup.arrivals, setup.missed,
-                *setup.optional(), commands, record,
-            )  # fmt: skip
+            _run(setup, done, stop, state, memory, work, commands, record)
             done = stop
             if progress is not None:
                 progress(min(done, setup.samples), setup.samples)
@@ -136,3 +134,27 @@ def run_setup(
         if done < 1:
             raise
     return done
+
+
+def _run(
+    setup: Setup,
+    first: int,
+    last: int,
+    state: NDArray[np.float64],
+    memory: NDArray[np.float64],
+    work: NDArray[np.float64],
+    commands: NDArray[np.float64],
+    record: NDArray[np.float64],
+) -> None:
+    numbers, law, late = setup.plant_numbers, setup.law, setup.late
+    force, anchor, target, switch = setup.optional()
+    if setup.plain:
+        push = force if force.size else np.zeros(setup.samples)
+        period = float(setup.lengths[0])
+        run_plain(first, last, state, numbers, law, work, late, period, push, commands, record)
+        return
+    run(
+        first, last, setup.points, state, numbers, law, memory, work,
+        late, setup.offset, setup.lengths, setup.arrivals, setup.missed,
+        force, anchor, target, switch, commands, record,
+    )  # fmt: skip

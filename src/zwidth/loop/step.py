@@ -156,22 +156,25 @@ def _crossing(drive: Drive, lag: float, level: float, side: float, start: float,
 
 @compiled
 def _slide_free(state: Array, plant: Plant, drive: Drive, h: float) -> float:
-    mass = plant.mass + plant.hand_mass
+    inverse = 1.0 / (plant.mass + plant.hand_mass)
     drag = plant.damping + plant.hand_damping
-    side, v0 = state[DIRECTION], state[VELOCITY]
-    a0 = (drive.push - side * plant.coulomb - drag * v0) / mass
+    side, v0, f = state[DIRECTION], state[VELOCITY], state[FORCE]
+    others = drive.force + plant.hand_damping * drive.speed - side * plant.coulomb - drag * v0
+    base = others * inverse  # the actuator's part comes last: its force is known last
+    a0 = base - f * inverse
     t = h
-    h1, h2, h3 = free_response(drag / mass, t)
-    v1 = v0 + a0 * h1
+    h1, h2, h3 = free_response(drag * inverse, t)
+    v1 = (v0 + base * h1) - f * (inverse * h1)
     stopped = v1 * side <= 0.0 and a0 * side < 0.0
     if stopped:
-        t = min(h, free_stop(drag / mass, v0, a0))
-        h1, h2, h3 = free_response(drag / mass, t)
+        t = min(h, free_stop(drag * inverse, v0, a0))
+        h1, h2, h3 = free_response(drag * inverse, t)
         v1 = 0.0
-    moved = v0 * t + a0 * h2
+    ahead = v0 * t + base * h2
+    moved = ahead - f * (inverse * h2)
     squares = v0 * v0 * t + 2.0 * v0 * a0 * h2 + a0 * a0 * h3
-    book(state, plant, drive, t, moved, 0.0, squares, state[FORCE] * moved, v0, v1)
-    _arrive(state, moved, v1, stopped)
+    book(state, plant, drive, t, moved, 0.0, squares, f * moved, v0, v1)
+    _arrive(state, (state[POSITION] + ahead) - f * (inverse * h2), v1, stopped)
     return t
 
 
@@ -199,13 +202,13 @@ def _slide_tied(state: Array, plant: Plant, drive: Drive, h: float, work: Array)
     else:
         pull = state[FORCE] * moved + drive.ramp * (t * moved - area)
     book(state, plant, drive, t, moved, area, squares, pull, v0, v1)
-    _arrive(state, moved, v1, stopped)
+    _arrive(state, state[POSITION] + moved, v1, stopped)
     return t
 
 
 @compiled
-def _arrive(state: Array, moved: float, velocity: float, stopped: bool) -> None:
-    state[POSITION] += moved
+def _arrive(state: Array, position: float, velocity: float, stopped: bool) -> None:
+    state[POSITION] = position
     state[VELOCITY] = velocity
     if stopped:
         state[DIRECTION] = 0.0

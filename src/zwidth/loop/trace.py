@@ -182,7 +182,7 @@ def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
         "zwidth_version": version("zwidth"),
         "device": device.name,
         "environment": setup.environment.describe(device.motion),
-        "operator": setup.operator.describe(),
+        "operator": setup.operator.describe(device.motion),
         "amplifier": setup.amplifier.describe(),
         "timing": "regular" if setup.timing is None else setup.timing.describe(),
         "motion": device.motion,

@@ -93,5 +93,5 @@ class Operator(ABC):
         """
 
     @abstractmethod
-    def describe(self) -> str:
-        """The hand with its numbers, on one line."""
+    def describe(self, motion: str = "linear") -> str:
+        """The hand with its numbers, on one line, in linear or rotary units."""
