@@ -11,7 +11,7 @@ x_m ≤ 0.
 
 from __future__ import annotations
 
-from math import floor
+import numpy as np
 
 from zwidth.loop.compiled import Array, compiled
 
@@ -28,14 +28,14 @@ HEADER = 6
 def measured(x: float, resolution: float, phase: float) -> float:
     """What an encoder reads: Δ floor(x/Δ + φ); x itself if Δ = 0."""
     # a quotient, not a product with 1/Δ: they differ by a count at an edge
-    return resolution * floor(x / resolution + phase) if resolution > 0.0 else x
+    return resolution * np.floor(x / resolution + phase) if resolution > 0.0 else x
 
 
 @compiled
 def converted(f: float, step: float, limit: float) -> float:
     """What the converter and the actuator make of a command: the nearest step, within the limit."""
     if step > 0.0:
-        f = step * floor(f / step + 0.5)
+        f = step * np.floor(f / step + 0.5)
     if limit > 0.0:
         f = min(limit, max(-limit, f))
     return f

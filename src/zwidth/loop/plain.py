@@ -10,7 +10,7 @@ that whatever else enters the next position is added up before the force.
 
 from __future__ import annotations
 
-from math import floor
+import numpy as np
 
 from zwidth.loop.compiled import Array, compiled
 from zwidth.loop.free import free_response
@@ -28,7 +28,7 @@ from zwidth.loop.kernel import (
     R_VISCOUS,
     packed_plant,
 )
-from zwidth.loop.law import BILATERAL, GATE, HEADER, LIMIT, PHASE, RESOLUTION, STEP
+from zwidth.loop.law import BILATERAL, GATE, HEADER, LIMIT
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
@@ -59,15 +59,23 @@ def run_plain(
     force: Array,
     commands: Array,
     record: Array,
+    count: float | None,
+    phase: float | None,
+    step: float | None,
 ) -> None:
-    """Run as `kernel.run` does, for a loop that `is_plain`."""
+    """Run as `kernel.run` does, for a `Setup` that is `plain`.
+
+    Encoder resolution, its phase and the converter's step are None where there
+    is none: each combination is compiled on its own, since a condition in the
+    chain takes as long as what it decides about.
+    """
     plant = packed_plant(numbers)
     inverse = 1.0 / (plant.mass + plant.hand_mass)
     drag, coulomb, stiction = plant.damping, plant.coulomb, plant.stiction
     half_hand = 0.5 * plant.hand_mass
     h1, h2, h3 = free_response(drag * inverse, h)
     g1, g2 = inverse * h1, inverse * h2
-    count, phase, step, limit = law[RESOLUTION], law[PHASE], law[STEP], law[LIMIT]
+    limit = law[LIMIT]
     if limit == 0.0:
         limit = 1e300
     one_sided, gain = law[GATE] != BILATERAL, law[HEADER + 1]
@@ -77,17 +85,17 @@ def run_plain(
     viscous, dry, source = state[VISCOUS], state[COULOMB], state[SOURCE_WORK]
     for k in range(first, last):
         reading = x
-        if count > 0.0:
+        if count is not None:
             quotient = x / count
-            if phase > 0.0:
+            if phase is not None:
                 quotient += phase
-            reading = count * floor(quotient)
+            reading = count * np.floor(quotient)
         command = 0.0
         if reading > 0.0 or not one_sided:
             command = gain * reading
             state[INSIDE] += 1.0
-        if step > 0.0:
-            command = step * floor(command / step + 0.5)
+        if step is not None:
+            command = step * np.floor(command / step + 0.5)
         if abs(command) > limit:  # a branch, not a min and a max in the chain
             command = limit if command > 0.0 else -limit
             state[SATURATED] += 1.0

@@ -15,6 +15,7 @@ from zwidth.device.amplifier import Amplifier
 from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.loop.kernel import run
+from zwidth.loop.law import PHASE, RESOLUTION, STEP
 from zwidth.loop.plain import run_plain
 from zwidth.loop.plant import FAULT, STOPS
 from zwidth.loop.setup import Setup, empty_record, prepare
@@ -151,7 +152,10 @@ def _run(
     if setup.plain:
         push = force if force.size else np.zeros(setup.samples)
         period = float(setup.lengths[0])
-        run_plain(first, last, state, numbers, law, work, late, period, push, commands, record)
+        count, phase, step = (law[key] or None for key in (RESOLUTION, PHASE, STEP))
+        run_plain(
+            first, last, state, numbers, law, work, late, period, push, commands, record, count, phase, step
+        )
         return
     run(
         first, last, setup.points, state, numbers, law, memory, work,
