@@ -2,7 +2,7 @@
 
 The same motion as `kernel.run`, to the last bit.  An interval without a stop in
 it is one line of multiplications with the responses of that interval, computed
-once; the others go through `step.advance`.
+once; the others go through `turn`.
 
 The time per sample is that of the chain position → count → force → position, so
 that whatever else enters the next position is added up before the force.
@@ -40,10 +40,11 @@ from zwidth.loop.plant import (
     POSITION,
     SATURATED,
     SOURCE_WORK,
+    STOPS,
     VELOCITY,
     VISCOUS,
 )
-from zwidth.loop.step import advance
+from zwidth.loop.turn import Free, turn
 
 
 @compiled
@@ -53,7 +54,6 @@ def run_plain(
     state: Array,
     numbers: Array,
     law: Array,
-    work: Array,
     late: int,
     h: float,
     force: Array,
@@ -137,14 +137,10 @@ def run_plain(
             x = (x + ahead) - f * g2
             v = v1
         else:
-            state[POSITION], state[VELOCITY], state[DIRECTION] = x, v, side
-            state[FORCE], state[GOAL] = f, f
-            state[HAND_WORK], state[ACTUATOR_WORK] = hand, actuator
-            state[VISCOUS], state[COULOMB], state[SOURCE_WORK] = viscous, dry, source
-            advance(state, plant, push, 0.0, 0.0, h, work)
-            x, v, side = state[POSITION], state[VELOCITY], state[DIRECTION]
-            hand, actuator = state[HAND_WORK], state[ACTUATOR_WORK]
-            viscous, dry, source = state[VISCOUS], state[COULOMB], state[SOURCE_WORK]
+            free = Free(x, v, side, hand, actuator, viscous, dry, source)
+            free = turn(free, f, push, drag, coulomb, stiction, inverse, half_hand, h)
+            x, v, side, hand, actuator, viscous, dry, source = free
+            state[STOPS] += 1.0
     state[POSITION], state[VELOCITY], state[DIRECTION] = x, v, side
     state[FORCE], state[GOAL] = f, f
     state[HAND_WORK], state[ACTUATOR_WORK] = hand, actuator

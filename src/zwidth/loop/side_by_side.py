@@ -2,7 +2,7 @@
 
 The arithmetic of each lane is that of `plain.run_plain`, to the last bit.  A lane
 that stops or turns round in an interval leaves the straight line: it is stepped
-alone by `step.advance`, and the others do not wait.
+alone by `turn`, and the others do not wait.
 
 All numbers lie in one flat buffer, quantity by quantity and lane by lane: only
 then does the compiler see that they do not overlap.
@@ -20,7 +20,6 @@ from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
     DIRECTION,
-    FAULT,
     FORCE,
     GOAL,
     HAND_WORK,
@@ -28,28 +27,24 @@ from zwidth.loop.plant import (
     POSITION,
     SATURATED,
     SOURCE_WORK,
-    STATE_SIZE,
     STOPS,
     VELOCITY,
     VISCOUS,
 )
-from zwidth.loop.step import advance
-from zwidth.loop.summary import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK, SUMMARY
+from zwidth.loop.summary import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK
+from zwidth.loop.turn import Free, turn
 
 LANES = 32
 """Loops in one block: enough to hide the chain of one behind the others."""
 
 # Offsets of the quantities in the buffer.
-_L = LANES
-_X, _V, _SIDE, _F = 0, _L, 2 * _L, 3 * _L
-_HAND, _ACT, _VISC, _DRY, _SOURCE = 4 * _L, 5 * _L, 6 * _L, 7 * _L, 8 * _L
-_COUNT, _PHASE, _GAIN, _STEP, _LIMIT, _OPEN = 9 * _L, 10 * _L, 11 * _L, 12 * _L, 13 * _L, 14 * _L
-_DRAG, _FC, _FS, _INV, _HALF = 15 * _L, 16 * _L, 17 * _L, 18 * _L, 19 * _L
-_H, _H1, _H2, _H3, _G1, _G2 = 20 * _L, 21 * _L, 22 * _L, 23 * _L, 24 * _L, 25 * _L
-_PUSH, _LEFT, _INSIDE, _SATURATED = 26 * _L, 27 * _L, 28 * _L, 29 * _L
-_DEEP, _PEAK, _OUT, _HIGH, _LOW = 30 * _L, 31 * _L, 32 * _L, 33 * _L, 34 * _L
-_COMMAND = 35 * _L
-BUFFER = 36 * _L
+_X, _V, _SIDE, _HAND, _ACT, _VISC, _DRY, _SOURCE = range(0, 8 * LANES, LANES)
+_COUNT, _PHASE, _GAIN, _STEP, _LIMIT, _OPEN = range(8 * LANES, 14 * LANES, LANES)
+_DRAG, _FC, _FS, _INV, _HALF, _H, _H1, _H2, _H3, _G1, _G2 = range(14 * LANES, 25 * LANES, LANES)
+_LEFT, _INSIDE, _SATURATED, _STOPS = range(25 * LANES, 29 * LANES, LANES)
+_DEEP, _PEAK, _OUT, _HIGH, _LOW = range(29 * LANES, 34 * LANES, LANES)
+_PUSH, _F, _NEW = range(34 * LANES, 37 * LANES, LANES)
+BUFFER = 37 * LANES
 
 
 @compiled
@@ -60,11 +55,9 @@ def run_side_by_side(
     periods: Array,
     late: int,
     force: Array,
-    shared: bool,
     samples: int,
     buffer: Array,
     queue: Array,
-    work: Array,
     summaries: Array,
 ) -> None:
     """Run LANES plain loops over all samples.
@@ -78,28 +71,28 @@ def run_side_by_side(
     late
         Whole samples of delay, the same for all.
     force
-        F of every interval, samples × 1 if `shared`, else samples × LANES.
-    buffer, queue, work
-        Scratch: BUFFER, (late + 1) · LANES and `series.WORK` long.
+        F of every interval, samples × LANES.
+    buffer, queue
+        Scratch: BUFFER and late · LANES long; the queue all 0.
     summaries
         One row per lane, filled in; see `summary`.
     """
     _load(states, numbers, laws, periods, buffer)
     quarter = samples - samples // 4
+    slot = 0
     for k in range(samples + 1):
-        slot = (k % (late + 1)) * LANES
-        oldest = ((k + 1) % (late + 1)) * LANES
+        _take(buffer, force, min(k, samples - 1))
         _measure(buffer)
-        _apply(buffer, queue, slot, oldest, k >= late)
+        if late > 0:
+            _delay(buffer, queue, slot)
+            slot = 0 if slot == (late - 1) * LANES else slot + LANES
         _watch(buffer, k >= quarter)
         if k == samples:
             break
-        for i in range(LANES):
-            buffer[_PUSH + i] = force[k, 0] if shared else force[k, i]
         if _move(buffer) > 0:
             for i in range(LANES):
                 if buffer[_LEFT + i] > 0.0:
-                    _alone(buffer, i, states[i], numbers[i], periods[i], work)
+                    _alone(buffer, i)
     _store(states, buffer, summaries)
 
 
@@ -116,7 +109,7 @@ def _measure(b: Array) -> None:
         command = rounded if step > 0.0 else command
         over = 1.0 if abs(command) > limit else 0.0
         bound = limit if command > 0.0 else -limit
-        b[_COMMAND + i] = bound if over > 0.0 else command
+        b[_F + i] = bound if over > 0.0 else command
         b[_INSIDE + i] += inside
         b[_SATURATED + i] += over
 
@@ -155,12 +148,21 @@ def _move(b: Array) -> int:
 
 
 @compiled
-def _apply(b: Array, queue: Array, slot: int, oldest: int, ready: bool) -> None:
-    """The command joins the queue, and the one whose time has come is the force."""
+def _take(b: Array, force: Array, k: int) -> None:
+    """The force of the hand in interval k."""
     for i in range(LANES):
-        queue[slot + i] = b[_COMMAND + i]
+        b[_PUSH + i] = force[k, i]
+
+
+@compiled
+def _delay(b: Array, queue: Array, slot: int) -> None:
+    """The new command waits in the queue; the one that has waited longest is the force."""
     for i in range(LANES):
-        b[_F + i] = queue[oldest + i] if ready else 0.0
+        b[_NEW + i] = b[_F + i]
+    for i in range(LANES):  # one row to one row each time, in vectors
+        b[_F + i] = queue[slot + i]
+    for i in range(LANES):
+        queue[slot + i] = b[_NEW + i]
 
 
 @compiled
@@ -179,16 +181,23 @@ def _watch(b: Array, ending: bool) -> None:
 
 
 @compiled
-def _alone(b: Array, i: int, state: Array, numbers: Array, h: float, work: Array) -> None:
-    """One interval of lane i, with its stops."""
-    state[POSITION], state[VELOCITY], state[DIRECTION] = b[_X + i], b[_V + i], b[_SIDE + i]
-    state[FORCE] = state[GOAL] = b[_F + i]
-    state[HAND_WORK], state[ACTUATOR_WORK] = b[_HAND + i], b[_ACT + i]
-    state[VISCOUS], state[COULOMB], state[SOURCE_WORK] = b[_VISC + i], b[_DRY + i], b[_SOURCE + i]
-    advance(state, packed_plant(numbers), b[_PUSH + i], 0.0, 0.0, h, work)
-    b[_X + i], b[_V + i], b[_SIDE + i] = state[POSITION], state[VELOCITY], state[DIRECTION]
-    b[_HAND + i], b[_ACT + i] = state[HAND_WORK], state[ACTUATOR_WORK]
-    b[_VISC + i], b[_DRY + i], b[_SOURCE + i] = state[VISCOUS], state[COULOMB], state[SOURCE_WORK]
+def _alone(b: Array, i: int) -> None:
+    """One interval of lane i, with its stop."""
+    free = Free(
+        b[_X + i],
+        b[_V + i],
+        b[_SIDE + i],
+        b[_HAND + i],
+        b[_ACT + i],
+        b[_VISC + i],
+        b[_DRY + i],
+        b[_SOURCE + i],
+    )
+    f, push, drag, dry, most = b[_F + i], b[_PUSH + i], b[_DRAG + i], b[_FC + i], b[_FS + i]
+    free = turn(free, f, push, drag, dry, most, b[_INV + i], b[_HALF + i], b[_H + i])
+    b[_X + i], b[_V + i], b[_SIDE + i], b[_HAND + i] = free[0], free[1], free[2], free[3]
+    b[_ACT + i], b[_VISC + i], b[_DRY + i], b[_SOURCE + i] = free[4], free[5], free[6], free[7]
+    b[_STOPS + i] += 1.0
 
 
 @compiled
@@ -206,7 +215,7 @@ def _load(states: Array, numbers: Array, laws: Array, periods: Array, b: Array) 
         h1, h2, h3 = free_response(p.damping * inverse, h)
         b[_H + i], b[_H1 + i], b[_H2 + i], b[_H3 + i] = h, h1, h2, h3
         b[_G1 + i], b[_G2 + i] = inverse * h1, inverse * h2
-        b[_INSIDE + i] = b[_SATURATED + i] = 0.0
+        b[_INSIDE + i] = b[_SATURATED + i] = b[_STOPS + i] = 0.0
         b[_DEEP + i] = b[_OUT + i] = b[_HIGH + i] = -1e300
         b[_PEAK + i], b[_LOW + i] = 0.0, 1e300
 
@@ -223,6 +232,7 @@ def _store(states: Array, b: Array, summaries: Array) -> None:
             b[_SOURCE + i],
         )
         states[i, INSIDE], states[i, SATURATED] = b[_INSIDE + i], b[_SATURATED + i]
+        states[i, STOPS] = b[_STOPS + i]
         summaries[i, DEEPEST], summaries[i, PEAK], summaries[i, EXTRACTED] = (
             b[_DEEP + i],
             b[_PEAK + i],

@@ -153,9 +153,7 @@ def _run(
         push = force if force.size else np.zeros(setup.samples)
         period = float(setup.lengths[0])
         count, phase, step = (law[key] or None for key in (RESOLUTION, PHASE, STEP))
-        run_plain(
-            first, last, state, numbers, law, work, late, period, push, commands, record, count, phase, step
-        )
+        run_plain(first, last, state, numbers, law, late, period, push, commands, record, count, phase, step)
         return
     run(
         first, last, setup.points, state, numbers, law, memory, work,
