@@ -25,6 +25,7 @@ from zwidth.rendering import VirtualCoupling
 if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.device import amplifier as amplifiers
+    from zwidth.loop.batch import simulate_batch
     from zwidth.loop.simulate import simulate
     from zwidth.loop.timing import Timing
 
@@ -58,6 +59,7 @@ __all__ = [
     "quantization",
     "rotary",
     "simulate",
+    "simulate_batch",
 ]
 
 _LATER = {
@@ -65,6 +67,7 @@ _LATER = {
     "amplifiers": "zwidth.device.amplifier",
     "operators": "zwidth.operator",
     "simulate": "zwidth.loop.simulate",
+    "simulate_batch": "zwidth.loop.batch",
 }
 """Where a name is found when it is first used: the simulator's libraries take their time to load."""
 

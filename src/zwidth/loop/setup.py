@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, sqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -101,8 +101,11 @@ def prepare(
     amplifier: Amplifier | None = None,
     timing: Timing | None = None,
     points_per_sample: int = 1,
+    known: dict[Any, Signals] | None = None,
 ) -> Setup:
     """Check everything and lay it out; arguments as of `simulate`.
+
+    `known` keeps what operators do, so that many loops with one hand ask it once.
 
     Raises
     ------
@@ -140,8 +143,7 @@ def prepare(
     if not 0 <= phase < 1:
         raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
     times, lengths, arrivals, missed = _clock(timing, samples, period, device.exact("delay"))
-    signals = operator.signals(times)
-    _check_signals(signals, samples)
+    signals = _signals(operator, times, timing, known)
     start = operator.initial_position if initial_position is None else initial_position
     if operator.kinematic:
         assert signals.position is not None
@@ -310,6 +312,19 @@ def _clock(
     over = (interval < samples) & (into >= np.append(lengths, np.inf)[interval])
     interval[over], into[over] = interval[over] + 1, 0.0
     return times, lengths, np.stack([interval.astype(np.float64), into]), missed
+
+
+def _signals(
+    operator: Operator, times: Array, timing: Timing | None, known: dict[Any, Signals] | None
+) -> Signals:
+    key = (id(operator), len(times), times[-1], id(timing))
+    if known is not None and key in known:
+        return known[key]
+    signals = operator.signals(times)
+    _check_signals(signals, len(times) - 1)
+    if known is not None:
+        known[key] = signals
+    return signals
 
 
 def _check_signals(signals: Signals, samples: int) -> None:

@@ -1,0 +1,349 @@
+"""Thousands of loops side by side, over any parameter.
+
+Plain loops go LANES at a time through vector instructions, all others one by
+one; either way on as many threads as asked for, and each with the same bits as
+when it is simulated alone.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from dataclasses import fields, replace
+from itertools import product
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.errors import InputError
+from zwidth.loop.plant import (
+    ACTUATOR_WORK,
+    COULOMB,
+    FAULT,
+    HAND_LOSS,
+    HAND_WORK,
+    INSIDE,
+    POSITION,
+    SATURATED,
+    SOURCE_WORK,
+    STOPS,
+    VELOCITY,
+    VISCOUS,
+)
+from zwidth.loop.setup import Setup, empty_record, prepare
+from zwidth.loop.side_by_side import BUFFER, LANES, run_side_by_side
+from zwidth.loop.simulate import Progress, run_setup
+from zwidth.loop.summary import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK, SUMMARY, summarize
+from zwidth.loop.trace import UNITS, VARIABLES
+from zwidth.operator.operator import Operator
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.glossary import GLOSSARY
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+OPTIONS = ("initial_position", "initial_velocity", "encoder_phase")
+"""Arguments of `simulate` that can be varied besides the parameters of device, environment and hand."""
+
+
+class Outcome(NamedTuple):
+    """A number kept of each loop: where it is found, its kind of unit, what it means."""
+
+    of_state: int | None
+    of_summary: int | None
+    kind: int
+    long_name: str
+
+
+_COUNT = 4
+OUTCOMES = {
+    "position": Outcome(POSITION, None, 0, "position at the end"),
+    "velocity": Outcome(VELOCITY, None, 1, "velocity at the end"),
+    "deepest_position": Outcome(None, DEEPEST, 0, "deepest position at a sample"),
+    "swing": Outcome(None, None, 0, "range of the positions in the last quarter of the samples"),
+    "peak_actuator_force": Outcome(None, PEAK, 2, "largest actuator force just after a sample"),
+    "energy_extracted": Outcome(None, EXTRACTED, 3, "most that the hand had got out at a sample, max(−W_h)"),
+    "hand_work": Outcome(HAND_WORK, None, 3, VARIABLES["hand_work"].long_name),
+    "actuator_work": Outcome(ACTUATOR_WORK, None, 3, VARIABLES["actuator_work"].long_name),
+    "viscous_loss": Outcome(VISCOUS, None, 3, VARIABLES["viscous_loss"].long_name),
+    "coulomb_loss": Outcome(COULOMB, None, 3, VARIABLES["coulomb_loss"].long_name),
+    "hand_source_work": Outcome(SOURCE_WORK, None, 3, VARIABLES["hand_source_work"].long_name),
+    "hand_damper_loss": Outcome(HAND_LOSS, None, 3, VARIABLES["hand_damper_loss"].long_name),
+    "stops": Outcome(STOPS, None, _COUNT, "how often the mass stopped or turned round"),
+    "samples_inside": Outcome(INSIDE, None, _COUNT, "samples at which the law acted"),
+    "samples_saturated": Outcome(
+        SATURATED, None, _COUNT, "samples whose command was beyond the limit"
+    ),
+}
+"""What is kept of each loop."""
+
+
+def simulate_batch(
+    device: Device,
+    environment: object,
+    operator: Operator,
+    duration: RealLike,
+    *,
+    vary: Mapping[str, Sequence[Any]],
+    together: bool = False,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    **options: Any,
+) -> xr.Dataset:
+    """Simulate a loop for many values of its parameters.
+
+    Parameters
+    ----------
+    device, environment, operator, duration
+        As of `simulate`.
+    vary
+        For each parameter its values: {"stiffness": [100, 300], "device.damping": […]}. A name
+        that several of device, environment and operator have is written with its owner before it;
+        initial_position, initial_velocity and encoder_phase can be varied too.
+    together
+        False: every combination, one dimension for each parameter. True: the first values of
+        all, then the second values, …, along one dimension `case`.
+    threads
+        By default as many as there are processors.
+    progress
+        Called with (loops done, loops in all).
+    options
+        Further arguments of `simulate`, the same for all loops.
+
+    Returns
+    -------
+    xarray.Dataset
+        Final state, extremes and energies of every loop. Interrupted by Ctrl-C, the loops that
+        are not finished are NaN, and the attribute `interrupted` says how many were.
+
+    Raises
+    ------
+    InputError
+        If a parameter is unknown or a loop cannot be simulated.
+    """
+    axes = _axes(vary, together)
+    base = _Base(device, as_environment(environment), operator, options)
+    choices = list(zip(*axes.values(), strict=True)) if together else list(product(*axes.values()))
+    owners = [_owner(name, base) for name in axes]
+    known: dict[Any, Any] = {}
+    setups = [_prepare(base, owners, choice, duration, known) for choice in choices]
+    states, summaries, finished = _run_all(setups, _threads(threads), progress)
+    return _dataset(base, axes, owners, together, states, summaries, finished)
+
+
+class _Base(NamedTuple):
+    device: Device
+    environment: Environment
+    operator: Operator
+    options: dict[str, Any]
+
+
+def _axes(vary: Mapping[str, Sequence[Any]], together: bool) -> dict[str, list[Any]]:
+    axes = {str(name): list(np.atleast_1d(values)) for name, values in vary.items()}
+    if not axes or not all(axes.values()):
+        raise InputError(
+            "vary needs one parameter with one value at least, such as {'stiffness': [100, 300]}"
+        )
+    if together and len({len(values) for values in axes.values()}) > 1:
+        lengths = ", ".join(f"{name} {len(values)}" for name, values in axes.items())
+        raise InputError(f"values varied together must be equally many, got {lengths}")
+    return axes
+
+
+def _owner(name: str, base: _Base) -> tuple[str, str]:
+    """(device, environment, operator or option; the key there)."""
+    parts = {
+        "device": [f.name for f in fields(base.device)] + ["rate"],
+        "environment": [f.name for f in fields(base.environment)],
+        "operator": [f.name for f in fields(base.operator)],
+        "option": list(OPTIONS),
+    }
+    owner, _, key = name.rpartition(".")
+    if owner:
+        if key in parts.get(owner, ()):
+            return owner, key
+        raise InputError(f"there is no parameter {name!r} to vary; {_choices(parts)}")
+    found = [part for part, keys in parts.items() if name in keys]
+    if len(found) == 1:
+        return found[0], name
+    if not found:
+        raise InputError(f"there is no parameter {name!r} to vary; {_choices(parts)}")
+    raise InputError(f"{name!r} is ambiguous: write {' or '.join(f'{part}.{name}' for part in found)}")
+
+
+def _choices(parts: Mapping[str, Iterable[str]]) -> str:
+    return "there are " + "; ".join(f"{part}: {', '.join(keys)}" for part, keys in parts.items())
+
+
+def _prepare(
+    base: _Base,
+    owners: list[tuple[str, str]],
+    choice: Sequence[Any],
+    duration: RealLike,
+    known: dict[Any, Any],
+) -> Setup:
+    changes: dict[str, dict[str, Any]] = {"device": {}, "environment": {}, "operator": {}, "option": {}}
+    for (owner, key), value in zip(owners, choice, strict=True):
+        changes[owner][key] = value.item() if isinstance(value, np.generic) else value
+    device = base.device.replace(**changes["device"]) if changes["device"] else base.device
+    environment = base.environment
+    if changes["environment"]:
+        environment = environment.replace(**changes["environment"])
+    operator = replace(base.operator, **changes["operator"]) if changes["operator"] else base.operator
+    return prepare(
+        device, environment, operator, duration, known=known, **{**base.options, **changes["option"]}
+    )
+
+
+def _threads(given: int | None) -> int:
+    if given is None:
+        return os.cpu_count() or 1
+    if given != int(given) or given < 1:
+        raise InputError(f"threads is a whole number ≥ 1, got {given}")
+    return int(given)
+
+
+def _run_all(
+    setups: list[Setup], threads: int, progress: Progress | None
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """(states, summaries, finished) of all loops, a row each."""
+    states = np.array([setup.state for setup in setups])
+    summaries = np.full((len(setups), SUMMARY), np.nan)
+    finished = np.zeros(len(setups), dtype=bool)
+    stop: list[bool] = []
+
+    def job(run: Callable[[list[Setup], Array, Array], None], rows: list[int]) -> list[int]:
+        if not stop:
+            some, kept = states[rows], summaries[rows]
+            run([setups[row] for row in rows], some, kept)
+            states[rows], summaries[rows] = some, kept
+            finished[rows] = True
+        return rows
+
+    jobs = [(_run_block, rows) for rows in _blocks(setups)]
+    alone = [row for row, setup in enumerate(setups) if not setup.plain]
+    jobs += [(_run_alone, [row]) for row in alone]
+    pool = ThreadPoolExecutor(threads)
+    futures: list[Future[list[int]]] = [pool.submit(job, run, rows) for run, rows in jobs]
+    try:
+        for future in as_completed(futures):
+            future.result()
+            if progress is not None:
+                progress(int(finished.sum()), len(setups))
+    except KeyboardInterrupt:
+        stop.append(True)
+        if not finished.any():
+            raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+    return states, summaries, finished
+
+
+def _blocks(setups: list[Setup]) -> list[list[int]]:
+    """The plain loops in groups of LANES that have delay and number of samples in common."""
+    groups: dict[tuple[int, int], list[int]] = {}
+    for row, setup in enumerate(setups):
+        if setup.plain:
+            groups.setdefault((setup.late, setup.samples), []).append(row)
+    return [rows[at : at + LANES] for rows in groups.values() for at in range(0, len(rows), LANES)]
+
+
+def _run_block(setups: list[Setup], states: Array, summaries: Array) -> None:
+    """Side by side; lanes that are left over repeat the last loop."""
+    first, spare = setups[0], LANES - len(setups)
+    lanes = [*setups, *[setups[-1]] * spare]
+    state, summary = np.concatenate([states, np.repeat(states[-1:], spare, 0)]), np.zeros((LANES, SUMMARY))
+    pushes = [setup.signals.force for setup in lanes]
+    force = np.zeros((first.samples, LANES))
+    for lane, push in enumerate(pushes):
+        if push is not None:
+            force[:, lane] = push
+    run_side_by_side(
+        state,
+        np.array([setup.plant for setup in lanes]),
+        np.array([setup.law for setup in lanes]),
+        np.array([setup.lengths[0] for setup in lanes]),
+        first.late,
+        force,
+        first.samples,
+        aligned(BUFFER),
+        aligned(max(1, first.late) * LANES),
+        summary,
+    )
+    states[:], summaries[:] = state[: len(setups)], summary[: len(setups)]
+
+
+def _run_alone(setups: list[Setup], states: Array, summaries: Array) -> None:
+    setup = setups[0]
+    commands, record, work = empty_record(setup)
+    run_setup(setup, states[0], setup.memory.copy(), work, commands, record, None)
+    summarize(record, setup.samples, setup.points, summaries[0])
+
+
+def aligned(length: int) -> Array:
+    """Zeros that begin at a cache line: a vector across two of them takes twice as long."""
+    room = np.zeros(length + 8)
+    start = (-room.ctypes.data % 64) // 8
+    return room[start : start + length]
+
+
+def _dataset(
+    base: _Base,
+    axes: dict[str, list[Any]],
+    owners: list[tuple[str, str]],
+    together: bool,
+    states: Array,
+    summaries: Array,
+    finished: NDArray[np.bool_],
+) -> xr.Dataset:
+    if (states[finished, FAULT] != 0.0).any():
+        raise InputError(
+            "a motion has too many stops in one sample to be followed: device, hand and forces differ by so "
+            "many orders of magnitude that rounding decides; scale them closer together"
+        )
+    names = _dimension_names(owners)
+    shape = (len(finished),) if together else tuple(len(values) for values in axes.values())
+    dims = ("case",) if together else tuple(names)
+    units = (*UNITS[base.device.motion], "J", "1")
+    variables = {}
+    for name, outcome in OUTCOMES.items():
+        if outcome.of_state is not None:
+            values = states[:, outcome.of_state]
+        elif outcome.of_summary is not None:
+            values = summaries[:, outcome.of_summary]
+        else:
+            values = summaries[:, HIGHEST] - summaries[:, LOWEST]
+        values = np.where(finished, values, np.nan).reshape(shape)
+        variables[name] = (dims, values, {"units": units[outcome.kind], "long_name": outcome.long_name})
+    coordinates = {
+        name: ("case" if together else name, np.asarray(values), _unit_of(owner, base))
+        for name, values, owner in zip(names, axes.values(), owners, strict=True)
+    }
+    attributes = {"device": base.device.name, "operator": base.operator.describe(base.device.motion)}
+    if not finished.all():
+        attributes["interrupted"] = f"{int(finished.sum())} of {len(finished)} loops are finished"
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _dimension_names(owners: list[tuple[str, str]]) -> list[str]:
+    keys = [key for _, key in owners]
+    return [key if keys.count(key) == 1 else f"{owner}_{key}" for owner, key in owners]
+
+
+def _unit_of(owner: tuple[str, str], base: _Base) -> dict[str, str]:
+    part, key = owner
+    if part == "environment" and key == "damping":
+        key = "virtual_damping"
+    if part == "option":
+        key = {"initial_position": "position"}.get(key, key)
+    if part in ("device", "environment", "option") and key in GLOSSARY:
+        quantity = GLOSSARY[key]
+        return {"units": quantity.unit_for(base.device.motion), "long_name": quantity.meaning}
+    return {}
