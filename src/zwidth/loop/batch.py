@@ -78,9 +78,7 @@ OUTCOMES = {
     "hand_damper_loss": Outcome(HAND_LOSS, None, 3, VARIABLES["hand_damper_loss"].long_name),
     "stops": Outcome(STOPS, None, _COUNT, "how often the mass stopped or turned round"),
     "samples_inside": Outcome(INSIDE, None, _COUNT, "samples at which the law acted"),
-    "samples_saturated": Outcome(
-        SATURATED, None, _COUNT, "samples whose command was beyond the limit"
-    ),
+    "samples_saturated": Outcome(SATURATED, None, _COUNT, "samples whose command was beyond the limit"),
 }
 """What is kept of each loop."""
 

@@ -7,9 +7,21 @@ applied.  Between two changes of force `advance` moves the plant exactly.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from zwidth.loop.carry import carry
 from zwidth.loop.compiled import Array, compiled
-from zwidth.loop.law import PHASE, RESOLUTION, law_force, measured
+from zwidth.loop.law import (
+    BILATERAL,
+    GATE,
+    LIMIT,
+    PHASE,
+    RESOLUTION,
+    STEP,
+    law_force,
+    measured,
+    rounded,
+)
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,
@@ -17,7 +29,9 @@ from zwidth.loop.plant import (
     GOAL,
     HAND_LOSS,
     HAND_WORK,
+    INSIDE,
     POSITION,
+    SATURATED,
     SOURCE_WORK,
     VELOCITY,
     VISCOUS,
@@ -86,43 +100,109 @@ def run(
         RECORDED × (N·points + 1), filled in.
     """
     plant = packed_plant(numbers)
-    kinematic, tied, bent = target.shape[0] > 0, anchor.shape[0] > 0, switch.shape[0] > 0
     samples = commands.shape[0] - 1
     due = first_due(first, late, arrivals)
     for k in range(first, last):
         final = k == samples
         h = 0.0 if final else (lengths[0] if lengths.shape[0] == 1 else lengths[k])
         sample(k, points, state, law, memory, missed, commands, record)
-        begin = state[POSITION]
-        goal = target[k + 1] if kinematic and not final else begin
-        middle = switch[k] if bent and not final else begin
-        push = force[k] if force.shape[0] > 0 and not final else 0.0
-        here = anchor[k] if tied else 0.0
-        speed = (anchor[k + 1] - here) / h if tied and not final else 0.0
+        hand = in_interval(k, h, final, state[POSITION], force, anchor, target, switch)
         now = 0.0
-        at = arrival(due, k, late, offset, arrivals)
         for point in range(points):
-            end = h if point == points - 1 else h * (point + 1) / points
-            while at <= now:
-                apply(state, plant, commands[due])
-                due += 1
-                at = arrival(due, k, late, offset, arrivals)
+            due = apply_due(state, plant, due, k, now, late, offset, arrivals, commands)
             note(state, k * points + point, record)
             if final:
                 return
-            while now < end:
-                until = min(at, end)
-                if kinematic:
-                    if bent and now < offset:
-                        until = min(until, offset)
-                    carry(state, plant, on_the_way(begin, middle, goal, bent, offset, until, h), until - now)
-                else:
-                    advance(state, plant, push, here + speed * now, speed, until - now, work)
-                now = until
-                while at <= now and now < end:
-                    apply(state, plant, commands[due])
-                    due += 1
-                    at = arrival(due, k, late, offset, arrivals)
+            end = h if point == points - 1 else h * (point + 1) / points
+            due = travel(state, plant, hand, now, end, h, due, k, late, offset, arrivals, commands, work)
+            now = end
+
+
+class Hand(NamedTuple):
+    """What the hand does in one interval: see `operator.Signals`."""
+
+    push: float
+    anchor: float
+    speed: float
+    begin: float
+    middle: float
+    goal: float
+    kinematic: bool
+    bent: bool
+
+
+@compiled
+def in_interval(
+    k: int,
+    h: float,
+    final: bool,
+    position: float,
+    force: Array,
+    anchor: Array,
+    target: Array,
+    switch: Array,
+) -> Hand:
+    """The hand in interval k, which begins at `position`."""
+    kinematic, bent = target.shape[0] > 0, switch.shape[0] > 0
+    push = force[k] if force.shape[0] > 0 and not final else 0.0
+    here = anchor[k] if anchor.shape[0] > 0 else 0.0
+    speed = (anchor[k + 1] - here) / h if anchor.shape[0] > 0 and not final else 0.0
+    goal = target[k + 1] if kinematic and not final else position
+    middle = switch[k] if bent and not final else position
+    return Hand(push, here, speed, position, middle, goal, kinematic, bent)
+
+
+@compiled
+def travel(
+    state: Array,
+    plant: Plant,
+    hand: Hand,
+    start: float,
+    end: float,
+    h: float,
+    due: int,
+    k: int,
+    late: int,
+    offset: float,
+    arrivals: Array,
+    commands: Array,
+    work: Array,
+) -> int:
+    """Move from `start` to `end` of interval k, applying commands on the way; returns the next one due."""
+    now = start
+    while now < end:
+        until = min(arrival(due, k, late, offset, arrivals), end)
+        if hand.kinematic:
+            if hand.bent and now < offset:
+                until = min(until, offset)
+            carry(state, plant, on_the_way(hand, offset, until, h), until - now)
+        else:
+            advance(state, plant, hand.push, hand.anchor + hand.speed * now, hand.speed, until - now, work)
+        now = until
+        if now < end:
+            due = apply_due(state, plant, due, k, now, late, offset, arrivals, commands)
+    return due
+
+
+@compiled
+def apply_due(
+    state: Array,
+    plant: Plant,
+    due: int,
+    k: int,
+    now: float,
+    late: int,
+    offset: float,
+    arrivals: Array,
+    commands: Array,
+) -> int:
+    """Apply the commands whose time has come in interval k; returns the next one due."""
+    while arrival(due, k, late, offset, arrivals) <= now:
+        state[GOAL] = commands[due]
+        if plant.lag == 0.0 and plant.slew == 0.0:
+            state[FORCE] = commands[due]
+        due += 1
+    return due
 
 
 @compiled
@@ -142,10 +222,23 @@ def sample(
         commands[k] = commands[k - 1] if k > 0 else 0.0
     else:
         reading = measured(state[POSITION], law[RESOLUTION], law[PHASE])
-        commands[k] = law_force(law, memory, reading)
+        commands[k] = commanded(state, law, memory, reading)
     for column in range(k * points, min((k + 1) * points, record.shape[1])):
         record[R_READING, column] = reading
         record[R_COMMAND, column] = commands[k]
+
+
+@compiled
+def commanded(state: Array, law: Array, memory: Array, reading: float) -> float:
+    """What the law and the converter make of a reading; counts samples inside and saturated."""
+    wish = law_force(law, memory, reading)
+    if law[GATE] == BILATERAL or reading > 0.0:
+        state[INSIDE] += 1.0
+    f = rounded(wish, law[STEP])
+    if law[LIMIT] > 0.0 and abs(f) > law[LIMIT]:
+        state[SATURATED] += 1.0
+        f = law[LIMIT] if f > 0.0 else -law[LIMIT]
+    return f
 
 
 @compiled
@@ -168,25 +261,15 @@ def arrival(due: int, k: int, late: int, offset: float, arrivals: Array) -> floa
 
 
 @compiled
-def apply(state: Array, plant: Plant, command: float) -> None:
-    """A new command reaches the amplifier."""
-    state[GOAL] = command
-    if plant.lag == 0.0 and plant.slew == 0.0:
-        state[FORCE] = command
-
-
-@compiled
-def on_the_way(
-    begin: float, middle: float, goal: float, bent: bool, offset: float, until: float, h: float
-) -> float:
+def on_the_way(hand: Hand, offset: float, until: float, h: float) -> float:
     """The prescribed position at the time `until` of an interval."""
     if until == h:
-        return goal
-    if not bent:
-        return begin + (goal - begin) * (until / h)
+        return hand.goal
+    if not hand.bent:
+        return hand.begin + (hand.goal - hand.begin) * (until / h)
     if until <= offset:
-        return begin + (middle - begin) * (until / offset)
-    return middle + (goal - middle) * ((until - offset) / (h - offset))
+        return hand.begin + (hand.middle - hand.begin) * (until / offset)
+    return hand.middle + (hand.goal - hand.middle) * ((until - offset) / (h - offset))
 
 
 @compiled

@@ -2,7 +2,7 @@
 
     x_m = Δ floor(x/Δ + φ)              what the encoder reads, φ its phase
     f   = g x_m + Σ (sections)          H(z), each section a transposed direct form
-    f   = ΔF round(f/ΔF), |f| ≤ F_max   what the converter gives
+    f   = ΔF round(f/ΔF)                what the converter makes of it
 
 A wall's velocity estimator runs on every measured position; a viscoelastic
 solid, which can be left, on the penetration max(x_m, 0).  Neither pushes where
@@ -32,13 +32,9 @@ def measured(x: float, resolution: float, phase: float) -> float:
 
 
 @compiled
-def converted(f: float, step: float, limit: float) -> float:
-    """What the converter and the actuator make of a command: the nearest step, within the limit."""
-    if step > 0.0:
-        f = step * np.floor(f / step + 0.5)
-    if limit > 0.0:
-        f = min(limit, max(-limit, f))
-    return f
+def rounded(f: float, step: float) -> float:
+    """The converter's step nearest to a command; the command itself if ΔF = 0."""
+    return step * np.floor(f / step + 0.5) if step > 0.0 else f
 
 
 @compiled
@@ -60,6 +56,4 @@ def law_force(law: Array, memory: Array, reading: float) -> float:
         f += y
         at += 2 * order + 2
         slot += order
-    if gate != BILATERAL and reading <= 0.0:
-        f = 0.0
-    return converted(f, law[STEP], law[LIMIT])
+    return 0.0 if gate != BILATERAL and reading <= 0.0 else f
