@@ -92,6 +92,7 @@ def simulate_batch(
     vary: Mapping[str, Sequence[Any]],
     together: bool = False,
     threads: int | None = None,
+    on: str = "cpu",
     progress: Progress | None = None,
     **options: Any,
 ) -> xr.Dataset:
@@ -110,6 +111,9 @@ def simulate_batch(
         all, then the second values, …, along one dimension `case`.
     threads
         By default as many as there are processors.
+    on
+        "cpu", or "gpu" for a graphics card with CUDA (install the extra `gpu`): the same step
+        functions, one loop per thread, equal to rounding.
     progress
         Called with (loops done, loops in all).
     options
@@ -132,7 +136,12 @@ def simulate_batch(
     owners = [_owner(name, base) for name in axes]
     known: dict[Any, Any] = {}
     setups = [_prepare(base, owners, choice, duration, known) for choice in choices]
-    states, summaries, finished = _run_all(setups, _threads(threads), progress)
+    if on == "gpu":
+        states, summaries, finished = _run_on_card(setups)
+    elif on == "cpu":
+        states, summaries, finished = _run_all(setups, _threads(threads), progress)
+    else:
+        raise InputError(f'on is "cpu" or "gpu", got {on!r}')
     return _dataset(base, axes, owners, together, states, summaries, finished)
 
 
@@ -242,6 +251,14 @@ def _run_all(
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
     return states, summaries, finished
+
+
+def _run_on_card(setups: list[Setup]) -> tuple[Array, Array, NDArray[np.bool_]]:
+    from zwidth.loop.gpu import run_on_gpu  # CUDA is an extra
+
+    states, summaries = np.array([setup.state for setup in setups]), np.zeros((len(setups), SUMMARY))
+    run_on_gpu(setups, states, summaries)
+    return states, summaries, np.ones(len(setups), dtype=bool)
 
 
 def _blocks(setups: list[Setup]) -> list[list[int]]:

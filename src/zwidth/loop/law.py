@@ -11,8 +11,6 @@ x_m ≤ 0.
 
 from __future__ import annotations
 
-import numpy as np
-
 from zwidth.loop.compiled import Array, compiled
 
 BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
@@ -27,14 +25,14 @@ HEADER = 6
 @compiled
 def measured(x: float, resolution: float, phase: float) -> float:
     """What an encoder reads: Δ floor(x/Δ + φ); x itself if Δ = 0."""
-    # a quotient, not a product with 1/Δ: they differ by a count at an edge
-    return resolution * np.floor(x / resolution + phase) if resolution > 0.0 else x
+    # a quotient, not a product with 1/Δ: they differ by a count at an edge; // 1.0 is the floor of a float
+    return resolution * ((x / resolution + phase) // 1.0) if resolution > 0.0 else x
 
 
 @compiled
 def rounded(f: float, step: float) -> float:
     """The converter's step nearest to a command; the command itself if ΔF = 0."""
-    return step * np.floor(f / step + 0.5) if step > 0.0 else f
+    return step * ((f / step + 0.5) // 1.0) if step > 0.0 else f
 
 
 @compiled
