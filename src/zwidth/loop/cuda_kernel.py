@@ -8,7 +8,7 @@ from zwidth.loop.compiled import Array
 from zwidth.loop.unrecorded import run_unrecorded
 
 
-@cuda.jit
+@cuda.jit  # type: ignore[untyped-decorator]
 def kernel(
     samples: int,
     states: Array,
@@ -27,7 +27,7 @@ def kernel(
     summaries: Array,
 ) -> None:
     """Arguments as `gpu.packed` lays them out: a row per loop, or per signal that loops share."""
-    case = cuda.grid(1)
+    case = cuda.grid(1)  # type: ignore[attr-defined]
     if case < states.shape[0]:
         run_unrecorded(
             samples,

@@ -80,7 +80,7 @@ def _cuda() -> Any:
         from numba import cuda
     except ImportError as error:
         raise InputError(f"CUDA cannot be used ({error}): pip install 'zwidth[gpu]'") from None
-    if not cuda.is_available():
+    if not cuda.is_available():  # type: ignore[no-untyped-call]
         raise InputError(
             "no graphics card with CUDA was found: leave out on='gpu', or pip install 'zwidth[gpu]' on a "
             "machine that has one"

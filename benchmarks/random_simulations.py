@@ -1,0 +1,151 @@
+"""Random loops through the simulator: does the energy ledger close in every one?
+
+    python benchmarks/random_simulations.py [--loops 1000000] [--seed 0]
+
+Each loop has its own mass, friction, stiction, wall, encoder, delay, amplifier
+and hand, over several orders of magnitude, and runs for 50 samples.  Two
+balances are held against each other: what the hand and the actuator put into
+the device against what it stores and loses, and what the muscles put into the
+hand.  The residual is measured against the energy moved: the sum of losses
+and of the largest values of all the others.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+
+import numpy as np
+from numba import njit
+
+from zwidth.loop import kernel as k
+from zwidth.loop.plant import FAULT, STATE_SIZE, STOPS
+from zwidth.loop.series import WORK
+
+SAMPLES = 50
+BOUND = 1e-12
+_KINDS = 6
+
+
+@njit
+def _spread(low, high):
+    return low * (high / low) ** np.random.random()
+
+
+@njit
+def _draw(numbers, law, force, anchor):
+    """One random loop; returns (late, offset, period, position, velocity)."""
+    kind = np.random.randint(_KINDS)  # free, damped hand, tied, tied with lag, tied with slew, free with lag
+    period = _spread(1e-4, 2e-2)
+    mass = _spread(1e-3, 3.0)
+    rate = 20.0 / period  # of the quickest mode that is drawn
+    numbers[:] = 0.0
+    numbers[0] = mass
+    numbers[1] = 0.0 if np.random.random() < 0.5 else _spread(1e-3, 1.0)
+    total = numbers[0] + numbers[1]
+    numbers[2] = 0.0 if np.random.random() < 0.2 else total * _spread(1e-3, 1.0) / period
+    size = _spread(1e-2, 20.0)
+    numbers[3] = 0.0 if np.random.random() < 0.2 else size * _spread(1e-3, 1.0)
+    numbers[4] = numbers[3] * (1.0 if np.random.random() < 0.5 else 1.0 + np.random.random())
+    if kind in (2, 3, 4):
+        w = _spread(0.01 / period, rate)
+        numbers[5] = total * w * w
+    if kind in (1, 2, 3, 4):
+        numbers[6] = 0.0 if np.random.random() < 0.2 else total * _spread(0.01 / period, rate)
+    if kind in (3, 5):
+        numbers[7] = period * _spread(0.05, 20.0)
+    if kind == 4:
+        numbers[8] = size / period * _spread(0.01, 10.0)
+    reach = size * period * period / total * 30.0
+    law[0] = 2.0
+    law[1] = 0.0 if np.random.random() < 0.3 else reach * _spread(1e-4, 0.3)
+    law[2] = np.random.random()
+    law[3], law[4], law[5], law[6] = 0.0, 20.0 * size, 1.0, 0.0
+    law[7] = total / period**2 * _spread(1e-3, 2.0)
+    for i in range(SAMPLES):
+        force[i] = size * np.random.randn()
+    here = 0.0
+    for i in range(SAMPLES + 1):
+        anchor[i] = here
+        here += 0.1 * reach * np.random.randn()
+    late = np.random.randint(3)
+    offset = 0.0 if np.random.random() < 0.4 else period * np.random.random()
+    return late, offset, period, reach * np.random.randn(), reach / period * 0.1 * np.random.randn()
+
+
+@njit
+def _residuals(loops, seed, worst):
+    """The largest residuals relative to the energy moved; `worst` gets the numbers of the worst loop."""
+    np.random.seed(seed)
+    state, numbers, law = np.zeros(STATE_SIZE), np.zeros(9), np.zeros(8)
+    force, anchor = np.zeros(SAMPLES), np.zeros(SAMPLES + 1)
+    memory, work, commands = np.zeros(1), np.zeros(WORK), np.zeros(SAMPLES + 1)
+    record = np.zeros((k.RECORDED, SAMPLES + 1))
+    none, regular = np.empty(0), np.empty((2, 0))
+    device, hand, over, faults, stops = 0.0, 0.0, 0, 0, 0.0
+    for loop in range(loops):
+        late, offset, period, x, v = _draw(numbers, law, force, anchor)
+        state[:] = 0.0
+        state[0], state[1] = x, v
+        state[2] = np.sign(v)
+        tied = anchor if numbers[5] + numbers[6] > 0.0 else none
+        lengths = np.full(1, period)
+        k.run(
+            0, SAMPLES + 1, 1, state, numbers, law, memory, work, late, offset, lengths, regular,
+            none, force, tied, none, none, commands, record,
+        )  # fmt: skip
+        faults += 1 if state[FAULT] != 0.0 else 0
+        stops += state[STOPS]
+        a, b = _closing(record, numbers, anchor)
+        over += 1 if max(a, b) > BOUND else 0
+        if max(a, b) > max(device, hand):
+            worst[:9], worst[9], worst[10], worst[11] = numbers, late, offset, period
+            worst[12] = loop
+        device, hand = max(device, a), max(hand, b)
+    return device, hand, over, faults, stops
+
+
+@njit
+def _closing(record, numbers, anchor):
+    m, mh, stiffness = numbers[0], numbers[1], numbers[5]
+    a = b = 0.0
+    most = np.zeros(6)
+    v0, e0 = record[k.R_VELOCITY, 0], anchor[0] - record[k.R_POSITION, 0]
+    for i in range(SAMPLES + 1):
+        v, e = record[k.R_VELOCITY, i], anchor[i] - record[k.R_POSITION, i]
+        kinetic, spring = 0.5 * m * v * v, 0.5 * stiffness * e * e
+        own = 0.5 * mh * v * v
+        w, f = record[k.R_HAND_WORK, i], record[k.R_ACTUATOR_WORK, i]
+        lost = record[k.R_VISCOUS, i] + record[k.R_COULOMB, i]
+        source, damped = record[k.R_SOURCE_WORK, i], record[k.R_HAND_LOSS, i]
+        a = max(a, abs(kinetic - 0.5 * m * v0 * v0 - w - f + lost))
+        gained = spring - 0.5 * stiffness * e0 * e0 + own - 0.5 * mh * v0 * v0
+        b = max(b, abs(source - w - gained - damped))
+        most[0], most[1] = max(most[0], kinetic + own), max(most[1], spring)
+        most[2], most[3] = max(most[2], abs(w)), max(most[3], abs(f))
+        most[4], most[5] = max(most[4], abs(source)), lost + damped
+    moved = most.sum()
+    return (a / moved, b / moved) if moved > 0.0 else (a, b)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--loops", type=int, default=1_000_000)
+    parser.add_argument("--seed", type=int, default=0)
+    arguments = parser.parse_args()
+    worst = np.zeros(13)
+    _residuals(10, 1, worst)
+    start = time.perf_counter()
+    device, hand, over, faults, stops = _residuals(arguments.loops, arguments.seed, worst)
+    seconds = time.perf_counter() - start
+    print(f"{arguments.loops:,} loops of {SAMPLES} samples in {seconds:.0f} s, {stops:,.0f} stops")
+    print(f"largest residual over energy moved: device {device:.2e}, hand {hand:.2e}")
+    print(f"loops above {BOUND:g}: {over}; loops given up: {faults}")
+    if over:
+        print("the worst loop:", worst.tolist())
+    return 1 if over or faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
