@@ -29,55 +29,54 @@ _KINDS = 6
 
 
 @njit
-def _spread(low, high):
-    return low * (high / low) ** np.random.random()
+def _spread(rng, low, high):
+    return low * (high / low) ** rng.random()
 
 
 @njit
-def _draw(numbers, law, force, anchor):
+def _draw(rng, numbers, law, force, anchor):
     """One random loop; returns (late, offset, period, position, velocity)."""
-    kind = np.random.randint(_KINDS)  # free, damped hand, tied, tied with lag, tied with slew, free with lag
-    period = _spread(1e-4, 2e-2)
-    mass = _spread(1e-3, 3.0)
+    kind = int(rng.random() * _KINDS)  # free, damped hand, tied, tied with lag, tied with slew, free with lag
+    period = _spread(rng, 1e-4, 2e-2)
+    mass = _spread(rng, 1e-3, 3.0)
     rate = 20.0 / period  # of the quickest mode that is drawn
     numbers[:] = 0.0
     numbers[0] = mass
-    numbers[1] = 0.0 if np.random.random() < 0.5 else _spread(1e-3, 1.0)
+    numbers[1] = 0.0 if rng.random() < 0.5 else _spread(rng, 1e-3, 1.0)
     total = numbers[0] + numbers[1]
-    numbers[2] = 0.0 if np.random.random() < 0.2 else total * _spread(1e-3, 1.0) / period
-    size = _spread(1e-2, 20.0)
-    numbers[3] = 0.0 if np.random.random() < 0.2 else size * _spread(1e-3, 1.0)
-    numbers[4] = numbers[3] * (1.0 if np.random.random() < 0.5 else 1.0 + np.random.random())
+    numbers[2] = 0.0 if rng.random() < 0.2 else total * _spread(rng, 1e-3, 1.0) / period
+    size = _spread(rng, 1e-2, 20.0)
+    numbers[3] = 0.0 if rng.random() < 0.2 else size * _spread(rng, 1e-3, 1.0)
+    numbers[4] = numbers[3] * (1.0 if rng.random() < 0.5 else 1.0 + rng.random())
     if kind in (2, 3, 4):
-        w = _spread(0.01 / period, rate)
+        w = _spread(rng, 0.01 / period, rate)
         numbers[5] = total * w * w
     if kind in (1, 2, 3, 4):
-        numbers[6] = 0.0 if np.random.random() < 0.2 else total * _spread(0.01 / period, rate)
+        numbers[6] = 0.0 if rng.random() < 0.2 else total * _spread(rng, 0.01 / period, rate)
     if kind in (3, 5):
-        numbers[7] = period * _spread(0.05, 20.0)
+        numbers[7] = period * _spread(rng, 0.05, 20.0)
     if kind == 4:
-        numbers[8] = size / period * _spread(0.01, 10.0)
+        numbers[8] = size / period * _spread(rng, 0.01, 10.0)
     reach = size * period * period / total * 30.0
     law[0] = 2.0
-    law[1] = 0.0 if np.random.random() < 0.3 else reach * _spread(1e-4, 0.3)
-    law[2] = np.random.random()
+    law[1] = 0.0 if rng.random() < 0.3 else reach * _spread(rng, 1e-4, 0.3)
+    law[2] = rng.random()
     law[3], law[4], law[5], law[6] = 0.0, 20.0 * size, 1.0, 0.0
-    law[7] = total / period**2 * _spread(1e-3, 2.0)
+    law[7] = total / period**2 * _spread(rng, 1e-3, 2.0)
     for i in range(SAMPLES):
-        force[i] = size * np.random.randn()
+        force[i] = size * rng.standard_normal()
     here = 0.0
     for i in range(SAMPLES + 1):
         anchor[i] = here
-        here += 0.1 * reach * np.random.randn()
-    late = np.random.randint(3)
-    offset = 0.0 if np.random.random() < 0.4 else period * np.random.random()
-    return late, offset, period, reach * np.random.randn(), reach / period * 0.1 * np.random.randn()
+        here += 0.1 * reach * rng.standard_normal()
+    late = int(rng.random() * 3)
+    offset = 0.0 if rng.random() < 0.4 else period * rng.random()
+    return late, offset, period, reach * rng.standard_normal(), reach / period * 0.1 * rng.standard_normal()
 
 
 @njit
-def _residuals(loops, seed, worst):
+def _residuals(loops, rng, worst):
     """The largest residuals relative to the energy moved; `worst` gets the numbers of the worst loop."""
-    np.random.seed(seed)
     state, numbers, law = np.zeros(STATE_SIZE), np.zeros(9), np.zeros(8)
     force, anchor = np.zeros(SAMPLES), np.zeros(SAMPLES + 1)
     memory, work, commands = np.zeros(1), np.zeros(WORK), np.zeros(SAMPLES + 1)
@@ -85,7 +84,7 @@ def _residuals(loops, seed, worst):
     none, regular = np.empty(0), np.empty((2, 0))
     device, hand, over, faults, stops = 0.0, 0.0, 0, 0, 0.0
     for loop in range(loops):
-        late, offset, period, x, v = _draw(numbers, law, force, anchor)
+        late, offset, period, x, v = _draw(rng, numbers, law, force, anchor)
         state[:] = 0.0
         state[0], state[1] = x, v
         state[2] = np.sign(v)
@@ -130,14 +129,16 @@ def _closing(record, numbers, anchor):
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    raw = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=raw)
     parser.add_argument("--loops", type=int, default=1_000_000)
     parser.add_argument("--seed", type=int, default=0)
     arguments = parser.parse_args()
     worst = np.zeros(13)
-    _residuals(10, 1, worst)
+    _residuals(10, np.random.default_rng(1), worst)
+    rng = np.random.default_rng(arguments.seed)
     start = time.perf_counter()
-    device, hand, over, faults, stops = _residuals(arguments.loops, arguments.seed, worst)
+    device, hand, over, faults, stops = _residuals(arguments.loops, rng, worst)
     seconds = time.perf_counter() - start
     print(f"{arguments.loops:,} loops of {SAMPLES} samples in {seconds:.0f} s, {stops:,.0f} stops")
     print(f"largest residual over energy moved: device {device:.2e}, hand {hand:.2e}")
