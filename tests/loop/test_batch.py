@@ -1,0 +1,156 @@
+"""Loops side by side: the same bits as alone, on any number of threads."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.loop.side_by_side import LANES
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+PAIRS = {
+    "position": "position", "velocity": "velocity", "hand_work": "hand_work",
+    "actuator_work": "actuator_work", "viscous_loss": "viscous_loss", "coulomb_loss": "coulomb_loss",
+    "hand_source_work": "hand_source_work", "hand_damper_loss": "hand_damper_loss",
+}  # fmt: skip
+
+
+def _same(batch, trace) -> None:
+    """A loop of a batch against its trace, to the last bit."""
+    for kept, variable in PAIRS.items():
+        assert float(batch[kept]) == float(trace[variable][-1]), kept
+    assert float(batch.deepest_position) == trace.position.values.max()
+    assert float(batch.peak_actuator_force) == np.abs(trace.actuator_force.values).max()
+    assert float(batch.energy_extracted) == (-trace.hand_work.values).max()
+    assert int(batch.stops) == trace.attrs["stops"]
+    last = trace.position.values[(trace.sizes["time"] - 1) - (trace.sizes["time"] - 1) // 4 :]
+    assert float(batch.swing) == last.max() - last.min()
+
+
+@pytest.mark.parametrize("delay", [0.0, 2e-3])
+def test_plain_loops_side_by_side_have_the_bits_of_each_alone(delay: float) -> None:
+    """More loops than lanes, every parameter of the plain loop varied."""
+    count = LANES + 9
+    rng = np.random.default_rng(5)
+    vary = {
+        "environment.stiffness": rng.uniform(0, 2000, count),
+        "device.mass": rng.uniform(0.01, 0.5, count),
+        "device.damping": rng.uniform(0, 0.5, count),
+        "coulomb_friction": rng.uniform(0, 0.2, count),
+        "device.resolution": rng.choice([0.0, 22.4e-6, 1e-3], count),
+        "force_limit": rng.uniform(1, 20, count),
+        "force": rng.uniform(0.5, 5, count),
+        "encoder_phase": rng.uniform(0, 0.9, count),
+        "initial_position": rng.uniform(-5e-3, 1e-3, count),
+        "initial_velocity": rng.uniform(0, 0.4, count),
+    }
+    hand = zw.operators.ConstantForce(1.0)
+    device = PADDLE.replace(delay=delay)
+    batch = zw.simulate_batch(device, zw.Wall(1.0), hand, 0.4, vary=vary, together=True, threads=2)
+    for i in range(count):
+        own = {name.rpartition(".")[2]: float(values[i]) for name, values in vary.items()}
+        options = {key: own.pop(key) for key in ("encoder_phase", "initial_position", "initial_velocity")}
+        wall, push = zw.Wall(own.pop("stiffness")), zw.operators.ConstantForce(own.pop("force"))
+        _same(batch.isel(case=i), zw.simulate(device.replace(**own), wall, push, 0.4, **options))
+
+
+def test_loops_of_every_other_kind_have_the_bits_of_each_alone() -> None:
+    """Memory, a tied hand, a part of a sample of delay: one by one, on two threads."""
+    device = PADDLE.replace(delay=3e-4)
+    wall, hand = zw.Wall(300.0, damping=0.2), zw.operators.Finger()
+    vary = {"environment.stiffness": [200.0, 900.0], "operator.damping": [0.1, 1.0, 4.0]}
+    batch = zw.simulate_batch(device, wall, hand, 0.5, vary=vary, threads=2)
+    assert batch.sizes == {"stiffness": 2, "damping": 3}
+    for i, k in enumerate(vary["environment.stiffness"]):
+        for j, c in enumerate(vary["operator.damping"]):
+            finger = zw.operators.Finger(damping=c)
+            _same(batch.isel(stiffness=i, damping=j), zw.simulate(device, zw.Wall(k, 0.2), finger, 0.5))
+
+
+def test_threads_do_not_change_a_bit() -> None:
+    """One thread or three."""
+    vary = {"stiffness": np.linspace(50.0, 1500.0, 3 * LANES + 1)}
+    one, three = (
+        zw.simulate_batch(PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.3, vary=vary, threads=n)
+        for n in (1, 3)
+    )
+    assert one.identical(three)
+
+
+@pytest.mark.parametrize(
+    ("vary", "says"),
+    [
+        ({}, "vary needs"),
+        ({"stiffness": []}, "vary needs"),
+        ({"stifness": [1.0]}, "no parameter 'stifness'"),
+        ({"damping": [0.1]}, "ambiguous"),
+        ({"device.stiffness": [1.0]}, "no parameter 'device.stiffness'"),
+        ({"environment.stiffness": [-1.0]}, "stiffness must be"),
+        ({"device.mass": [0.0]}, "mass must be > 0"),
+    ],
+)
+def test_what_cannot_be_varied_is_refused(vary: dict, says: str) -> None:
+    """The message names the parameter."""
+    with pytest.raises(zw.InputError, match=says):
+        zw.simulate_batch(PADDLE, zw.Wall(300.0), zw.operators.Finger(), 0.1, vary=vary)
+
+
+def test_values_varied_together_are_equally_many() -> None:
+    """The message counts them."""
+    with pytest.raises(zw.InputError, match="stiffness 2, force 3"):
+        zw.simulate_batch(
+            PADDLE, zw.Wall(1.0), zw.operators.ConstantForce(1.0), 0.1,
+            vary={"stiffness": [1, 2], "force": [1, 2, 3]}, together=True,
+        )  # fmt: skip
+
+
+def test_ctrl_c_keeps_the_loops_that_are_finished() -> None:
+    """The others are NaN, and the attribute says how many are there."""
+
+    def stop(done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    vary = {"stiffness": np.linspace(50.0, 1500.0, 60 * LANES)}
+    batch = zw.simulate_batch(
+        PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 1.0, vary=vary, threads=1, progress=stop
+    )
+    finished = np.isfinite(batch.position.values)
+    assert LANES <= finished.sum() < finished.size
+    assert batch.attrs["interrupted"].startswith(f"{finished.sum()} of ")
+
+
+def test_without_a_card_the_message_says_so() -> None:
+    """No traceback out of CUDA."""
+    from numba import cuda
+
+    if cuda.is_available():
+        pytest.skip("there is a card")
+    with pytest.raises(zw.InputError, match="graphics card"):
+        zw.simulate_batch(
+            PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.1, vary={"stiffness": [100.0]}, on="gpu"
+        )
+
+
+_ON_CARD = """
+import numpy as np, zwidth as zw
+device = zw.catalogue.device("haptic-paddle").replace(delay="1.3 ms")
+wall, hand = zw.Wall(300, damping=0.1), zw.operators.Finger(start=-0.002)
+vary = {"environment.stiffness": [100.0, 700.0], "operator.stiffness": [100.0, 500.0]}
+card = zw.simulate_batch(device, wall, hand, 0.05, vary=vary, on="gpu")
+own = zw.simulate_batch(device, wall, hand, 0.05, vary=vary)
+assert np.isfinite(card.position.values).all() and (card.deepest_position > 0).all()
+for name in own.data_vars:
+    assert (card[name] == own[name]).all(), name
+"""
+
+
+def test_the_kernel_of_the_card_computes_what_the_processor_does() -> None:
+    """Thread by thread in numba's simulator of CUDA, which runs the kernel as Python."""
+    environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run([sys.executable, "-c", _ON_CARD], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

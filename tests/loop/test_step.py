@@ -1,0 +1,198 @@
+"""The exact step, alone: closed forms, stops, stiction, the ledger."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import mp, mpf, quad
+
+from zwidth.loop.free import free_response
+from zwidth.loop.plant import (
+    ACTUATOR_WORK,
+    COULOMB,
+    DIRECTION,
+    FAULT,
+    FORCE,
+    GOAL,
+    HAND_LOSS,
+    HAND_WORK,
+    POSITION,
+    SOURCE_WORK,
+    STATE_SIZE,
+    STOPS,
+    VELOCITY,
+    VISCOUS,
+    Plant,
+)
+from zwidth.loop.series import WORK
+from zwidth.loop.step import advance
+
+EPS = np.finfo(float).eps
+
+
+def _plant(**given: float) -> Plant:
+    numbers = {
+        "mass": 0.036, "hand_mass": 0.0, "damping": 0.15, "coulomb": 0.0, "stiction": 0.0,
+        "stiffness": 0.0, "hand_damping": 0.0, "lag": 0.0, "slew": 0.0,
+    }  # fmt: skip
+    return Plant(**{**numbers, **given})
+
+
+def _state(x: float = 0.0, v: float = 0.0, f: float = 0.0, goal: float | None = None) -> np.ndarray:
+    state = np.zeros(STATE_SIZE)
+    state[[POSITION, VELOCITY, DIRECTION, FORCE]] = x, v, np.sign(v), f
+    state[GOAL] = f if goal is None else goal
+    return state
+
+
+def _go(plant: Plant, state: np.ndarray, h: float, force=0.0, anchor=0.0, speed=0.0) -> np.ndarray:
+    advance(state, plant, force, anchor, speed, h, np.zeros(WORK))
+    assert state[FAULT] == 0.0
+    return state
+
+
+@pytest.mark.parametrize("z", [0.0, 1e-9, 1e-3, 0.4, 0.999999, 1.0, 1.000001, 3.7, 60.0, 900.0])
+def test_the_responses_of_a_free_mass_are_right_to_rounding(z: float) -> None:
+    """h1, h2, h3 against their integrals at 40 digits, on both sides of the change of method."""
+    t = 0.0137
+    with mp.workdps(40):
+        rate = mpf(z / t)
+        h1 = -mp.expm1(-rate * mpf(t)) / rate if rate else mpf(t)
+        h2 = quad(lambda u: -mp.expm1(-rate * u) / rate if rate else u, [0, mpf(t) / 50, t])
+        h3 = quad(lambda u: (-mp.expm1(-rate * u) / rate if rate else u) ** 2, [0, mpf(t) / 50, t])
+        for got, true in zip(free_response(z / t, t), (h1, h2, h3), strict=True):
+            assert abs(mpf(got) - true) <= 12 * EPS * true
+
+
+@pytest.mark.parametrize(
+    ("name", "stiffness", "damping"),
+    [("under", 800.0, 0.4), ("critical", 500.0, 2.0 * math.sqrt(500.0 * 0.05)), ("over", 300.0, 40.0)],
+)
+def test_the_three_ways_of_damping_meet_their_textbook_forms(name, stiffness, damping) -> None:
+    """A mass on spring and damper, let go: position and velocity after 0.01 to 40 ms."""
+    plant = _plant(mass=0.05, damping=0.0, stiffness=stiffness, hand_damping=damping)
+    for t in (1e-5, 1e-3, 7e-3, 4e-2):
+        state = _go(plant, _state(x=0.004, v=0.3), t)
+        with mp.workdps(40):
+            s, w2 = mpf(damping) / (2 * mpf(0.05)), mpf(stiffness) / mpf(0.05)
+            root = mp.sqrt(s * s - w2)
+            a, b, x0, v0 = -s + root, -s - root, mpf(0.004), mpf(0.3)
+            first = (v0 - b * x0) / (a - b)
+            second = x0 - first
+            x = mp.re(first * mp.exp(a * t) + second * mp.exp(b * t))
+            v = mp.re(a * first * mp.exp(a * t) + b * second * mp.exp(b * t))
+            assert abs(mpf(float(state[POSITION])) - x) < 4e-17, (name, t)
+            assert abs(mpf(float(state[VELOCITY])) - v) < 4e-15 * (1 + abs(b) * t), (name, t)
+
+
+def test_dry_friction_alone_stops_a_mass_after_m_v_over_f() -> None:
+    """A mass sliding against Coulomb friction stops after m v²/(2 f_c), and stays."""
+    plant = _plant(damping=0.0, coulomb=0.12, stiction=0.12)
+    state = _go(plant, _state(v=0.3), 0.2)
+    assert state[POSITION] == pytest.approx(0.036 * 0.09 / 0.24, rel=4 * EPS)
+    assert state[VELOCITY] == 0.0
+    assert state[STOPS] == 1
+    assert state[COULOMB] == pytest.approx(0.5 * 0.036 * 0.09, rel=4 * EPS)
+
+
+def test_stiction_holds_up_to_its_force_and_not_beyond() -> None:
+    """At rest a force of f_s is held; the next larger one moves the mass, against f_c only."""
+    plant = _plant(coulomb=0.1, stiction=0.25)
+    assert _go(plant, _state(), 0.01, force=0.25)[POSITION] == 0.0
+    state = _go(plant, _state(), 0.01, force=math.nextafter(0.25, 1.0))
+    free = _go(_plant(), _state(), 0.01, force=0.15)
+    assert state[POSITION] == pytest.approx(free[POSITION], rel=1e-14)
+
+
+def test_a_moving_anchor_breaks_the_mass_away_when_its_spring_reaches_the_stiction() -> None:
+    """Rest until k u t = f_s, however the stretch is cut; then motion."""
+    plant = _plant(coulomb=0.1, stiction=0.2, stiffness=100.0)
+    still = _go(plant, _state(), 0.0199, speed=0.1)
+    assert still[POSITION] == 0.0
+    assert still[STOPS] == 0
+    assert _go(plant, _state(), 0.0201, speed=0.1)[POSITION] > 0.0
+
+
+def test_a_turn_is_found_even_if_both_ends_move_the_same_way() -> None:
+    """An oscillator that turns round twice inside one stretch has two stops."""
+    plant = _plant(damping=0.01, stiffness=500.0, coulomb=0.001, stiction=0.001)
+    period = 2 * math.pi * math.sqrt(0.036 / 500.0)
+    state = _go(plant, _state(x=0.01, v=0.05), 1.003 * period)
+    assert state[STOPS] == 2
+    assert state[VELOCITY] > 0.0
+
+
+def test_a_grazing_stop_against_a_receding_force_is_no_turn() -> None:
+    """A mass whose velocity nearly touches zero goes on, and the ledger closes."""
+    plant = _plant(damping=0.0, stiffness=100.0, mass=0.01)
+    x0 = 0.01
+    speed = x0 * 100.0  # the anchor's speed lifts the lowest velocity just above 0
+    state = _go(plant, _state(x=0.0, v=speed * 1.000001), 0.02, anchor=0.0, speed=speed * 0.5000001)
+    assert state[VELOCITY] > 0.0
+
+
+_SIZES = st.floats(1e-3, 1e3)
+
+
+@settings(max_examples=400, deadline=None)
+@given(
+    h=st.floats(1e-5, 5e-2),
+    mass=st.floats(1e-3, 2.0),
+    hand_mass=st.sampled_from([0.0, 0.006, 0.3]),
+    damping=st.floats(0.0, 2.0),
+    coulomb=st.floats(0.0, 2.0),
+    extra=st.floats(0.0, 1.0),
+    stiffness=st.sampled_from([0.0, 1e-3, 30.0, 500.0, 2e4]),
+    hand_damping=st.sampled_from([0.0, 1e-3, 1.7, 30.0]),
+    drive=st.sampled_from(["ideal", "lag", "slew"]),
+    x=st.floats(-0.01, 0.01),
+    v=st.floats(-1.0, 1.0),
+    force=st.floats(-5.0, 5.0),
+    speed=st.floats(-1.0, 1.0),
+    goal=st.floats(-5.0, 5.0),
+)
+def test_both_energy_balances_close(
+    h, mass, hand_mass, damping, coulomb, extra, stiffness, hand_damping, drive, x, v, force, speed, goal
+) -> None:
+    """Whatever the plant: what goes in is stored or lost, in the device and in the hand."""
+    plant = _plant(
+        mass=mass, hand_mass=hand_mass, damping=damping, coulomb=coulomb, stiction=coulomb + extra,
+        stiffness=stiffness, hand_damping=hand_damping,
+        lag=7e-4 if drive == "lag" else 0.0, slew=900.0 if drive == "slew" else 0.0,
+    )  # fmt: skip
+    state = _go(plant, _state(x, v, 0.0 if drive != "ideal" else goal, goal), h, force, 0.002, speed)
+    kinetic = 0.5 * mass * (state[VELOCITY] ** 2 - v**2)
+    own = 0.5 * hand_mass * (state[VELOCITY] ** 2 - v**2)
+    spring = 0.5 * stiffness * ((0.002 + speed * h - state[POSITION]) ** 2 - (0.002 - x) ** 2)
+    flows = state[[HAND_WORK, ACTUATOR_WORK, VISCOUS, COULOMB, SOURCE_WORK, HAND_LOSS]]
+    stored = 0.5 * (mass + hand_mass) * v * v + 0.5 * stiffness * (0.002 - x) ** 2
+    moved = np.abs(flows).sum() + stored
+    device = kinetic - (state[HAND_WORK] + state[ACTUATOR_WORK] - state[VISCOUS] - state[COULOMB])
+    hand = state[SOURCE_WORK] - (state[HAND_WORK] + spring + state[HAND_LOSS] + own)
+    assert abs(device) <= 1e-12 * moved
+    assert abs(hand) <= 1e-12 * moved
+    assert state[[VISCOUS, COULOMB, HAND_LOSS]].min() >= -1e-18
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    h=st.floats(1e-4, 2e-2),
+    cut=st.floats(0.01, 0.99),
+    stiffness=st.sampled_from([0.0, 40.0, 3e3]),
+    lag=st.sampled_from([0.0, 3e-4]),
+    v=st.floats(-0.5, 0.5),
+    force=st.floats(-3.0, 3.0),
+    speed=st.floats(-0.3, 0.3),
+)
+def test_a_stretch_in_two_parts_ends_where_it_ends_in_one(h, cut, stiffness, lag, v, force, speed) -> None:
+    """The motion does not know how it is cut: no step error."""
+    plant = _plant(coulomb=0.12, stiction=0.17, stiffness=stiffness, hand_damping=0.8, lag=lag)
+    once = _go(plant, _state(v=v, goal=1.0 if lag else 0.0), h, force, 0.001, speed)
+    twice = _go(plant, _state(v=v, goal=1.0 if lag else 0.0), cut * h, force, 0.001, speed)
+    _go(plant, twice, h - cut * h, force, 0.001 + speed * (cut * h), speed)
+    assert abs(once[POSITION] - twice[POSITION]) < 1e-15
+    assert abs(once[VELOCITY] - twice[VELOCITY]) < 1e-12
