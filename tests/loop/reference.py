@@ -80,6 +80,7 @@ ENERGIES = (
 class Trace:
     """At every sample instant, forces just after it; energies since t = 0 [J] by name.
 
+    The hand's force is given at all but the last instant: no interval follows that one.
     `reversals` are the instants [s] when the handle came to rest or turned round, `releases`
     those when it broke loose.
     """
@@ -89,6 +90,7 @@ class Trace:
     count: list[int] = field(default_factory=list)
     commanded_force: list[mpf] = field(default_factory=list)
     actuator_force: list[mpf] = field(default_factory=list)
+    hand_force: list[mpf] = field(default_factory=list)
     energy: dict[str, list[mpf]] = field(default_factory=lambda: {name: [] for name in ENERGIES})
     reversals: list[mpf] = field(default_factory=list)
     releases: list[mpf] = field(default_factory=list)
@@ -342,6 +344,15 @@ class _Run:
             self.energy[name] += joules
         self.x, self.v, self.actuator, self.time = x_end, v(s), actuator(s), self.time + s
 
+    def hand_force(self, force: mpf, anchor: mpf, speed: mpf) -> mpf:
+        """f_h now, the hand's mass accelerated by what is left of the forces."""
+        loop = self.loop
+        pull = force + loop.hand_stiffness * (anchor - self.x) + loop.hand_damping * (speed - self.v)
+        net = pull - (self.actuator if loop.lag or loop.slew else self.target)
+        way = self.way or (int(mp.sign(net)) if abs(net) > self.breakaway else 0)
+        left = net - way * mpf(loop.coulomb) - loop.damping * self.v if way else mpf(0)
+        return pull - loop.hand_mass * left / (mpf(loop.mass) + loop.hand_mass)
+
     def record(self, count: int, command: mpf) -> None:
         """Write the present state down."""
         trace, jumps = self.trace, not (self.loop.lag or self.loop.slew)
@@ -379,6 +390,7 @@ def _interval(run: _Run, k: int, command: mpf | None, rest: mpf) -> None:
     force = mpf(loop.force[k]) if loop.force else mpf(0)
     x_a, x_b = (mpf(loop.anchor[k]), mpf(loop.anchor[k + 1])) if loop.anchor else (mpf(0), mpf(0))
     speed = (x_b - x_a) / period
+    run.trace.hand_force.append(run.hand_force(force, x_a, speed))
     if rest:
         run.advance(k * period + rest, force, x_a + speed * rest, speed)
         if command is not None:
