@@ -1,0 +1,182 @@
+"""The simulator against the same loops at sixty digits: every sample of one second."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from mpmath import mpf
+from reference import Loop, simulate
+
+import zwidth as zw
+from zwidth.operator import LinearHand, Operator, Signals
+
+POSITION = 1e-14
+"""Largest error of a position [m]."""
+
+VELOCITY = 1e-12
+"""Largest error of a velocity [m/s]."""
+
+FORCE = 1e-12
+"""Largest error of a force [N]."""
+
+ENERGY = 1e-12
+"""Largest error of an energy, as a part of the work done by hand and actuator."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given(Operator):
+    """The hand of a `Loop`."""
+
+    loop: Loop
+
+    @property
+    def hand(self):
+        return LinearHand(self.loop.hand_mass, self.loop.hand_stiffness, self.loop.hand_damping)
+
+    def signals(self, times):
+        force, anchor = np.array(self.loop.force), np.array(self.loop.anchor)
+        return Signals(force=force, anchor=anchor if len(anchor) else None)
+
+    def describe(self, motion="linear"):
+        return "as given"
+
+
+def pushed(samples, period, mean=1.0, swing=0.5):
+    """F_k, a push that swings at 5 Hz [N]."""
+    return [mean + swing * math.sin(2 * math.pi * 5 * k * period) for k in range(samples)]
+
+
+def moved(samples, period, middle, swing, frequency):
+    """x_a at the samples, swinging [m]."""
+    return [middle + swing * math.sin(2 * math.pi * frequency * k * period) for k in range(samples + 1)]
+
+
+PADDLE = Loop(
+    mass=0.036,
+    damping=0.15,
+    coulomb=0.12,
+    period=0.001,
+    resolution=22.4e-6,
+    wall_stiffness=300.0,
+    position=-0.01,
+    force=pushed(1000, 0.001),
+)
+FINGER = replace(
+    PADDLE,
+    hand_mass=0.006,
+    hand_stiffness=500.0,
+    hand_damping=2.0,
+    force=pushed(1000, 0.001, 0.0, 0.1),
+    anchor=moved(1000, 0.001, 0.002, 0.004, 2.3),
+    position=-0.0031,
+)
+BALL = replace(
+    FINGER,
+    mass=0.35,
+    coulomb=0.2,
+    damping=0.5,
+    period=0.01,
+    wall_stiffness=2000.0,
+    hand_damping=4.0,
+    force=pushed(100, 0.01, 0.0, 0.1),
+    anchor=moved(100, 0.01, -0.001, 0.01, 3.0),
+    position=-0.011,
+)
+
+LOOPS = {
+    "paddle": PADDLE,
+    "finger": FINGER,
+    "dowel": replace(PADDLE, wall_stiffness=770.0, hand_mass=0.0049, phase=0.37),
+    "critical damping": replace(FINGER, hand_damping=math.sqrt(4 * 0.042 * 500.0) - 0.15),
+    "overdamped": replace(FINGER, hand_damping=25.0, wall_damping=0.1),
+    "no damping": replace(FINGER, damping=0.0, hand_damping=0.0, stiction=0.15),
+    "no viscous friction": replace(PADDLE, damping=0.0, coulomb=0.2),
+    "stiction": replace(FINGER, stiction=0.2, phase=0.81),
+    "short delay": replace(FINGER, delay=0.0003, wall_stiffness=200.0),
+    "long delay": replace(FINGER, delay=0.0014, wall_stiffness=100.0),
+    "lag": replace(FINGER, lag=0.0002),
+    "slew": replace(PADDLE, slew=800.0, force_limit=3.0, stiction=0.15),
+    "slew in the hand": replace(FINGER, slew=150.0, force_limit=2.0, delay=0.0003),
+    "coarse converter": replace(PADDLE, converter_step=0.01, stiction=0.2),
+    "bouncing": BALL,
+}
+
+
+def simulated(loop):
+    """The same loop by `zw.simulate`."""
+    known = {"force_limit": loop.force_limit, "force_resolution": loop.converter_step}
+    if loop.slew:
+        known |= {
+            "current_limit": 1.0,
+            "supply_voltage": loop.slew / loop.force_limit,
+            "motor_inductance": 1.0,
+        }
+    device = zw.Device(
+        mass=loop.mass,
+        damping=loop.damping,
+        coulomb_friction=loop.coulomb,
+        stiction=loop.stiction,
+        resolution=loop.resolution,
+        sample_period=loop.period,
+        delay=loop.delay,
+        **{key: value for key, value in known.items() if value},
+    )
+    amplifier = zw.amplifiers.CurrentAmplifier()
+    if loop.slew:
+        amplifier = zw.amplifiers.VoltageLimited()
+    if loop.lag:
+        amplifier = zw.amplifiers.FirstOrderLag(loop.lag)
+    return zw.simulate(
+        device,
+        zw.Wall(stiffness=loop.wall_stiffness, damping=loop.wall_damping),
+        operator=Given(loop=loop),
+        duration=round(len(loop.force) * loop.period, 9),
+        initial_position=loop.position,
+        initial_velocity=loop.velocity,
+        encoder_phase=loop.phase,
+        amplifier=amplifier,
+    )
+
+
+def largest(got, expected):
+    """The largest difference, taken at the reference's digits."""
+    return max(abs(float(mpf(float(a)) - b)) for a, b in zip(got, expected, strict=True))
+
+
+def states(loop, trace):
+    """What the masses and the spring store, by the names of the simulator."""
+    anchor = loop.anchor or [0.0] * len(trace.position)
+    stretch = [mpf(a) - x for a, x in zip(anchor, trace.position, strict=True)]
+    return {
+        "kinetic_energy": [mpf(loop.mass) / 2 * v**2 for v in trace.velocity],
+        "hand_kinetic_energy": [mpf(loop.hand_mass) / 2 * v**2 for v in trace.velocity],
+        "hand_spring_energy": [mpf(loop.hand_stiffness) / 2 * d**2 for d in stretch],
+    }
+
+
+def moved_energy(trace):
+    """What hand and actuator did over the second, every sample counted with its size [J]."""
+    works = (trace.energy["hand_work"], trace.energy["actuator_work"])
+    return sum(float(abs(b - a)) for work in works for a, b in pairwise(work))
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_every_sample_is_right(name):
+    """Positions to 1e-14 m, energies to 1e-12 of the work done, and every encoder count, over 1 s."""
+    loop = LOOPS[name]
+    expected, trace = simulate(loop, len(loop.force)), simulated(loop)
+    counts = np.rint(trace.measured_position.values / loop.resolution)
+    assert counts.tolist() == expected.count
+    assert trace.attrs["stops"] == len(expected.reversals) >= 5
+    assert largest(trace.position.values, expected.position) <= POSITION
+    assert largest(trace.velocity.values, expected.velocity) <= VELOCITY
+    assert largest(trace.commanded_force.values, expected.commanded_force) <= FORCE
+    assert largest(trace.actuator_force.values, expected.actuator_force) <= FORCE
+    assert largest(trace.hand_force.values[:-1], expected.hand_force) <= FORCE
+    bound = ENERGY * moved_energy(expected)
+    for quantity, joules in (expected.energy | states(loop, expected)).items():
+        assert largest(trace[quantity].values, joules) <= bound, quantity
