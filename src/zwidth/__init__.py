@@ -25,9 +25,8 @@ from zwidth.rendering import VirtualCoupling
 if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.device import amplifier as amplifiers
-    from zwidth.loop.batch import simulate_batch
-    from zwidth.loop.simulate import simulate
     from zwidth.loop.timing import Timing
+    from zwidth.traces import compare_traces, load_trace, simulate, simulate_batch
 
 __all__ = [
     "BackwardDifference",
@@ -55,6 +54,8 @@ __all__ = [
     "catalogue",
     "check",
     "closed_forms",
+    "compare_traces",
+    "load_trace",
     "operators",
     "quantization",
     "rotary",
@@ -66,8 +67,10 @@ _LATER = {
     "Timing": "zwidth.loop.timing",
     "amplifiers": "zwidth.device.amplifier",
     "operators": "zwidth.operator",
-    "simulate": "zwidth.loop.simulate",
-    "simulate_batch": "zwidth.loop.batch",
+    "compare_traces": "zwidth.traces",
+    "load_trace": "zwidth.traces",
+    "simulate": "zwidth.traces",
+    "simulate_batch": "zwidth.traces",
 }
 """Where a name is found when it is first used: the simulator's libraries take their time to load."""
 

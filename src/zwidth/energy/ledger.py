@@ -1,0 +1,144 @@
+"""The energy ledger of a trace: two balances that must close.
+
+    device   ΔE_k = W_h + W_a − E_b − E_c
+    hand     W_s = W_h + ΔE_s + E_d + ΔE_m
+
+W_h is what the hand puts into the device through the port.  A loop is passive
+if W_h(t) + E(0) ≥ 0 for every hand and every t (Colgate & Schenkel 1997), with
+E(0) what the device holds at first.  So a hand that at some instant has
+
+    −W_h(t) > E(0)
+
+has got out more than there was: the loop was active under it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_ROWS = {
+    "hand_work": "the hand put into the device",
+    "actuator_work": "the actuator put into the device",
+    "viscous_loss": "lost in viscous friction",
+    "coulomb_loss": "lost in Coulomb friction",
+    "kinetic_energy": "kinetic energy gained",
+    "hand_source_work": "the muscles put into the hand",
+    "hand_spring_energy": "spring of the hand gained",
+    "hand_damper_loss": "lost in the hand's damper",
+    "hand_kinetic_energy": "kinetic energy of the hand's mass gained",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Ledger:
+    """What crossed the port, what was stored and what was lost, from sample 0 on.
+
+    Parameters
+    ----------
+    trace
+        A trace as `zwidth.simulate` returns it.
+    """
+
+    trace: xr.Dataset
+
+    def _change(self, name: str) -> Array:
+        values = self.trace[name].values
+        return np.asarray(values - values[0], dtype=np.float64)
+
+    @cached_property
+    def residual(self) -> Array:
+        """W_h + W_a − E_b − E_c − ΔE_k at every instant [J]: 0 but for rounding."""
+        c = self._change
+        given = c("hand_work") + c("actuator_work")
+        return given - c("viscous_loss") - c("coulomb_loss") - c("kinetic_energy")
+
+    @cached_property
+    def hand_residual(self) -> Array:
+        """W_s − W_h − ΔE_s − E_d − ΔE_m at every instant [J]: 0 but for rounding."""
+        c = self._change
+        kept = c("hand_spring_energy") + c("hand_damper_loss") + c("hand_kinetic_energy")
+        return c("hand_source_work") - c("hand_work") - kept
+
+    @cached_property
+    def moved(self) -> float:
+        """The energy moved: every variable's largest change, summed [J]; the measure of a residual."""
+        return float(sum(np.abs(self._change(name)).max() for name in _ROWS))
+
+    @property
+    def closes(self) -> bool:
+        """True when both balances close to 1e-12 of the energy moved."""
+        worst = max(np.abs(self.residual).max(), np.abs(self.hand_residual).max())
+        return bool(worst <= 1e-12 * self.moved)
+
+    @cached_property
+    def extracted(self) -> float:
+        """max(−W_h) − E(0) at an instant of the trace [J]: > 0 only if the loop was active.
+
+        E(0) is the kinetic energy at the start. A hand that begins inside the
+        wall finds what the law has stored there as well: begin outside, or read
+        the figure with that in mind.
+        """
+        start = float(self.trace["kinetic_energy"].values[0])
+        return float(-self._change("hand_work").min() - start)
+
+    @property
+    def totals(self) -> dict[str, float]:
+        """The change of each energy from the first instant to the last [J]."""
+        return {name: float(self._change(name)[-1]) for name in _ROWS}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Totals and residuals, units in the keys."""
+        result: dict[str, Any] = {f"{name}_J": value for name, value in self.totals.items()}
+        result["energy_extracted_J"] = self.extracted
+        result["largest_residual_J"] = float(np.abs(self.residual).max())
+        result["largest_hand_residual_J"] = float(np.abs(self.hand_residual).max())
+        result["energy_moved_J"] = self.moved
+        return result
+
+    def rows(self) -> list[tuple[str, float]]:
+        """What people read: each total in words [J]; the hand's own only where it has any."""
+        totals = self.totals
+        own = any(totals[name] for name in ("hand_spring_energy", "hand_damper_loss", "hand_kinetic_energy"))
+        shown = [name for name in _ROWS if own or not name.startswith("hand_") or name == "hand_work"]
+        rows = [(_ROWS[name], totals[name]) for name in shown]
+        worst = float(max(np.abs(self.residual).max(), np.abs(self.hand_residual).max()))
+        return [*rows, ("does not add up by, at most", worst), ("the hand got out at most", self.extracted)]
+
+    def __repr__(self) -> str:
+        seconds = float(self.trace["time"].values[-1] - self.trace["time"].values[0])
+        lines = [f"Energy over {seconds:g} s [J]"]
+        lines += [f"  {text:<42} {value: .6e}" for text, value in self.rows()]
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{text}</td><td style='text-align:right'>{value:.6e}</td></tr>"
+            for text, value in self.rows()
+        )
+        return f"<table><thead><tr><th>energy</th><th>J</th></tr></thead><tbody>{rows}</tbody></table>"
+
+
+def ledger(trace: xr.Dataset) -> Ledger:
+    """The ledger of a trace.
+
+    Raises
+    ------
+    InputError
+        If the Dataset lacks one of the energies: it is no trace.
+    """
+    missing = [name for name in _ROWS if name not in trace]
+    if missing:
+        raise InputError(f"this Dataset is no trace: it lacks {', '.join(missing)}")
+    return Ledger(trace)

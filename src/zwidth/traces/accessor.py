@@ -1,0 +1,61 @@
+"""`trace.zwidth`: the ledger, the plot, the files and the sound of a trace."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from zwidth.energy import Ledger, ledger
+from zwidth.errors import InputError
+from zwidth.loop.trace import FORMAT
+from zwidth.traces.files import save_trace
+from zwidth.traces.sound import save_sound
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@xr.register_dataset_accessor("zwidth")  # type: ignore[no-untyped-call]
+class TraceAccessor:
+    """What zwidth adds to the Dataset of a trace.
+
+    Raises
+    ------
+    InputError
+        If the Dataset is no trace.
+    """
+
+    def __init__(self, trace: xr.Dataset) -> None:
+        if trace.attrs.get("format") != FORMAT:
+            raise InputError(
+                f"this Dataset is no zwidth trace: its attribute format is {trace.attrs.get('format')!r}, "
+                f"not {FORMAT!r}; traces come from zwidth.simulate and zwidth.load_trace"
+            )
+        self._trace = trace
+
+    @property
+    def energy(self) -> Ledger:
+        """The energy ledger."""
+        return ledger(self._trace)
+
+    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
+        """Position, force and energy against time, as the papers draw them; saved if a path is given."""
+        from zwidth.plots.trace import trace_figure  # matplotlib takes its time
+        from zwidth.traces.files import writing_whole
+
+        figure = trace_figure(self._trace)
+        if path is not None:
+            with writing_whole(Path(path)) as unfinished:
+                figure.savefig(unfinished, dpi=150, format=Path(path).suffix.lstrip(".").lower() or "png")
+        return figure
+
+    def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
+        """Save as .nc, .parquet or .csv, see `save_trace`."""
+        save_trace(self._trace, path, force=force)
+
+    def sound(self, path: str | PathLike[str], *, force: bool = False) -> None:
+        """Save the actuator force as sound, see `save_sound`."""
+        save_sound(self._trace, path, force=force)

@@ -1,0 +1,232 @@
+"""Traces in files, and back: NetCDF, Parquet, CSV; the same numbers, to the last bit.
+
+NetCDF keeps units and names as attributes.  Parquet and CSV carry the unit in
+the name of each column, `position_m`, and the attributes of the trace as JSON:
+Parquet in the metadata of its schema, CSV in its first line after a `#`.
+
+A file is written beside its place under another name and put there when it is
+whole: a full disk or a Ctrl-C leaves neither half a file nor the loss of an old one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from zwidth.errors import InputError
+from zwidth.loop.trace import FORMAT, UNITS, VARIABLES
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_KEYS = {"m/s": "m_per_s", "rad/s": "rad_per_s", "N*m": "N_m"}
+
+
+def save_trace(trace: xr.Dataset, path: str | PathLike[str], *, force: bool = False) -> None:
+    """Save a trace; the suffix says how.
+
+    Parameters
+    ----------
+    trace
+        As `zwidth.simulate` returns it.
+    path
+        Ends in .nc, .parquet or .csv.
+    force
+        Replace a file that exists.
+
+    Raises
+    ------
+    InputError
+        If the suffix is another, the file exists, or it cannot be written; then there is no file.
+    """
+    target = Path(path)
+    write, _ = _format(target)
+    _refuse_foreign(trace, "this Dataset")
+    check_target(target, force)
+    with writing_whole(target) as unfinished:
+        write(trace, unfinished)
+
+
+def load_trace(path: str | PathLike[str]) -> xr.Dataset:
+    """The trace in a file that `save_trace` wrote, equal to the one saved.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it holds no whole trace.
+    """
+    source = Path(path)
+    _, read = _format(source)
+    if not source.is_file():
+        raise InputError(f"{source} cannot be read: there is no such file")
+    try:
+        trace = read(source)
+    except InputError:
+        raise
+    except Exception as error:  # what the libraries raise on foreign bytes is not documented
+        raise InputError(f"{source} holds no trace that can be read: {_first_line(error)}") from None
+    _refuse_foreign(trace, str(source))
+    return trace
+
+
+def check_target(path: Path, force: bool) -> None:
+    """Refuse a place where nothing can be written, or a file would be lost.
+
+    Raises
+    ------
+    InputError
+        If so.
+    """
+    if path.is_dir():
+        raise InputError(f"{path} is a directory; name a file")
+    if path.exists() and not force:
+        raise InputError(f"{path} exists; choose another name, or give force=True to replace it")
+    if not path.parent.is_dir():
+        raise InputError(f"{path} cannot be written: there is no directory {path.parent}")
+
+
+@contextmanager
+def writing_whole(path: Path) -> Iterator[Path]:
+    """A name to write to; what is there at the end takes the place of `path`.
+
+    Raises
+    ------
+    InputError
+        If writing fails for a reason of the disk; nothing is then left behind.
+    """
+    unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        yield unfinished
+        with open(unfinished, "rb+") as file:
+            os.fsync(file.fileno())  # a full disk may show only here
+        os.replace(unfinished, path)
+    except OSError as error:
+        reason = error.strerror or _first_line(error)
+        raise InputError(f"{path} cannot be written: {reason}; nothing was left there") from None
+    finally:
+        with suppress(OSError):
+            unfinished.unlink()
+
+
+def column_name(variable: str, unit: str) -> str:
+    """The name of a column with its unit: position_m."""
+    return f"{variable}_{_KEYS.get(unit, unit)}"
+
+
+def _format(path: Path) -> tuple[Callable[[xr.Dataset, Path], None], Callable[[Path], xr.Dataset]]:
+    formats = {
+        ".nc": (_write_netcdf, _read_netcdf),
+        ".parquet": (_write_parquet, _read_parquet),
+        ".csv": (_write_csv, _read_csv),
+    }
+    if path.suffix.lower() not in formats:
+        raise InputError(f"a trace is a file that ends in {', '.join(formats)}, got {str(path)!r}")
+    return formats[path.suffix.lower()]
+
+
+def _refuse_foreign(trace: xr.Dataset, what: str) -> None:
+    if trace.attrs.get("format") != FORMAT or "time" not in trace.coords:
+        raise InputError(f"{what} is no zwidth trace: its attribute format is not {FORMAT!r}")
+    missing = [name for name in VARIABLES if name not in trace and name != "anchor_position"]
+    if missing:
+        raise InputError(f"{what} is no whole zwidth trace: it lacks {', '.join(missing)}")
+
+
+def _write_netcdf(trace: xr.Dataset, path: Path) -> None:
+    trace.to_netcdf(path, engine="h5netcdf")
+
+
+def _read_netcdf(path: Path) -> xr.Dataset:
+    with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
+        trace: xr.Dataset = file.load()
+    for name in trace.variables:
+        trace[name].encoding.clear()
+    trace.encoding.clear()
+    plain = {k: v.item() if isinstance(v, np.generic) else v for k, v in trace.attrs.items()}
+    return trace.assign_attrs(plain)
+
+
+def _columns(trace: xr.Dataset) -> dict[str, NDArray[Any]]:
+    columns: dict[str, NDArray[Any]] = {"time_s": trace["time"].values}
+    for name in VARIABLES:
+        if name in trace:
+            columns[column_name(name, trace[name].attrs["units"])] = trace[name].values
+    columns["sampled"] = trace["sampled"].values
+    return columns
+
+
+def _from_columns(columns: dict[str, Any], attributes: dict[str, Any], source: Path) -> xr.Dataset:
+    motion = attributes.get("motion")
+    if attributes.get("format") != FORMAT or motion not in UNITS:
+        raise InputError(f"{source} holds no zwidth trace: its attributes are not there")
+    units = (*UNITS[motion], "J")
+    variables = {}
+    for name, variable in VARIABLES.items():
+        unit = units[variable.kind]
+        key = column_name(name, unit)
+        if key in columns:
+            labels = {"units": unit, "long_name": variable.long_name, "symbol": variable.symbol}
+            variables[name] = ("time", np.asarray(columns[key], dtype=np.float64), labels)
+    about = {"units": "s", "long_name": "time since sample 0", "symbol": "t"}
+    coordinates = {
+        "time": ("time", np.asarray(columns["time_s"], dtype=np.float64), about),
+        "sampled": ("time", np.asarray(columns["sampled"]) != 0, {"long_name": _SAMPLED}),
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+_SAMPLED = "a sample is taken at this instant"
+
+
+def _write_parquet(trace: xr.Dataset, path: Path) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    table = pa.table(_columns(trace)).replace_schema_metadata({"zwidth": json.dumps(trace.attrs)})
+    pq.write_table(table, path)
+
+
+def _read_parquet(path: Path) -> xr.Dataset:
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(path)
+    attributes = json.loads((table.schema.metadata or {}).get(b"zwidth", b"{}"))
+    return _from_columns({name: table[name].to_numpy() for name in table.column_names}, attributes, path)
+
+
+def _write_csv(trace: xr.Dataset, path: Path) -> None:
+    columns = _columns(trace)
+    columns["sampled"] = columns["sampled"].astype(np.int64)
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        file.write(f"# {json.dumps(trace.attrs, ensure_ascii=False)}\n")
+        file.write(",".join(columns) + "\n")
+        for row in zip(*(values.tolist() for values in columns.values()), strict=True):
+            file.write(",".join(map(repr, row)) + "\n")  # repr: the shortest text with the same bits
+
+
+def _read_csv(path: Path) -> xr.Dataset:
+    with open(path, encoding="utf-8") as file:
+        first, header = file.readline(), file.readline().strip().split(",")
+        if not first.startswith("# {"):
+            raise InputError(
+                f"{path} holds no zwidth trace: its first line is not '# {{…}}' with the attributes"
+            )
+        attributes = json.loads(first[2:])
+        rows = np.loadtxt(file, delimiter=",", ndmin=2)
+    if rows.shape[1] != len(header):
+        raise InputError(f"{path} is not whole: {len(header)} names for {rows.shape[1]} columns")
+    return _from_columns(dict(zip(header, rows.T, strict=True)), attributes, path)
+
+
+def _first_line(error: BaseException) -> str:
+    return (str(error) or type(error).__name__).splitlines()[0][:200]

@@ -1,0 +1,58 @@
+"""A progress bar on standard error, for a person who has waited over a second."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+PATIENCE = 1.0
+"""Seconds before the bar appears."""
+
+
+@contextmanager
+def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A function to be told (done, in all); it draws nothing where nobody watches.
+
+    Parameters
+    ----------
+    what
+        What is counted, such as "samples".
+    """
+    if not sys.stderr.isatty():
+        yield lambda done, total: None
+        return
+    bar = _Bar(what)
+    try:
+        yield bar.tell
+    finally:
+        bar.close()
+
+
+class _Bar:
+    def __init__(self, what: str) -> None:
+        self._what = what
+        self._start = time.monotonic()
+        self._bar: Progress | None = None
+
+    def tell(self, done: int, total: int) -> None:
+        if self._bar is None:
+            if time.monotonic() - self._start < PATIENCE or done >= total:
+                return
+            from rich.console import Console  # only for those who wait
+            from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
+
+            columns = (BarColumn(), MofNCompleteColumn(), self._what, TimeRemainingColumn())
+            self._bar = Progress(*columns, console=Console(stderr=True), transient=True)
+            self._bar.start()
+            self._bar.add_task("", total=total)
+        self._bar.update(self._bar.task_ids[0], completed=done)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.stop()
