@@ -121,6 +121,30 @@ def _verify(arguments: argparse.Namespace) -> int:
     return 0 if verification.valid else 1
 
 
+def _configure_simulate(parser: argparse.ArgumentParser) -> None:
+    from zwidth.cli.simulation import configure_simulate  # knows the hands, which load numpy
+
+    configure_simulate(parser)
+
+
+def _simulate(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.simulation import run_simulate
+
+    return run_simulate(arguments)
+
+
+def _configure_traces(parser: argparse.ArgumentParser) -> None:
+    from zwidth.cli.simulation import configure_traces
+
+    configure_traces(parser)
+
+
+def _traces(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.simulation import run_traces
+
+    return run_traces(arguments)
+
+
 COMMANDS: Mapping[str, Command] = MappingProxyType(
     {
         "check": Command(
@@ -136,6 +160,25 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth check --damping 0.2 --rate '2 kHz' --stiffness 500 --virtual-damping 0.05",
             _configure_check,
             _check,
+        ),
+        "simulate": Command(
+            "what happens when a hand touches the wall?",
+            "Simulate a hand on the device, without time-step error: positions, forces, every joule.",
+            "A plain number is SI; others carry a unit, as in --duration '2 s' or --operator.force '4 N'.\n\n"
+            "exit status: 0 simulated, 2 bad input, 130 interrupted (what was finished is kept)\n\n"
+            "examples:\n"
+            "  zwidth simulate haptic-paddle --stiffness 770 --operator dowel --duration 2 --plot touch.png\n"
+            "  zwidth simulate haptic-paddle --stiffness 300 --operator malicious --duration 1 -o touch.nc\n"
+            "  zwidth simulate my-wheel.toml my-touch.toml --sound buzz.wav",
+            _configure_simulate,
+            _simulate,
+        ),
+        "traces": Command(
+            "compare saved touches",
+            "Read traces that zwidth simulate saved, and set their numbers beside each other.",
+            "example:\n  zwidth traces finger.nc dowel.nc --plot both.png",
+            _configure_traces,
+            _traces,
         ),
         "devices": Command(
             "the catalogue of real devices, each value with its source",

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from zwidth.cli.environments import TYPES, option_keys
@@ -87,20 +87,22 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
     environment = parser.add_argument_group(
         "environment", f"a key of the environment behind a coupling is written --{BEHIND}stiffness, …"
     )
-    for parameter in device_parameters():
-        _add(device, parameter)
+    add_all(device, device_parameters())
     for parameter in environment_parameters():
-        _add(environment, parameter)
         inner = parameter._replace(key=BEHIND + parameter.key, help=argparse.SUPPRESS)
-        _add(environment, inner)
+        add_all(environment, (parameter, inner))
 
 
 def overrides(arguments: argparse.Namespace) -> dict[str, str]:
     """The parameters that were given, by key, as typed."""
-    given = vars(arguments)
     keys = [p.key for p in (*device_parameters(), *environment_parameters())]
-    every = (*keys, *(BEHIND + key for key in keys))
-    return {key: given[_dest(key)] for key in every if given.get(_dest(key)) is not None}
+    return given(arguments, (*keys, *(BEHIND + key for key in keys)))
+
+
+def given(arguments: argparse.Namespace, keys: Iterable[str]) -> dict[str, str]:
+    """Those of the keys that were given, with their values as typed."""
+    values = vars(arguments)
+    return {key: values[_dest(key)] for key in keys if values.get(_dest(key)) is not None}
 
 
 def joined(arguments: Sequence[str]) -> list[str]:
@@ -115,14 +117,16 @@ def joined(arguments: Sequence[str]) -> list[str]:
     return result
 
 
-def _add(group: Any, parameter: Parameter) -> None:
-    group.add_argument(
-        parameter.option,
-        dest=_dest(parameter.key),
-        metavar=parameter.metavar,
-        action=Once,
-        help=parameter.help.replace("%", "%%"),
-    )
+def add_all(group: Any, parameters: Iterable[Parameter]) -> None:
+    """Give a group of options these parameters."""
+    for parameter in parameters:
+        group.add_argument(
+            parameter.option,
+            dest=_dest(parameter.key),
+            metavar=parameter.metavar,
+            action=Once,
+            help=parameter.help.replace("%", "%%"),
+        )
 
 
 def _dest(key: str) -> str:

@@ -36,6 +36,10 @@ ROTARY_KEYS = {"inertia": "kg*m^2", "counts_per_turn": "1", "handle_radius": "m"
 DEVICE_KEYS = (*catalogue.PROPERTIES, *ROTARY_KEYS, "motion", "name", "catalogue")
 """The keys of a [device] table."""
 
+LOOP_TABLES = ("device", "environment")
+TABLES = (*LOOP_TABLES, "operator", "simulation")
+"""The tables of a specification: of a loop, and of a touch to simulate."""
+
 _ONE_OF = (("rate", "sample_period"), ("resolution", "counts_per_turn"))
 """Two ways to say the same: overriding one puts the other aside."""
 
@@ -65,7 +69,17 @@ def load(sources: Sequence[Path | str], overrides: Mapping[str, str] | None = No
     InputError
         If anything cannot be used: it says where it stands and what is allowed.
     """
-    tables = _tables(sources)
+    return specified(read_tables(sources), overrides)
+
+
+def specified(tables: Mapping[str, Table], overrides: Mapping[str, str] | None = None) -> Specification:
+    """The device and the environment of tables, as `load` reads them.
+
+    Raises
+    ------
+    InputError
+        As `load`.
+    """
     names = {key.replace("-", "_"): value for key, value in (overrides or {}).items()}
     device_names = {key: value for key, value in names.items() if key in DEVICE_KEYS}
     environment_names = {key: value for key, value in names.items() if key not in DEVICE_KEYS}
@@ -122,10 +136,17 @@ def _catalogue_device(table: Table, arguments: Mapping[str, Any], turning: list[
         return catalogue.device(table.text("catalogue"), **arguments)
 
 
-def _tables(sources: Sequence[Path | str]) -> dict[str, Table]:
+def read_tables(sources: Sequence[Path | str], kinds: Sequence[str] = LOOP_TABLES) -> dict[str, Table]:
+    """The tables in files, by kind.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read or has a table that is not of these kinds.
+    """
     tables: dict[str, Table] = {}
     for source in sources:
-        for kind, table in _read(source).items():
+        for kind, table in _read(source, kinds).items():
             if kind in tables:
                 raise InputError(
                     f"both {tables[kind].label} and {table.label} give the {kind}; "
@@ -135,19 +156,19 @@ def _tables(sources: Sequence[Path | str]) -> dict[str, Table]:
     return tables
 
 
-def _read(source: Path | str) -> dict[str, Table]:
+def _read(source: Path | str, kinds: Sequence[str]) -> dict[str, Table]:
     if str(source) in catalogue.names():
         return {"device": Table(str(source), {"catalogue": str(source)})}
     name = _shown(source)
     content = _parse(_text(source), name)
     for key, value in content.items():
-        if key not in ("device", "environment"):
-            hint = suggestion(key, ["device", "environment"])
+        if key not in kinds:
+            hint = "it is for zwidth simulate" if key in TABLES else suggestion(key, kinds)
             raise InputError(f"{name}: there is no table or key {quoted(key)} in a specification; {hint}")
         if not isinstance(value, dict):
             raise InputError(f"{name}: {key} is a table, written [{key}] above its keys")
     if not content:
-        raise InputError(f"{name}: the file has neither a [device] nor an [environment] table")
+        raise InputError(f"{name}: the file has none of the tables {', '.join(f'[{k}]' for k in kinds)}")
     if "device" in content and "name" not in content["device"] and "catalogue" not in content["device"]:
         content["device"]["name"] = Path(source).stem
     return {key: Table(f"{name}: [{key}]", value) for key, value in content.items()}

@@ -91,7 +91,7 @@ class Ledger:
         the figure with that in mind.
         """
         start = float(self.trace["kinetic_energy"].values[0])
-        return float(-self._change("hand_work").min() - start)
+        return float(-self._change("hand_work").min() - start) + 0.0  # no negative zero
 
     @property
     def totals(self) -> dict[str, float]:

@@ -34,6 +34,12 @@ def _discard_stale(folder: Path) -> None:
 
 _discard_stale(Path(__file__).parent)
 
+
+def is_compiled() -> bool:
+    """True where the simulator has been compiled before and is kept on disk."""
+    return any((Path(__file__).parent / "__pycache__").glob("*.nbi"))
+
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 

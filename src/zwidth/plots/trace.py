@@ -51,7 +51,7 @@ _COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY, BLACK, GREY)
 @rc_context(LOOK)
 def trace_figure(trace: xr.Dataset) -> Figure:
     """Position, forces and energy of one trace, one above the other."""
-    figure = new_figure(7.2, 6.6)
+    figure = new_figure(8.4, 6.6)
     above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(1.15, 1, 1))
     draw_position(above, trace)
     draw_forces(middle, trace)
@@ -103,7 +103,7 @@ def draw_position(axes: Axes, trace: xr.Dataset) -> None:
     axes.axhline(0, color=GREY, lw=0.8)
     axes.set_ylabel(f"position [{unit}]\n(wall shaded)")
     if len(axes.get_lines()) > 2:
-        axes.legend(loc="best")
+        _legend(axes)
 
 
 def draw_forces(axes: Axes, trace: xr.Dataset) -> None:
@@ -117,7 +117,7 @@ def draw_forces(axes: Axes, trace: xr.Dataset) -> None:
     axes.plot(*thinned(time, actuator * factor), color=PURPLE, lw=1.2, label="actuator, out of it", **steps)
     axes.axhline(0, color=GREY, lw=0.8)
     axes.set_ylabel(f"force [{unit}]")
-    axes.legend(loc="best")
+    _legend(axes)
 
 
 def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
@@ -136,11 +136,16 @@ def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
         axes.plot(*thinned(time, curves[name] * factor), color=colour, lw=1.3, label=text)
     axes.axhline(0, color=GREY, lw=0.8)
     axes.set_ylabel(f"energy [{unit}]")
-    axes.legend(loc="best", ncols=2)
-    out = ledger(trace).extracted
-    if out > 1e-12 * ledger(trace).moved:
+    _legend(axes)
+    out, outside = ledger(trace).extracted, not trace["measured_position"].values[0] > 0
+    if outside and out > 1e-12 * ledger(trace).moved:
         f, u = scale([out], "J")
         axes.set_title(f"the hand got out {number(out * f)} {u}: this loop is active", color=RED)
+
+
+def _legend(axes: Axes) -> None:
+    """Beside the axes: curves that swing leave no room inside."""
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
 
 
 def thinned(x: Array, y: Array) -> tuple[Array, Array]:

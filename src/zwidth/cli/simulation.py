@@ -1,0 +1,164 @@
+"""The commands `simulate` and `traces`: a touch, simulated, saved, drawn, heard and compared."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from zwidth.cli.options import Once, add_all, add_parameters, given, overrides
+from zwidth.cli.output import check_new, print_json, writing
+from zwidth.cli.specification import TABLES, read_tables, specified
+from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+PICTURES = (".png", ".svg", ".pdf")
+SAVED = (".nc", ".parquet", ".csv")
+SOUNDS = (".wav",)
+INTERRUPTED = 130
+
+
+def configure_simulate(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth simulate`."""
+    from zwidth.cli.touch import operator_parameters, simulation_parameters
+
+    parser.usage = (
+        "%(prog)s [SOURCE ...] --operator TYPE --duration TIME [--PARAMETER VALUE ...] [--json] "
+        "[--plot FILE] [--sound FILE] [-o FILE] [--force]"
+    )
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="device of the catalogue, or TOML file with tables [device], [environment], [operator], "
+        "[simulation]",
+    )
+    output = parser.add_argument_group("output")
+    output.add_argument("--json", action="store_true", help="print the summary as JSON, units in the keys")
+    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plot: .png, .svg or .pdf")
+    output.add_argument("--sound", metavar="FILE", action=Once, help="save the actuator force as sound: .wav")
+    output.add_argument(
+        "-o", "--save", metavar="FILE", action=Once, help="save the trace: .nc, .parquet, .csv"
+    )
+    output.add_argument("--force", action="store_true", help="replace files that exist")
+    hand = parser.add_argument_group("hand", "a key of the hand is written --operator.force, …")
+    add_all(hand, operator_parameters())
+    add_all(parser.add_argument_group("simulation"), simulation_parameters())
+    add_parameters(parser)
+
+
+def run_simulate(arguments: argparse.Namespace) -> int:
+    """`zwidth simulate`: 0, or 130 after Ctrl-C."""
+    from zwidth.cli.touch import build_touch, operator_parameters, simulation_parameters
+
+    plot, sound, save = _targets(arguments)
+    tables = read_tables(arguments.sources, TABLES)
+    loop = specified(
+        {k: t for k, t in tables.items() if k in ("device", "environment")}, overrides(arguments)
+    )
+    keys = [p.key for p in (*operator_parameters(), *simulation_parameters())]
+    words = given(arguments, keys)
+    touch = build_touch(tables.get("operator"), tables.get("simulation"), words, loop.device.motion)
+    duration = touch.duration
+    if duration is None:
+        duration = _own_duration(touch.operator, float(loop.device.exact("sample_period")))
+    from zwidth.cli.patience import warn_of_compiling
+    from zwidth.traces import save_sound, save_trace, simulate
+
+    warn_of_compiling()
+    trace = simulate(loop.device, loop.environment, touch.operator, duration, **touch.options)
+    if save is not None:
+        save_trace(trace, save, force=True)
+    if sound is not None:
+        save_sound(trace, sound, force=True)
+    if plot is not None:
+        with writing(plot):
+            trace.zwidth.plot(plot)
+    if arguments.json:
+        print_json(json.dumps(summary(trace), indent=2, ensure_ascii=False))
+    else:
+        from zwidth.cli.trace_report import print_trace
+
+        print_trace(trace, [path for path in (save, plot, sound) if path is not None])
+    return INTERRUPTED if "interrupted_at_s" in trace.attrs else 0
+
+
+def _own_duration(operator: Any, period: float) -> float:
+    """How long a record or a witness lasts [s].
+
+    Raises
+    ------
+    InputError
+        If the hand has no end of its own.
+    """
+    if hasattr(operator, "newtons"):
+        return len(operator.newtons) * period
+    if hasattr(operator, "intervals"):
+        return operator.intervals * period  # type: ignore[no-any-return]
+    raise InputError("no duration is given: set --duration, for example --duration '2 s'")
+
+
+def summary(trace: xr.Dataset) -> dict[str, Any]:
+    """What the command prints as JSON: the trace's attributes, its measures and its energies."""
+    from zwidth.traces import compare_traces
+
+    measures = compare_traces({"this": trace}).to_dict()["this"]
+    about = {key: value for key, value in trace.attrs.items() if key != "format"}
+    return {"format": "zwidth simulation 1", **about, **measures, "energy": trace.zwidth.energy.to_dict()}
+
+
+def configure_traces(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth traces`."""
+    parser.add_argument("files", metavar="FILE", nargs="+", help="traces that zwidth simulate saved")
+    parser.add_argument("--json", action="store_true", help="print JSON, units in the keys")
+    parser.add_argument("--plot", metavar="FILE", action=Once, help="save a plot of all: .png, .svg or .pdf")
+    parser.add_argument("--force", action="store_true", help="replace a file that exists")
+
+
+def run_traces(arguments: argparse.Namespace) -> int:
+    """`zwidth traces`: the numbers of saved traces beside each other."""
+    plot = _target("--plot", arguments.plot, PICTURES, arguments.force)
+    from zwidth.traces import compare_traces, load_trace
+
+    comparison = compare_traces(dict(_labelled(arguments.files, load_trace)))
+    if plot is not None:
+        with writing(plot):
+            comparison.plot(plot)
+    if arguments.json:
+        print_json(json.dumps(comparison.to_dict(), indent=2, ensure_ascii=False))
+    else:
+        from zwidth.cli.trace_report import print_comparison
+
+        print_comparison(comparison)
+    return 0
+
+
+def _labelled(files: list[str], load: Any) -> Iterator[tuple[str, xr.Dataset]]:
+    seen: set[str] = set()
+    for name in files:
+        if name in seen:
+            raise InputError(f"{name} is given twice")
+        seen.add(name)
+        yield name, load(name)
+
+
+def _targets(arguments: argparse.Namespace) -> tuple[Path | None, Path | None, Path | None]:
+    """The files to write, checked before anything is computed."""
+    plot = _target("--plot", arguments.plot, PICTURES, arguments.force)
+    sound = _target("--sound", arguments.sound, SOUNDS, arguments.force)
+    save = _target("--save", arguments.save, SAVED, arguments.force)
+    return plot, sound, save
+
+
+def _target(option: str, given: str | None, suffixes: tuple[str, ...], force: bool) -> Path | None:
+    if given is None:
+        return None
+    path = Path(given)
+    if path.suffix.lower() not in suffixes:
+        raise InputError(f"{option}: the file must end in {', '.join(suffixes)}, got {given!r}")
+    check_new(path, force)
+    return path

@@ -1,0 +1,214 @@
+"""What is simulated besides the loop: the hand, and how the simulation is run.
+
+    [operator]              [simulation]
+    type = "dowel"          duration = "2 s"
+    force = "4 N"           amplifier = "ideal"
+
+Every key of [operator] is an option `--operator.force`, its type `--operator`;
+every key of [simulation] is an option under its own name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from zwidth.cli.options import Parameter
+from zwidth.cli.table import COMMAND_LINE, Table, located, quoted, suggestion
+from zwidth.device import amplifier as amplifiers
+from zwidth.device.amplifier import Amplifier
+from zwidth.errors import InputError
+from zwidth.operator import OPERATORS, Operator, ParametricOperator, RecordedForce, WitnessMotion
+from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.units import parse_number
+
+OPERATOR = "operator"
+BEFORE = "operator."
+"""What stands before a key of the operator on the command line."""
+
+RECORD, WITNESS = "force-record", "witness"
+"""Operators that come out of a file."""
+
+AMPLIFIERS = ("current", "ideal", "voltage-limited", "lag")
+
+
+def _q(name: str, unit: str, rotary_unit: str, meaning: str) -> Quantity:
+    return Quantity(name, name.rpartition("_")[2].upper(), unit, rotary_unit, meaning)
+
+
+KEYS: dict[str, Quantity] = {
+    "duration": _q("duration", "s", "s", "how long is simulated; not needed with a record or a witness"),
+    "initial_position": _q("initial_position", "m", "rad", "where the device starts, > 0 inside the wall"),
+    "initial_velocity": _q("initial_velocity", "m/s", "rad/s", "of the device at the start"),
+    "encoder_phase": _q("encoder_phase", "1", "1", "part of a count by which the encoder is shifted, 0 to 1"),
+    "amplifier": _q("amplifier", "", "", f"{', '.join(AMPLIFIERS)} (default: current)"),
+    "amplifier_time_constant": _q("amplifier_time_constant", "s", "s", "of the amplifier that lags"),
+    "lateness": _q("lateness", "s", "s", "each sample is late by up to so much"),
+    "missed": _q("missed", "1", "1", "probability that a sample is missed"),
+    "seed": _q("seed", "1", "1", "of the random lateness and misses"),
+    "points_per_sample": _q("points_per_sample", "1", "1", "instants recorded per sample (default: 1)"),
+}
+"""The keys of [simulation]."""
+
+
+class Touch(NamedTuple):
+    """A hand, and the arguments of `simulate` that go with it; duration None: as long as the hand's own."""
+
+    operator: Operator
+    duration: float | None
+    options: dict[str, Any]
+
+
+def operator_parameters() -> Iterator[Parameter]:
+    """The options of an operator."""
+    kinds = ", ".join((*OPERATORS, RECORD, WITNESS))
+    yield Parameter(OPERATOR, "TYPE", f"the hand: {kinds}")
+    yield Parameter(BEFORE + "file", "FILE", f"of a {RECORD} or {WITNESS}")
+    yield Parameter(BEFORE + "column", "COLUMN", f"of the file of a {RECORD}, where it has several")
+    yield Parameter(BEFORE + "rounds", "N", f"how often a {WITNESS} does its cycle (default: 100 at most)")
+    for name, (quantity, kinds_with) in _shared().items():
+        units = quantity.unit
+        if units != quantity.rotary_unit:
+            units += f"; rotary {quantity.rotary_unit}"
+        help_text = f"{quantity.meaning} [{units}]; of {', '.join(kinds_with)}"
+        yield Parameter(BEFORE + name, quantity.symbol, help_text)
+
+
+def simulation_parameters() -> Iterator[Parameter]:
+    """The options of a simulation."""
+    for key, quantity in KEYS.items():
+        unit = "" if quantity.unit in ("", "1") else f" [{quantity.unit}]"
+        if quantity.unit != quantity.rotary_unit:
+            unit = f" [{quantity.unit}; rotary {quantity.rotary_unit}]"
+        yield Parameter(key, quantity.symbol, quantity.meaning + unit)
+
+
+def _shared() -> dict[str, tuple[Quantity, list[str]]]:
+    """Every number of an operator, and which operators have it."""
+    found: dict[str, tuple[Quantity, list[str]]] = {}
+    for kind, operator in OPERATORS.items():
+        for name, quantity in operator.parameters().items():
+            found.setdefault(name, (quantity, []))[1].append(kind)
+    return found
+
+
+def build_touch(
+    operator: Table | None, simulation: Table | None, overrides: Mapping[str, str], motion: str
+) -> Touch:
+    """The hand and the run that tables and command line describe.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or missing, or has a value it cannot have.
+    """
+    hand_table = operator or Table(COMMAND_LINE, {})
+    run_table = simulation or Table(COMMAND_LINE, {})
+    for key, value in overrides.items():
+        if key == OPERATOR:
+            hand_table.override("type", value)
+        elif key.startswith(BEFORE):
+            hand_table.override(key.removeprefix(BEFORE), value)
+        else:
+            run_table.override(key, value)
+    hand = _hand(hand_table, motion)
+    run_table.check_keys(KEYS, "a simulation")
+    options = _options(run_table, motion)
+    return Touch(hand, options.pop("duration", None), options)
+
+
+def _hand(table: Table, motion: str) -> Operator:
+    if "type" not in table.values:
+        kinds = ", ".join((*OPERATORS, RECORD, WITNESS))
+        raise InputError(f"no hand is given: set --operator to one of {kinds}")
+    kind = table.text("type")
+    if kind == RECORD:
+        return _record(table)
+    if kind == WITNESS:
+        return _witness(table)
+    if kind not in OPERATORS:
+        known = (*OPERATORS, RECORD, WITNESS)
+        raise InputError(f"{table.where('type')}: there is no hand {quoted(kind)}; {suggestion(kind, known)}")
+    build: type[ParametricOperator] = OPERATORS[kind]
+    parameters = build.parameters()
+    table.check_keys(("type", *parameters), f"the hand {quoted(kind)}")
+    values = {}
+    for name in table.values:
+        if name != "type":
+            values[name] = _number(table, name, parameters[name], motion)
+    with located(table.label):
+        return build(**values)
+
+
+def _record(table: Table) -> Operator:
+    table.check_keys(("type", "file", "column"), f"the hand {RECORD}")
+    if "file" not in table.values:
+        raise InputError(f"{table.label}: a {RECORD} needs the file of its forces: --{BEFORE}file")
+    return RecordedForce.from_file(table.text("file"), table.values.get("column"))  # type: ignore[arg-type]
+
+
+def _witness(table: Table) -> Operator:
+    from zwidth.passivity.certificate import read_document
+    from zwidth.passivity.saved import saved_motion
+
+    table.check_keys(("type", "file", "rounds"), f"the hand {WITNESS}")
+    if "file" not in table.values:
+        raise InputError(f"{table.label}: a {WITNESS} needs the file that zwidth check saved: --{BEFORE}file")
+    name = table.text("file")
+    motion = saved_motion(read_document(name), name)
+    rounds = 100
+    if "rounds" in table.values:
+        rounds = _whole(table, "rounds", Quantity("rounds", "N", "1", "1", "rounds of a cycle"))
+    return WitnessMotion(motion, rounds=min(rounds, motion.rounds))
+
+
+def _options(table: Table, motion: str) -> dict[str, Any]:
+    options: dict[str, Any] = {}
+    for key in table.values:
+        if key in ("points_per_sample", "seed"):
+            options[key] = _whole(table, key, KEYS[key])
+        elif key != "amplifier":
+            options[key] = _number(table, key, KEYS[key], motion)
+    amplifier = _amplifier(table, options.pop("amplifier_time_constant", None))
+    if amplifier is not None:
+        options["amplifier"] = amplifier
+    clock = {key: options.pop(key) for key in ("lateness", "missed", "seed") if key in options}
+    if set(clock) == {"seed"}:
+        raise InputError(f"{table.where('seed')}: seed goes with lateness or missed, and neither is given")
+    if clock:
+        from zwidth.loop.timing import Timing
+
+        options["timing"] = Timing(**clock)
+    return options
+
+
+def _amplifier(table: Table, time_constant: float | None) -> Amplifier | None:
+    kind = table.text("amplifier") if "amplifier" in table.values else None
+    if kind not in (None, *AMPLIFIERS):
+        hint = suggestion(kind, AMPLIFIERS)
+        raise InputError(f"{table.where('amplifier')}: there is no amplifier {quoted(kind)}; {hint}")
+    if (kind == "lag") != (time_constant is not None):
+        raise InputError(
+            f"{table.label}: amplifier lag and amplifier_time_constant belong together: give both or neither"
+        )
+    if kind == "lag":
+        assert time_constant is not None
+        return amplifiers.FirstOrderLag(time_constant)
+    plain: dict[str, Callable[[], Amplifier]] = {
+        "ideal": amplifiers.Ideal,
+        "voltage-limited": amplifiers.VoltageLimited,
+        "current": amplifiers.CurrentAmplifier,
+    }
+    return None if kind is None else plain[kind]()
+
+
+def _number(table: Table, key: str, quantity: Quantity, motion: str) -> float:
+    with located(table.where(key)):
+        return float(parse_number(table.values[key], quantity.unit_for(motion), key))
+
+
+def _whole(table: Table, key: str, quantity: Quantity) -> int:
+    value = _number(table, key, quantity, "linear")
+    if value != int(value):
+        raise InputError(f"{table.where(key)}: {key} is a whole number, got {value:g}")
+    return int(value)

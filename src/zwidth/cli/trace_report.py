@@ -1,0 +1,108 @@
+"""A simulated touch as a report in the terminal: what happened, and where every joule went."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+from rich.text import Text
+
+from zwidth.cli.numerals import shown
+from zwidth.cli.report import page
+from zwidth.cli.table import plain
+from zwidth.loop.trace import UNITS
+from zwidth.traces import Comparison, compare_traces
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MOVING = 1e-9
+
+
+def print_trace(trace: xr.Dataset, files: list[Path]) -> None:
+    """Print the report of one trace."""
+    with page() as out:
+        out.print(_headline(trace))
+        out.print()
+        out.print(_grid(_about(trace)))
+        out.print()
+        out.print(_grid(_measures(trace)))
+        out.print()
+        out.print(Text("energy", style="bold"))
+        out.print(_grid((text, shown(value, "J")) for text, value in trace.zwidth.energy.rows()))
+        if files:
+            out.print()
+            out.print(_grid(("written", plain(str(path), 100)) for path in files))
+
+
+def print_comparison(comparison: Comparison) -> None:
+    """Print the numbers of several traces, a column for each."""
+    with page() as out:
+        grid = Table.grid(padding=(0, 2))
+        head, *lines = comparison.table()
+        for cells in zip(head, *lines, strict=True):
+            first, *others = cells
+            grid.add_row(
+                Text(first, style="dim"), *(Text(plain(cell, 40), justify="right") for cell in others)
+            )
+        out.print(grid)
+
+
+def _headline(trace: xr.Dataset) -> Table:
+    got = trace.zwidth.energy.extracted
+    significant = got > 1e-12 * trace.zwidth.energy.moved
+    inside = bool(trace["measured_position"].values[0] > 0)
+    grid = Table.grid(padding=(0, 1))
+    if significant and not inside:
+        badge = Text(" ACTIVE ", style="bold white on red")
+        words = f"This hand got {shown(got, 'J')} out of the loop, more than there was in it."
+    elif significant:
+        badge = Text(" OUT ", style="bold white on yellow")
+        words = f"This hand got {shown(got, 'J')} out; it began inside the wall, so that some of it was stored there."
+    else:
+        badge = Text(" TOUCH ", style="bold white on blue")
+        words = (
+            "This hand got no energy out of the loop. That proves nothing of other hands: see zwidth check."
+        )
+    grid.add_row(badge, Text(words, style="bold"))
+    return grid
+
+
+def _about(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
+    about = trace.attrs
+    yield "device", plain(str(about["device"]), 60)
+    yield "environment", plain(str(about["environment"]), 200)
+    yield "hand", plain(str(about["operator"]), 200)
+    yield "amplifier", str(about["amplifier"])
+    if about["timing"] != "regular":
+        yield "clock", str(about["timing"])
+    seconds = float(trace["time"].values[-1])
+    count = int(trace["sampled"].values.sum()) - 1
+    yield "time", f"{shown(seconds, 's')}, {count:,} samples of {shown(about['sample_period_s'], 's')}"
+    if "interrupted_at_s" in about:
+        yield "interrupted", f"at {shown(about['interrupted_at_s'], 's')}; what was finished is kept"
+
+
+def _measures(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
+    comparison = compare_traces({"": trace})
+    units, values = comparison.units(), comparison.rows[""]
+    length, speed, _ = UNITS[comparison.motion]
+    yield "deepest position", shown(values["deepest_position"], length)
+    yield "largest actuator force", shown(values["peak_actuator_force"], units["peak_actuator_force"])
+    yield "largest force of the hand", shown(values["peak_hand_force"], units["peak_hand_force"])
+    yield "chatter above 30 Hz inside", shown(values["chatter"], units["chatter"])
+    yield "contacts made", f"{values['contacts']:.0f}"
+    yield "stops and turns", f"{values['stops']:.0f}"
+    x, v = float(trace["position"].values[-1]), float(trace["velocity"].values[-1])
+    state = "at rest" if abs(v) <= _MOVING else f"moving at {shown(v, speed)}"
+    yield "at the end", f"{state}, at {shown(x, length)}"
+    yield "swing in the last quarter", shown(values["last_swing"], length)
+
+
+def _grid(rows: Iterator[tuple[str, str]]) -> Table:
+    grid = Table.grid(padding=(0, 2))
+    for name, text in rows:
+        grid.add_row(Text(name, style="dim"), Text(text))
+    return grid

@@ -1,0 +1,58 @@
+"""The motion of a saved witness, read back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+from zwidth.errors import InputError
+from zwidth.passivity.motion import Motion, Repeat
+
+
+def saved_motion(document: object, name: str) -> Motion:
+    """The motion in a witness or in an active verdict, as `zwidth check` saves them.
+
+    Parameters
+    ----------
+    document
+        As `read_document` gives it.
+    name
+        Of the file, for messages.
+
+    Raises
+    ------
+    InputError
+        If there is no motion in it.
+    """
+    found: Any = document
+    if isinstance(found, Mapping) and isinstance(found.get("witness"), Mapping):
+        found = found["witness"]
+    if not isinstance(found, Mapping) or found.get("kind") != "motion":
+        raise InputError(
+            f"{name} holds no motion that takes energy out: save one with zwidth check … -o FILE, of a loop "
+            "that is active"
+        )
+    try:
+        positions = _column(found, "positions_m", "positions_rad")
+        switches = _column(found, "switch_positions_m", "switch_positions_rad")
+        repeats = tuple(
+            Repeat(int(r["first"]), int(r["last"]), int(r["times"])) for r in found.get("repeats", ())
+        )
+    except (TypeError, ValueError, KeyError, ZeroDivisionError) as error:
+        raise InputError(f"{name} holds a motion that cannot be read: {error}") from None
+    if len(positions) < 2:
+        raise InputError(f"{name} holds a motion of fewer than two positions")
+    return Motion(positions, switches, repeats)
+
+
+def _column(document: Mapping[str, Any], *names: str) -> tuple[Fraction, ...]:
+    values = next((document[name] for name in names if name in document), ())
+    return tuple(_fraction(value) for value in values)
+
+
+def _fraction(value: object) -> Fraction:
+    if not isinstance(value, (int, str, Decimal)):
+        raise ValueError(f"{value!r} is no number")
+    return Fraction(value)
