@@ -271,7 +271,7 @@ BAD: list[tuple[str | bytes, str]] = [
     (DEVICE + "[enviroment]\n", 'did you mean "environment"'),
     ("device = 1", "device is a table"),
     ("[[device]]\n", "device is a table"),
-    ("", "neither a [device] nor an [environment]"),
+    ("", "none of the tables [device], [environment]"),
     ("this is not TOML", "not TOML"),
     ("[device\n", "not TOML"),
     ("a = " + "[" * 20000, "nested too deeply"),

@@ -60,7 +60,7 @@ def _headline(trace: xr.Dataset) -> Table:
         words = f"This hand got {shown(got, 'J')} out of the loop, more than there was in it."
     elif significant:
         badge = Text(" OUT ", style="bold white on yellow")
-        words = f"This hand got {shown(got, 'J')} out; it began inside the wall, so that some of it was stored there."
+        words = f"This hand got {shown(got, 'J')} out; it began inside the wall, where some of it was stored."
     else:
         badge = Text(" TOUCH ", style="bold white on blue")
         words = (

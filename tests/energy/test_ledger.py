@@ -1,0 +1,68 @@
+"""The ledger: what it adds up, and when it says that energy came out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.energy import ledger
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+
+
+def _touch(stiffness: float, hand=None, **options):
+    return zw.simulate(PADDLE, zw.Wall(stiffness), hand or zw.operators.Dowel(), 0.6, **options)
+
+
+def test_both_balances_close_to_rounding() -> None:
+    """And a ledger that is tampered with does not."""
+    trace = _touch(600.0, zw.operators.Finger())
+    book = trace.zwidth.energy
+    assert book.closes
+    assert np.abs(book.residual).max() < 1e-15
+    tampered = trace.copy()
+    tampered["viscous_loss"] = trace.viscous_loss * 1.001
+    assert not ledger(tampered).closes
+
+
+def test_a_passive_loop_gives_nothing_out_and_an_active_one_does() -> None:
+    """300 N/m is passive: no hand gets anything; at 770 N/m the dowel does."""
+    assert _touch(300.0).zwidth.energy.extracted <= 0.0
+    assert _touch(770.0).zwidth.energy.extracted > 1e-3
+
+
+def test_what_the_device_held_at_first_does_not_count_as_extracted() -> None:
+    """A hand that only stops a moving device gets its kinetic energy, and no more."""
+    free = zw.Device(mass=0.5, damping=0.0, rate=1000)
+    hand = zw.operators.ConstantForce(-1.0)
+    trace = zw.simulate(free, zw.Wall(0.0), hand, 0.25, initial_velocity=0.5)
+    book = trace.zwidth.energy
+    assert -trace.hand_work.values.min() == pytest.approx(0.5 * 0.5 * 0.25, rel=1e-9)
+    assert book.extracted == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_leak_of_the_hold_is_what_the_papers_draw() -> None:
+    """Pressed in and drawn out at constant speed, each sample leaks ½ K (v T)² (seed of all limits)."""
+    step, count, stiffness = 1e-4, 50, 900.0
+    there = np.arange(count + 1) * step
+    motion = zw.operators.PrescribedMotion(np.concatenate([there, there[-2::-1]]))
+    device = zw.Device(mass=0.1, damping=0.0, rate=1000)
+    trace = zw.simulate(device, zw.Wall(stiffness), motion, 2 * count / 1000)
+    assert float(trace.actuator_work[-1]) == pytest.approx(2 * count * 0.5 * stiffness * step**2, rel=1e-12)
+
+
+def test_totals_in_words_numbers_and_html() -> None:
+    """The same figures everywhere; the hand's own only where it has any."""
+    book = _touch(500.0).zwidth.energy
+    assert "the hand put into the device" in repr(book)
+    assert book._repr_html_().startswith("<table>")
+    assert book.to_dict()["hand_work_J"] == book.totals["hand_work"]
+    plain = _touch(500.0, zw.operators.ConstantForce(1.0)).zwidth.energy
+    assert "damper" not in repr(plain)
+
+
+def test_a_dataset_without_energies_is_refused() -> None:
+    """The message names what is missing."""
+    with pytest.raises(zw.InputError, match="lacks viscous_loss"):
+        ledger(_touch(100.0).drop_vars("viscous_loss"))

@@ -1,0 +1,117 @@
+"""Traces in files: the same bits back, and never half a file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import zwidth as zw
+
+SUFFIXES = (".nc", ".parquet", ".csv")
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("which", ["dowel", "finger", "knob"])
+def test_a_trace_comes_back_as_it_was(which: str, suffix: str, tmp_path: Path, request) -> None:
+    """Values to the bit, units, names, attributes and coordinates."""
+    trace = request.getfixturevalue(which)
+    path = tmp_path / f"touch{suffix}"
+    trace.zwidth.save(path)
+    back = zw.load_trace(path)
+    xr.testing.assert_identical(trace, back)
+    assert repr(back.zwidth.energy) == repr(trace.zwidth.energy)
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+def test_csv_says_the_unit_of_every_column(knob, dowel, tmp_path: Path) -> None:
+    """The header is for people and spreadsheets: position_m, hand_force_N, hand_work_J."""
+    knob.zwidth.save(tmp_path / "knob.csv")
+    dowel.zwidth.save(tmp_path / "dowel.csv")
+    header = (tmp_path / "dowel.csv").read_text(encoding="utf-8").splitlines()[1].split(",")
+    assert {"time_s", "position_m", "velocity_m_per_s", "hand_force_N", "hand_work_J"} <= set(header)
+    header = (tmp_path / "knob.csv").read_text(encoding="utf-8").splitlines()[1].split(",")
+    assert {"position_rad", "velocity_rad_per_s", "actuator_force_N_m"} <= set(header)
+
+
+def test_csv_is_read_by_numpy_and_parquet_by_pyarrow(dowel, tmp_path: Path) -> None:
+    """Nobody needs zwidth to read a trace."""
+    import pyarrow.parquet as pq
+
+    dowel.zwidth.save(tmp_path / "t.csv")
+    dowel.zwidth.save(tmp_path / "t.parquet")
+    table = np.genfromtxt(tmp_path / "t.csv", delimiter=",", names=True, skip_header=1)
+    assert (table["position_m"] == dowel.position.values).all()
+    assert (pq.read_table(tmp_path / "t.parquet")["position_m"].to_numpy() == dowel.position.values).all()
+
+
+@pytest.mark.parametrize("suffix", [*SUFFIXES, ".wav", ".png"])
+def test_a_failed_write_leaves_the_old_file_and_nothing_else(suffix, dowel, tmp_path, monkeypatch) -> None:
+    """A disk that fills up while writing: the old file stays, no part is left."""
+    path = tmp_path / f"old{suffix}"
+    path.write_bytes(b"precious")
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    write = {".wav": lambda p: dowel.zwidth.sound(p, force=True), ".png": dowel.zwidth.plot}
+    with pytest.raises(zw.InputError, match="No space left on device"):
+        write.get(suffix, lambda p: dowel.zwidth.save(p, force=True))(path)
+    assert path.read_bytes() == b"precious"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_file_is_not_replaced_unasked(dowel, tmp_path: Path) -> None:
+    """Without force the old file is kept."""
+    path = tmp_path / "t.nc"
+    dowel.zwidth.save(path)
+    with pytest.raises(zw.InputError, match="exists"):
+        dowel.zwidth.save(path)
+    dowel.zwidth.save(path, force=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [("t.xlsx", "ends in .nc, .parquet, .csv"), ("no/t.nc", "there is no directory"), (".", "ends in")],
+)
+def test_a_place_that_cannot_be_is_refused(name: str, says: str, dowel, tmp_path: Path) -> None:
+    """Another suffix, a missing directory, a directory."""
+    with pytest.raises(zw.InputError, match=says):
+        dowel.zwidth.save(tmp_path / name)
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("content", [b"", b"hello\nworld\n", b"# {}\na,b\n1,2\n", bytes(range(256)) * 20])
+def test_a_foreign_file_is_refused(suffix: str, content: bytes, tmp_path: Path) -> None:
+    """One message, whatever the bytes."""
+    path = tmp_path / f"foreign{suffix}"
+    path.write_bytes(content)
+    with pytest.raises(zw.InputError) as caught:
+        zw.load_trace(path)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_truncated_file_is_refused(suffix: str, dowel, tmp_path: Path) -> None:
+    """Half a file is no trace."""
+    path = tmp_path / f"t{suffix}"
+    dowel.zwidth.save(path)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2 - 7])
+    with pytest.raises(zw.InputError):
+        zw.load_trace(path)
+
+
+def test_a_dataset_that_is_no_trace_is_refused() -> None:
+    """By the accessor, by saving, and by a CSV without the attributes."""
+    with pytest.raises(zw.InputError, match="no zwidth trace"):
+        xr.Dataset({"a": 1}).zwidth  # noqa: B018
+
+
+def test_the_attributes_are_plain_data(dowel) -> None:
+    """Text and numbers only, so that every format takes them."""
+    assert json.loads(json.dumps(dowel.attrs)) == dowel.attrs
