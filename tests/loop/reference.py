@@ -252,11 +252,11 @@ def crossing(f: Sum, low: mpf, high: mpf) -> mpf:
 
 
 def first_loss(f: Sum, end: mpf) -> mpf | None:
-    """Where f, positive just after 0, first falls to zero; None if not before the end."""
+    """Where f, positive just after 0, first falls below zero; None if not before the end."""
     start = end * mpf(10) ** (20 - DIGITS)
     edges = [s for s in zeros(f.derivative(), end) if s > start]
     for low, high in pairwise([mpf(0), *edges, end]):
-        if f(high) <= 0:
+        if f(high) < 0:
             return crossing(f, low, high)
     return None
 

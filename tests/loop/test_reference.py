@@ -160,6 +160,14 @@ def test_stiction_holds_until_it_is_outgrown():
     assert close(weaker.releases[0], mpf(0.12) / (k * mpf(u)), "1e-15")
 
 
+def test_a_push_of_just_the_stiction_is_held():
+    """At rest |net force| ≤ f_s moves nothing; one rounding more does."""
+    held = replace(FREE, velocity=0.0, force=5 * [FREE.coulomb])
+    assert simulate(held, 5).position[-1] == held.position
+    pushed = replace(held, force=5 * [math.nextafter(FREE.coulomb, 1)])
+    assert simulate(pushed, 5).position[-1] > held.position
+
+
 def test_delay_and_slew():
     """Force k comes at kT + delay and then rises at its rate."""
     loop = replace(FREE, position=0.0501, velocity=0.0, coulomb=1e3, wall_stiffness=300.0)

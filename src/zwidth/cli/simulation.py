@@ -98,7 +98,7 @@ def _own_duration(operator: Any, period: float) -> float:
     if hasattr(operator, "newtons"):
         return len(operator.newtons) * period
     if hasattr(operator, "intervals"):
-        return operator.intervals * period  # type: ignore[no-any-return]
+        return (operator.intervals + 1) * period  # type: ignore[no-any-return]  # and comes to rest
     raise InputError("no duration is given: set --duration, for example --duration '2 s'")
 
 
