@@ -192,7 +192,8 @@ def test_the_quickstart_example_says_what_comes_out(tmp_path: Path, monkeypatch:
 @pytest.mark.parametrize("page", ["docs/quickstart.md", "docs/specification.md"])
 def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> None:
     """Every TOML block with tables in the docs is a valid specification; one without is a velocity filter."""
-    from zwidth.cli.specification import load
+    from zwidth.cli.specification import LOOP_TABLES, TABLES, read_tables, specified
+    from zwidth.cli.touch import build_touch
 
     blocks = _blocks(page, "toml")
     assert blocks
@@ -207,7 +208,10 @@ def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> 
             given = {} if "[device]" in text else {"damping": "1", "rate": "1 kHz"}
             given |= {"motion": "rotary"} if given and "rad" in text else {}
             given |= {} if "[environment]" in text else {"stiffness": "1"}
-            load([path], given)
+            read = read_tables([path], TABLES)
+            loop = specified({k: t for k, t in read.items() if k in LOOP_TABLES}, given)
+            if "operator" in read:
+                build_touch(read["operator"], read.get("simulation"), {}, loop.device.motion)
 
 
 def _command_line_page() -> str:
@@ -241,7 +245,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
     assert not missing
 
 
-@pytest.mark.parametrize("command", ["check", "devices", "verify"])
+@pytest.mark.parametrize("command", ["check", "simulate", "traces", "devices", "verify"])
 def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:
     """What `--help` offers, the page explains."""
     page = _command_line_page()

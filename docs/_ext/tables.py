@@ -40,6 +40,20 @@ def environment_options() -> str:
     return _options(environment_parameters())
 
 
+def operator_options() -> str:
+    """The hands and their numbers, as options of the command line."""
+    from zwidth.cli.touch import operator_parameters
+
+    return _options(operator_parameters())
+
+
+def simulation_options() -> str:
+    """How a simulation is run, as options of the command line."""
+    from zwidth.cli.touch import simulation_parameters
+
+    return _options(simulation_parameters())
+
+
 def device_keys() -> str:
     """Every key that a device table may have."""
     rows = [(f"`{p.key}`", _pretty(p.help)) for p in device_parameters()]
@@ -108,6 +122,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "devices": devices,
     "environment_keys": environment_keys,
     "environment_options": environment_options,
+    "operator_options": operator_options,
+    "simulation_options": simulation_options,
     "environment_types": environment_types,
     "glossary": glossary,
 }
