@@ -135,25 +135,27 @@ def test_a_grazing_stop_against_a_receding_force_is_no_turn() -> None:
     assert state[VELOCITY] > 0.0
 
 
-_SIZES = st.floats(1e-3, 1e3)
+def _typed(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers as a person types them, six decimals at most."""
+    return st.floats(low, high).map(lambda value: round(value, 6))
 
 
 @settings(max_examples=400, deadline=None)
 @given(
-    h=st.floats(1e-5, 5e-2),
-    mass=st.floats(1e-3, 2.0),
+    h=_typed(1e-5, 5e-2),
+    mass=_typed(1e-3, 2.0),
     hand_mass=st.sampled_from([0.0, 0.006, 0.3]),
-    damping=st.floats(0.0, 2.0),
-    coulomb=st.floats(0.0, 2.0),
-    extra=st.floats(0.0, 1.0),
+    damping=_typed(0.0, 2.0),
+    coulomb=_typed(0.0, 2.0),
+    extra=_typed(0.0, 1.0),
     stiffness=st.sampled_from([0.0, 1e-3, 30.0, 500.0, 2e4]),
     hand_damping=st.sampled_from([0.0, 1e-3, 1.7, 30.0]),
     drive=st.sampled_from(["ideal", "lag", "slew"]),
-    x=st.floats(-0.01, 0.01),
-    v=st.floats(-1.0, 1.0),
-    force=st.floats(-5.0, 5.0),
-    speed=st.floats(-1.0, 1.0),
-    goal=st.floats(-5.0, 5.0),
+    x=_typed(-0.01, 0.01),
+    v=_typed(-1.0, 1.0),
+    force=_typed(-5.0, 5.0),
+    speed=_typed(-1.0, 1.0),
+    goal=_typed(-5.0, 5.0),
 )
 def test_both_energy_balances_close(
     h, mass, hand_mass, damping, coulomb, extra, stiffness, hand_damping, drive, x, v, force, speed, goal
