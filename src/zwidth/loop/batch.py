@@ -11,8 +11,9 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import fields, replace
+from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -35,7 +36,7 @@ from zwidth.loop.plant import (
     VELOCITY,
     VISCOUS,
 )
-from zwidth.loop.setup import Setup, empty_record, prepare
+from zwidth.loop.setup import Frame, Setup, empty_record, prepare
 from zwidth.loop.side_by_side import BUFFER, LANES, run_side_by_side
 from zwidth.loop.simulate import Progress, run_setup
 from zwidth.loop.summary import DEEPEST, EXTRACTED, HIGHEST, LOWEST, PEAK, SUMMARY, summarize
@@ -48,6 +49,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
+T = TypeVar("T")
 
 OPTIONS = ("initial_position", "initial_velocity", "encoder_phase")
 """Arguments of `simulate` that can be varied besides the parameters of device, environment and hand."""
@@ -134,8 +137,9 @@ def simulate_batch(
     base = _Base(device, as_environment(environment), operator, options)
     choices = list(zip(*axes.values(), strict=True)) if together else list(product(*axes.values()))
     owners = [_owner(name, base) for name in axes]
-    known: dict[Any, Any] = {}
-    setups = [_prepare(base, owners, choice, duration, known) for choice in choices]
+    made: dict[Any, Any] = {}  # keeps every part alive, so that `known` may go by identity
+    known: dict[Any, Frame] = {}
+    setups = [_prepare(base, owners, choice, duration, made, known) for choice in choices]
     if on == "gpu":
         states, summaries, finished = _run_on_card(setups)
     elif on == "cpu":
@@ -194,19 +198,28 @@ def _prepare(
     owners: list[tuple[str, str]],
     choice: Sequence[Any],
     duration: RealLike,
-    known: dict[Any, Any],
+    made: dict[Any, Any],
+    known: dict[Any, Frame],
 ) -> Setup:
     changes: dict[str, dict[str, Any]] = {"device": {}, "environment": {}, "operator": {}, "option": {}}
     for (owner, key), value in zip(owners, choice, strict=True):
         changes[owner][key] = value.item() if isinstance(value, np.generic) else value
-    device = base.device.replace(**changes["device"]) if changes["device"] else base.device
-    environment = base.environment
-    if changes["environment"]:
-        environment = environment.replace(**changes["environment"])
-    operator = replace(base.operator, **changes["operator"]) if changes["operator"] else base.operator
-    return prepare(
-        device, environment, operator, duration, known=known, **{**base.options, **changes["option"]}
-    )
+    device = _changed(base.device, changes["device"], base.device.replace, made)
+    environment = _changed(base.environment, changes["environment"], base.environment.replace, made)
+    operator = _changed(base.operator, changes["operator"], partial(replace, base.operator), made)
+    options = {**base.options, **changes["option"]}
+    return prepare(device, environment, operator, duration, known=known, **options)
+
+
+def _changed(part: T, changes: dict[str, Any], make: Callable[..., T], made: dict[Any, Any]) -> T:
+    """The part with these changes, made once and kept for the other loops that have them."""
+    if not changes:
+        return part
+    key = (id(part), tuple(changes.items()))
+    if key not in made:
+        made[key] = make(**changes)
+    result: T = made[key]
+    return result
 
 
 def _threads(given: int | None) -> int:
@@ -266,7 +279,7 @@ def _blocks(setups: list[Setup]) -> list[list[int]]:
     groups: dict[tuple[int, int], list[int]] = {}
     for row, setup in enumerate(setups):
         if setup.plain:
-            groups.setdefault((setup.late, setup.samples), []).append(row)
+            groups.setdefault((setup.frame.late, setup.frame.samples), []).append(row)
     return [rows[at : at + LANES] for rows in groups.values() for at in range(0, len(rows), LANES)]
 
 
@@ -275,21 +288,21 @@ def _run_block(setups: list[Setup], states: Array, summaries: Array) -> None:
     first, spare = setups[0], LANES - len(setups)
     lanes = [*setups, *[setups[-1]] * spare]
     state, summary = np.concatenate([states, np.repeat(states[-1:], spare, 0)]), np.zeros((LANES, SUMMARY))
-    pushes = [setup.signals.force for setup in lanes]
-    force = np.zeros((first.samples, LANES))
+    pushes = [setup.frame.signals.force for setup in lanes]
+    force = np.zeros((first.frame.samples, LANES))
     for lane, push in enumerate(pushes):
         if push is not None:
             force[:, lane] = push
     run_side_by_side(
         state,
-        np.array([setup.plant for setup in lanes]),
+        np.array([setup.frame.plant for setup in lanes]),
         np.array([setup.law for setup in lanes]),
-        np.array([setup.lengths[0] for setup in lanes]),
-        first.late,
+        np.array([setup.frame.lengths[0] for setup in lanes]),
+        first.frame.late,
         force,
-        first.samples,
+        first.frame.samples,
         aligned(BUFFER),
-        aligned(max(1, first.late) * LANES),
+        aligned(max(1, first.frame.late) * LANES),
         summary,
     )
     states[:], summaries[:] = state[: len(setups)], summary[: len(setups)]
@@ -299,7 +312,7 @@ def _run_alone(setups: list[Setup], states: Array, summaries: Array) -> None:
     setup = setups[0]
     commands, record, work = empty_record(setup)
     run_setup(setup, states[0], setup.memory.copy(), work, commands, record, None)
-    summarize(record, setup.samples, setup.points, summaries[0])
+    summarize(record, setup.frame.samples, setup.frame.points, summaries[0])
 
 
 def aligned(length: int) -> Array:

@@ -39,30 +39,30 @@ def run_on_gpu(setups: list[Setup], states: Array, summaries: Array) -> None:
 
     first = setups[0]
     for setup in setups:
-        if setup.arrivals.size or setup.missed.size:
+        if setup.frame.arrivals.size or setup.frame.missed.size:
             raise InputError("late and missed samples are for the processor: leave out on='gpu'")
-        if setup.points != 1:
+        if setup.frame.points != 1:
             raise InputError("a batch records no points between samples: leave points_per_sample out")
-        if setup.samples != first.samples:
+        if setup.frame.samples != first.frame.samples:
             raise InputError("on the graphics card all loops of a batch have equally many samples")
     arrays = packed(setups, states, summaries)
     on_card = [cuda.to_device(array) for array in arrays]
     blocks = -(-len(setups) // _THREADS)
-    kernel[blocks, _THREADS](first.samples, *on_card)
+    kernel[blocks, _THREADS](first.frame.samples, *on_card)
     states[:], summaries[:] = on_card[0].copy_to_host(), on_card[-1].copy_to_host()
 
 
 def packed(setups: list[Setup], states: Array, summaries: Array) -> list[Array]:
     """What the card's kernel takes after the number of samples, a row per loop."""
-    count, samples = len(setups), setups[0].samples
+    count, samples = len(setups), setups[0].frame.samples
     laws = _padded([setup.law for setup in setups])
     memories = _padded([setup.memory for setup in setups])
     columns = list(zip(*(setup.optional() for setup in setups), strict=True))
     which, signals = zip(*(_distinct(column) for column in columns), strict=True)
-    clocks = np.array([[setup.late, setup.offset, setup.lengths[0]] for setup in setups])
+    clocks = np.array([[setup.frame.late, setup.frame.offset, setup.frame.lengths[0]] for setup in setups])
     return [
         states.copy(),
-        np.array([setup.plant for setup in setups]),
+        np.array([setup.frame.plant for setup in setups]),
         laws,
         memories,
         np.zeros((count, WORK)),

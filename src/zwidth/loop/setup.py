@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from zwidth.device.amplifier import Amplifier, CurrentAmplifier
+from zwidth.device.amplifier import Actuation, Amplifier, CurrentAmplifier
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
@@ -45,45 +45,35 @@ class Setup:
     device: Device
     environment: Environment
     operator: Operator
-    amplifier: Amplifier
     timing: Timing | None
-    samples: int
-    points: int
     encoder_phase: float
-    plant: Plant
     law: Array
     memory: Array
     state: Array
-    late: int
-    offset: float
-    times: Array
-    lengths: Array
-    arrivals: Array
-    missed: Array
-    signals: Signals
+    frame: Frame
 
     @property
     def columns(self) -> int:
         """Instants in the record."""
-        return self.samples * self.points + 1
+        return self.frame.samples * self.frame.points + 1
 
     @property
     def plain(self) -> bool:
         """True where `plain.run_plain` runs it: free mass, spring, regular clock, one force an interval."""
-        p = self.plant
+        f, p = self.frame, self.frame.plant
         free = p.stiffness == 0.0 and p.hand_damping == 0.0 and p.lag == 0.0 and p.slew == 0.0
         memoryless = self.law[laws.SECTIONS] == 1 and self.law[laws.HEADER] == 0
-        clock = self.offset == 0.0 and self.points == 1 and not self.arrivals.size and not self.missed.size
-        return free and memoryless and clock and self.signals.position is None
+        clock = f.offset == 0.0 and f.points == 1 and not f.arrivals.size and not f.missed.size
+        return bool(free and memoryless and clock and f.signals.position is None)
 
     @property
     def plant_numbers(self) -> Array:
         """The plant as the kernel reads it."""
-        return np.array(self.plant)
+        return np.array(self.frame.plant)
 
     def optional(self) -> tuple[Array, Array, Array, Array]:
         """Force, anchor, target and switch as arrays, empty where there is none."""
-        s = self.signals
+        s = self.frame.signals
         given = (s.force, s.anchor, s.position, s.switch_position)
         force, anchor, target, switch = (_NONE if v is None else v for v in given)
         return force, anchor, target, switch
@@ -101,24 +91,87 @@ def prepare(
     amplifier: Amplifier | None = None,
     timing: Timing | None = None,
     points_per_sample: int = 1,
-    known: dict[Any, Signals] | None = None,
+    known: dict[Any, Frame] | None = None,
 ) -> Setup:
     """Check everything and lay it out; arguments as of `simulate`.
 
-    `known` keeps what operators do, so that many loops with one hand ask it once.
+    `known` keeps what belongs to a device and a hand, so that many loops with the
+    same two, and the same amplifier, timing and duration, compute it once. Both
+    must live as long as it.
 
     Raises
     ------
     InputError
         If anything cannot be simulated.
     """
+    law = as_environment(environment)
+    frame = _frame(device, operator, duration, amplifier, timing, points_per_sample, known)
+    phase = _number(encoder_phase, "encoder_phase")
+    if not 0 <= phase < 1:
+        raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
+    start = operator.initial_position if initial_position is None else initial_position
+    if operator.kinematic:
+        assert frame.signals.position is not None
+        _refuse_start(initial_position, initial_velocity)
+        start = float(frame.signals.position[0])
+    state = np.zeros(STATE_SIZE)
+    state[POSITION] = _number(start, "initial_position")
+    state[VELOCITY] = _number(initial_velocity, "initial_velocity")
+    state[DIRECTION] = np.sign(state[VELOCITY])
+    sections = sections_of(law, frame.period)
+    actuation = frame.actuation
+    header = [_gate(law), frame.resolution, phase, actuation.step, actuation.limit]
+    packed = np.array([*header, len(sections), *(c for s in sections for c in s)])
+    return Setup(
+        device=device,
+        environment=law,
+        operator=operator,
+        timing=timing,
+        encoder_phase=phase,
+        law=packed,
+        memory=at_rest(packed, laws.measured(state[POSITION], frame.resolution, phase)),
+        state=state,
+        frame=frame,
+    )
+
+
+class Frame(NamedTuple):
+    """What of a loop depends neither on its law nor on how it starts."""
+
+    samples: int
+    points: int
+    period: Fraction
+    resolution: float
+    amplifier: Amplifier
+    actuation: Actuation
+    plant: Plant
+    late: int
+    offset: float
+    times: Array
+    lengths: Array
+    arrivals: Array
+    missed: Array
+    signals: Signals
+
+
+def _frame(
+    device: Device,
+    operator: Operator,
+    duration: RealLike,
+    amplifier: Amplifier | None,
+    timing: Timing | None,
+    points_per_sample: int,
+    known: dict[Any, Frame] | None,
+) -> Frame:
+    key = (id(device), id(operator))
+    if known is not None and key in known:
+        return known[key]
     if not isinstance(device, Device):
         raise InputError(f"the device is a zwidth.Device, got {type(device).__name__}")
     if not isinstance(operator, Operator):
         raise InputError(
             f"operator is a hand, such as zwidth.operators.Finger(), got {type(operator).__name__}"
         )
-    law = as_environment(environment)
     drive = CurrentAmplifier() if amplifier is None else amplifier
     if not isinstance(drive, Amplifier):
         raise InputError(f"amplifier is one of zwidth.amplifiers, got {type(drive).__name__}")
@@ -126,8 +179,39 @@ def prepare(
     samples = _samples(duration, period)
     points = _points(points_per_sample, samples)
     actuation = drive.actuation(device)
+    plant = _plant(device, operator, actuation)
+    _check_pieces(plant, float(period), operator.kinematic)
+    times, lengths, arrivals, missed = _clock(timing, samples, period, device.exact("delay"))
+    signals = operator.signals(times)
+    _check_signals(signals, samples)
+    if signals.switch_position is not None and timing is not None:
+        raise InputError("a motion with switch positions needs a regular clock: leave timing out")
+    delay = device.exact("delay") / period
+    late = delay.numerator // delay.denominator
+    frame = Frame(
+        samples=samples,
+        points=points,
+        period=period,
+        resolution=float(device.exact("resolution")),
+        amplifier=drive,
+        actuation=actuation,
+        plant=plant,
+        late=late,
+        offset=float((delay - late) * period),
+        times=times,
+        lengths=lengths,
+        arrivals=arrivals,
+        missed=missed,
+        signals=signals,
+    )
+    if known is not None:
+        known[key] = frame
+    return frame
+
+
+def _plant(device: Device, operator: Operator, actuation: Actuation) -> Plant:
     hand = operator.hand
-    plant = Plant(
+    return Plant(
         mass=_mass(device, operator),
         hand_mass=hand.mass,
         damping=float(device.exact("damping")),
@@ -137,49 +221,6 @@ def prepare(
         hand_damping=hand.damping,
         lag=actuation.lag,
         slew=actuation.slew,
-    )
-    _check_pieces(plant, float(period), operator.kinematic)
-    phase = _number(encoder_phase, "encoder_phase")
-    if not 0 <= phase < 1:
-        raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
-    times, lengths, arrivals, missed = _clock(timing, samples, period, device.exact("delay"))
-    signals = _signals(operator, times, timing, known)
-    start = operator.initial_position if initial_position is None else initial_position
-    if operator.kinematic:
-        assert signals.position is not None
-        _refuse_start(initial_position, initial_velocity)
-        start = float(signals.position[0])
-    state = np.zeros(STATE_SIZE)
-    state[POSITION] = _number(start, "initial_position")
-    state[VELOCITY] = _number(initial_velocity, "initial_velocity")
-    state[DIRECTION] = np.sign(state[VELOCITY])
-    sections = sections_of(law, period)
-    header = [_gate(law), float(device.exact("resolution")), phase, actuation.step, actuation.limit]
-    packed = np.array([*header, len(sections), *(c for s in sections for c in s)])
-    delay = device.exact("delay") / period
-    late = delay.numerator // delay.denominator
-    if signals.switch_position is not None and timing is not None:
-        raise InputError("a motion with switch positions needs a regular clock: leave timing out")
-    return Setup(
-        device=device,
-        environment=law,
-        operator=operator,
-        amplifier=drive,
-        timing=timing,
-        samples=samples,
-        points=points,
-        encoder_phase=phase,
-        plant=plant,
-        law=packed,
-        memory=at_rest(packed, laws.measured(state[POSITION], header[1], phase)),
-        state=state,
-        late=late,
-        offset=float((delay - late) * period),
-        times=times,
-        lengths=lengths,
-        arrivals=arrivals,
-        missed=missed,
-        signals=signals,
     )
 
 
@@ -314,19 +355,6 @@ def _clock(
     return times, lengths, np.stack([interval.astype(np.float64), into]), missed
 
 
-def _signals(
-    operator: Operator, times: Array, timing: Timing | None, known: dict[Any, Signals] | None
-) -> Signals:
-    key = (id(operator), len(times), times[-1], id(timing))
-    if known is not None and key in known:
-        return known[key]
-    signals = operator.signals(times)
-    _check_signals(signals, len(times) - 1)
-    if known is not None:
-        known[key] = signals
-    return signals
-
-
 def _check_signals(signals: Signals, samples: int) -> None:
     wanted = {"force": samples, "anchor": samples + 1, "position": samples + 1, "switch_position": samples}
     for name, length in wanted.items():
@@ -361,4 +389,4 @@ def _number(value: object, what: str) -> float:
 
 def empty_record(setup: Setup) -> tuple[Array, Array, Array]:
     """(commands, record, work) to run into."""
-    return np.zeros(setup.samples + 1), np.empty((RECORDED, setup.columns)), np.zeros(WORK)
+    return np.zeros(setup.frame.samples + 1), np.empty((RECORDED, setup.columns)), np.zeros(WORK)

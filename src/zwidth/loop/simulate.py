@@ -122,7 +122,7 @@ def run_setup(
     progress: Progress | None,
 ) -> int:
     """Run all of it, or what Ctrl-C leaves; returns the number of samples finished."""
-    total = setup.samples + 1
+    total = setup.frame.samples + 1
     done = 0
     try:
         while done < total:
@@ -130,7 +130,7 @@ def run_setup(
             _run(setup, done, stop, state, memory, work, commands, record)
             done = stop
             if progress is not None:
-                progress(min(done, setup.samples), setup.samples)
+                progress(min(done, setup.frame.samples), setup.frame.samples)
     except KeyboardInterrupt:
         if done < 1:
             raise
@@ -147,16 +147,16 @@ def _run(
     commands: NDArray[np.float64],
     record: NDArray[np.float64],
 ) -> None:
-    numbers, law, late = setup.plant_numbers, setup.law, setup.late
+    numbers, law, late = setup.plant_numbers, setup.law, setup.frame.late
     force, anchor, target, switch = setup.optional()
     if setup.plain:
-        push = force if force.size else np.zeros(setup.samples)
-        period = float(setup.lengths[0])
+        push = force if force.size else np.zeros(setup.frame.samples)
+        period = float(setup.frame.lengths[0])
         count, phase, step = (law[key] or None for key in (RESOLUTION, PHASE, STEP))
         run_plain(first, last, state, numbers, law, late, period, push, commands, record, count, phase, step)
         return
     run(
-        first, last, setup.points, state, numbers, law, memory, work,
-        late, setup.offset, setup.lengths, setup.arrivals, setup.missed,
+        first, last, setup.frame.points, state, numbers, law, memory, work,
+        late, setup.frame.offset, setup.frame.lengths, setup.frame.arrivals, setup.frame.missed,
         force, anchor, target, switch, commands, record,
     )  # fmt: skip

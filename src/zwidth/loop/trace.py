@@ -57,7 +57,7 @@ VARIABLES = {
 
 def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> xr.Dataset:
     """The Dataset of the first `done` samples of a record."""
-    columns = min(setup.columns, done * setup.points if done <= setup.samples else setup.columns)
+    columns = min(setup.columns, done * setup.frame.points if done <= setup.frame.samples else setup.columns)
     values = _values(setup, record, columns)
     device = setup.device
     units = (*UNITS[device.motion], "J")
@@ -67,7 +67,7 @@ def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> xr.Dat
         if name in values
     }
     time = _instants(setup)[:columns]
-    sampled = np.arange(columns) % setup.points == 0
+    sampled = np.arange(columns) % setup.frame.points == 0
     coordinates = {
         "time": ("time", time, {"units": "s", "long_name": "time since sample 0", "symbol": "t"}),
         "sampled": ("time", sampled, {"long_name": "a sample is taken at this instant"}),
@@ -83,15 +83,15 @@ def _attributes(variable: Variable, units: tuple[str, ...]) -> dict[str, str]:
 
 
 def _instants(setup: Setup) -> Array:
-    if setup.points == 1:
-        return setup.times
-    share = np.arange(setup.points) / setup.points
-    inside = setup.times[:-1, None] + np.diff(setup.times)[:, None] * share
-    return np.append(inside.ravel(), setup.times[-1])
+    if setup.frame.points == 1:
+        return setup.frame.times
+    share = np.arange(setup.frame.points) / setup.frame.points
+    inside = setup.frame.times[:-1, None] + np.diff(setup.frame.times)[:, None] * share
+    return np.append(inside.ravel(), setup.frame.times[-1])
 
 
 def _values(setup: Setup, record: Array, columns: int) -> dict[str, Array]:
-    k, p = kernel, setup.plant
+    k, p = kernel, setup.frame.plant
     rows = {
         "position": k.R_POSITION,
         "velocity": k.R_VELOCITY,
@@ -129,25 +129,25 @@ def _held(values: Array, points: int, columns: int) -> Array:
 
 
 def _anchor(setup: Setup, columns: int) -> tuple[Array | None, Array | float]:
-    anchor = setup.signals.anchor
+    anchor = setup.frame.signals.anchor
     if anchor is None:
         return None, 0.0
-    speed = np.diff(anchor) / np.diff(setup.times)
-    if setup.points == 1:
+    speed = np.diff(anchor) / np.diff(setup.frame.times)
+    if setup.frame.points == 1:
         return anchor[:columns], _held(speed, 1, columns)
-    share = np.arange(setup.points) / setup.points
+    share = np.arange(setup.frame.points) / setup.frame.points
     inside = anchor[:-1, None] + np.diff(anchor)[:, None] * share
-    return np.append(inside.ravel(), anchor[-1])[:columns], _held(speed, setup.points, columns)
+    return np.append(inside.ravel(), anchor[-1])[:columns], _held(speed, setup.frame.points, columns)
 
 
 def _hand_force(setup: Setup, values: dict[str, Array], anchor: Array | None, speed: Array | float) -> Array:
     """F + k (x_a − x) + c (ẋ_a − v) − m_h v̇, with v̇ just after the instant."""
-    p, v = setup.plant, values["velocity"]
+    p, v = setup.frame.plant, values["velocity"]
     columns = v.size
     applied: Array = np.zeros(columns) if anchor is None else p.stiffness * (anchor - values["position"])
     applied = applied + p.hand_damping * (speed - v)
-    if setup.signals.force is not None:
-        applied = applied + _held(setup.signals.force, setup.points, columns)
+    if setup.frame.signals.force is not None:
+        applied = applied + _held(setup.frame.signals.force, setup.frame.points, columns)
     if p.hand_mass == 0.0:
         return applied
     external = applied - values["actuator_force"]
@@ -159,22 +159,22 @@ def _hand_force(setup: Setup, values: dict[str, Array], anchor: Array | None, sp
 
 def _needed_force(setup: Setup, values: dict[str, Array]) -> Array:
     """What a prescribed motion takes just after the instant, impulses left out: f_a + f_c sgn v + b v."""
-    p, columns = setup.plant, values["position"].size
-    target, bend = setup.signals.position, setup.signals.switch_position
+    p, columns = setup.frame.plant, values["position"].size
+    target, bend = setup.frame.signals.position, setup.frame.signals.switch_position
     assert target is not None
-    h = np.diff(setup.times)
+    h = np.diff(setup.frame.times)
     if bend is None:
-        speed = _held(np.diff(target) / h, setup.points, columns)
+        speed = _held(np.diff(target) / h, setup.frame.points, columns)
     else:
-        before = _held((bend - target[:-1]) / setup.offset, setup.points, columns)
-        after = _held((target[1:] - bend) / (h - setup.offset), setup.points, columns)
-        into = np.arange(columns) % setup.points / setup.points * float(setup.lengths[0])
-        speed = np.where(into < setup.offset, before, after)
+        before = _held((bend - target[:-1]) / setup.frame.offset, setup.frame.points, columns)
+        after = _held((target[1:] - bend) / (h - setup.frame.offset), setup.frame.points, columns)
+        into = np.arange(columns) % setup.frame.points / setup.frame.points * float(setup.frame.lengths[0])
+        speed = np.where(into < setup.frame.offset, before, after)
     return values["actuator_force"] + p.coulomb * np.sign(speed) + p.damping * speed
 
 
 def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
-    device, plant = setup.device, setup.plant
+    device, plant = setup.device, setup.frame.plant
     length = UNITS[device.motion][0]
     turn = device.motion == "rotary"
     result: dict[str, Any] = {
@@ -183,7 +183,7 @@ def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
         "device": device.name,
         "environment": setup.environment.describe(device.motion),
         "operator": setup.operator.describe(device.motion),
-        "amplifier": setup.amplifier.describe(),
+        "amplifier": setup.frame.amplifier.describe(),
         "timing": "regular" if setup.timing is None else setup.timing.describe(),
         "motion": device.motion,
         "sample_period_s": float(device.exact("sample_period")),
