@@ -48,19 +48,22 @@ void simulate(const Loop *loop, const double *hand, long n, double *position, do
         Response h = whole;
         while (left > 0.0 && (v != 0.0 || fabs(force) > loop->coulomb)) {
             const double side = copysign(1.0, v != 0.0 ? v : force);
-            const double a0 = (force - side * loop->coulomb - loop->damping * v) * per_mass;
-            double t = left, after = v + a0 * h.h1;
+            const double free = (hand[i] - side * loop->coulomb - loop->damping * v) * per_mass;
+            const double a0 = free - wall * per_mass;
+            double t = left, after = (v + free * h.h1) - wall * (per_mass * h.h1);
             if (after * side <= 0.0) { /* it stops on the way */
                 t = fmin(left, -log1p(rate * v / a0) / rate);
                 h = respond(rate, t);
                 after = 0.0;
             }
-            const double moved = v * t + a0 * h.h2;
+            /* the wall last: its force is what the next position waits for */
+            const double ahead = v * t + free * h.h2, back = wall * (per_mass * h.h2);
+            const double moved = ahead - back;
             sum[HAND] += hand[i] * moved;
             sum[ACTUATOR] -= wall * moved;
             sum[VISCOUS] += loop->damping * (v * v * t + 2.0 * v * a0 * h.h2 + a0 * a0 * h.h3);
             sum[FRICTION] += loop->coulomb * fabs(moved);
-            x += moved;
+            x = (x + ahead) - back;
             v = after;
             left -= t;
             if (left > 0.0) h = respond(rate, left);
@@ -70,12 +73,13 @@ void simulate(const Loop *loop, const double *hand, long n, double *position, do
     }
 }
 
-/* The chain x, floor, force, x that no single simulation can shorten; no friction, no stop. */
+/* The chain x, floor, force, x that no single simulation can shorten: all else is added up beside it.
+   No friction, no stop. */
 void chain(const Loop *loop, const double *hand, long n, double *position) {
     const double gain = respond(loop->damping / loop->mass, loop->period).h2 / loop->mass;
     double x = position[0];
     for (long i = 0; i < n; i++) {
-        x += gain * (hand[i] - sampled_wall(loop, x));
+        x = (x + gain * hand[i]) - gain * sampled_wall(loop, x);
         position[i + 1] = x;
     }
 }

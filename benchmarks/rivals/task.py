@@ -51,17 +51,23 @@ def wall_force(position: float) -> float:
     return STIFFNESS * measured if measured > 0 else 0.0
 
 
-def report(simulate: Callable[[int], Sequence[float]], samples: int, shared: int = 1) -> None:
+def report(
+    simulate: Callable[[int], Sequence[float]],
+    samples: int,
+    loops: int = 1,
+    positions: Sequence[float] | None = None,
+) -> None:
     """Run `simulate(number of samples)` warm, several times, and print time and positions as JSON.
 
-    `simulate` returns the positions at the sample instants from t = 0 on [m].  One run
-    stands for `shared` simulations side by side.
+    `simulate` returns the positions at the sample instants from t = 0 on [m], unless they
+    are given.  One run may be that of several `loops`.
     """
-    positions = [float(x) for x in simulate(max(samples, COMPARED))[: COMPARED + 1]]
+    found = simulate(max(samples, COMPARED))
+    compared = found if positions is None else positions
     seconds = []
     for _ in range(REPEATS):
         start = time.perf_counter()
         simulate(samples)
         seconds.append(time.perf_counter() - start)
-    ns = 1e9 * median(seconds) / (samples * shared)
-    print(json.dumps({"ns": ns, "positions": positions}))
+    ns = 1e9 * median(seconds) / (samples * loops)
+    print(json.dumps({"ns": ns, "positions": [float(x) for x in compared[: COMPARED + 1]]}))
