@@ -40,7 +40,7 @@ DEVICE = zw.Device(
     mass=MASS, damping=DAMPING, coulomb_friction=COULOMB, resolution=RESOLUTION, sample_period=PERIOD
 )
 WALL = zw.Wall(stiffness=STIFFNESS)
-HAND = hand_forces(SAMPLES)
+HAND = np.array(hand_forces(SAMPLES))
 STARTS = [START - 1e-5 * i for i in range(BATCH_LOOPS)]
 
 
@@ -93,7 +93,7 @@ def lanes(threads: int) -> None:
     first = [laid_out(SAMPLES, start) for start in STARTS[:LANES]]
     numbers, laws = np.array([s.plant_numbers for s in first]), np.array([s.law for s in first])
     states, periods = np.array([s.state for s in first]), np.full(LANES, PERIOD)
-    force = np.repeat(np.array(HAND[:SAMPLES])[:, None], LANES, axis=1)
+    force = np.repeat(HAND[:, None], LANES, axis=1)
 
     def block(samples: int) -> float:
         state, kept = states.copy(), np.zeros((LANES, SUMMARY))
