@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.device import amplifier as amplifiers
     from zwidth.loop.timing import Timing
+    from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.traces import compare_traces, load_trace, simulate, simulate_batch
 
 __all__ = [
@@ -42,6 +43,7 @@ __all__ = [
     "Maxwell",
     "OnePole",
     "PulseTransferFunction",
+    "RealHand",
     "StandardLinearSolid",
     "Timing",
     "VelocityFilter",
@@ -58,6 +60,7 @@ __all__ = [
     "load_trace",
     "operators",
     "quantization",
+    "replay",
     "rotary",
     "simulate",
     "simulate_batch",
@@ -66,7 +69,9 @@ __all__ = [
 _LATER = {
     "Timing": "zwidth.loop.timing",
     "amplifiers": "zwidth.device.amplifier",
+    "RealHand": "zwidth.passivity.real_hand",
     "operators": "zwidth.operator",
+    "replay": "zwidth.passivity.real_hand",
     "compare_traces": "zwidth.traces",
     "load_trace": "zwidth.traces",
     "simulate": "zwidth.traces",

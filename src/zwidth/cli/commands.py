@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import argparse
+import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.cli.options import Once, add_parameters, overrides
 from zwidth.cli.output import check_new, print_json, writing
 from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    from zwidth.passivity.real_hand import RealHand
+    from zwidth.passivity.verdict import Verdict
 
 STATUS = {"passive": 0, "active": 1, "undecided": 3}
 """Exit status of `check` by outcome; 2 is bad input."""
@@ -29,7 +34,9 @@ class Command(NamedTuple):
 
 
 def _configure_check(parser: argparse.ArgumentParser) -> None:
-    parser.usage = "%(prog)s [SOURCE ...] [--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] [--force]"
+    parser.usage = (
+        "%(prog)s [SOURCE ...] [--PARAMETER VALUE ...] [--json] [--plot FILE] [--replay] [-o FILE] [--force]"
+    )
     parser.add_argument(
         "sources",
         metavar="SOURCE",
@@ -39,6 +46,9 @@ def _configure_check(parser: argparse.ArgumentParser) -> None:
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the verdict as JSON, units in the keys")
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
+    output.add_argument(
+        "--replay", action="store_true", help="replay the motion by hands of finite stiffness; needs a mass"
+    )
     output.add_argument(
         "-o",
         "--save",
@@ -65,13 +75,27 @@ def _check(arguments: argparse.Namespace) -> int:
 
         with writing(plot):
             save_check(verdict, plot)
+    real_hand = _replayed(verdict) if arguments.replay else None
     if arguments.json:
-        print_json(verdict.to_json())
+        print_json(verdict.to_json() if real_hand is None else _with_replay(verdict, real_hand))
     else:
         from zwidth.cli.report import print_verdict
 
-        print_verdict(verdict)
+        print_verdict(verdict, real_hand)
     return STATUS[verdict.outcome]
+
+
+def _replayed(verdict: Verdict) -> RealHand:
+    from zwidth.cli.patience import warn_of_compiling
+    from zwidth.passivity.real_hand import replay  # the simulator takes its time
+
+    warn_of_compiling()
+    return replay(verdict)
+
+
+def _with_replay(verdict: Verdict, real_hand: RealHand) -> str:
+    document = {**json.loads(verdict.to_json()), "real_hand": real_hand.to_dict()}
+    return json.dumps(document, indent=2, ensure_ascii=False)
 
 
 def _targets(arguments: argparse.Namespace) -> tuple[Path | None, Path | None]:

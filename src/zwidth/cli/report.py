@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from io import StringIO
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.padding import Padding
@@ -24,6 +25,9 @@ from zwidth.passivity.advice import Advice
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness import Witness
 from zwidth.quantity.glossary import GLOSSARY
+
+if TYPE_CHECKING:
+    from zwidth.passivity.real_hand import RealHand
 
 COLOURS = {"passive": "green", "active": "red", "undecided": "yellow"}
 _WIDEST = 100
@@ -51,8 +55,8 @@ def page() -> Iterator[Console]:
         print("\n".join(line.rstrip() for line in text.replace(GLUE, " ").rstrip().split("\n")))
 
 
-def print_verdict(verdict: Verdict) -> None:
-    """Print the report on standard output."""
+def print_verdict(verdict: Verdict, real_hand: RealHand | None = None) -> None:
+    """Print the report on standard output, with what a real hand reaches if that was asked for."""
     fancy = encodes(PICTURE)
     with page() as out:
         out.print(_headline(verdict))
@@ -61,9 +65,18 @@ def print_verdict(verdict: Verdict) -> None:
         _section(out, "budget", _budget(verdict, fancy))
         if verdict.witness is not None:
             _section(out, "the motion", _motion(verdict.witness, fancy))
+        if real_hand is not None:
+            _section(out, "a real hand", _real_hand(real_hand))
         _section(out, *_advice(verdict))
         _section(out, "actuator", _actuator(verdict))
         _section(out, "assumes", _assumptions(verdict))
+
+
+def _real_hand(real_hand: RealHand) -> Iterator[Table]:
+    grid = Table.grid(padding=(0, 2))
+    for name, text in real_hand.rows():
+        grid.add_row(Text(name, style="dim"), Text(text))
+    yield grid
 
 
 def _headline(verdict: Verdict) -> Padding:
