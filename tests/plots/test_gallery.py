@@ -11,11 +11,15 @@ import pytest
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 NUMBERS = {
+    "plot_bouncing_ball": "after 3 strikes the ball comes back 12.37 times as far as it started",
     "plot_buzz_or_bounce": "active tactile: largest passive stiffness 107.1 N/m",
     "plot_delay": "with 0.3 ms: 174.2 N/m; rounded up to 1 ms: 100 N/m",
     "plot_how_stiff": "largest passive stiffness at 1 kHz: 300 N/m",
+    "plot_motorized_guide": "measured over passive, Kelvin-Voigt without damping: 9.9",
+    "plot_paddle_experiments": "10 of 11 statements agree; the other is the boundary at 90 N/m",
     "plot_plane": "largest passive stiffness: 26.08 N·m/rad",
     "plot_soft_tissue": "largest relative difference over 99 points: ",
+    "plot_staircase": "energy leaked by the hold: 1.5 mJ, 1.000000000000 of the formula",
     "plot_velocity_filter": "N = 20: b ≥ 0.248 B, tightest at 35 Hz",
     "plot_worst_case": "admissible speed at 770 N/m: 0.474 m/s",
 }
