@@ -206,6 +206,36 @@ def test_ctrl_c_keeps_what_is_finished(monkeypatch) -> None:
     assert (part.position.values == whole.position.values[:80]).all()
 
 
+def test_a_motion_that_grows_without_bound_is_cut_and_says_when() -> None:
+    """A spring on both sides that the rate cannot follow: finite numbers up to the end of the trace."""
+    loop = zw.Device(mass=0.036, damping=0.1, sample_period=1e-3)
+    spring = zw.PulseTransferFunction([1e9], [1.0])
+    trace = zw.simulate(loop, spring, zw.operators.ConstantForce(1.0), 2.0, amplifier=IDEAL)
+    assert trace.attrs["diverged_at_s"] == pytest.approx(float(trace.time[-1]))
+    assert 1 < trace.sizes["time"] < 1000
+    for values in trace.data_vars.values():
+        assert np.isfinite(values.values.astype(float)).all()
+    assert trace.zwidth.energy.closes
+
+
+def test_a_delay_longer_than_the_simulation_leaves_the_hand_alone() -> None:
+    """No force ever arrives, however many samples the delay has."""
+    far = zw.Device(mass=0.036, damping=0.1, sample_period=1e-3, delay="1e9 s")
+    trace = zw.simulate(far, zw.Wall(1e3), zw.operators.ConstantForce(1.0), 0.1)
+    assert float(trace.position[-1]) > 0
+    assert not trace.actuator_force.values.any()
+
+
+def test_switch_positions_need_a_delay_that_ends_within_a_sample() -> None:
+    """With a whole number of samples the force changes at the samples, not where the motion says."""
+    motion = zw.operators.PrescribedMotion([0, 1e-3, 2e-3], switch_positions=[0.5e-3, 1.5e-3])
+    with pytest.raises(zw.InputError, match=r"switch positions.*delay of 0 s"):
+        zw.simulate(PADDLE, zw.Wall(300.0), motion, 0.002)
+    late = PADDLE.replace(delay="0.3 ms")
+    trace = zw.simulate(late, zw.Wall(300.0), motion, 0.002, amplifier=IDEAL)
+    assert float(trace.position[-1]) == 2e-3
+
+
 def test_python_control_and_scipy_systems_are_environments() -> None:
     """A discrete system is run as the wall with the same H(z)."""
     wall = zw.simulate(PADDLE, zw.PulseTransferFunction([300.0], [1.0]), zw.operators.Dowel(), 0.05)

@@ -83,6 +83,8 @@ def _about(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
     yield "time", f"{shown(seconds, 's')}, {count:,} samples of {shown(about['sample_period_s'], 's')}"
     if "interrupted_at_s" in about:
         yield "interrupted", f"at {shown(about['interrupted_at_s'], 's')}; what was finished is kept"
+    if "diverged_at_s" in about:
+        yield "diverged", f"at {shown(about['diverged_at_s'], 's')}: beyond that the numbers mean nothing"
 
 
 def _measures(trace: xr.Dataset) -> Iterator[tuple[str, str]]:

@@ -187,7 +187,14 @@ def _frame(
     if signals.switch_position is not None and timing is not None:
         raise InputError("a motion with switch positions needs a regular clock: leave timing out")
     delay = device.exact("delay") / period
-    late = delay.numerator // delay.denominator
+    if signals.switch_position is not None and delay.denominator == 1:
+        raise InputError(
+            "a motion with switch positions says where the handle is when the force changes within a sample "
+            f"interval, but with a delay of {float(device.exact('delay')):g} s it changes at the samples: "
+            "take the device that the motion was found for"
+        )
+    offset = float(delay % 1 * period)
+    late = min(delay.numerator // delay.denominator, samples + 1)  # later than all is late enough
     frame = Frame(
         samples=samples,
         points=points,
@@ -197,7 +204,7 @@ def _frame(
         actuation=actuation,
         plant=plant,
         late=late,
-        offset=float((delay - late) * period),
+        offset=offset,
         times=times,
         lengths=lengths,
         arrivals=arrivals,

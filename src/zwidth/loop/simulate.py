@@ -83,6 +83,7 @@ def simulate(
     xarray.Dataset
         Position, velocity, forces and energies along `time`, units in the attributes.
         Interrupted by Ctrl-C, what was finished; its attribute `interrupted_at_s` says so.
+        A motion that grows without bound ends at 1e120; `diverged_at_s` says so.
 
     Raises
     ------

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 FORMAT = "zwidth trace 1"
 
+LARGEST = 1e120
+"""Where a motion that grows without bound is cut, in SI units: squares of it are still finite."""
+
 UNITS = {"linear": ("m", "m/s", "N"), "rotary": ("rad", "rad/s", "N*m")}
 
 
@@ -56,8 +59,9 @@ VARIABLES = {
 
 
 def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> xr.Dataset:
-    """The Dataset of the first `done` samples of a record."""
-    columns = min(setup.columns, done * setup.frame.points if done <= setup.frame.samples else setup.columns)
+    """The Dataset of the first `done` samples of a record, up to where the numbers outgrow any meaning."""
+    finished = min(setup.columns, done * setup.frame.points if done <= setup.frame.samples else setup.columns)
+    columns = _before_overflow(record, finished)
     values = _values(setup, record, columns)
     device = setup.device
     units = (*UNITS[device.motion], "J")
@@ -73,9 +77,19 @@ def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> xr.Dat
         "sampled": ("time", sampled, {"long_name": "a sample is taken at this instant"}),
     }
     attributes = _attrs(setup, stops)
-    if columns < setup.columns:
+    if columns < finished:
+        attributes["diverged_at_s"] = float(time[-1])
+    elif finished < setup.columns:
         attributes["interrupted_at_s"] = float(time[-1])
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _before_overflow(record: Array, columns: int) -> int:
+    """How many of the columns, one at least, come before the first number that is not below `LARGEST`."""
+    if (np.abs(record[:, columns - 1]) < LARGEST).all():
+        return columns  # what has grown so large does not come back: the energies sum up all that was
+    beyond = ~(np.abs(record[:, :columns]).max(axis=0) < LARGEST)  # NaN is not below either
+    return max(1, int(np.argmax(beyond)))
 
 
 def _attributes(variable: Variable, units: tuple[str, ...]) -> dict[str, str]:
