@@ -132,8 +132,11 @@ def test_rotary_devices(read: Load) -> None:
 SLS = 'type = "standard-linear-solid"\nstiffness = 10\nbranch_stiffness = "1 N/mm"\nbranch_damping = 3\n'
 ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
     ('type = "wall"\nstiffness = 1\ndamping = 2\n', lambda: zw.Wall(1, 2)),
+    ('type = "wall"\nstiffness = 1\ndamping = 2\nclamped = true\n', lambda: zw.Wall(1, 2, clamped=True)),
+    ('type = "maxwell"\nstiffness = 1\ndamping = 2\nclamped = false\n', lambda: zw.Maxwell(1, 2)),
     ('type = "maxwell"\nstiffness = 1\ndamping = 2\n', lambda: zw.Maxwell(1, 2)),
     (SLS, lambda: zw.StandardLinearSolid(10, 1000, 3)),
+    (SLS + 'clamped = "true"\n', lambda: zw.StandardLinearSolid(10, 1000, 3, clamped=True)),
     (SLS + 'discretization = "tustin"\n', lambda: zw.StandardLinearSolid(10, 1000, 3, "tustin")),
     (
         'type = "generalized-maxwell"\nstiffness = 1\nbranches = [[800, 3], ["1 N/mm", [1, 2]]]\n',
@@ -186,6 +189,14 @@ def test_velocity_filters(read: Load, table: str, text: str, expected: Any) -> N
     wall = zw.Wall(300, 0.1, expected)
     assert read(DEVICE + WALL + f"damping = 0.1\nvelocity_filter = {table}\n").environment == wall
     assert read(DEVICE + WALL, virtual_damping="0.1", velocity_filter=text).environment == wall
+
+
+def test_a_clamped_law_on_the_command_line() -> None:
+    """True or false as a word, over what the file says."""
+    given = {"stiffness": "300", "virtual-damping": "0.1"}
+    assert load(["phantom"], {**given, "clamped": "true"}).environment == zw.Wall(300, 0.1, clamped=True)
+    assert load(["phantom"], {**given, "clamped": "false"}).environment == zw.Wall(300, 0.1)
+    assert "clamped is true or false" in message(lambda: load(["phantom"], {**given, "clamped": "TRUE"}))
 
 
 def test_lists_on_the_command_line(read: Load) -> None:
@@ -245,6 +256,11 @@ BAD: list[tuple[str | bytes, str]] = [
     (DEVICE + WALL + "branch_damping = 1", 'of type "wall" has no "branch_damping"'),
     (DEVICE + WALL + "damping = 1\nvirtual_damping = 1", "same quantity"),
     (DEVICE + WALL.replace("300", "-300"), "stiffness must be ≥ 0"),
+    (
+        DEVICE + WALL + "clamped = 1",
+        "file0.toml: [environment]: clamped is true or false; got a value of type",
+    ),
+    (DEVICE + WALL + 'clamped = "yes"', 'clamped is true or false; got "yes"'),
     (DEVICE + WALL + "velocity_filter = 5", "velocity_filter is"),
     (DEVICE + WALL + 'velocity_filter = "windw 5"', 'did you mean "window"'),
     (DEVICE + WALL + "velocity_filter = {}", "velocity_filter"),

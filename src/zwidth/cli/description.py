@@ -41,6 +41,8 @@ def _part(environment: Environment, name: str, key: Key, motion: str) -> str:
         return _named(key.quantity, value, motion) if value or key.required else ""
     if key.form == "environment":
         return f"around {environment_line(value, motion)}"
+    if key.form == "flag":
+        return "never pulls" if value else ""
     if isinstance(environment, Wall):
         return environment.velocity_filter.describe() if environment.damping else ""
     return f"{value} {name}"

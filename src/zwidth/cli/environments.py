@@ -12,13 +12,13 @@ from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 from zwidth.cli.table import Table, located, quoted, suggestion
-from zwidth.cli.values import branches, coefficients, velocity_filter
+from zwidth.cli.values import branches, coefficients, flag, velocity_filter
 from zwidth.environment import Environment
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse
 
-Form = Literal["quantity", "coefficients", "branches", "word", "velocity filter", "environment"]
+Form = Literal["quantity", "coefficients", "branches", "word", "flag", "velocity filter", "environment"]
 
 DEEPEST = 4
 """Couplings inside couplings; more is a mistake."""
@@ -47,6 +47,7 @@ def _number(quantity: str, required: bool = True) -> Key:
 
 
 _DISCRETIZATION = Key("word", "backward, forward, tustin, zoh, impulse or matched", required=False)
+_CLAMPED = Key("flag", "true for a law that never pulls, f = max(0, …); false by default", required=False)
 _NUMERATOR = Key("coefficients", "numerator, descending powers")
 _DENOMINATOR = Key("coefficients", "denominator, descending powers")
 
@@ -64,6 +65,7 @@ TYPES: Mapping[str, EnvironmentType] = MappingProxyType(
                     "backward-difference, window N, one-pole τ or f, filter",
                     required=False,
                 ),
+                "clamped": _CLAMPED,
             },
         ),
         "maxwell": EnvironmentType(
@@ -74,6 +76,7 @@ TYPES: Mapping[str, EnvironmentType] = MappingProxyType(
                 "stiffness": _number("stiffness"),
                 "damping": _number("virtual_damping"),
                 "discretization": _DISCRETIZATION,
+                "clamped": _CLAMPED,
             },
         ),
         "standard-linear-solid": EnvironmentType(
@@ -85,6 +88,7 @@ TYPES: Mapping[str, EnvironmentType] = MappingProxyType(
                 "branch_stiffness": _number("branch_stiffness"),
                 "branch_damping": _number("branch_damping"),
                 "discretization": _DISCRETIZATION,
+                "clamped": _CLAMPED,
             },
         ),
         "generalized-maxwell": EnvironmentType(
@@ -95,6 +99,7 @@ TYPES: Mapping[str, EnvironmentType] = MappingProxyType(
                 "stiffness": _number("stiffness"),
                 "branches": Key("branches", "pairs of branch stiffness and branch damping"),
                 "discretization": _DISCRETIZATION,
+                "clamped": _CLAMPED,
             },
         ),
         "transfer-function": EnvironmentType(
@@ -194,6 +199,8 @@ def _read(table: Table, key: str, kind: Key, motion: str, depth: int) -> Any:
             return coefficients(value, key)
         if kind.form == "branches":
             return branches(value, motion)
+        if kind.form == "flag":
+            return flag(value, key)
         return velocity_filter(value)
 
 

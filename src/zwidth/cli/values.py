@@ -1,7 +1,7 @@
 """Values of a specification that are more than one quantity.
 
-Polynomials, Maxwell branches and velocity filters: a TOML list or table, or
-one text on the command line.
+Polynomials, Maxwell branches and velocity filters, true and false: a TOML list,
+table or word, or one text on the command line.
 """
 
 from __future__ import annotations
@@ -45,6 +45,17 @@ def branches(value: object, motion: str) -> list[tuple[Exact | Interval, Exact |
         )
         for mu, eta in value
     ]
+
+
+def flag(value: object, key: str) -> bool:
+    """True or false, as TOML has them, or the same as a text."""
+    known = {"true": True, "false": False}
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, str) and value.strip() in known:
+        return known[value.strip()]
+    given = quoted(value) if isinstance(value, str) else f"a value of type {type(value).__name__}"
+    raise InputError(f"{key} is true or false; got {given}")
 
 
 FILTERS: Mapping[str, tuple[str, ...]] = MappingProxyType(

@@ -2,7 +2,8 @@
 
 Every environment is, in contact, a pulse transfer function H(z) from the
 sampled position to the force, exact in its parameters.  That is all that the
-criteria need; what happens at the surface is said by `unilateral`.
+criteria need; what happens at the surface is said by `unilateral`, and whether
+the law may pull by `clamped`.
 """
 
 from __future__ import annotations
@@ -34,6 +35,11 @@ class Environment(ABC):
     @property
     def unilateral(self) -> bool:
         """True when the law acts only for x > 0, as a wall does."""
+        return False
+
+    @property
+    def clamped(self) -> bool:
+        """True when the law never pulls: a force below 0 is given as 0."""
         return False
 
     @property
@@ -76,6 +82,19 @@ def _uncertain(value: object) -> bool:
     if isinstance(value, tuple):
         return any(_uncertain(v) for v in value)
     return isinstance(value, Environment) and not value.is_certain
+
+
+def as_clamped(value: object) -> bool:
+    """Read the keyword of a law that never pulls.
+
+    Raises
+    ------
+    InputError
+        If it is not True or False.
+    """
+    if not isinstance(value, bool):
+        raise InputError(f"clamped is True for a law that never pulls, or False; got {value!r}")
+    return value
 
 
 def certain(value: Exact | Interval, key: str) -> Fraction:

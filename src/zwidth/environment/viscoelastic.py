@@ -13,7 +13,8 @@ at first the spring, in the end nothing, relaxing with the time η/μ.  Then
 A controller runs H(z), which the discretization makes of H(s).  Backward Euler
 gives H_i(z) = μ η (z − 1)/((μ T + η) z − η).
 
-The solids are touched and left: they push for x > 0 only.
+The solids are touched and left: they push for x > 0 only.  A clamped one never
+pulls, f = max(0, H x): it does not hold back the hand that leaves it quickly.
 """
 
 from __future__ import annotations
@@ -28,9 +29,9 @@ from zwidth.environment.discretization import (
     as_discretization,
     discretize,
 )
-from zwidth.environment.environment import Environment, RationalFunction, add, certain, multiply
+from zwidth.environment.environment import Environment, RationalFunction, add, as_clamped, certain, multiply
 from zwidth.environment.wall import Parameter
-from zwidth.environment.wording import with_unit
+from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, as_parameter, ends
 
@@ -60,11 +61,13 @@ class StandardLinearSolid(Environment):
         one makes H(s) unstable.
     discretization
         "backward" (default), "forward", "tustin", "zoh", "impulse" or "matched".
+    clamped
+        True for a solid that never pulls: a force below 0 is given as 0. Default False.
 
     Raises
     ------
     InputError
-        If a stiffness is negative or the discretization is unknown.
+        If a stiffness is negative, the discretization is unknown, or clamped is not a bool.
 
     Notes
     -----
@@ -77,6 +80,7 @@ class StandardLinearSolid(Environment):
     branch_stiffness: Exact | Interval
     branch_damping: Exact | Interval
     discretization: Discretization
+    clamped: bool = False
 
     def __init__(
         self,
@@ -84,11 +88,13 @@ class StandardLinearSolid(Environment):
         branch_stiffness: Parameter,
         branch_damping: Parameter,
         discretization: Discretization = "backward",
+        clamped: bool = False,
     ) -> None:
         object.__setattr__(self, "stiffness", _stiffness("stiffness", stiffness))
         object.__setattr__(self, "branch_stiffness", _stiffness("branch_stiffness", branch_stiffness))
         object.__setattr__(self, "branch_damping", _read("branch_damping", branch_damping))
         object.__setattr__(self, "discretization", as_discretization(discretization))
+        object.__setattr__(self, "clamped", as_clamped(clamped))
 
     @property
     def unilateral(self) -> bool:
@@ -114,7 +120,7 @@ class StandardLinearSolid(Environment):
         """The law with its numbers, on one line."""
         k = with_unit("stiffness", self.stiffness, motion)
         branch = _branch_text((self.branch_stiffness, self.branch_damping), motion)
-        return f"standard linear solid, {k} beside {branch}, discretization {self.discretization}"
+        return f"standard linear solid, {k} beside {branch}, {_ending(self)}"
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
@@ -132,26 +138,32 @@ class GeneralizedMaxwell(Environment):
         at most 60 of them.
     discretization
         "backward" (default), "forward", "tustin", "zoh", "impulse" or "matched".
+    clamped
+        True for a solid that never pulls: a force below 0 is given as 0. Default False.
 
     Raises
     ------
     InputError
-        If a stiffness is negative, a branch is not a pair, or the discretization is unknown.
+        If a stiffness is negative, a branch is not a pair, the discretization is unknown, or
+        clamped is not a bool.
     """
 
     stiffness: Exact | Interval
     branches: tuple[Branch, ...]
     discretization: Discretization
+    clamped: bool = False
 
     def __init__(
         self,
         stiffness: Parameter,
         branches: Iterable[Sequence[Parameter]],
         discretization: Discretization = "backward",
+        clamped: bool = False,
     ) -> None:
         object.__setattr__(self, "stiffness", _stiffness("stiffness", stiffness))
         object.__setattr__(self, "branches", _branches(branches))
         object.__setattr__(self, "discretization", as_discretization(discretization))
+        object.__setattr__(self, "clamped", as_clamped(clamped))
 
     @property
     def unilateral(self) -> bool:
@@ -179,7 +191,7 @@ class GeneralizedMaxwell(Environment):
         """The law with its numbers, on one line."""
         parts = [with_unit("stiffness", self.stiffness, motion)]
         parts += [_branch_text(branch, motion) for branch in self.branches]
-        return f"generalized Maxwell, {' beside '.join(parts)}, discretization {self.discretization}"
+        return f"generalized Maxwell, {' beside '.join(parts)}, {_ending(self)}"
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
@@ -195,23 +207,31 @@ class Maxwell(Environment):
         H(s) unstable.
     discretization
         "backward" (default), "forward", "tustin", "zoh", "impulse" or "matched".
+    clamped
+        True for a solid that never pulls: a force below 0 is given as 0. Default False.
 
     Raises
     ------
     InputError
-        If the stiffness is negative or the discretization is unknown.
+        If the stiffness is negative, the discretization is unknown, or clamped is not a bool.
     """
 
     stiffness: Exact | Interval
     damping: Exact | Interval
     discretization: Discretization
+    clamped: bool = False
 
     def __init__(
-        self, stiffness: Parameter, damping: Parameter, discretization: Discretization = "backward"
+        self,
+        stiffness: Parameter,
+        damping: Parameter,
+        discretization: Discretization = "backward",
+        clamped: bool = False,
     ) -> None:
         object.__setattr__(self, "stiffness", _stiffness("stiffness", stiffness))
         object.__setattr__(self, "damping", _read("damping", damping))
         object.__setattr__(self, "discretization", as_discretization(discretization))
+        object.__setattr__(self, "clamped", as_clamped(clamped))
 
     @property
     def unilateral(self) -> bool:
@@ -230,7 +250,7 @@ class Maxwell(Environment):
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line."""
         branch = _branch_text((self.stiffness, self.damping), motion)
-        return f"Maxwell body, {branch}, discretization {self.discretization}"
+        return f"Maxwell body, {branch}, {_ending(self)}"
 
 
 def _discretized(
@@ -287,3 +307,7 @@ def _branch_text(branch: Branch, motion: str) -> str:
     mu = with_unit("branch_stiffness", branch[0], motion)
     eta = with_unit("branch_damping", branch[1], motion)
     return f"({mu} in series with {eta})"
+
+
+def _ending(solid: StandardLinearSolid | GeneralizedMaxwell | Maxwell) -> str:
+    return f"discretization {solid.discretization}{never_pulls(solid.clamped)}"

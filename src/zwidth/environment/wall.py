@@ -3,7 +3,9 @@
     f = K x + B v    if x > 0,   0 outside;      H(z) = K + B V(z)
 
 with V(z) the velocity estimator, by default the backward difference
-(Colgate & Schenkel 1997; Abbott & Okamura 2005, equation (2)).
+(Colgate & Schenkel 1997; Abbott & Okamura 2005, equation (2)).  A clamped wall
+never pulls, f = max(0, K x + B v): its damper does not hold back the hand that
+leaves quickly.
 """
 
 from __future__ import annotations
@@ -11,9 +13,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from zwidth.environment.environment import Environment, RationalFunction, add, certain, multiply
+from zwidth.environment.environment import Environment, RationalFunction, add, as_clamped, certain, multiply
 from zwidth.environment.velocity import BackwardDifference, VelocityEstimator
-from zwidth.environment.wording import with_unit
+from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
 
@@ -33,23 +35,27 @@ class Wall(Environment):
     velocity_filter
         `BackwardDifference()` (default), `Window(samples)`, `OnePole(time_constant)`
         or `VelocityFilter(numerator, denominator)`.
+    clamped
+        True for a wall that never pulls, ``f = max(0, K x + B v)`` inside. Default False.
 
     Raises
     ------
     InputError
         If K < 0: a negative spring pulls the hand in and its energy has no floor; or
-        if velocity_filter is none of these.
+        if velocity_filter is none of these, or clamped is not a bool.
     """
 
     stiffness: Exact | Interval
     damping: Exact | Interval
     velocity_filter: VelocityEstimator
+    clamped: bool = False
 
     def __init__(
         self,
         stiffness: Parameter,
         damping: Parameter = 0,
         velocity_filter: VelocityEstimator | None = None,
+        clamped: bool = False,
     ) -> None:
         k, b = as_parameter(stiffness), as_parameter(damping)
         if ends(k)[0] < 0:
@@ -66,6 +72,7 @@ class Wall(Environment):
         object.__setattr__(self, "stiffness", k)
         object.__setattr__(self, "damping", b)
         object.__setattr__(self, "velocity_filter", velocity)
+        object.__setattr__(self, "clamped", as_clamped(clamped))
 
     @property
     def unilateral(self) -> bool:
@@ -89,4 +96,4 @@ class Wall(Environment):
         parts = [with_unit("stiffness", self.stiffness, motion)]
         if not self.spring:
             parts += [with_unit("virtual_damping", self.damping, motion), self.velocity_filter.describe()]
-        return f"wall, {', '.join(parts)}"
+        return f"wall, {', '.join(parts)}{never_pulls(self.clamped)}"

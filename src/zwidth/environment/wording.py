@@ -17,6 +17,11 @@ def with_unit(key: str, value: Exact | Interval, motion: str) -> str:
     return f"{number} {GLOSSARY[key].unit_for(motion)}"
 
 
+def never_pulls(clamped: bool) -> str:
+    """How the line of a clamped law ends."""
+    return ", never pulls" if clamped else ""
+
+
 def polynomial_text(coefficients: Sequence[float], variable: str) -> str:
     """A polynomial in descending powers; only its order if it is long."""
     order = len(coefficients) - 1

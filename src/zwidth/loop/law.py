@@ -2,6 +2,7 @@
 
     x_m = Δ floor(x/Δ + φ)              what the encoder reads, φ its phase
     f   = g x_m + Σ (sections)          H(z), each section a transposed direct form
+    f   = max(f, 0)                     where the law never pulls
     f   = ΔF round(f/ΔF)                what the converter makes of it
 
 A wall's velocity estimator runs on every measured position; a viscoelastic
@@ -16,10 +17,10 @@ from zwidth.loop.compiled import Array, compiled
 BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 """At the surface: a law without one; one fed with max(x_m, 0); one fed with x_m.  Both push inside only."""
 
-# The packed law: gate, encoder resolution, phase, force step, force limit (0: none), number of
-# sections; then for each section its order n, b_0 … b_n, a_1 … a_n.
-GATE, RESOLUTION, PHASE, STEP, LIMIT, SECTIONS = range(6)
-HEADER = 6
+# The packed law: gate, encoder resolution, phase, force step, force limit (0: none), whether it never
+# pulls, number of sections; then for each section its order n, b_0 … b_n, a_1 … a_n.
+GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS = range(7)
+HEADER = 7
 
 
 @compiled
@@ -54,4 +55,6 @@ def law_force(law: Array, memory: Array, reading: float) -> float:
         f += y
         at += 2 * order + 2
         slot += order
+    if law[CLAMPED] > 0.0:
+        f = max(f, 0.0)
     return 0.0 if gate != BILATERAL and reading <= 0.0 else f

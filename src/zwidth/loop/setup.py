@@ -63,8 +63,9 @@ class Setup:
         f, p = self.frame, self.frame.plant
         free = p.stiffness == 0.0 and p.hand_damping == 0.0 and p.lag == 0.0 and p.slew == 0.0
         memoryless = self.law[laws.SECTIONS] == 1 and self.law[laws.HEADER] == 0
+        linear = self.law[laws.CLAMPED] == 0
         clock = f.offset == 0.0 and f.points == 1 and not f.arrivals.size and not f.missed.size
-        return bool(free and memoryless and clock and f.signals.position is None)
+        return bool(free and memoryless and linear and clock and f.signals.position is None)
 
     @property
     def plant_numbers(self) -> Array:
@@ -120,7 +121,8 @@ def prepare(
     state[DIRECTION] = np.sign(state[VELOCITY])
     sections = sections_of(law, frame.period)
     actuation = frame.actuation
-    header = [_gate(law), frame.resolution, phase, actuation.step, actuation.limit]
+    clamped = float(law.clamped and not law.spring)  # a spring pushes wherever it acts
+    header = [_gate(law), frame.resolution, phase, actuation.step, actuation.limit, clamped]
     packed = np.array([*header, len(sections), *(c for s in sections for c in s)])
     return Setup(
         device=device,

@@ -39,7 +39,7 @@ class VirtualCoupling(Environment):
     Raises
     ------
     InputError
-        If K_c < 0, or the environment is none.
+        If K_c < 0, or the environment is none, or one that never pulls.
     """
 
     stiffness: Exact | Interval
@@ -55,7 +55,7 @@ class VirtualCoupling(Environment):
             )
         object.__setattr__(self, "stiffness", k)
         object.__setattr__(self, "damping", b)
-        object.__setattr__(self, "environment", as_environment(environment))
+        object.__setattr__(self, "environment", _linear(as_environment(environment)))
 
     @property
     def unilateral(self) -> bool:
@@ -111,6 +111,15 @@ def _read(key: str, value: Parameter) -> Exact | Interval:
         return as_parameter(value)
     except InputError as error:
         raise InputError(f"{key}: {error}") from None
+
+
+def _linear(environment: Environment) -> Environment:
+    """The environment, if H(z) says all about it: that of coupling and environment is made of it."""
+    if environment.clamped:
+        raise InputError(
+            "the environment behind a coupling is linear, and a clamped one is not: leave clamped out"
+        )
+    return environment
 
 
 def _proper(numerator: tuple[Fraction, ...], denominator: tuple[Fraction, ...]) -> RationalFunction:
