@@ -25,6 +25,7 @@ from zwidth.rendering import VirtualCoupling
 if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.device import amplifier as amplifiers
+    from zwidth.environment import NonlinearSpring
     from zwidth.loop.timing import Timing
     from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.traces import compare_traces, load_trace, simulate, simulate_batch
@@ -41,6 +42,7 @@ __all__ = [
     "InputError",
     "Interval",
     "Maxwell",
+    "NonlinearSpring",
     "OnePole",
     "PulseTransferFunction",
     "RealHand",
@@ -67,6 +69,7 @@ __all__ = [
 ]
 
 _LATER = {
+    "NonlinearSpring": "zwidth.environment",
     "Timing": "zwidth.loop.timing",
     "amplifiers": "zwidth.device.amplifier",
     "RealHand": "zwidth.passivity.real_hand",

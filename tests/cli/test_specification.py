@@ -152,6 +152,10 @@ ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
         lambda: zw.PulseTransferFunction([0.1], [1, -0.5], sample_period=0.001),
     ),
     (
+        'type = "nonlinear-spring"\npositions = [0, "1 mm", 0.002]\nforces = [-0.1, "200 mN", 3]\n',
+        lambda: zw.NonlinearSpring([0, 0.001, 0.002], [-0.1, 0.2, 3]),
+    ),
+    (
         'type = "virtual-coupling"\nstiffness = 1\ndamping = 2\n'
         'environment = { type = "wall", stiffness = 9 }\n',
         lambda: zw.VirtualCoupling(1, 2, zw.Wall(9)),
@@ -203,6 +207,9 @@ def test_lists_on_the_command_line(read: Load) -> None:
     """Coefficients, branches, the type itself, and what lies behind a coupling."""
     s = load(["phantom"], {"type": "pulse-transfer-function", "numerator": "0.1", "denominator": "[1, -0.5]"})
     assert s.environment == zw.PulseTransferFunction([0.1], [1, -0.5])
+    points = {"positions": "-1 mm, 0, 2 mm", "forces": "[-1, 0, 0.5 N]"}
+    s = load(["phantom"], {"type": "nonlinear-spring", **points})
+    assert s.environment == zw.NonlinearSpring([-0.001, 0, 0.002], [-1, 0, 0.5])
     s = load(["phantom"], {"type": "generalized-maxwell", "stiffness": "1", "branches": "800:3, 1 N/mm : 20"})
     assert s.environment == zw.GeneralizedMaxwell(1, [(800, 3), (1000, 20)])
     coupling = '[environment]\ntype = "virtual-coupling"\nstiffness = 1\ndamping = 2\n'
@@ -213,6 +220,9 @@ def test_lists_on_the_command_line(read: Load) -> None:
         **{"stiffness": "5", "environment.stiffness": "8", "environment.virtual_damping": "0"},
     )
     assert changed.environment == zw.VirtualCoupling(5, 2, zw.Wall(8))
+
+
+SPRING = '[environment]\ntype = "nonlinear-spring"\n'
 
 
 def bad(device: str, environment: str = WALL) -> str:
@@ -260,6 +270,12 @@ BAD: list[tuple[str | bytes, str]] = [
         DEVICE + WALL + "clamped = 1",
         "file0.toml: [environment]: clamped is true or false; got a value of type",
     ),
+    (DEVICE + SPRING + "positions = [0, 1]", "needs forces [N]"),
+    (DEVICE + SPRING + "positions = 1\nforces = [0, 1]", "positions is a list of numbers"),
+    (DEVICE + SPRING + 'positions = [0, "1 N"]\nforces = [0, 1]', "positions[1] is in m"),
+    (DEVICE + SPRING + "positions = [0, nan]\nforces = [0, 1]", "finite"),
+    (DEVICE + SPRING + "positions = [1, 0]\nforces = [0, 1]", "positions must increase strictly"),
+    (DEVICE + SPRING + "positions = []\nforces = []", "2 to 10000 points, got 0"),
     (DEVICE + WALL + 'clamped = "yes"', 'clamped is true or false; got "yes"'),
     (DEVICE + WALL + "velocity_filter = 5", "velocity_filter is"),
     (DEVICE + WALL + 'velocity_filter = "windw 5"', 'did you mean "window"'),
@@ -344,7 +360,7 @@ def test_command_line_names_are_not_shared() -> None:
     assert not set(option_keys()) & set(DEVICE_KEYS)
     for row in TYPES.values():
         for key in row.keys.values():
-            assert (key.quantity in GLOSSARY) == (key.form == "quantity")
+            assert (key.quantity in GLOSSARY) == (key.form in ("quantity", "list"))
             assert key.meaning
 
 

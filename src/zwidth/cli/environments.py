@@ -12,13 +12,15 @@ from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 from zwidth.cli.table import Table, located, quoted, suggestion
-from zwidth.cli.values import branches, coefficients, flag, velocity_filter
+from zwidth.cli.values import branches, coefficients, flag, quantities, velocity_filter
 from zwidth.environment import Environment
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse
 
-Form = Literal["quantity", "coefficients", "branches", "word", "flag", "velocity filter", "environment"]
+Form = Literal[
+    "quantity", "coefficients", "branches", "word", "flag", "list", "velocity filter", "environment"
+]
 
 DEEPEST = 4
 """Couplings inside couplings; more is a mistake."""
@@ -100,6 +102,15 @@ TYPES: Mapping[str, EnvironmentType] = MappingProxyType(
                 "branches": Key("branches", "pairs of branch stiffness and branch damping"),
                 "discretization": _DISCRETIZATION,
                 "clamped": _CLAMPED,
+            },
+        ),
+        "nonlinear-spring": EnvironmentType(
+            "zwidth.environment",
+            "NonlinearSpring",
+            "force through points, linear between them and constant beyond",
+            {
+                "positions": Key("list", "positions of the points, increasing", "position"),
+                "forces": Key("list", "forces at the points, > 0 towards smaller positions", "force"),
             },
         ),
         "transfer-function": EnvironmentType(
@@ -195,6 +206,8 @@ def _read(table: Table, key: str, kind: Key, motion: str, depth: int) -> Any:
     with located(table.where(key)):
         if kind.form == "quantity":
             return parse(value, GLOSSARY[kind.quantity].unit_for(motion), key)
+        if kind.form == "list":
+            return quantities(value, GLOSSARY[kind.quantity].unit_for(motion), key)
         if kind.form == "coefficients":
             return coefficients(value, key)
         if kind.form == "branches":

@@ -75,10 +75,11 @@ def environment_parameters() -> Iterator[Parameter]:
     """The options of an environment."""
     yield Parameter("type", "TYPE", f"{', '.join(TYPES)} (default: wall)")
     for key, kind in option_keys().items():
-        if kind.quantity:
+        if kind.form == "quantity":
             yield _quantity(kind.quantity if key not in GLOSSARY else key)
         else:
-            yield Parameter(key, _word(key), kind.meaning)
+            units = _units(kind.quantity) if kind.quantity else ""
+            yield Parameter(key, _word(key), kind.meaning + _bracket(units))
 
 
 def add_parameters(parser: argparse.ArgumentParser) -> None:
@@ -135,8 +136,12 @@ def _dest(key: str) -> str:
 
 def _quantity(key: str) -> Parameter:
     entry = GLOSSARY[key]
-    units = entry.unit if entry.unit == entry.rotary_unit else f"{entry.unit}; rotary {entry.rotary_unit}"
-    return Parameter(key, entry.symbol, entry.meaning + _bracket(units))
+    return Parameter(key, entry.symbol, entry.meaning + _bracket(_units(key)))
+
+
+def _units(key: str) -> str:
+    entry = GLOSSARY[key]
+    return entry.unit if entry.unit == entry.rotary_unit else f"{entry.unit}; rotary {entry.rotary_unit}"
 
 
 def _word(key: str) -> str:

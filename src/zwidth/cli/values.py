@@ -1,7 +1,7 @@
 """Values of a specification that are more than one quantity.
 
-Polynomials, Maxwell branches and velocity filters, true and false: a TOML list,
-table or word, or one text on the command line.
+Polynomials, lists of quantities, Maxwell branches, velocity filters, true and
+false: a TOML list, table or word, or one text on the command line.
 """
 
 from __future__ import annotations
@@ -26,6 +26,15 @@ def coefficients(value: object, key: str) -> list[Exact]:
     if not isinstance(value, list):
         raise InputError(f"{key} is a list of numbers in descending powers, such as {key} = [1, 0.5]")
     return [parse_number(c, "1", key) for c in value]
+
+
+def quantities(value: object, unit: str, key: str) -> list[Exact]:
+    """Several values of one quantity: a list, or a text such as "0, 1 mm, 2 mm"."""
+    if isinstance(value, str):
+        value = [part.strip() for part in value.strip("[] \t\n").split(",")]
+    if not isinstance(value, list):
+        raise InputError(f"{key} is a list of numbers, such as {key} = [0, 0.01]")
+    return [parse_number(v, unit, f"{key}[{i}]") for i, v in enumerate(value)]
 
 
 def branches(value: object, motion: str) -> list[tuple[Exact | Interval, Exact | Interval]]:

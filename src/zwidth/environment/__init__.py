@@ -1,4 +1,6 @@
-"""What the hand meets: walls, viscoelastic solids, transfer functions."""
+"""What the hand meets: walls, viscoelastic solids, transfer functions, nonlinear springs."""
+
+from typing import TYPE_CHECKING, Any
 
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.environment.transfer_function import (
@@ -10,12 +12,16 @@ from zwidth.environment.velocity import BackwardDifference, OnePole, VelocityFil
 from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
 from zwidth.environment.wall import Wall
 
+if TYPE_CHECKING:
+    from zwidth.environment.nonlinear_spring import NonlinearSpring
+
 __all__ = [
     "BackwardDifference",
     "ContinuousTransferFunction",
     "Environment",
     "GeneralizedMaxwell",
     "Maxwell",
+    "NonlinearSpring",
     "OnePole",
     "PulseTransferFunction",
     "RationalFunction",
@@ -25,3 +31,11 @@ __all__ = [
     "Window",
     "as_environment",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name != "NonlinearSpring":
+        raise AttributeError(f"module 'zwidth.environment' has no attribute {name!r}")
+    from zwidth.environment.nonlinear_spring import NonlinearSpring  # few loops have one
+
+    return NonlinearSpring

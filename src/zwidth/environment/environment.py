@@ -1,6 +1,6 @@
 """The environment: what the hand meets.
 
-Every environment is, in contact, a pulse transfer function H(z) from the
+Every linear environment is, in contact, a pulse transfer function H(z) from the
 sampled position to the force, exact in its parameters.  That is all that the
 criteria need; what happens at the surface is said by `unilateral`, and whether
 the law may pull by `clamped`.
@@ -43,6 +43,11 @@ class Environment(ABC):
         return False
 
     @property
+    def linear(self) -> bool:
+        """True when H(z) says all about the law in contact."""
+        return not self.clamped
+
+    @property
     def spring(self) -> bool:
         """True when the law is a memoryless spring, f = K x."""
         return False
@@ -54,7 +59,7 @@ class Environment(ABC):
         Raises
         ------
         InputError
-            If the law has no H(z) at this period, or a parameter is an interval.
+            If the law has no H(z) at this period or at any, or a parameter is an interval.
         """
 
     def replace(self, **changes: Any) -> Self:

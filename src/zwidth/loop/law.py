@@ -1,7 +1,8 @@
 """The environment as the loop runs it, sample by sample.
 
     x_m = Δ floor(x/Δ + φ)              what the encoder reads, φ its phase
-    f   = g x_m + Σ (sections)          H(z), each section a transposed direct form
+    f   = g x_m + Σ (sections)          H(z), each section a transposed direct form;
+    f   = table(x_m)                    or points, linear between them
     f   = max(f, 0)                     where the law never pulls
     f   = ΔF round(f/ΔF)                what the converter makes of it
 
@@ -18,9 +19,10 @@ BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 """At the surface: a law without one; one fed with max(x_m, 0); one fed with x_m.  Both push inside only."""
 
 # The packed law: gate, encoder resolution, phase, force step, force limit (0: none), whether it never
-# pulls, number of sections; then for each section its order n, b_0 … b_n, a_1 … a_n.
-GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS = range(7)
-HEADER = 7
+# pulls, number of sections, number of points; then for each section its order n, b_0 … b_n, a_1 … a_n;
+# or, where there are points and no section, their positions and their forces.
+GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS, POINTS = range(8)
+HEADER = 8
 
 
 @compiled
@@ -37,11 +39,30 @@ def rounded(f: float, step: float) -> float:
 
 
 @compiled
+def table_force(law: Array, points: int, x: float) -> float:
+    """The force of the law's points at x: linear between them, constant beyond."""
+    low, high = HEADER, HEADER + points - 1  # the force of the point at i is at i + points
+    if x <= law[low]:
+        return law[low + points]
+    if x >= law[high]:
+        return law[high + points]
+    while high - low > 1:
+        middle = (low + high) // 2
+        if law[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    part = (x - law[low]) / (law[high] - law[low])
+    return law[low + points] + (law[high + points] - law[low + points]) * part
+
+
+@compiled
 def law_force(law: Array, memory: Array, reading: float) -> float:
     """The force that the law commands at a measured position; its memory moves on."""
     gate = law[GATE]
     x = max(reading, 0.0) if gate == PENETRATION else reading
-    f = 0.0
+    points = int(law[POINTS])
+    f = table_force(law, points, x) if points > 0 else 0.0
     at, slot = HEADER, 0
     for _ in range(int(law[SECTIONS])):
         order = int(law[at])

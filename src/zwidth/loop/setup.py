@@ -12,6 +12,7 @@ import numpy as np
 from zwidth.device.amplifier import Actuation, Amplifier, CurrentAmplifier
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
+from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.environment.transfer_function import as_environment
 from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell
 from zwidth.environment.wall import Wall
@@ -119,11 +120,10 @@ def prepare(
     state[POSITION] = _number(start, "initial_position")
     state[VELOCITY] = _number(initial_velocity, "initial_velocity")
     state[DIRECTION] = np.sign(state[VELOCITY])
-    sections = sections_of(law, frame.period)
     actuation = frame.actuation
     clamped = float(law.clamped and not law.spring)  # a spring pushes wherever it acts
     header = [_gate(law), frame.resolution, phase, actuation.step, actuation.limit, clamped]
-    packed = np.array([*header, len(sections), *(c for s in sections for c in s)])
+    packed = np.array([*header, *_body(law, frame.period)])
     return Setup(
         device=device,
         environment=law,
@@ -231,6 +231,14 @@ def _plant(device: Device, operator: Operator, actuation: Actuation) -> Plant:
         lag=actuation.lag,
         slew=actuation.slew,
     )
+
+
+def _body(law: Environment, period: Fraction) -> list[float]:
+    """The numbers of sections and of points, and what they are."""
+    if isinstance(law, NonlinearSpring):
+        return [0.0, float(len(law.positions)), *map(float, law.positions), *map(float, law.forces)]
+    sections = sections_of(law, period)
+    return [float(len(sections)), 0.0, *(c for s in sections for c in s)]
 
 
 def sections_of(environment: Environment, period: Fraction) -> list[list[float]]:

@@ -39,7 +39,7 @@ class VirtualCoupling(Environment):
     Raises
     ------
     InputError
-        If K_c < 0, or the environment is none, or one that never pulls.
+        If K_c < 0, or the environment is none or not linear.
     """
 
     stiffness: Exact | Interval
@@ -115,9 +115,9 @@ def _read(key: str, value: Parameter) -> Exact | Interval:
 
 def _linear(environment: Environment) -> Environment:
     """The environment, if H(z) says all about it: that of coupling and environment is made of it."""
-    if environment.clamped:
+    if not environment.linear:
         raise InputError(
-            "the environment behind a coupling is linear, and a clamped one is not: leave clamped out"
+            f"the environment behind a coupling must be linear, which this is not: {environment.describe()}"
         )
     return environment
 
