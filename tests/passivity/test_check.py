@@ -249,7 +249,7 @@ def test_friction_bounds_of_a_damped_wall_with_an_encoder():
     assert enough == Fraction("0.115")
     proved = assert_evidence(zw.check(device.replace(coulomb_friction=enough), law))
     assert proved.outcome == "passive"
-    assert proved.certificate.kind == "quantized"
+    assert proved.certificate.kind == "contact"
     assert proved.margins["coulomb_friction"] == 0
     short = zw.check(device.replace(coulomb_friction=enough * (1 - BILLIONTH)), law)
     assert short.outcome in ("active", "undecided")
@@ -475,7 +475,7 @@ def test_rotary_advice_has_rotary_units():
 
 def test_assumptions_name_what_was_not_given():
     """Parameters taken as zero, the ideal sensor, sustained contact, and intervals are all said."""
-    bare = zw.check(zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.05"))
+    bare = zw.check(zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.27", zw.Window(2)))
     text = "\n".join(bare.assumptions)
     for line in ("coulomb friction was not given", "resolution was not given", "delay was not given"):
         assert line in text

@@ -37,7 +37,9 @@ def evidence():
     loops = {
         "spring": (DEVICE, zw.Wall("170")),
         "linear": (IDEAL, filtered),
-        "linear without delay": (IDEAL.replace(delay=0), zw.Wall("210", "0.12")),
+        "linear without delay": (IDEAL.replace(delay=0), zw.Wall("210", "0.4", zw.Window(2))),
+        "contact": (DEVICE.replace(delay="0.001"), zw.Wall("180", "0.04", zw.Window(2))),
+        "contact, one pole": (DEVICE.replace(delay=0), zw.Wall("400", "-0.1", zw.OnePole("0.004"))),
         "closed loop": (IDEAL.replace(delay=0, damping="0.2"), LOSSLESS),
         "quantized": (DEVICE, filtered),
         "press": (DEVICE, zw.Wall("900")),
@@ -222,7 +224,7 @@ def test_tampered_proofs(name):
                 assert friction_holds(tampered) or quantity(tampered, "resolution") == 0, path
 
 
-@pytest.mark.parametrize("name", [n for n in PROOFS if n != "spring"])
+@pytest.mark.parametrize("name", [n for n in PROOFS if "proof" in DOCUMENTS[n]])
 def test_proof_numbers_bind(name):
     """Each coefficient of the factor and the square is needed: a different one is rejected."""
     document = DOCUMENTS[name]
@@ -246,7 +248,9 @@ def test_shortened_lists(name):
 
 
 @pytest.mark.parametrize("name", PROOFS)
-@pytest.mark.parametrize("kind", ["spring", "linear", "quantized", "motion", "corners", "", None, 3])
+@pytest.mark.parametrize(
+    "kind", ["spring", "contact", "linear", "quantized", "motion", "corners", "", None, 3]
+)
 def test_swapped_kinds(name, kind):
     """A proof of one kind does not pass for another, unless it proves that too."""
     tampered = put(DOCUMENTS[name], ("kind",), lambda _: kind)
@@ -315,7 +319,7 @@ def test_other_numbers_of_rounds(name):
             assert not checker.verify(tampered).valid
 
 
-@pytest.mark.parametrize("name", ["spring", "linear", "quantized", "press", "straddle"])
+@pytest.mark.parametrize("name", ["spring", "contact", "linear", "quantized", "press", "straddle"])
 def test_missing_keys(name):
     """Without any one of its keys a document is rejected, never an error; repeats and the label apart."""
     document = DOCUMENTS[name]
@@ -344,7 +348,7 @@ JSON = st.recursive(
 def test_malformed_documents_never_raise(data):
     """Any place of a document replaced by any JSON: an answer, not an exception."""
     document = DOCUMENTS[
-        data.draw(st.sampled_from(["spring", "linear", "quantized", "press", "closed loop"]))
+        data.draw(st.sampled_from(["spring", "contact", "linear", "quantized", "press", "closed loop"]))
     ]
     places = [p for p in [*leaves(document), *lists(document)] if "delay_s" not in p]
     places += [("loop",), ("kind",), *([("proof",), ("proof", "positivity")] if "proof" in document else [])]
@@ -354,7 +358,7 @@ def test_malformed_documents_never_raise(data):
 
 
 @pytest.mark.parametrize("loop", [None, [], "text", 3, {}, {"damping": "1", "damping_N_s_per_m": "1"}, [7]])
-@pytest.mark.parametrize("name", ["spring", "linear", "press"])
+@pytest.mark.parametrize("name", ["spring", "contact", "linear", "press"])
 def test_malformed_loops_never_raise(name, loop):
     """What stands for the loop may be anything: the document is rejected."""
     assert not checker.verify(put(DOCUMENTS[name], ("loop",), lambda _: loop)).valid

@@ -16,9 +16,10 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.passivity import checker
+from zwidth.passivity.contact import DampedWall, Decay
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.delay_interval import Piece
-from zwidth.passivity.document import exact_text, loop_document, to_json
+from zwidth.passivity.document import exact_text, loop_document, to_json, unit_key
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.one_norm import NormBound
 from zwidth.passivity.positivity import Positivity
@@ -45,8 +46,18 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """ "spring", "linear", "quantized" or "delays"."""
+        """ "spring", "contact", "linear", "quantized" or "delays"; of several parts the first."""
         return str(self.documents[0]["kind"])
+
+    @property
+    def covers_contact(self) -> bool:
+        """True when every part covers contact made and broken."""
+        return all(document["kind"] in ("spring", "contact") for document in self.documents)
+
+    @property
+    def is_of_springs(self) -> bool:
+        """True when every part is the proof of a spring."""
+        return all(document["kind"] == "spring" for document in self.documents)
 
     def to_dict(self) -> dict[str, Any]:
         """The certificate as plain data."""
@@ -65,29 +76,50 @@ class Certificate:
 
 def certify(decision: Decision) -> dict[str, Any]:
     """The proof document of a provable decision."""
+    kind = decision.kind
+    document = _document(decision, kind)
+    if kind == "contact":
+        assert decision.wall is not None
+        document["law"] = _law(decision.wall, decision.setting.motion)
+    elif kind != "spring":
+        document["proof"] = _linear_proof(decision)
+    return document
+
+
+def _document(decision: Decision, kind: str) -> dict[str, Any]:
     setting = decision.setting
-    document: dict[str, Any] = {
-        "format": FORMAT,
-        "kind": decision.kind,
-        "loop": loop_document(
-            setting.loop, setting.coulomb_friction, setting.resolution, setting.unilateral, setting.motion
-        ),
-    }
-    if decision.kind == "spring":
-        return document
+    loop = loop_document(
+        setting.loop, setting.coulomb_friction, setting.resolution, setting.unilateral, setting.motion
+    )
+    return {"format": FORMAT, "kind": kind, "loop": loop}
+
+
+def _linear_proof(decision: Decision) -> dict[str, Any]:
+    """The linear criterion, and with an encoder the bound on ‖h‖₁."""
     proof = decision.viscous
     assert isinstance(proof, LinearProof), "only a provable decision is certified"
-    document["proof"] = _proof(proof)
-    if decision.kind == "quantized":
+    document = _proof(proof)
+    if decision.setting.resolution:
         assert decision.norm is not None
-        document["proof"]["norm"] = _norm(decision.norm)
+        document["norm"] = _norm(decision.norm)
     return document
+
+
+def _law(wall: DampedWall, motion: str) -> dict[str, Any]:
+    estimate = wall.estimate
+    weights: object = (
+        {"pole": str(estimate.pole)} if isinstance(estimate, Decay) else [str(w) for w in estimate.weights]
+    )
+    return {
+        unit_key("stiffness", motion): exact_text(wall.stiffness),
+        unit_key("virtual_damping", motion): exact_text(wall.damping),
+        "weights": weights,
+    }
 
 
 def certify_delays(decision: Decision, pieces: Sequence[Piece], longest: Fraction) -> dict[str, Any]:
     """The proof document of a provable decision for every delay up to `longest` [s]."""
-    document = certify(decision)
-    proof = document["proof"]
+    document, proof = _document(decision, "delays"), _linear_proof(decision)
     del proof["positivity"]
     proof["pieces"] = [
         {
@@ -98,7 +130,7 @@ def certify_delays(decision: Decision, pieces: Sequence[Piece], longest: Fractio
         }
         for piece in pieces
     ]
-    return {**document, "kind": "delays", "delay_high_s": exact_text(longest)}
+    return {**document, "proof": proof, "delay_high_s": exact_text(longest)}
 
 
 def _norm(norm: NormBound) -> dict[str, Any]:
@@ -154,7 +186,8 @@ def _verify_corners(corners: object) -> checker.Verification:
         raise InputError("corners must be a list of certificates")
     results = [checker.verify(corner) for corner in corners]
     failed = next((r for r in results if not r.valid or r.energy is not None), None)
-    return failed or checker.Verification(True, f"all {len(results)} corners: {results[0].reason}")
+    reasons = dict.fromkeys(r.reason for r in results)
+    return failed or checker.Verification(True, f"all {len(results)} corners: {'; or '.join(reasons)}")
 
 
 def read_document(path: str | Path) -> object:

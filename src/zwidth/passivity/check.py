@@ -37,7 +37,9 @@ def check(device: Device, environment: Environment | Any) -> Verdict:
     and H is stable (Colgate & Schenkel 1997; Fardad & Bamieh 2009); with a
     delay of any length in the form derived in the documentation; and, with an
     encoder of resolution Δ, f_c must cover its error: f_c ≥ K Δ/2 for a spring
-    (Abbott & Okamura 2005).  Equality counts as passive.
+    (Abbott & Okamura 2005).  Equality counts as passive.  A damped wall is
+    covered with contact made and broken where b ≥ (2d + 1) K T/2 + |B| Σ|w_j| and
+    f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.
 
     Parameters
     ----------
@@ -75,9 +77,11 @@ def _proofs(
     device: Device, law: Environment, corners: list[Loop], decisions: list[Decision]
 ) -> list[dict[str, Any]] | None:
     """Proofs that together cover the whole box of parameters, or None."""
-    if corners_decide(device, law):
+    if corners_decide(device, law, all(d.is_spring or d.covers_contact for d in decisions)):
         return [certify(d) for d in decisions]
     shortest, longest = ends(device.delay)
+    if any(d.is_clamped for d in decisions):  # contact is covered for delays of whole samples only
+        return None
     if shortest == longest or not corners_decide(device.replace(delay=Exact(shortest)), law):
         return None
     proofs = []
@@ -110,7 +114,7 @@ def _passive(
     claim = "No motion of the hand, however fast or skilled, can take energy out of this loop"
     if any(_at_limit(d) for d in decisions):
         claim += "; it is exactly at its limit, equality included"
-    assumed = assumptions("passive", device, law, decision)
+    assumed = assumptions("passive", device, law, decision, certificate)
     return Verdict("passive", f"{claim}.", assumed, *at, decision, certificate, None)
 
 
@@ -125,12 +129,15 @@ def _between(device: Device, law: Environment, corner: tuple[Device, Environment
 def _at_limit(decision: Decision) -> bool:
     """True when the smallest decrease of b or f_c would lose the proof.
 
-    A criterion that touches zero may do so at a pole on the unit circle, whatever
+    Of a clamped law only the conditions for contact made and broken decide.  A
+    criterion that touches zero may do so at a pole on the unit circle, whatever
     b is: so a slightly smaller b is decided too.
     """
     friction, loop = decision.sufficient_friction, decision.loop
     if friction and friction == decision.setting.coulomb_friction:
         return True
+    if decision.is_clamped:
+        return loop.damping == decision.contact_damping
     positivity = getattr(decision.viscous, "positivity", None)
     if positivity is None or not any(loop.numerator):
         return False
@@ -149,6 +156,8 @@ def _tightest(decisions: list[Decision]) -> int:
 
 def _refute(decision: Decision) -> Witness | None:
     """A checked motion that takes energy out, or None."""
+    if decision.is_clamped:  # a motion in the linear law says nothing of it
+        return None
     if isinstance(decision.viscous, LinearProof) and decision.friction_covers:
         return None
     if isinstance(decision.viscous, LinearRefutation):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
+from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear import LinearRefutation
 from zwidth.passivity.verdict import Outcome
@@ -13,6 +14,8 @@ from zwidth.quantity.exact import Interval, ends
 
 def open_claim(decision: Decision) -> str:
     """What is proved on both sides where the loop itself is neither proved nor refuted."""
+    if decision.is_clamped:
+        return _clamped_claim(decision)
     if isinstance(decision.viscous, LinearRefutation):
         if decision.viscous.reason == "criterion":
             return (
@@ -40,15 +43,32 @@ def open_claim(decision: Decision) -> str:
     )
 
 
-def assumptions(outcome: Outcome, device: Device, law: Environment, decision: Decision) -> tuple[str, ...]:
+def _clamped_claim(decision: Decision) -> str:
+    """What is known of a clamped law that is not proved."""
+    damping, friction = decision.contact_damping, decision.contact_friction
+    if damping is None or friction is None:
+        known = "and no other condition is known for this law and delay."
+    else:
+        loop, has = decision.loop, float(decision.setting.coulomb_friction)
+        known = (
+            f"and what is proved enough is not there: damping of {float(damping):.6g}, the device has "
+            f"{float(loop.damping):.6g}; Coulomb friction of {float(friction):.6g}, it has {has:.6g}."
+        )
+    return f"The linear criterion does not cover a law whose force is clamped, {known}"
+
+
+def assumptions(
+    outcome: Outcome,
+    device: Device,
+    law: Environment,
+    decision: Decision,
+    certificate: Certificate | None = None,
+) -> tuple[str, ...]:
+    """What the claim covers and takes for granted; `certificate` is its proof, if there is one."""
     unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
     loop = decision.loop
     lines = [
-        "contact made and broken at any instant"
-        + ("; the same holds for every spring law of slope 0 to K" if outcome == "passive" else "")
-        if decision.is_spring
-        else "sustained contact: the law is linear while the hand stays inside; making and breaking contact "
-        "is not covered",
+        _surface(outcome, decision, certificate),
         f"the device takes out at least b = {float(loop.damping):.6g} {unit['b']} of viscous and "
         f"f_c = {float(decision.setting.coulomb_friction):.6g} {unit['N']} of Coulomb friction",
         "a hand without limits on speed and force; the mass of the device plays no part",
@@ -68,6 +88,23 @@ def assumptions(outcome: Outcome, device: Device, law: Environment, decision: De
         holds = "" if outcome == "undecided" else f"holds for every value within {named}; "
         lines.append(holds + "numbers are given for the worst corner of the intervals")
     return tuple(lines)
+
+
+def _surface(outcome: Outcome, decision: Decision, certificate: Certificate | None) -> str:
+    """Whether the hand may leave the law and come back."""
+    anywhere = "contact made and broken at any instant"
+    covered = decision.is_spring if certificate is None else certificate.covers_contact
+    if not covered and decision.is_clamped:
+        return f"{anywhere}; the law never pulls: a force below 0 is given as 0"
+    if not covered:
+        return (
+            "sustained contact: the law is linear while the hand stays inside; making and breaking contact "
+            "is not covered"
+        )
+    if certificate is not None and not certificate.is_of_springs:
+        return f"{anywhere}; also for a wall that is clamped so that it never pulls"
+    more = "; the same holds for every spring law of slope 0 to K" if outcome == "passive" else ""
+    return f"{anywhere}{more}"
 
 
 def beyond_the_actuator(device: Device, witness: Witness | None) -> tuple[str, ...]:

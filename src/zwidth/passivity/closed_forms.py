@@ -2,9 +2,9 @@
 
 Each gives the smallest device damping b (or the largest stiffness, or the
 smallest Coulomb friction) with which the sampled loop is passive, equality
-included, for sustained contact.  A formula has hypotheses; outside them it
-raises instead of answering.  The exact engine decides the same loops, and many
-others, without them.
+included: for sustained contact, or where a formula says so for contact made and
+broken.  A formula has hypotheses; outside them it raises instead of answering.
+The exact engine decides the same loops, and many others, without them.
 
 Numbers are decimals as typed.  A rational result is an `Exact`; where a square
 root is irrational it is a float.
@@ -24,6 +24,8 @@ from zwidth.quantity.exact import Exact, RealLike
 __all__ = [
     "StiffnessLimits",
     "abbott_okamura_stiffness",
+    "damped_wall_damping",
+    "damped_wall_friction",
     "kelvin_voigt_damping",
     "quantized_kelvin_voigt_friction",
     "spring_damping",
@@ -232,7 +234,8 @@ def quantized_kelvin_voigt_friction(
     For B ≥ 0 that is (K + 2B/T) Δ/2, for −K T ≤ B ≤ 0 it is K Δ/2, and in both
     cases it is necessary too.  For B < −K T it is (2|B|/T − K) Δ/2 and only
     sufficient: crossing one edge to and fro shows that K Δ/2 is necessary.
-    It comes beside b ≥ K T/2 + |B|, for sustained contact, without delay.
+    It comes beside b ≥ K T/2 + |B|, for sustained contact, without delay; for
+    B ≥ 0 it covers contact made and broken too (`damped_wall_friction`).
 
     Parameters
     ----------
@@ -268,3 +271,89 @@ def quantized_kelvin_voigt_friction(
     t = positive("sample_period", sample_period, NO_CLOCK)
     rate = number("damping", damping) / t
     return Exact((abs(k + rate) + abs(rate)) * step / 2)
+
+
+def damped_wall_damping(
+    stiffness: RealLike, damping: RealLike, sample_period: RealLike, delay_samples: int = 0
+) -> Exact:
+    """b ≥ (2d + 1) K T/2 + |B| for a damped wall with contact made and broken, clamped or not.
+
+    For every estimate of velocity whose weights are ≥ 0 and sum to 1: backward
+    difference, window, one-pole filter.  With the backward difference, without
+    delay, it is necessary too (clamped: for K > 0), for then the linear criterion
+    in sustained contact asks for as much.
+
+    Parameters
+    ----------
+    stiffness
+        K ≥ 0 [N/m; N·m/rad].
+    damping
+        B, of either sign [N·s/m; N·m·s/rad].
+    sample_period
+        T > 0 [s].
+    delay_samples
+        d, the delay in whole samples.
+
+    Returns
+    -------
+    Exact
+        Device damping that is enough [N·s/m; N·m·s/rad].
+
+    Raises
+    ------
+    InputError
+        If K < 0, T ≤ 0 or d is no whole number ≥ 0.
+
+    Notes
+    -----
+    Derived for this project; the proof is in the documentation.
+    """
+    d = nonnegative("delay_samples", delay_samples, "a force follows its sample")
+    if d.denominator != 1:
+        raise InputError(
+            f"delay_samples is a whole number, got {delay_samples}: a force that changes inside a sample "
+            "is not covered"
+        )
+    k = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
+    t = positive("sample_period", sample_period, NO_CLOCK)
+    return Exact((2 * d + 1) * k * t / 2 + abs(number("damping", damping)))
+
+
+def damped_wall_friction(
+    stiffness: RealLike, damping: RealLike, resolution: RealLike, memory: RealLike
+) -> Exact:
+    """f_c ≥ (K/2 + |B|/t_v) Δ beside `damped_wall_damping`, for an encoder of resolution Δ.
+
+    For B ≥ 0 with the backward difference, without delay, it is necessary too
+    (clamped: for K > 0) and is `quantized_kelvin_voigt_friction`.
+
+    Parameters
+    ----------
+    stiffness
+        K ≥ 0 [N/m; N·m/rad].
+    damping
+        B, of either sign [N·s/m; N·m·s/rad].
+    resolution
+        Δ ≥ 0 at the handle [m; rad].
+    memory
+        t_v > 0 of the velocity estimate [s]: T of the backward difference, N T of
+        a window of N samples, T + τ of a one-pole filter.
+
+    Returns
+    -------
+    Exact
+        Coulomb friction that is enough [N; N·m].
+
+    Raises
+    ------
+    InputError
+        If K < 0, Δ < 0 or t_v ≤ 0.
+
+    Notes
+    -----
+    Derived for this project; the proof is in the documentation.
+    """
+    k = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
+    step = nonnegative("resolution", resolution, "0 means an ideal encoder")
+    span = positive("memory", memory, "an estimate of velocity spans some time")
+    return Exact((k / 2 + abs(number("damping", damping)) / span) * step)

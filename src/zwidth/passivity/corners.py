@@ -16,7 +16,10 @@ each of them separately, since such a function is largest at a corner:
 * every parameter of a standard linear solid (backward, Tustin) and of a wall
   with a one-pole filter and B ≥ 0, without delay: the required damping is
   μ0T/2 + μ1η1T/(2η1+μ1T), (T/2)(μ0+μ1) and KT/2 + B T/(2τ+T), and ‖h‖₁ is
-  μ0 + 2μ1η1/(μ1T+η1), μ0 + μ1 max(1, 4η1/(μ1T+2η1)) and K + 2B/(T+τ).
+  μ0 + 2μ1η1/(μ1T+η1), μ0 + μ1 max(1, 4η1/(μ1T+2η1)) and K + 2B/(T+τ);
+* every parameter of a wall without delay for which the conditions for contact
+  made and broken hold at every corner: they increase in K and |B|, the one for
+  b in T, the one for f_c in 1/T and 1/(T+τ).
 
 Elsewhere the corners are still looked at, but prove nothing for what is between.
 """
@@ -69,15 +72,18 @@ def worst_corners(device: Device, environment: Environment) -> list[Loop]:
     ]
 
 
-def corners_decide(device: Device, environment: Environment) -> bool:
-    """True when passivity at every corner proves it for every value in the box."""
+def corners_decide(device: Device, environment: Environment, contact: bool = False) -> bool:
+    """True when passivity at every corner proves it for every value in the box.
+
+    `contact` is True when every corner is covered with contact made and broken.
+    """
     uncertain = _uncertain_fields(environment)
     timing = {key for key in _TIMING if isinstance(getattr(device, key), Interval)}
     if not uncertain and not timing:
         return True
     undelayed = ends(device.delay) == (0, 0)
     if isinstance(environment, Wall):
-        return _wall(environment, uncertain, timing, undelayed)
+        return (contact and undelayed) or _wall(environment, uncertain, timing, undelayed)
     if isinstance(environment, StandardLinearSolid):
         return (uncertain <= {"stiffness"} and not timing) or (undelayed and _has_closed_form(environment))
     if isinstance(environment, GeneralizedMaxwell):
@@ -113,7 +119,7 @@ def best_corner(device: Device, environment: Environment) -> Loop | None:
     if not isinstance(environment, Wall):
         return None
     backward = isinstance(environment.velocity_filter, BackwardDifference) and ideal_and_undelayed
-    if not (environment.spring or backward):
+    if not (environment.spring or backward) or (environment.clamped and not environment.spring):
         return None
     low, high = ends(environment.damping)
     least = Fraction(0) if low <= 0 <= high else min(low, high, key=abs)

@@ -11,6 +11,10 @@ friction   one encoder count leaks energy that f_c must take out.  For a spring
            the two nothing is claimed.
 
 Coulomb friction never helps against the first: a larger motion outweighs it.
+
+Both speak of the law while the hand stays inside.  A damped wall for which the
+conditions of `contact` hold is passive with contact made and broken too; of a
+clamped law with memory nothing else is claimed, for it is not linear inside.
 """
 
 from __future__ import annotations
@@ -22,20 +26,27 @@ from typing import Literal
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
+from zwidth.passivity.contact import DampedWall, damped_wall
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.loop import LinearLoop, linear_loop
 from zwidth.passivity.one_norm import NormBound, bound_one_norm
 from zwidth.passivity.straddle import best_waits
 from zwidth.passivity.witness import Setting
 
-Kind = Literal["spring", "linear", "quantized"]
+Kind = Literal["spring", "contact", "linear", "quantized"]
 
 
 @dataclass(frozen=True)
 class Decision:
-    """What is known of one loop; nothing here is claimed before its proof or motion is checked."""
+    """What is known of one loop; nothing here is claimed before its proof or motion is checked.
+
+    `wall` is the law as the conditions for contact made and broken see it, None
+    for a law that is no such wall; `never_pulls` says whether its force is clamped.
+    """
 
     setting: Setting
+    wall: DampedWall | None = None
+    never_pulls: bool = False
 
     @property
     def loop(self) -> LinearLoop:
@@ -53,7 +64,34 @@ class Decision:
         """Which kind of certificate covers this loop."""
         if self.is_spring:
             return "spring"
+        if self.covers_contact:
+            return "contact"
         return "quantized" if self.setting.resolution else "linear"
+
+    @property
+    def is_clamped(self) -> bool:
+        """True for a clamped law with memory: not linear inside, so H(z) alone decides nothing."""
+        return self.never_pulls and not self.is_spring
+
+    @property
+    def contact_damping(self) -> Fraction | None:
+        """Device damping that covers a wall touched and left [N·s/m; N·m·s/rad]; None where none is known."""
+        return None if self.wall is None else self.wall.required_damping(self.loop)
+
+    @property
+    def contact_friction(self) -> Fraction | None:
+        """The same for Coulomb friction and the encoder [N; N·m]."""
+        if self.wall is None:
+            return None
+        return self.wall.required_friction(self.setting.resolution, self.loop.period)
+
+    @cached_property
+    def covers_contact(self) -> bool:
+        """True when both conditions for a wall touched and left hold."""
+        damping, friction = self.contact_damping, self.contact_friction
+        if damping is None or friction is None:
+            return False
+        return self.loop.damping >= damping and self.setting.coulomb_friction >= friction
 
     @cached_property
     def viscous(self) -> LinearProof | LinearRefutation:
@@ -70,7 +108,12 @@ class Decision:
         """Coulomb friction that certainly covers the encoder [N; N·m]; None where no bound is known."""
         if self.setting.resolution == 0:
             return Fraction(0)
-        return None if self.norm is None else self.norm.bound * self.setting.resolution / 2
+        if self.is_clamped:
+            return self.contact_friction
+        bounds = [] if self.norm is None else [self.norm.bound * self.setting.resolution / 2]
+        if self.covers_contact and self.contact_friction is not None:
+            bounds.append(self.contact_friction)
+        return min(bounds, default=None)
 
     @cached_property
     def necessary_friction(self) -> float:
@@ -89,7 +132,9 @@ class Decision:
 
     @property
     def is_provable(self) -> bool:
-        """True when both conditions hold and no hidden mode grows, so that a certificate exists."""
+        """True when the conditions hold and no hidden mode grows, so that a certificate exists."""
+        if self.covers_contact or self.is_clamped:
+            return self.covers_contact
         proved = isinstance(self.viscous, LinearProof) and self.loop.hidden_modes_decay
         return proved and self.friction_covers
 
@@ -110,4 +155,4 @@ def decide(device: Device, environment: Environment) -> Decision:
         environment.unilateral,
         device.motion,
     )
-    return Decision(setting)
+    return Decision(setting, damped_wall(environment, loop.period), environment.clamped)

@@ -15,9 +15,8 @@ from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity.boundary import largest_holding, smallest_holding
-from zwidth.passivity.decision import decide
+from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.linear import LinearProof, decide_linear
-from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.supremum import tightest
 from zwidth.quantity.exact import Exact
 
@@ -32,8 +31,15 @@ def provable(change: Change, value: Fraction) -> bool:
         return False
 
 
-def required_damping(loop: LinearLoop) -> float | None:
-    """The smallest damping b that the linear criterion accepts [N·s/m]; None if none would do."""
+def required_damping(decision: Decision) -> float | None:
+    """The smallest damping b that the linear criterion accepts [N·s/m]; None if none would do.
+
+    For a clamped law, that the condition for contact made and broken accepts.
+    """
+    if decision.is_clamped:
+        need = decision.contact_damping
+        return None if need is None else smallest_holding(lambda b: b >= need, float(need))
+    loop = decision.loop
     guess, _ = tightest(loop)
     if guess == float("inf"):
         return None

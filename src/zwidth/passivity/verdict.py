@@ -95,7 +95,7 @@ class Verdict:
 
         None if no damping would do.  Coulomb friction is a need of its own: see `margins`.
         """
-        return limits.required_damping(self.decision.loop)
+        return limits.required_damping(self.decision)
 
     @property
     def critical_frequency(self) -> float:

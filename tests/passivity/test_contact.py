@@ -1,0 +1,437 @@
+"""Contact made and broken with a damped wall: proved at the bounds, refuted beyond them."""
+
+from __future__ import annotations
+
+import copy
+from fractions import Fraction
+from itertools import accumulate
+from random import Random
+
+import pytest
+
+import zwidth as zw
+from zwidth.passivity import checker
+from zwidth.passivity import closed_forms as forms
+from zwidth.passivity.certificate import verify_document
+from zwidth.passivity.decision import decide
+
+TINY = Fraction(1, 10**9)
+T = Fraction(1, 1000)
+
+FILTERS = {
+    "backward difference": (zw.BackwardDifference(), 1, 2),
+    "window": (zw.Window(5), 1, Fraction(2, 5)),
+    "one pole": (zw.OnePole("0.003"), 1, Fraction(1, 2)),
+    "slow pole": (zw.OnePole("0.2"), 1, Fraction(2, 201)),
+    "one pole without memory": (zw.OnePole(0), 1, 2),
+    "finite response": (zw.VelocityFilter([3, -1], [2, 0, 0]), 2, 4),  # w = 0, 3/2, −1/2
+    "finite once cancelled": (zw.VelocityFilter([1, "-0.5"], [1, "-0.5", 0]), 1, 2),
+}
+"""An estimate of velocity, Σ|w_j| and T ‖h_v‖₁ by hand."""
+
+
+def draw(random, low, high):
+    """A decimal of four digits, spread over the decades."""
+    return Fraction(f"{low * (high / low) ** random.random():.3e}")
+
+
+def bounds(k, b, name, step, delay):
+    """The two conditions as they stand in the theorem."""
+    _, gain, variation = FILTERS[name]
+    return (2 * delay + 1) * k * T / 2 + abs(b) * gain, (k + abs(b) * variation / T) * step / 2
+
+
+def device(damping, friction, step, delay):
+    """A device at 1 kHz, the delay in samples."""
+    return zw.Device(
+        damping=damping, coulomb_friction=friction, resolution=step, sample_period=T, delay=delay * T
+    )
+
+
+@pytest.mark.parametrize("clamped", [False, True])
+@pytest.mark.parametrize("delay", [0, 1, 3])
+@pytest.mark.parametrize("name", FILTERS)
+def test_proved_at_each_bound_and_not_below_it(name, delay, clamped):
+    """At b and f_c of the theorem a contact certificate; a billionth below either, none."""
+    random = Random(f"{name} {delay}")
+    k, b, step = draw(random, 10, 1000), random.choice([-1, 1]) * draw(random, 0.01, 1), Fraction("0.0002")
+    law = zw.Wall(k, b, FILTERS[name][0], clamped=clamped)
+    damping, friction = bounds(k, b, name, step, delay)
+    for more in (1, 1 + TINY):
+        verdict = zw.check(device(damping * more, friction * more, step, delay), law)
+        assert verdict.outcome == "passive"
+        assert verdict.certificate.kind == "contact"
+        assert verify_document(verdict.certificate.to_dict()).valid
+        assert verdict.assumptions[0].startswith("contact made and broken at any instant; also for a wall")
+    for short in (
+        device(damping * (1 - TINY), friction, step, delay),
+        device(damping, friction * (1 - TINY), step, delay),
+    ):
+        verdict = zw.check(short, law)
+        assert verdict.certificate is None or verdict.certificate.kind != "contact"
+        if clamped:
+            assert (verdict.outcome, verdict.witness) == ("undecided", None)
+        else:
+            assert verdict.assumptions[0].startswith("sustained contact")
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_both_bounds_are_necessary_for_the_backward_difference(seed):
+    """B ≥ 0 without delay: a thousandth below either bound a motion takes energy out."""
+    random = Random(seed)
+    k, b, step = draw(random, 10, 1000), draw(random, 0.005, 1), draw(random, 1e-5, 1e-3)
+    damping = forms.damped_wall_damping(k, b, T).fraction
+    friction = forms.damped_wall_friction(k, b, step, T).fraction
+    assert damping / (k * T) == Fraction(1, 2) + b / (k * T)  # β ≥ ½ + β_v
+    assert friction / (k * step) == Fraction(1, 2) + b / (k * T)  # σ ≥ ½ + β_v
+    assert zw.check(device(damping, friction, step, 0), zw.Wall(k, b)).certificate.kind == "contact"
+    short = 1 - Fraction(1, 1000)
+    for active in (device(damping * short, friction, step, 0), device(damping, friction * short, step, 0)):
+        verdict = zw.check(active, zw.Wall(k, b))
+        assert verdict.outcome == "active"
+        assert verdict.witness.verify()
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_closed_forms(seed):
+    """Both bounds by hand: any delay in whole samples, windows and one pole by the span of their memory."""
+    random = Random(seed)
+    k, b, step = (
+        draw(random, 1, 1e4),
+        random.choice([-1, 1]) * draw(random, 1e-3, 9),
+        draw(random, 1e-6, 1e-2),
+    )
+    delay, samples, tau = random.randint(0, 5), random.randint(1, 30), draw(random, 1e-4, 1)
+    for velocity, memory in (
+        (zw.BackwardDifference(), T),
+        (zw.Window(samples), samples * T),
+        (zw.OnePole(tau), T + tau),
+    ):
+        decision = decide(device(1, 1, step, delay), zw.Wall(k, b, velocity))
+        assert decision.contact_damping == forms.damped_wall_damping(k, b, T, delay).fraction
+        assert decision.contact_friction == forms.damped_wall_friction(k, b, step, memory).fraction
+    if b > 0:
+        assert forms.damped_wall_friction(k, b, step, T) == forms.quantized_kelvin_voigt_friction(
+            k, b, step, T
+        )
+    assert forms.damped_wall_damping(k, b, T) == forms.kelvin_voigt_damping(k, b, T)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: forms.damped_wall_damping(1, 1, T, Fraction(1, 2)), "delay_samples is a whole number"),
+        (lambda: forms.damped_wall_damping(1, 1, T, -1), "delay_samples must be ≥ 0"),
+        (lambda: forms.damped_wall_damping(-1, 1, T), "stiffness must be ≥ 0"),
+        (lambda: forms.damped_wall_friction(1, 1, T, 0), "memory must be > 0"),
+    ],
+)
+def test_outside_the_hypotheses(call, message):
+    """A formula outside its hypotheses raises and names the number."""
+    with pytest.raises(zw.InputError, match=message):
+        call()
+
+
+SURFACES = ("masked", "clamped", "clamped outside too", "fed with the penetration", "anything allowed")
+
+
+class Touch:
+    """A damped wall run by its definition in rational numbers, and the storage of the proof."""
+
+    def __init__(self, random, surface, weights, k, b, step, delay):
+        self.random, self.surface, self.weights, self.k, self.b = random, surface, weights, k, b
+        self.step, self.delay = step, delay
+        self.x = [-2 * step - Fraction(1, 3)] * (len(weights) + delay + 2)
+        self.forces = [Fraction(0)] * (delay + 1)
+
+    def sample(self):
+        """Read the encoder and send the force on its way; returns the one that acts now."""
+        q = [self.step * (v // self.step) if self.step else v for v in self.x[-len(self.weights) - 1 :]][::-1]
+        if self.surface == "fed with the penetration":
+            q = [max(v, 0) for v in q]
+        v = sum(w * (a - c) for w, a, c in zip(self.weights, q, q[1:], strict=False)) / T
+        spring, damper = self.k * max(q[0], 0), self.b * v
+        force = spring + damper
+        if self.surface == "masked" and q[0] <= 0:
+            force = 0
+        elif self.surface.startswith("clamped"):
+            force = max(self.k * q[0] + damper, 0) if q[0] > 0 or "too" in self.surface else 0
+        elif self.surface == "anything allowed":
+            force = spring + damper * Fraction(self.random.randint(-4, 4), 4)
+        self.forces.append(Fraction(force))
+        return self.forces[-1 - self.delay]
+
+    def stored(self, x):
+        """V of the proof, after the positions x."""
+        moves = [a - c for a, c in zip(x[:0:-1], x[-2::-1], strict=True)]
+        total = self.k * max(x[-1] - self.step / 2, 0) ** 2 / 2
+        for i, move in enumerate(moves[: len(self.weights) + self.delay]):
+            later = sum(abs(w) for w in self.weights[max(0, i - self.delay) :])
+            total += (abs(self.b) / T * later + self.k * max(self.delay - i, 0)) * move**2 / 2
+        return total
+
+    def wishes(self, force, damping, size):
+        """Places where a clever hand may want to be next."""
+        here = self.x[-1]
+        yield here + size * Fraction(self.random.randint(-100, 100), 100)
+        yield -here
+        yield here - force * T / (2 * damping)
+        if self.step:
+            edge = self.step * (here // self.step + self.random.randint(-1, 1))
+            yield from (edge, edge - Fraction(1, 10**9))
+            yield here + self.random.choice([-1, 1]) * self.step / 10**6
+
+    def least_left(self, damping, friction, moves):
+        """The smallest V that any step left over, and the energy put in along the way taken."""
+        least, put_in, size = Fraction(0), Fraction(0), self.random.choice([Fraction(1, 100), 1, 30])
+        before = self.stored(self.x)
+        for _ in range(moves):
+            force = self.sample()
+            options = []
+            for there in self.wishes(force, damping, size):
+                move = there - self.x[-1]
+                work = force * move + friction * abs(move) + damping * move**2 / T
+                options.append((work - self.stored([*self.x, there]) + before, work, there))
+            least = min(least, *(left for left, _, _ in options))
+            _, work, there = min(options) if self.random.random() < 0.6 else self.random.choice(options)
+            put_in += work
+            assert least < 0 or put_in >= 0
+            self.x.append(there)
+            before = self.stored(self.x)
+        return least, put_in
+
+
+def touch(seed, surface):
+    """A random wall with a random finite estimate, as zwidth and as its definition see it."""
+    random = Random(f"{seed} {surface}")
+    weights = random.choice([[Fraction(1)], [Fraction(1, 3)] * 3, [Fraction(n, 4) for n in (3, -2, 5)]])
+    k, b = draw(random, 1, 500), random.choice([-1, 1]) * draw(random, 0.01, 2)
+    step, delay = random.choice([Fraction(0), draw(random, 1e-4, 0.1)]), random.randint(0, 2)
+    velocity = zw.VelocityFilter(weights, [1, *[0] * (len(weights) - 1)])
+    law = zw.Wall(k, b, velocity, clamped=surface.startswith("clamped"))
+    decision = decide(device(1, 1, step, delay), law)
+    enough = decision.contact_damping, decision.contact_friction
+    return Touch(random, surface, weights, k, b, step, delay), enough, law
+
+
+@pytest.mark.parametrize("surface", SURFACES)
+@pytest.mark.parametrize("seed", range(12))
+def test_no_hand_takes_energy_out_of_a_certified_wall(seed, surface):
+    """At the bounds no step of a greedy hand, in and out at will, takes out more than the storage loses."""
+    hand, (damping, friction), law = touch(seed, surface)
+    verdict = zw.check(device(damping, friction, hand.step, hand.delay), law)
+    assert (verdict.outcome, verdict.certificate.kind) == ("passive", "contact")
+    least, put_in = hand.least_left(damping, friction, 60)
+    assert least == 0
+    assert put_in >= 0
+
+
+@pytest.mark.parametrize("share", [(Fraction("0.9"), 1), (1, Fraction("0.3"))])
+def test_the_same_hand_is_not_blind(share):
+    """With less damping, or less friction where there is an encoder, some step breaks the storage."""
+    found = []
+    for seed in range(12):
+        hand, (damping, friction), _ = touch(seed, "anything allowed")
+        found.append(hand.least_left(damping * share[0], friction * share[1], 60)[0])
+    assert min(found) < 0
+
+
+@pytest.mark.parametrize("clamped", [False, True])
+@pytest.mark.parametrize("seed", range(3))
+def test_simulated_hands_take_nothing_out(seed, clamped):
+    """A bouncing dowel, a finger, a recorded and wild motion on certified walls: nothing comes out."""
+    random = Random(seed)
+    k, b, name = (
+        draw(random, 50, 400),
+        draw(random, 0.02, 0.3),
+        random.choice(["backward difference", "window"]),
+    )
+    step = Fraction("0.0001")
+    damping, friction = bounds(k, b, name, step, 1)
+    held = device(damping, friction, step, 1).replace(mass="0.05")
+    wall = zw.Wall(k, b, FILTERS[name][0], clamped=clamped)
+    assert zw.check(held, wall).certificate.kind == "contact"
+    wild = list(accumulate((random.gauss(0, 2e-3) for _ in range(300)), initial=-1e-3))
+    hands = (zw.operators.Dowel(), zw.operators.TypicalTouch(), zw.operators.PrescribedMotion(wild))
+    for hand in hands:
+        duration = 0.3 if isinstance(hand, zw.operators.PrescribedMotion) else 0.6
+        energy = zw.simulate(held, wall, hand, duration=duration).zwidth.energy
+        assert energy.extracted <= 1e-9 * energy.moved
+
+
+DEVICE = device("0.5", "0.2", "0.0005", 1)
+DOCUMENTS = {
+    "backward difference": zw.check(DEVICE, zw.Wall("180", "0.04")),
+    "window": zw.check(DEVICE, zw.Wall("180", "-0.06", zw.Window(3))),
+    "one pole": zw.check(DEVICE, zw.Wall("180", "0.07", zw.OnePole("0.004"), clamped=True)),
+}
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_every_number_of_a_certificate_binds(name):
+    """Any number of the law or of H(z) changed, and any of the loop for the worse: rejected."""
+    honest = DOCUMENTS[name].certificate.to_dict()
+    assert checker.verify(honest).valid
+    for key in ("stiffness_N_per_m", "virtual_damping_N_s_per_m"):
+        for change in ("1.001", "0.999", "-1", "0"):
+            tampered = copy.deepcopy(honest)
+            tampered["law"][key] = str(Fraction(honest["law"][key]) * Fraction(change))
+            assert not checker.verify(tampered).valid, (key, change)
+    for place, value in _numbers(honest["law"]["weights"]):
+        tampered = copy.deepcopy(honest)
+        tampered["law"]["weights"][place] = str(Fraction(value) + Fraction(1, 1000))
+        assert not checker.verify(tampered).valid
+    for part in ("numerator", "denominator"):
+        for place, value in enumerate(honest["loop"][part]):
+            tampered = copy.deepcopy(honest)
+            tampered["loop"][part][place] = str(Fraction(value) + 1)
+            assert not checker.verify(tampered).valid
+    for key, value in {
+        "damping_N_s_per_m": "0.2",
+        "coulomb_friction_N": "0.04",
+        "resolution_m": "0.01",
+        "sample_period_s": "0.0011",
+        "delay_s": "0.003",
+        "unilateral": False,
+    }.items():
+        tampered = copy.deepcopy(honest)
+        tampered["loop"][key] = value
+        assert not checker.verify(tampered).valid, key
+
+
+def _numbers(weights):
+    return weights.items() if isinstance(weights, dict) else enumerate(weights)
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "said"),
+    [
+        (("law",), None, "the law must be an object"),
+        (("law", "weights"), {"pole": "1"}, "must lie in"),
+        (("law", "weights"), {"pole": "-0.2"}, "must lie in"),
+        (("law", "weights"), [], "H(z) is not the wall"),
+        (("law", "weights"), "1", "list of numbers"),
+        (("law", "stiffness_N_per_rad"), "3", "stiffness once"),
+        (("loop", "delay_s"), "0.0015", "no whole number of samples"),
+        (("loop", "damping_N_s_per_m"), "0.3099", "damping is below"),
+        (("loop", "coulomb_friction_N"), "0.0649", "Coulomb friction is below"),
+    ],
+)
+def test_what_the_checker_says(place, value, said):
+    """Each hypothesis that fails is named."""
+    tampered = copy.deepcopy(DOCUMENTS["backward difference"].certificate.to_dict())
+    inner = tampered
+    for key in place[:-1]:
+        inner = inner[key]
+    inner[place[-1]] = value
+    verification = checker.verify(tampered)
+    assert not verification.valid
+    assert said in verification.reason
+
+
+def test_a_negative_spring_is_no_wall():
+    """K < 0 in law and H(z) alike is rejected."""
+    document = copy.deepcopy(DOCUMENTS["backward difference"].certificate.to_dict())
+    document["law"]["stiffness_N_per_m"] = "-180"
+    rate = Fraction(document["law"]["virtual_damping_N_s_per_m"]) / T
+    document["loop"] |= {"numerator": [str(rate - 180), str(-rate)], "denominator": ["1", "0"]}
+    assert "negative" in checker.verify(document).reason
+
+
+def test_rotary_certificate():
+    """A knob's law has N·m in its keys, and is accepted."""
+    knob = zw.Device(
+        damping="0.004", coulomb_friction="0.01", resolution="0.0015", rate=2000, motion="rotary"
+    )
+    verdict = zw.check(knob, zw.Wall(3, "0.001"))
+    assert set(verdict.certificate.to_dict()["law"]) == {
+        "stiffness_N_m_per_rad", "virtual_damping_N_m_s_per_rad", "weights"
+    }  # fmt: skip
+    assert verdict.certificate.verify()
+
+
+STILL_SUSTAINED = {
+    "a delay of part of a sample": (DEVICE.replace(delay="0.0004"), zw.Wall(180, "0.04")),
+    "a filter that needs less": (device("0.3", "0.2", "0.0005", 0), zw.Wall(180, "0.25", zw.Window(4))),
+    "an infinite response": (DEVICE, zw.Wall(180, "0.02", zw.VelocityFilter([1, "-0.2"], [1, "-0.5"]))),
+    "a viscoelastic solid": (DEVICE, zw.StandardLinearSolid(100, 20, "0.1")),
+}
+
+
+@pytest.mark.parametrize("name", STILL_SUSTAINED)
+def test_where_it_does_not_apply(name):
+    """The linear proof stays, for sustained contact; clamped, the same law is undecided and says why."""
+    loop, law = STILL_SUSTAINED[name]
+    verdict = zw.check(loop, law)
+    assert (verdict.outcome, verdict.certificate.kind) == ("passive", "quantized")
+    assert verdict.assumptions[0].startswith("sustained contact")
+    clamped = zw.check(loop, law.replace(clamped=True))
+    assert (clamped.outcome, clamped.certificate, clamped.witness) == ("undecided", None, None)
+    assert clamped.claim.startswith("The linear criterion does not cover a law whose force is clamped")
+    assert not clamped.assumptions[0].startswith("sustained contact")
+
+
+def test_an_active_clamped_wall_is_not_called_active():
+    """A witness in the linear law is not shown for the clamped one; what would be enough is named."""
+    loop = device("0.1", 0, 0, 0)
+    assert zw.check(loop, zw.Wall(300, "0.1")).outcome == "active"
+    verdict = zw.check(loop, zw.Wall(300, "0.1", clamped=True))
+    assert (verdict.outcome, verdict.witness) == ("undecided", None)
+    assert "damping of 0.25" in verdict.claim
+    assert verdict.required_damping == 0.25
+    assert verdict.margins["damping"] == pytest.approx(-0.15)
+    assert verdict.max_stiffness == 0
+
+
+def test_a_clamped_spring_is_the_spring():
+    """Without virtual damping there is nothing to clamp: the same verdict, the same motion."""
+    for k in (300, 770):
+        loop = device("0.15", "0.12", "0.0000224", 0)
+        plain, clamped = (zw.check(loop, zw.Wall(k, clamped=c)) for c in (False, True))
+        assert plain.to_dict() == clamped.to_dict()
+
+
+@pytest.mark.parametrize(("short", "limited"), [(0, True), (TINY, False)])
+def test_the_limit_of_a_clamped_wall(short, limited):
+    """At the bound on b, and only there, the claim says that nothing is left."""
+    loop = device(Fraction("0.25"), 1, 0, 0)
+    verdict = zw.check(loop, zw.Wall(300, Fraction("0.1") - short, clamped=True))
+    assert verdict.outcome == "passive"
+    assert ("exactly at its limit" in verdict.claim) is limited
+
+
+CLAMPED = zw.Wall(100, "0.02", clamped=True)
+INTERVALS = {
+    "law": (DEVICE, zw.Wall((100, 180), ("-0.02", "0.05")), "passive", True),
+    "clamped": (DEVICE, zw.Wall((100, 180), ("-0.02", "0.05"), clamped=True), "passive", True),
+    "clamped, from no damping on": (DEVICE, zw.Wall(180, (0, "0.05"), clamped=True), "passive", True),
+    "timing and all": (
+        DEVICE.replace(delay=0, sample_period=("0.0005", "0.001")),
+        zw.Wall((100, 180), ("-0.02", "0.02"), zw.OnePole((0, "0.003"))), "passive", True,
+    ),
+    "one corner in sustained contact": (
+        device("0.3", "0.2", "0.0005", 0), zw.Wall(180, ("0.01", "0.25"), zw.Window(4)), "passive", False
+    ),
+    "one corner too many, clamped": (
+        device("0.3", "0.2", "0.0005", 0), zw.Wall(180, ("0.01", "0.25"), clamped=True), "undecided", None
+    ),
+    "delays": (DEVICE.replace(delay=(0, "0.001")), zw.Wall(100, "0.02"), "passive", False),
+    "delays, clamped": (DEVICE.replace(delay=(0, "0.001")), CLAMPED, "undecided", None),
+    "no virtual damping at its best, clamped": (
+        device("0.1", 0, 0, 0), zw.Wall(300, (0, "0.1"), clamped=True), "undecided", None
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", INTERVALS)
+def test_intervals(name):
+    """Contact is claimed for a box only if it is proved at every corner, and between them."""
+    loop, law, outcome, covered = INTERVALS[name]
+    verdict = zw.check(loop, law)
+    assert verdict.outcome == outcome
+    if covered is None:
+        assert verdict.certificate is None
+        return
+    assert verdict.certificate.covers_contact is covered
+    assert verdict.assumptions[0].startswith("contact made" if covered else "sustained contact")
+    assert verify_document(verdict.certificate.to_dict()).valid
