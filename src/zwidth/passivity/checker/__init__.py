@@ -1,9 +1,10 @@
 """The independent checker: re-proves a certificate, recomputes a witness.
 
-Written from the mathematics alone, in the standard library alone, with other
-algorithms than the prover's: Chebyshev sums for the criterion, Bernstein
-coefficients for its sign, Routh's table for stability, a plain recursion for
-the energy of a motion.  It imports nothing else of zwidth, on purpose: keep it so.
+Written from the mathematics alone, with other algorithms than the prover's:
+Chebyshev sums for the criterion, Bernstein coefficients for its sign, Routh's table
+for stability, a plain recursion for the energy of a motion, every move one by one
+for a storage function.  The standard library does for all but the last, whose many
+moves need numpy and numba.  It imports nothing else of zwidth, on purpose: keep it so.
 
 Everything is exact: numbers are integers, or text such as "3/20" and "0.15".
 """
@@ -14,14 +15,16 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from .contact_motion import contact_motion_energy
 from .contact_proof import contact
 from .motions import motion_energy, stored_at_start
 from .proofs import PROOFS
 from .reading import Invalid, get, number
+from .storage_proof import storage
 
 __all__ = ["Verification", "verify"]
 
-_KINDS = {**PROOFS, "contact": contact}
+_KINDS = {**PROOFS, "contact": contact, "storage": storage}
 
 
 class Verification(NamedTuple):
@@ -38,6 +41,8 @@ def verify(document: Mapping[str, Any]) -> Verification:
         kind = get(document, "kind")
         if kind == "motion":
             return _motion(document)
+        if kind == "contact motion":
+            return _contact_motion(document)
         if not isinstance(kind, str) or kind not in _KINDS:
             raise Invalid(f"kind must be motion, {', '.join(_KINDS)}; got {str(kind)[:40]!r}")
         return Verification(True, _KINDS[kind](document))
@@ -59,3 +64,14 @@ def _motion(document: Mapping[str, Any]) -> Verification:
     if abs(claimed - energy) > abs(energy) / 10**9:
         return Verification(False, f"the energy is {float(energy):g} J, not {float(claimed):g} J", energy)
     return Verification(True, f"the motion extracts {float(energy):g} J", energy)
+
+
+def _contact_motion(document: Mapping[str, Any]) -> Verification:
+    """A motion that begins without contact, gains in all, and gains again with every further round."""
+    energy, gain = contact_motion_energy(document)
+    if energy <= 0 or gain <= 0:
+        less = min(energy, gain)
+        return Verification(False, f"the motion extracts {float(less):g} J: none comes out", energy)
+    return Verification(
+        True, f"the motion extracts {float(energy):g} J, and {float(gain):g} J more with each round", energy
+    )

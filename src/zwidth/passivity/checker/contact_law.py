@@ -1,0 +1,112 @@
+"""A law with contact made and broken, read from a document: readings of an encoder to a force.
+
+u = q, or max(q, 0) if fed with the penetration
+f = Σ c_j u_{k−j}  or  a spring through given points
+f = max(0, f) if clamped;  |f| ≤ the force limit;  f = 0 where q_k ≤ 0 if there is a surface
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from .reading import Invalid, get, number, numbers
+
+MOST_TAPS = 50
+MOST_POINTS = 10_000
+
+
+class Losses(NamedTuple):
+    damping: Fraction
+    friction: Fraction
+    resolution: Fraction
+    period: Fraction
+    delay: int
+
+
+class Law(NamedTuple):
+    taps: list[Fraction]
+    points: list[tuple[Fraction, Fraction]]
+    surface: str
+    clamped: bool
+    limit: Fraction | None
+
+    def force(self, readings: Sequence[Fraction]) -> Fraction:
+        """The force for q_k, q_{k−1}, …, as many as there are taps."""
+        q = readings[0]
+        if self.surface != "none" and q <= 0:
+            return Fraction(0)
+        if self.points:
+            f = self._spring(q)
+        else:
+            u = [max(v, Fraction(0)) for v in readings] if self.surface == "penetration" else readings
+            f = sum((c * v for c, v in zip(self.taps, u, strict=True)), Fraction(0))
+        if self.clamped and f < 0:
+            f = Fraction(0)
+        if self.limit is not None:
+            f = max(-self.limit, min(self.limit, f))
+        return f
+
+    def _spring(self, q: Fraction) -> Fraction:
+        before = [p for p in self.points if p[0] <= q]
+        after = [p for p in self.points if p[0] > q]
+        if not before:
+            return self.points[0][1]
+        if not after:
+            return self.points[-1][1]
+        (x0, f0), (x1, f1) = before[-1], after[0]
+        return f0 + (q - x0) / (x1 - x0) * (f1 - f0)
+
+
+def read_losses(document: Mapping[str, Any]) -> Losses:
+    loop = get(document, "loop")
+
+    def quantity(name: str) -> Fraction:
+        return number(_one(loop, name))
+
+    b, friction, resolution = (quantity(n) for n in ("damping", "coulomb_friction", "resolution"))
+    period, delay = quantity("sample_period"), quantity("delay")
+    if period <= 0 or resolution <= 0 or min(b, friction, delay) < 0:
+        raise Invalid("T and Δ must be > 0, and b, f_c and the delay ≥ 0")
+    samples = delay / period
+    if samples.denominator != 1 or samples > MOST_TAPS:
+        raise Invalid("the delay must be a small whole number of samples")
+    return Losses(b, friction, resolution, period, int(samples))
+
+
+def read_law(document: Mapping[str, Any]) -> Law:
+    law = get(document, "law")
+    known = {"surface", "clamped"}
+    surface, clamped = get(law, "surface"), get(law, "clamped")
+    if surface not in ("none", "position", "penetration") or not isinstance(clamped, bool):
+        raise Invalid("surface must be none, position or penetration, and clamped true or false")
+    for key in law:
+        if key not in known and not key.startswith(("taps_", "points_", "force_limit_")):
+            raise Invalid(f"the law has a key that is not understood: {str(key)[:40]}")
+    taps = numbers(_one(law, "taps"), MOST_TAPS)
+    pairs = _one(law, "points", [])
+    if not isinstance(pairs, list) or len(pairs) > MOST_POINTS:
+        raise Invalid("points must be a short list")
+    points = [(number(x), number(f)) for x, f in pairs]
+    if any(a[0] >= b[0] for a, b in zip(points, points[1:], strict=False)):
+        raise Invalid("the positions of the points must increase")
+    if bool(taps) == bool(points):
+        raise Invalid("a law has either taps or points")
+    limit = _one(law, "force_limit", None)
+    limit = None if limit is None else number(limit)
+    if limit is not None and limit < 0:
+        raise Invalid("the force limit must be ≥ 0")
+    return Law(taps, points, surface, clamped, limit)
+
+
+_REQUIRED = object()
+
+
+def _one(table: Any, name: str, default: Any = _REQUIRED) -> Any:
+    if not isinstance(table, Mapping):
+        raise Invalid("expected an object")
+    keys = [k for k in table if isinstance(k, str) and (k == name or k.startswith(name + "_"))]
+    if len(keys) > 1 or (not keys and default is _REQUIRED):
+        raise Invalid(f"{name} must be given once")
+    return table[keys[0]] if keys else default

@@ -1,0 +1,139 @@
+"""A storage function re-checked: no move of the hand takes out more energy than V falls.
+
+The document gives V on a board: cells of one encoder count, M steps in each,
+and every remembered reading.  Whole numbers throughout: forces in multiples of
+a unit, energies in multiples of unit × step.  Between two neighbouring knots V is
+meant to be linear.  If for all knots x, x' that are D steps apart
+
+    V(s, x) ≥ −f (x' − x) − φ D − β (D² − ½) [D ≥ 2] + V(s', x')
+
+then the same holds for all positions between, with φ |d| + β d²: on a rectangle
+of two different steps of cells the linear interpolation of D² − ½ (0 for D ≤ 1)
+is at most d², and on both triangles of the square of one step with itself too.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from collections.abc import Mapping
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+from .contact_law import Law, Losses, read_law, read_losses
+from .reading import Invalid, get, integer, number
+
+MOST_VALUES = 60_000_000
+_EXACT = 2**53
+
+
+def storage(document: Mapping[str, Any]) -> str:
+    import numpy as np  # loaded only where a storage function is to be checked
+
+    losses, law = read_losses(document), read_law(document)
+    domain = get(document, "domain")
+    low, high = (_signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
+    reach, steps = integer(get(domain, "largest_move_counts"), 1), integer(get(domain, "steps_per_count"), 1)
+    unit = number(get(document, "force_unit"))
+    memory = max(len(law.taps) - 1, 0) + losses.delay
+    width, cells = 2 * reach + 1, high - low + 1
+    if cells < 1 or unit <= 0 or cells * width**memory * (steps + 1) > MOST_VALUES:
+        raise Invalid("the board is empty, or larger than can be checked")
+    if law.surface != "none" and low > 1 - (memory + 1) * reach:
+        raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
+    shape = (cells, width**memory, steps + 1)
+    value = _values(get(document, "storage"), shape)
+    if value.min() < 0:
+        raise Invalid("a storage function must be bounded below by 0")
+    forces, off = _forces(law, losses, unit, low, high, reach, memory)
+    friction = losses.friction // unit - off
+    drag = losses.damping / losses.period * (losses.resolution / steps) // unit
+    far = np.arange(reach * steps + 3, dtype=object)
+    costs = friction * far + np.where(far > 1, drag * far * far - -(-drag // 2), 0)
+    largest = int(value.max()) + int(abs(costs).max()) + int(np.abs(forces).max()) * (len(far) + 1)
+    if largest >= _EXACT:
+        raise Invalid("the numbers are too large to be compared exactly")
+    exists = _exists(low, high, reach, memory)
+    from .storage_moves import first_violation
+
+    at = first_violation(
+        value.astype(np.float64), forces.astype(np.float64), exists, costs.astype(np.float64), reach, steps
+    )
+    if at >= 0:
+        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    return (
+        "no move takes out more than the storage function falls, from any position and memory, "
+        f"for readings up to {high} counts inside and moves up to {reach} counts a sample"
+    )
+
+
+def _signed(value: Any) -> int:
+    found = number(value)
+    if found.denominator != 1 or abs(found) > 10**7:
+        raise Invalid("a cell is a whole number of ordinary size")
+    return int(found)
+
+
+def _values(text: Any, shape: tuple[int, int, int]) -> Any:
+    import numpy as np
+
+    if not isinstance(text, str):
+        raise Invalid("the storage function must be text")
+    size = 8 * shape[0] * shape[1] * shape[2]
+    try:
+        packed = base64.b64decode(text, validate=True)
+        raw = zlib.decompressobj().decompress(packed, size + 1)
+    except (ValueError, zlib.error) as error:
+        raise Invalid(f"the storage function cannot be unpacked: {error}") from None
+    if len(raw) != size:
+        raise Invalid("the storage function has not one value for each state")
+    return np.frombuffer(raw, dtype="<i8").reshape(shape)
+
+
+def _histories(reach: int, memory: int) -> list[tuple[int, ...]]:
+    return list(product(range(-reach, reach + 1), repeat=memory))
+
+
+def _exists(low: int, high: int, reach: int, memory: int) -> Any:
+    """Which states there are: all remembered readings on the board."""
+    import numpy as np
+
+    out = np.ones((high - low + 1, (2 * reach + 1) ** memory), dtype=np.bool_)
+    cells = np.arange(low, high + 1)
+    for column, differences in enumerate(_histories(reach, memory)):
+        reading = cells.copy()
+        for e in differences:
+            reading = reading + e
+            out[:, column] &= (reading >= low) & (reading <= high)
+    return out
+
+
+def _forces(
+    law: Law, losses: Losses, unit: Fraction, low: int, high: int, reach: int, memory: int
+) -> tuple[Any, int]:
+    """Every state's force in units, and by how many units one may be off."""
+    import numpy as np
+
+    cells = np.arange(low, high + 1, dtype=np.int64)
+    histories = _histories(reach, memory)
+    columns = np.array(histories, dtype=np.int64).reshape(len(histories), memory)
+    ages = [cells[:, None] + columns[:, :age].sum(axis=1)[None, :] for age in range(memory + 1)]
+    ages = [np.broadcast_to(a, (len(cells), len(columns))) for a in ages][losses.delay :]
+    if law.points:
+        table = [int(law._spring(n * losses.resolution) // unit) for n in range(low, high + 1)]
+        total = np.array(table, dtype=np.int64)[np.clip(ages[0], low, high) - low]
+    else:
+        total = np.zeros((len(cells), len(columns)), dtype=np.int64)
+        for c, reading in zip(law.taps, ages, strict=True):
+            u = np.where(reading > 0, reading, 0) if law.surface == "penetration" else reading
+            total = total + int(c * losses.resolution // unit) * u
+    if law.clamped:
+        total = np.where(total < 0, 0, total)
+    if law.limit is not None:
+        most = int(law.limit // unit)
+        total = np.minimum(np.maximum(total, -most), most)
+    if law.surface != "none":
+        total = np.where(ages[0] <= 0, 0, total)
+    off = len(law.taps) * max(abs(low), abs(high)) + 2  # each tap is rounded down, times a reading
+    return total, off

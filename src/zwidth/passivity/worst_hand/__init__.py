@@ -1,0 +1,6 @@
+"""The worst hand there is: available storage, certified; motions that gain, recomputed."""
+
+from zwidth.passivity.worst_hand.hand import WorstHand, worst_hand
+from zwidth.passivity.worst_hand.limit import Bracket, passive_limit
+
+__all__ = ["Bracket", "WorstHand", "passive_limit", "worst_hand"]

@@ -1,0 +1,285 @@
+"""The board of the game: positions, memory and forces in whole numbers.
+
+A cell is one encoder count, cut into small steps; the hand stands on some of
+them, its knots, both edges of the cell among them.  A state is the cell n, the
+last differences e_i = n_{k−i} − n_{k−i+1} and a knot.  Forces are whole multiples
+of one small unit, so that energies are whole multiples of unit × step and nothing
+is rounded while the game is played.
+
+Two sets of rules, one for each side of the bracket:
+
+generous   every step is a knot.  A move over D steps costs φ D + β (D² − ½), but
+           φ D if D ≤ 1, and forces are rounded in the hand's favour.  Whoever
+           cannot win by these rules cannot win at all: a function that is linear
+           between the knots and satisfies every move between knots satisfies
+           every move (see the documentation).
+strict     it costs φ D + β D², forces rounded against the hand.  Whoever wins by
+           these rules has a real motion that gains.  The knots lie close to the
+           edges, where it pays to be.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from math import ceil, floor
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.passivity.worst_hand.law import FiniteLaw, interpolated
+
+Integers = NDArray[np.int64]
+Rules = Literal["generous", "strict"]
+
+NOWHERE = 2**62
+"""In place of the force of a state that is not on the board."""
+
+_LARGEST_ENERGY = 2**48
+"""Force × span stays below: sums of moves stay exact in doubles and products in 64 bits."""
+
+
+@dataclass(frozen=True)
+class Losses:
+    """What a hand meets besides the law, exact.
+
+    Parameters
+    ----------
+    damping, coulomb_friction
+        b [N·s/m] and f_c [N] of the device.
+    resolution, period
+        Δ > 0 [m] and T [s].
+    delay
+        Whole samples from a reading to its force.
+    """
+
+    damping: Fraction
+    coulomb_friction: Fraction
+    resolution: Fraction
+    period: Fraction
+    delay: int
+
+
+@dataclass(frozen=True)
+class Domain:
+    """Where the hand may be and how far it may go in one sample, in counts.
+
+    Parameters
+    ----------
+    lowest, highest
+        The first and the last cell.
+    reach
+        The largest difference of two successive readings.
+    """
+
+    lowest: int
+    highest: int
+    reach: int
+
+    @property
+    def cells(self) -> int:
+        """How many there are."""
+        return self.highest - self.lowest + 1
+
+
+@dataclass(frozen=True)
+class Board:
+    """The law, the losses and the domain on a grid of knots.
+
+    Parameters
+    ----------
+    law, losses, domain
+        What is played.
+    steps
+        Into how many a cell is cut.
+    rules
+        "generous" or "strict".
+    """
+
+    law: FiniteLaw
+    losses: Losses
+    domain: Domain
+    steps: int
+    rules: Rules
+
+    @cached_property
+    def knots(self) -> Integers:
+        """Where in a cell the hand may stand, in steps."""
+        if self.rules == "generous":
+            return np.arange(self.steps + 1, dtype=np.int64)
+        near = [self.steps * part // 1024 for part in (0, 1, 16, 256)]
+        return np.unique([*near, self.steps // 2, *(self.steps - k for k in near)]).astype(np.int64)
+
+    @property
+    def memory(self) -> int:
+        """Readings besides the last one that a state holds."""
+        return self.law.memory + self.losses.delay
+
+    @property
+    def width(self) -> int:
+        """Values of one difference of readings."""
+        return 2 * self.domain.reach + 1
+
+    @property
+    def histories(self) -> int:
+        """Values of all differences together."""
+        return int(self.width**self.memory)
+
+    @cached_property
+    def force_unit(self) -> Fraction:
+        """A power of two, so small that rounding does not matter and so large that sums are exact."""
+        span = 4 * self.domain.cells * self.steps
+        most = max(self._largest_force, self.losses.coulomb_friction, Fraction(1, 10**12))
+        exponent = _power_above(most * span / _LARGEST_ENERGY)
+        return Fraction(2) ** exponent
+
+    @property
+    def _largest_force(self) -> Fraction:
+        n = max(abs(self.domain.lowest), abs(self.domain.highest)) + self.domain.reach
+        spring = max((abs(f) for _, f in self.law.points), default=Fraction(0))
+        return sum((abs(c) for c in self.law.taps), Fraction(0)) * n * self.losses.resolution + spring
+
+    @property
+    def rounding(self) -> int:
+        """Units by which a force may be off: each tap is rounded down and times a reading."""
+        farthest = max(abs(self.domain.lowest), abs(self.domain.highest))
+        return len(self.law.taps) * farthest + 2
+
+    @property
+    def friction(self) -> int:
+        """φ in force units, the rounding of forces taken off or added."""
+        units = floor(self.losses.coulomb_friction / self.force_unit)
+        return units - self.rounding if self.rules == "generous" else units + self.rounding + 1
+
+    @property
+    def drag(self) -> int:
+        """β: b/T times one step, in force units."""
+        step = self.losses.resolution / self.steps
+        units = self.losses.damping / self.losses.period * step / self.force_unit
+        return floor(units) if self.rules == "generous" else ceil(units)
+
+    @property
+    def energy_unit(self) -> Fraction:
+        """One force unit over one step [J]."""
+        return self.force_unit * self.losses.resolution / self.steps
+
+    @property
+    def farthest(self) -> int:
+        """The longest move, in steps."""
+        slack = 2 if self.rules == "generous" else 0  # both ends of a move lie between knots
+        return self.domain.reach * self.steps + slack
+
+    @cached_property
+    def costs(self) -> Integers:
+        """What a move over 0, 1, … steps costs, in energy units."""
+        far = np.arange(self.farthest + 1, dtype=np.int64)
+        lost = self.drag * far**2
+        if self.rules == "generous":
+            lost = np.where(far <= 1, 0, lost - (self.drag + 1) // 2)
+        return self.friction * far + lost
+
+    @cached_property
+    def forces(self) -> Integers:
+        """Force in units for every cell (rows) and history (columns); NOWHERE off the board."""
+        low, high = self.domain.lowest, self.domain.highest
+        cells = np.arange(low, high + 1, dtype=np.int64)[:, None]
+        differences = np.arange(-self.domain.reach, self.domain.reach + 1, dtype=np.int64)
+        columns = np.array(list(product(differences, repeat=self.memory)), dtype=np.int64)
+        columns = columns.reshape(self.histories, self.memory)
+        readings = [cells + columns[:, :i].sum(axis=1)[None, :] for i in range(self.memory + 1)]
+        on_board = np.ones((len(cells), self.histories), dtype=bool)
+        for reading in readings:
+            on_board &= (reading >= low) & (reading <= high)
+        forces: Integers = np.where(on_board, self._force(readings[self.losses.delay :]), NOWHERE)
+        return forces
+
+    def _force(self, readings: list[Integers]) -> Integers:
+        force: Integers
+        law, shape = self.law, np.broadcast_shapes(*(r.shape for r in readings))
+        if law.points:
+            low, high = self.domain.lowest, self.domain.highest
+            table = [
+                floor(interpolated(law.points, n * self.losses.resolution) / self.force_unit)
+                for n in range(low, high + 1)
+            ]
+            index = np.clip(readings[0] - low, 0, high - low)
+            force = np.broadcast_to(np.array(table, dtype=np.int64)[index], shape)
+        else:
+            force = np.zeros(shape, dtype=np.int64)
+            for tap, reading in zip(law.taps, readings, strict=True):
+                u = np.maximum(reading, 0) if law.surface == "penetration" else reading
+                force = force + floor(tap * self.losses.resolution / self.force_unit) * u
+        if law.clamped:
+            force = np.maximum(force, 0)
+        if law.force_limit is not None:
+            most = floor(law.force_limit / self.force_unit)
+            force = np.clip(force, -most, most)
+        if law.surface != "none":
+            force = np.where(np.broadcast_to(readings[0], shape) > 0, force, 0)
+        return force
+
+    @cached_property
+    def first_guess(self) -> Integers:
+        """Where the search for a storage function starts: that of a damped wall, rounded.
+
+        V = ∫ f from the middle of the first cell + ½ Σ_j (Σ_{i≥j} |w_i|) d_j², d_j the
+        least the hand can have moved.  Any start ends at a storage function if
+        there is one; from this one the search is short.
+        """
+        energy = self._spring_energy()[:, None, :] + np.zeros((1, self.histories, 1))
+        weights = self._lag_weights()
+        for lag, distance in enumerate(self._least_moves()):
+            energy = energy + 0.5 * sum(weights[lag:]) * distance**2
+        guess: Integers = np.ceil(np.maximum(energy, 0.0) * self.steps).astype(np.int64)
+        return guess
+
+    def _spring_energy(self) -> NDArray[np.float64]:
+        """Energy of the resting hand's force, cell by knot, in force units times counts."""
+        at_rest = self.forces[:, self.histories // 2].astype(float)  # the middle history: no differences
+        middles = np.concatenate(([0.0], np.cumsum((at_rest[1:] + at_rest[:-1]) / 2)))
+        x = np.arange(self.domain.cells)[:, None] + self.knots / self.steps - 0.5
+        low = np.clip(np.floor(x).astype(np.int64), 0, self.domain.cells - 1)
+        slope = np.append(np.diff(at_rest), 0.0)[low]
+        energy: NDArray[np.float64] = middles[low] + at_rest[low] * (x - low) + slope * (x - low) ** 2 / 2
+        energy -= energy.min()
+        return energy
+
+    def _lag_weights(self) -> list[float]:
+        """|w_i| of f = K u + Σ w_i (u_{k−i} − u_{k−i−1}) in force units per count, delay included."""
+        if not self.memory:
+            return []
+        unit = float(self.losses.resolution / self.force_unit)
+        taps = [float(c) * unit for c in self.law.taps] or [0.0]
+        stiffness = float(self.law.static_stiffness) * unit
+        taps[0] -= stiffness
+        damper = [abs(w) for w in np.cumsum(taps)[:-1]]
+        return [abs(stiffness)] * self.losses.delay + damper
+
+    def _least_moves(self) -> list[NDArray[np.float64]]:
+        """How far the hand has at least moved in each remembered interval, in counts."""
+        differences = np.arange(-self.domain.reach, self.domain.reach + 1)
+        columns = np.array(list(product(differences, repeat=self.memory))).reshape(
+            self.histories, self.memory
+        )
+        xi = self.knots / self.steps
+        moves: list[NDArray[np.float64]] = []
+        for lag in range(self.memory):
+            e = columns[:, lag][None, :, None]
+            if lag == 0:  # from the edge of the cell before to where in its cell the hand is now
+                moves.append(np.maximum(np.maximum(xi - (e + 1), e - xi), 0.0))
+            else:
+                moves.append(np.maximum(np.abs(e) - 1, 0) + 0.0 * xi)
+        return moves
+
+
+def _power_above(value: Fraction) -> int:
+    """The least whole e with 2^e ≥ value > 0."""
+    e = value.numerator.bit_length() - value.denominator.bit_length()
+    while Fraction(2) ** e < value:
+        e += 1
+    while Fraction(2) ** (e - 1) >= value:
+        e -= 1
+    return e

@@ -1,0 +1,95 @@
+"""Where the hand may be and how fast it may go: from metres to encoder counts."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil, floor
+
+from zwidth.device.device import Device
+from zwidth.errors import InputError
+from zwidth.passivity.worst_hand.board import Board, Domain, Losses
+from zwidth.passivity.worst_hand.law import FiniteLaw
+from zwidth.quantity.exact import Exact, RealLike
+
+COUNTS = {0: 256, 1: 64, 2: 16, 3: 7, 4: 4, 5: 3, 6: 2}
+"""Counts inside, and counts per sample, that are looked at by default, by readings remembered."""
+
+MOST_STATES = 40_000_000
+"""States of the largest board."""
+
+
+def losses_of(device: Device) -> Losses:
+    """What the hand meets besides the law.
+
+    Raises
+    ------
+    InputError
+        If a parameter is an interval, the encoder is ideal, or the delay is not whole samples.
+    """
+    resolution, period, delay = (device.exact(k) for k in ("resolution", "sample_period", "delay"))
+    if resolution == 0:
+        raise InputError(
+            "the worst hand is sought count by count, and the resolution is 0: an ideal encoder has no "
+            "counts; zwidth check decides linear laws there exactly"
+        )
+    samples = delay / period
+    if samples.denominator != 1:
+        raise InputError(
+            f"the worst hand is sought for delays of whole samples; {float(delay):g} s is {float(samples):g} "
+            f"samples of {float(period):g} s: take {float(ceil(samples) * period):g} s, the next longer one"
+        )
+    return Losses(device.exact("damping"), device.exact("coulomb_friction"), resolution, period, int(samples))
+
+
+def domain_for(
+    law: FiniteLaw, losses: Losses, penetration: RealLike | None = None, speed: RealLike | None = None
+) -> Domain:
+    """The cells and the largest move.
+
+    Parameters
+    ----------
+    law, losses
+        What is played.
+    penetration
+        Deepest position of the hand [m; rad], > 0; None: as many counts as are quickly played.
+        For a law on both sides of x = 0 it holds on both.
+    speed
+        Largest mean speed of the hand over a sample [m/s; rad/s], > 0; None likewise.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive, or the board would be too large.
+    """
+    memory = law.memory + losses.delay
+    usual = COUNTS.get(memory, 1)
+    inside = _counts("penetration", penetration, losses.resolution) or _extent(law, losses) or usual
+    reach = _counts("speed", speed, losses.resolution / losses.period) or min(usual, 2 * inside + 1)
+    if law.surface == "none":
+        domain = Domain(-inside, inside, reach)
+    else:
+        domain = Domain(1 - (memory + 1) * reach, inside, reach)  # beyond it, a hand has been forgotten
+    states = Board(law, losses, domain, 8, "generous")
+    if states.domain.cells * states.histories * 9 > MOST_STATES:
+        raise InputError(
+            f"the law remembers {memory} readings before the last one, and {domain.cells} counts with moves "
+            f"of up to {reach} counts make too many states: give a smaller penetration or speed"
+        )
+    return domain
+
+
+def _counts(name: str, value: RealLike | None, unit: Fraction) -> int:
+    if value is None:
+        return 0
+    exact = Exact(value).fraction
+    if exact <= 0:
+        raise InputError(f"{name} must be > 0, got {value}: a hand that does not move takes nothing out")
+    return max(1, ceil(exact / unit))
+
+
+def _extent(law: FiniteLaw, losses: Losses) -> int:
+    """Counts from 0 to the farthest given point of a spring; beyond it the force is constant."""
+    if not law.points:
+        return 0
+    ends = (law.points[0][0] / losses.resolution, law.points[-1][0] / losses.resolution)
+    return max(abs(floor(ends[0])), abs(ceil(ends[1]))) + 1

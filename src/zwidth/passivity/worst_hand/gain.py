@@ -1,0 +1,194 @@
+"""From a winning cycle to a witness: a motion from outside that takes energy out, recomputed exactly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+from zwidth.passivity import checker
+from zwidth.passivity.document import to_json, unit_key
+from zwidth.passivity.motion import Motion, Repeat
+from zwidth.passivity.witness import FORMAT, rounded_energy
+from zwidth.passivity.worst_hand.board import Board
+from zwidth.passivity.worst_hand.law import FiniteLaw
+from zwidth.passivity.worst_hand.solve import Played
+from zwidth.passivity.worst_hand.storage import loop_document
+
+_NEAREST = 40
+"""Halvings of a count by which a hand on the upper edge of a cell may have to stay below it."""
+
+
+@dataclass(frozen=True)
+class Gain:
+    """A motion with contact made and broken that takes energy out, and again with every round.
+
+    Energy out, in rational arithmetic: −Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx².
+
+    Parameters
+    ----------
+    document
+        The motion, the law and the loop, as data for the checker.
+    motion
+        Positions at the samples, the cycle as its repeated part.
+    exact_energy, exact_gain
+        Taken out by the whole motion and by one more round [J].
+    law
+        What the hand plays against.
+    """
+
+    document: dict[str, Any]
+    motion: Motion
+    exact_energy: Fraction
+    exact_gain: Fraction
+    law: FiniteLaw
+    period: Fraction
+    unit: str
+
+    @property
+    def energy(self) -> float:
+        """Taken out by the whole motion [J], > 0."""
+        return float(self.exact_energy)
+
+    @property
+    def energy_per_cycle(self) -> float:
+        """Taken out by one more round [J], > 0."""
+        return float(self.exact_gain)
+
+    @property
+    def sample_period(self) -> float:
+        """T [s]."""
+        return float(self.period)
+
+    @property
+    def cycle(self) -> tuple[float, ...]:
+        """One round: positions at the samples, the last as the first [m; rad]."""
+        part = self.motion.repeats[0]
+        return tuple(float(x) for x in self.motion.positions[part.first : part.last + 1])
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """Positions at the samples, the cycle listed once [m; rad]."""
+        return tuple(float(x) for x in self.motion.positions)
+
+    @cached_property
+    def peak_speed(self) -> float:
+        """Largest mean speed over a sample in the cycle [m/s; rad/s]."""
+        return max(abs(b - a) for a, b in pairwise(self.cycle)) / self.sample_period
+
+    @property
+    def depth(self) -> float:
+        """Deepest position [m; rad]."""
+        return float(max(self.motion.positions))
+
+    def verify(self) -> bool:
+        """True when the independent checker finds energy coming out."""
+        return checker.verify(self.document).valid
+
+    def to_dict(self) -> dict[str, Any]:
+        """The motion as plain data, positions exact."""
+        return self.document
+
+    def save(self, path: str | Path) -> None:
+        """Write the motion as JSON for `zwidth verify`."""
+        Path(path).write_text(to_json(rounded_energy(self.document)) + "\n", encoding="utf-8")
+
+    def describe(self) -> str:
+        """The motion in a sentence."""
+        part = self.motion.repeats[0]
+        return (
+            f"a cycle of {part.last - part.first} samples, to {self.depth:.4g} {self.unit} at up to "
+            f"{self.peak_speed:.4g} {self.unit}/s, extracts {self.energy_per_cycle:.4g} J in each round"
+        )
+
+    def _repr_html_(self) -> str:
+        return f"<p>{self.describe()}</p>"
+
+
+def gain(played: Played, motion: str) -> Gain | None:
+    """The winning cycle of a game as a witness, or None if exactly recomputed it gains nothing."""
+    board = played.board
+    for halvings in range(6, _NEAREST, 4):
+        round_ = [_place(board, knot, cell, halvings) for knot, cell in played.cycle]
+        start = _outside(board)
+        approach = _steps(start, round_[0], board.domain.reach * board.losses.resolution)
+        x = [*approach, *round_[1:], round_[0]]
+        part = Repeat(len(approach) - 1, len(x) - 1, 1)
+        document = _document(board, Motion(tuple(x), (), (part,)), motion)
+        for _ in range(3):  # rounds that settle the law, rounds that pay for the approach, and once more
+            found = _recomputed(document)
+            if found is None:
+                break
+            energy, per_round = found
+            if energy > 0:
+                return _witness(board, document, Motion(tuple(x), (), (part,)), energy, per_round, motion)
+            part = part._replace(times=part.times + ceil(-energy / per_round) + 1)
+            document = _document(board, Motion(tuple(x), (), (part,)), motion)
+    return None
+
+
+def _place(board: Board, knot: int, cell: int, halvings: int) -> Fraction:
+    """Where the hand stands; on the upper edge of its cell it stays just below."""
+    x = Fraction(knot, board.steps)
+    if x == cell + 1:
+        x -= Fraction(1, 2**halvings)
+    return x * board.losses.resolution
+
+
+def _outside(board: Board) -> Fraction:
+    """A place where the law gives no force to a hand that rests there."""
+    if board.law.surface != "none" or not board.law.points:
+        return Fraction(0)
+    resolution = board.losses.resolution
+    for n in sorted(range(board.domain.lowest, board.domain.highest + 1), key=abs):
+        if board.law.force((n * resolution,)) == 0:
+            return n * resolution
+    return Fraction(0)
+
+
+def _steps(start: Fraction, end: Fraction, most: Fraction) -> list[Fraction]:
+    count = max(1, ceil(abs(end - start) / most))
+    return [start + (end - start) * Fraction(k, count) for k in range(count + 1)]
+
+
+def _recomputed(document: dict[str, Any]) -> tuple[Fraction, Fraction] | None:
+    """Energy and gain per round, with as many more rounds as the law needs to settle; None without gain."""
+    from zwidth.passivity.checker.contact_motion import contact_motion_energy
+
+    document["repeats"]["times"] = max(document["repeats"]["times"], 20)
+    energy, per_round = contact_motion_energy(document)
+    return (energy, per_round) if per_round > 0 else None
+
+
+def _document(board: Board, motion: Motion, kind: str) -> dict[str, Any]:
+    length = unit_key("position", kind).removeprefix("position_")
+    part = motion.repeats[0]
+    return {
+        "format": FORMAT,
+        "kind": "contact motion",
+        "loop": loop_document(board.losses, kind),
+        "law": board.law.document(kind),
+        unit_key("sample_period"): board.losses.period,
+        "energy_J": Fraction(0),
+        "repeats": part._asdict(),
+        f"positions_{length}": list(motion.positions),
+    }
+
+
+def _witness(
+    board: Board, document: dict[str, Any], motion: Motion, energy: Fraction, per_round: Fraction, kind: str
+) -> Gain:
+    part = motion.repeats[0]._replace(times=int(document["repeats"]["times"]))
+    return Gain(
+        {**document, "energy_J": energy},
+        Motion(motion.positions, (), (part,)),
+        energy,
+        per_round,
+        board.law,
+        board.losses.period,
+        "rad" if kind == "rotary" else "m",
+    )

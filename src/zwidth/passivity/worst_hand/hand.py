@@ -1,0 +1,244 @@
+"""The worst hand there is, against one loop: a storage function, or a motion that gains."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.errors import InputError
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.verdict import Outcome
+from zwidth.passivity.worst_hand.board import Board, Domain, Losses
+from zwidth.passivity.worst_hand.domain import domain_for, losses_of
+from zwidth.passivity.worst_hand.gain import Gain, gain
+from zwidth.passivity.worst_hand.law import FiniteLaw, finite_law
+from zwidth.passivity.worst_hand.solve import Played, play
+from zwidth.passivity.worst_hand.storage import Storage
+from zwidth.quantity.exact import RealLike
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+STEPS = (8, 16, 32, 64)
+"""Steps in which a count is cut, coarse to fine, when a proof is sought."""
+
+FINE = (1024, 16384)
+"""The same when a motion is sought; its knots lie near the edges."""
+
+
+@dataclass(frozen=True)
+class WorstHand:
+    """What the worst hand can do to one loop, contact made and broken, the encoder as it is.
+
+    Attributes
+    ----------
+    outcome
+        "passive": a storage function proves that no motion within the domain gains.
+        "active": a motion gains in every round.  "undecided": neither was found.
+    assumptions
+        What the outcome covers and takes for granted.
+    certificate, witness
+        The evidence; the one that does not apply is None.
+    storage
+        The storage function, to look at; None unless passive.
+    """
+
+    outcome: Outcome
+    assumptions: tuple[str, ...]
+    device: Device
+    environment: Environment
+    certificate: Certificate | None
+    witness: Gain | None
+    storage: Storage | None
+
+    @property
+    def claim(self) -> str:
+        """The outcome in a sentence."""
+        if self.outcome == "passive":
+            return "No motion of the hand within these bounds takes energy out of this loop, ever."
+        if self.witness is not None:
+            return f"A motion of the hand takes energy out of this loop: {self.witness.describe()}."
+        return "Neither a proof nor a motion was found: finer steps, or more time, may decide."
+
+    def available_storage(self) -> xr.DataArray:
+        """V(x) for each reading before [J]: the most that a hand can take out from there.
+
+        Raises
+        ------
+        InputError
+            If the loop is not passive: a hand can take out without end.
+        """
+        if self.storage is None:
+            raise InputError(
+                f"there is no available storage: the loop is {self.outcome}, and what a hand can take out "
+                "of an active loop has no bound"
+            )
+        return self.storage.to_xarray()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Outcome, assumptions and evidence as plain data."""
+        document: dict[str, Any] = {
+            "format": "zwidth worst hand 1",
+            "outcome": self.outcome,
+            "claim": self.claim,
+            "assumptions": list(self.assumptions),
+        }
+        if self.certificate is not None:
+            document["certificate"] = self.certificate.to_dict()
+        if self.witness is not None:
+            document["witness"] = self.witness.to_dict()
+        return document
+
+    def __repr__(self) -> str:
+        return f"<WorstHand {self.outcome}: {self.claim}>"
+
+    def _repr_html_(self) -> str:
+        assumed = "".join(f"<li>{a}</li>" for a in self.assumptions)
+        return f"<div><b>{self.outcome}</b> {self.claim}<ul>{assumed}</ul></div>"
+
+
+@dataclass(frozen=True)
+class Game:
+    """One loop and one domain, to be played with either set of rules."""
+
+    law: FiniteLaw
+    losses: Losses
+    domain: Domain
+    motion: str
+
+    @property
+    def hand(self) -> str:
+        """The hands that a proof covers, in words."""
+        length, speed = ("rad", "rad/s") if self.motion == "rotary" else ("m", "m/s")
+        deepest = float(self.domain.highest * self.losses.resolution)
+        fastest = float(self.domain.reach * self.losses.resolution / self.losses.period)
+        outside = "on either side" if self.law.surface == "none" else "inside and any distance outside"
+        return (
+            f"hands of up to {fastest:.4g} {speed} over one sample ({self.domain.reach} counts), "
+            f"up to {deepest:.4g} {length} ({self.domain.highest} counts) {outside}"
+        )
+
+    def prove(self, steps: int, deadline: float = float("inf"), tell: Tell | None = None) -> Storage | None:
+        """A storage function on so many steps per count that the checker accepts, or None."""
+        played = self._play(steps, "generous", deadline, tell)
+        if played.value is None:
+            return None
+        return Storage(played, self.motion)
+
+    def refute(self, steps: int, deadline: float = float("inf"), tell: Tell | None = None) -> Gain | None:
+        """A motion that gains, recomputed exactly, or None."""
+        played = self._play(steps, "strict", deadline, tell)
+        return gain(played, self.motion) if played.cycle else None
+
+    def _play(self, steps: int, rules: Any, deadline: float, tell: Tell | None) -> Played:
+        return play(Board(self.law, self.losses, self.domain, steps, rules), deadline, tell)
+
+
+Tell = Callable[[int], None]
+
+
+def game_of(
+    device: Device,
+    environment: Environment | Any,
+    penetration: RealLike | None = None,
+    speed: RealLike | None = None,
+    force_limit: bool = False,
+) -> Game:
+    """The game of a loop; arguments as for `worst_hand`."""
+    if not isinstance(device, Device):
+        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+    law = finite_law(device, as_environment(environment), force_limit=force_limit)
+    losses = losses_of(device)
+    return Game(law, losses, domain_for(law, losses, penetration, speed), device.motion)
+
+
+def worst_hand(
+    device: Device,
+    environment: Environment | Any,
+    *,
+    penetration: RealLike | None = None,
+    speed: RealLike | None = None,
+    force_limit: bool = False,
+    seconds: float = 60.0,
+    progress: Callable[[int], None] | None = None,
+) -> WorstHand:
+    """Play the game of the worst hand against one loop.
+
+    State: position, and what the law remembers.  Move: Δx in one sample.  Reward:
+
+        −f Δx − f_c |Δx| − (b/T) Δx²
+
+    The loop is passive exactly if no cycle of moves gains.  Then the most that can
+    be taken out from each state, V, is finite, and V(s) ≥ reward + V(s') for every
+    move is the proof.
+
+    Parameters
+    ----------
+    device
+        Without intervals, with an encoder (Δ > 0) and a delay of whole samples.
+    environment
+        A law that remembers a few readings: walls with or without damping, windows,
+        finite filters, springs given by points; clamped or not.
+    penetration
+        Deepest position of the hand [m; rad]; None: some 256 counts for a spring, 64
+        for a damped wall, fewer the more the law remembers.
+    speed
+        Largest mean speed of the hand over one sample [m/s; rad/s]; None likewise.
+    force_limit
+        True to count in the device's force limit.
+    seconds
+        Time after which the answer is "undecided".
+    progress
+        Told the number of states that still improve, round by round.
+
+    Raises
+    ------
+    InputError
+        If the law remembers for ever, the encoder is ideal, or the board is too large.
+    """
+    game = game_of(device, environment, penetration, speed, force_limit)
+    law = as_environment(environment)
+    said = assumptions(device, game)
+    deadline = time.monotonic() + seconds
+    for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
+        storage = game.prove(steps, deadline, progress)
+        if storage is not None:
+            certificate = storage.certificate()
+            if certificate.verify():  # nothing is claimed that the checker does not accept
+                return WorstHand("passive", said, device, law, certificate, None, storage)
+        motion = None if fine is None else game.refute(fine, deadline, progress)
+        if motion is not None:
+            return WorstHand("active", said, device, law, None, motion, None)
+        if time.monotonic() >= deadline:
+            break
+    return WorstHand("undecided", said, device, law, None, None, None)
+
+
+def assumptions(device: Device, game: Game) -> tuple[str, ...]:
+    """What a proof of a game covers, in words."""
+    force, drag = ("N·m", "N·m·s/rad") if device.motion == "rotary" else ("N", "N·s/m")
+    losses = game.losses
+    actuator = (
+        "the force limit is counted in; converter steps, current rise and added filters are not"
+        if game.law.force_limit is not None
+        else "ideal actuator: force limit, converter steps, current rise and added filters are not in the "
+        "claim"
+    )
+    return (
+        "contact made and broken at any instant"
+        + ("; the law never pulls" if game.law.clamped else "")
+        + ("" if game.law.surface != "none" else "; the law acts on both sides of x = 0"),
+        f"a proof covers {game.hand}",
+        f"the device takes out at least b = {float(losses.damping):.6g} {drag} of viscous and "
+        f"f_c = {float(losses.coulomb_friction):.6g} {force} of Coulomb friction",
+        "a hand without limit on force; the mass of the device plays no part",
+        actuator,
+        "a constant sample period and delay, no missed samples",
+        "encoder counts of one size, their phase against the surface unknown",
+        *(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed),
+    )

@@ -1,0 +1,171 @@
+"""What a law remembers: the force as an exact function of the last few encoder readings.
+
+    f = K u_k + Σ_j c_j u_{k−j}        u = q, or max(q, 0) for a solid that is left
+    f = 0 where q ≤ 0                  for laws with a surface
+    f = max(0, f)                      for laws that never pull
+
+q is the encoder's reading, a whole number of counts.  Only laws that remember a
+few readings are here: springs, dampers on differenced counts, windows, filters
+of finite response.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Literal
+
+from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.environment.nonlinear_spring import NonlinearSpring
+from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
+from zwidth.environment.wall import Wall
+from zwidth.errors import InputError
+from zwidth.passivity.document import exact_text, unit_key
+
+Surface = Literal["none", "position", "penetration"]
+
+LONGEST_MEMORY = 6
+"""Readings before the last one that a law may remember, delay included."""
+
+
+@dataclass(frozen=True)
+class FiniteLaw:
+    """A force computed from the last few readings of an encoder.
+
+    Parameters
+    ----------
+    taps
+        c_0, c_1, …: f = Σ c_j u_{k−j} [N/m; N·m/rad].
+    surface
+        "none": u = q, the law acts everywhere.  "position": u = q, but the law
+        pushes inside only, where q > 0.  "penetration": the same with u = max(q, 0).
+    clamped
+        True if a negative force is replaced by 0.
+    points
+        A spring given by (position [m; rad], force [N; N·m]) in place of taps.
+    force_limit
+        Largest force of the actuator [N; N·m], or None.
+    """
+
+    taps: tuple[Fraction, ...]
+    surface: Surface
+    clamped: bool = False
+    points: tuple[tuple[Fraction, Fraction], ...] = ()
+    force_limit: Fraction | None = None
+
+    @property
+    def memory(self) -> int:
+        """Readings remembered besides the last one."""
+        return max(len(self.taps) - 1, 0)
+
+    @property
+    def static_stiffness(self) -> Fraction:
+        """Σ c_j [N/m; N·m/rad]: the force per depth of a hand that waits."""
+        return sum(self.taps, Fraction(0))
+
+    def force(self, readings: tuple[Fraction, ...]) -> Fraction:
+        """The force for the readings q_k, q_{k−1}, … [N; N·m]."""
+        if self.surface != "none" and readings[0] <= 0:
+            return Fraction(0)
+        u = [max(q, Fraction(0)) for q in readings] if self.surface == "penetration" else list(readings)
+        f = sum((c * v for c, v in zip(self.taps, u, strict=False)), Fraction(0))
+        if self.points:
+            f += interpolated(self.points, u[0])
+        if self.clamped:
+            f = max(f, Fraction(0))
+        if self.force_limit is not None:
+            f = min(max(f, -self.force_limit), self.force_limit)
+        return f
+
+    def document(self, motion: str) -> dict[str, Any]:
+        """The law as exact data, a unit in each key."""
+        force = unit_key("force_limit", motion).removeprefix("force_limit_")
+        document: dict[str, Any] = {
+            "surface": self.surface,
+            "clamped": self.clamped,
+            f"taps_{unit_key('stiffness', motion).removeprefix('stiffness_')}": [
+                exact_text(c) for c in self.taps
+            ],
+        }
+        if self.points:
+            length = unit_key("position", motion).removeprefix("position_")
+            document[f"points_{length}_{force}"] = [[exact_text(x), exact_text(f)] for x, f in self.points]
+        if self.force_limit is not None:
+            document[f"force_limit_{force}"] = exact_text(self.force_limit)
+        return document
+
+
+def interpolated(points: tuple[tuple[Fraction, Fraction], ...], x: Fraction) -> Fraction:
+    """The force of a spring given by points: linear between them, constant beyond."""
+    if x <= points[0][0]:
+        return points[0][1]
+    for (x0, f0), (x1, f1) in zip(points, points[1:], strict=False):
+        if x <= x1:
+            return f0 + (f1 - f0) * (x - x0) / (x1 - x0)
+    return points[-1][1]
+
+
+def finite_law(device: Device, environment: Environment, *, force_limit: bool = False) -> FiniteLaw:
+    """The law of an environment in a device's loop.
+
+    Parameters
+    ----------
+    device, environment
+        Without intervals.
+    force_limit
+        True to count in the actuator's force limit.
+
+    Raises
+    ------
+    InputError
+        If the law remembers for ever, as a one-pole filter or a relaxing solid
+        does, or longer than `LONGEST_MEMORY` readings; or if there is no force
+        limit to count in.
+    """
+    limit = None
+    if force_limit:
+        if device.force_limit is None:
+            raise InputError("the force limit is to be counted in, but the device has no force_limit")
+        limit = device.exact("force_limit")
+    if isinstance(environment, NonlinearSpring):
+        ends = zip(environment.positions, environment.forces, strict=True)
+        points = tuple((x.fraction, f.fraction) for x, f in ends)
+        return FiniteLaw((), "none", False, points, limit)
+    h = environment.pulse_transfer_function(device.exact("sample_period"))
+    numerator, denominator = _trimmed(h.numerator, h.denominator)
+    if any(denominator[1:]):
+        raise InputError(
+            "the worst hand is sought against laws that remember a few readings, and this one remembers for "
+            f"ever: {environment.describe()}; zwidth check covers it in sustained contact"
+        )
+    taps = tuple(c / denominator[0] for c in numerator)
+    while len(taps) > 1 and taps[-1] == 0:
+        taps = taps[:-1]
+    if len(taps) - 1 > LONGEST_MEMORY:
+        raise InputError(
+            f"the law remembers {len(taps) - 1} readings, more than the {LONGEST_MEMORY} for which the worst "
+            "hand is sought: the number of states grows with the power of it"
+        )
+    return FiniteLaw(taps, _surface(environment), environment.clamped, (), limit)
+
+
+def _surface(environment: Environment) -> Surface:
+    if not environment.unilateral:
+        return "none"
+    solids = (StandardLinearSolid, Maxwell, GeneralizedMaxwell)
+    return (
+        "penetration" if isinstance(environment, solids) and not isinstance(environment, Wall) else "position"
+    )
+
+
+def _trimmed(
+    numerator: tuple[Fraction, ...], denominator: tuple[Fraction, ...]
+) -> tuple[list[Fraction], list[Fraction]]:
+    """Coefficients of H in ascending powers of 1/z, common factors z cancelled."""
+    size = max(len(numerator), len(denominator))
+    n = [Fraction(0)] * (size - len(numerator)) + [Fraction(c) for c in numerator]
+    d = [Fraction(0)] * (size - len(denominator)) + [Fraction(c) for c in denominator]
+    while d and d[0] == 0:
+        n, d = n[1:], d[1:]
+    return n, d

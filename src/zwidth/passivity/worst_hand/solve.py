@@ -1,0 +1,103 @@
+"""The game played out: a storage function, or a cycle of moves that gains.
+
+Bellman and Ford: improve every state until nothing improves, which is a storage
+function, or until the best moves close a cycle, which then gains.  All numbers
+are whole, so that "nothing improves" is exact.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from zwidth.passivity.worst_hand.board import Board, Integers
+from zwidth.passivity.worst_hand.sweep import cycle, sweep
+
+THREADS = min(os.cpu_count() or 1, 8)
+
+_LOOK = 4
+"""Rounds between two searches for a cycle: a search costs less than a round."""
+
+
+@dataclass(frozen=True)
+class Played:
+    """How a game ended.
+
+    Parameters
+    ----------
+    board
+        What was played.
+    value
+        V of each cell, history and knot in energy units, if no motion gains.
+    cycle
+        Otherwise the moves of a motion that gains in every round: knots, in steps
+        from the lower edge of cell 0, each with its cell; both empty if the time ran out.
+    rounds
+        Sweeps over the board.
+    """
+
+    board: Board
+    value: Integers | None
+    cycle: tuple[tuple[int, int], ...]
+    rounds: int
+
+
+def play(
+    board: Board, deadline: float = float("inf"), progress: Callable[[int], None] | None = None
+) -> Played:
+    """Improve every state until a storage function or a gaining cycle is left.
+
+    Parameters
+    ----------
+    board
+        The rules, the law and the domain.
+    deadline
+        When to give up, as `time.monotonic()`.
+    progress
+        Called after each round with the number of states that improved.
+    """
+    forces, value = board.forces, board.first_guess
+    choice = np.full(value.shape, -1, np.int64)
+    costs, knots = board.costs, board.knots
+    groups = len(value) * (board.histories // board.width if board.memory else 1)
+    parts = np.linspace(0, groups, THREADS * 4 + 1).astype(int)
+    rounds = 0
+    with ThreadPoolExecutor(THREADS) as pool:
+        while time.monotonic() < deadline:
+            rounds += 1
+            jobs = [
+                pool.submit(sweep, value, choice, forces, costs, knots, first, last, board.domain.reach)
+                for first, last in zip(parts[:-1], parts[1:], strict=True)
+                if first < last
+            ]
+            improved = sum(job.result() for job in jobs)
+            if progress is not None:
+                progress(improved)
+            if improved == 0:
+                return Played(board, value, (), rounds)
+            if rounds % _LOOK == 0:
+                moves = _gaining(board, choice)
+                if moves:
+                    return Played(board, None, moves, rounds)
+    return Played(board, None, (), rounds)
+
+
+def _gaining(board: Board, choice: Integers) -> tuple[tuple[int, int], ...]:
+    """The moves of a cycle among the best moves, if there is one."""
+    flat = choice.reshape(-1)
+    start = cycle(flat, np.zeros(flat.size, np.int64))
+    if start < 0:
+        return ()
+    moves, at = [], start
+    while True:
+        cell, _, knot = np.unravel_index(at, choice.shape)
+        count = int(cell) + board.domain.lowest
+        moves.append((count * board.steps + int(board.knots[knot]), count))
+        at = int(flat[at])
+        if at == start:
+            return tuple(moves)

@@ -1,0 +1,105 @@
+"""The storage function as a certificate, and as a labelled array to look at.
+
+V(s) is the most energy that a hand can ever take out from state s, or a little
+more.  It is the proof: no move takes out more than V falls.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.worst_hand.solve import Played
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Storage:
+    """The available storage of a loop, from above.
+
+    Parameters
+    ----------
+    played
+        A game that no motion wins.
+    motion
+        "linear" or "rotary".
+    """
+
+    played: Played
+    motion: str
+
+    def certificate(self) -> Certificate:
+        """The proof as data: the law, the losses, the board, V."""
+        board = self.played.board
+        assert self.played.value is not None, "only a game that nobody wins leaves a storage function"
+        packed = zlib.compress(self.played.value.astype("<i8").tobytes(), 6)
+        document = {
+            "format": FORMAT,
+            "kind": "storage",
+            "loop": loop_document(board.losses, self.motion),
+            "law": board.law.document(self.motion),
+            "domain": {
+                "lowest_count": board.domain.lowest,
+                "highest_count": board.domain.highest,
+                "largest_move_counts": board.domain.reach,
+                "steps_per_count": board.steps,
+            },
+            "force_unit": exact_text(board.force_unit),
+            "storage": base64.b64encode(packed).decode("ascii"),
+        }
+        return Certificate((document,))
+
+    def to_xarray(self) -> xr.DataArray:
+        """V along the position, for each reading before [J].
+
+        Dims `reading_before` [counts] and `position` [m; rad]; each edge between two
+        counts is there twice, from below and from above.
+        """
+        import xarray as xr
+
+        board = self.played.board
+        assert self.played.value is not None
+        resolution = float(board.losses.resolution)
+        cells = np.arange(board.domain.lowest, board.domain.highest + 1)
+        x = (cells[:, None] + board.knots[None, :] / board.steps) * resolution
+        energy = self.played.value * float(board.energy_unit)
+        reach = board.domain.reach if board.memory else 0
+        middle = board.histories // 2
+        stride = board.histories // board.width if board.memory else 1
+        newest = [middle + e * stride for e in range(-reach, reach + 1)]
+        values = np.full((len(cells), len(cells), energy.shape[2]), np.nan)
+        for i in range(len(cells)):
+            for e, column in zip(range(-reach, reach + 1), newest, strict=True):
+                if 0 <= i + e < len(cells):
+                    values[i + e, i] = energy[i, column]
+        unit = "rad" if self.motion == "rotary" else "m"
+        return xr.DataArray(
+            values.reshape(len(cells), -1),
+            dims=("reading_before", "position"),
+            coords={
+                "reading_before": ("reading_before", cells, {"units": "counts"}),
+                "position": ("position", x.ravel(), {"units": unit}),
+            },
+            attrs={"units": "J", "long_name": "available storage, at most"},
+            name="available_storage",
+        )
+
+
+def loop_document(losses: Any, motion: str) -> dict[str, str]:
+    """The losses and the clock of a loop as exact data."""
+    quantities = {
+        "damping": losses.damping,
+        "coulomb_friction": losses.coulomb_friction,
+        "resolution": losses.resolution,
+        "sample_period": losses.period,
+        "delay": losses.delay * losses.period,
+    }
+    return {unit_key(name, motion): exact_text(value) for name, value in quantities.items()}
