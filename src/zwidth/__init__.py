@@ -28,10 +28,19 @@ if TYPE_CHECKING:
     from zwidth.environment import NonlinearSpring
     from zwidth.loop.timing import Timing
     from zwidth.passivity.real_hand import RealHand, replay
-    from zwidth.traces import compare_traces, load_trace, simulate, simulate_batch
+    from zwidth.passivity.worst_hand import Bracket, WorstHand
+    from zwidth.traces import (
+        compare_traces,
+        load_trace,
+        passive_limit,
+        simulate,
+        simulate_batch,
+        worst_hand,
+    )
 
 __all__ = [
     "BackwardDifference",
+    "Bracket",
     "Certificate",
     "ContinuousTransferFunction",
     "Device",
@@ -54,6 +63,7 @@ __all__ = [
     "Wall",
     "Window",
     "Witness",
+    "WorstHand",
     "amplifiers",
     "catalogue",
     "check",
@@ -61,24 +71,30 @@ __all__ = [
     "compare_traces",
     "load_trace",
     "operators",
+    "passive_limit",
     "quantization",
     "replay",
     "rotary",
     "simulate",
     "simulate_batch",
+    "worst_hand",
 ]
 
 _LATER = {
+    "Bracket": "zwidth.passivity.worst_hand",
     "NonlinearSpring": "zwidth.environment",
     "Timing": "zwidth.loop.timing",
     "amplifiers": "zwidth.device.amplifier",
     "RealHand": "zwidth.passivity.real_hand",
+    "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
     "replay": "zwidth.passivity.real_hand",
     "compare_traces": "zwidth.traces",
     "load_trace": "zwidth.traces",
+    "passive_limit": "zwidth.traces",
     "simulate": "zwidth.traces",
     "simulate_batch": "zwidth.traces",
+    "worst_hand": "zwidth.traces",
 }
 """Where a name is found when it is first used: the simulator's libraries take their time to load."""
 

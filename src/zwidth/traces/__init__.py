@@ -1,9 +1,9 @@
-"""What people do with a trace: look, listen, save, load, compare."""
+"""What people do with a trace: look, listen, save, load, compare; and what they wait for, with a bar."""
 
 from zwidth.traces.accessor import TraceAccessor
 from zwidth.traces.comparison import Comparison, compare_traces
 from zwidth.traces.files import load_trace, save_trace
-from zwidth.traces.run import simulate, simulate_batch
+from zwidth.traces.run import passive_limit, simulate, simulate_batch, worst_hand
 from zwidth.traces.sound import save_sound
 
 __all__ = [
@@ -11,8 +11,10 @@ __all__ = [
     "TraceAccessor",
     "compare_traces",
     "load_trace",
+    "passive_limit",
     "save_sound",
     "save_trace",
     "simulate",
     "simulate_batch",
+    "worst_hand",
 ]

@@ -1,14 +1,16 @@
-"""`zwidth.simulate` and `zwidth.simulate_batch` with a progress bar on what takes over a second."""
+"""What a person waits for, with a progress bar once it has taken over a second."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
 from zwidth.loop import batch as _batch
 from zwidth.loop import simulate as _simulate
+from zwidth.passivity.worst_hand import hand as _hand
+from zwidth.passivity.worst_hand import limit as _limit
 from zwidth.traces.progress import progress_bar
 
 P = ParamSpec("P")
@@ -27,5 +29,27 @@ def _with_bar(function: Callable[P, R], what: str) -> Callable[P, R]:
     return run
 
 
+def falling(progress: Callable[[int, int], None]) -> Callable[[int], None]:
+    """Progress for a number that falls to 0, not always steadily: the most there were, less what is left."""
+    most = 0
+
+    def tell(left: int) -> None:
+        nonlocal most
+        most = max(most, left)
+        progress(most - left, most)
+
+    return tell
+
+
+@wraps(_hand.worst_hand)
+def worst_hand(*args: Any, **kwargs: Any) -> _hand.WorstHand:
+    """As in `passivity`, with a bar of the states that no longer improve."""
+    if "progress" in kwargs:
+        return _hand.worst_hand(*args, **kwargs)
+    with progress_bar("states") as progress:
+        return _hand.worst_hand(*args, progress=falling(progress), **kwargs)
+
+
 simulate = _with_bar(_simulate.simulate, "samples")
 simulate_batch = _with_bar(_batch.simulate_batch, "loops")
+passive_limit = _with_bar(_limit.passive_limit, "loops")

@@ -42,6 +42,8 @@ class WorstHand:
         "active": a motion gains in every round.  "undecided": neither was found.
     assumptions
         What the outcome covers and takes for granted.
+    device, environment
+        The loop.
     certificate, witness
         The evidence; the one that does not apply is None.
     storage
