@@ -1,0 +1,135 @@
+"""The game of the worst hand once more, by its definition: explicit readings, one move at a time."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from math import ceil, floor
+
+
+def exact_force(law, readings, resolution):
+    """The force for the readings q_k, q_{k−1}, … in counts, from the law's definition [N]."""
+    q = [n * resolution for n in readings]
+    if law.points:
+        x, below = q[0], [p for p in law.points if p[0] <= q[0]]
+        if not below:
+            total = law.points[0][1]
+        elif len(below) == len(law.points):
+            total = law.points[-1][1]
+        else:
+            (x0, f0), (x1, f1) = below[-1], law.points[len(below)]
+            total = f0 * (x1 - x) / (x1 - x0) + f1 * (x - x0) / (x1 - x0)
+    else:
+        u = [max(v, 0) for v in q] if law.surface == "penetration" else q
+        total = sum(c * v for c, v in zip(law.taps, u, strict=True))
+    if law.clamped and total < 0:
+        total = 0
+    if law.force_limit is not None:
+        total = min(law.force_limit, max(-law.force_limit, total))
+    return Fraction(0) if law.surface != "none" and q[0] <= 0 else Fraction(total)
+
+
+class PlainGame:
+    """States (cell, knot, readings before) and all their moves, in whole units of force × step."""
+
+    def __init__(self, law, losses, domain, steps, knots, rules, unit):
+        self.law, self.losses, self.domain, self.steps, self.knots = law, losses, domain, steps, knots
+        self.generous, self.unit = rules == "generous", unit
+        self.memory = max(len(law.taps) - 1, 0) + losses.delay
+        self.cells = range(domain.lowest, domain.highest + 1)
+        self.states = [
+            (cell, knot, before)
+            for cell in self.cells
+            for before in product(self.cells, repeat=self.memory)
+            if all(abs(p - q) <= domain.reach for p, q in zip((cell, *before), before, strict=False))
+            for knot in knots
+        ]
+        self.forces = {s: self._rounded_force(s) for s in self.states}
+        self.costs = [self._cost(d) for d in range(domain.reach * steps + (3 if self.generous else 1))]
+        self.moves = {s: list(self._moves(s)) for s in self.states}
+
+    def _rounded_force(self, state):
+        """In units, every tap, limit and point rounded down."""
+        law, resolution, unit = self.law, self.losses.resolution, self.unit
+        readings = (state[0], *state[2])[self.losses.delay :]
+        if law.surface != "none" and readings[0] <= 0:
+            return 0
+        if law.points:
+            total = floor(exact_force(replace(law, force_limit=None), readings[:1], resolution) / unit)
+        else:
+            total = 0
+            for tap, n in zip(law.taps, readings, strict=True):
+                total += floor(tap * resolution / unit) * (max(n, 0) if law.surface == "penetration" else n)
+        if law.clamped:
+            total = max(total, 0)
+        if law.force_limit is not None:
+            most = floor(law.force_limit / unit)
+            total = min(most, max(-most, total))
+        return total
+
+    def _cost(self, d):
+        farthest = max(abs(self.domain.lowest), abs(self.domain.highest))
+        off = len(self.law.taps) * farthest + 2
+        friction = floor(self.losses.coulomb_friction / self.unit)
+        drag = self.losses.damping / self.losses.period * (self.losses.resolution / self.steps) / self.unit
+        if not self.generous:
+            return (friction + off + 1) * d + ceil(drag) * d**2
+        return (friction - off) * d + (floor(drag) * d**2 - ceil(Fraction(floor(drag), 2)) if d > 1 else 0)
+
+    def _moves(self, state):
+        """(energy out, next state) of every move."""
+        cell, knot, before = state
+        for there in self.cells:
+            if abs(there - cell) > self.domain.reach:
+                continue
+            after = (cell, *before)[: self.memory]
+            for stop in self.knots:
+                d = (there - cell) * self.steps + stop - knot
+                if abs(d) < len(self.costs):
+                    yield -self.forces[state] * d - self.costs[abs(d)], (there, stop, after)
+
+    def solved(self, guess):
+        """V by Bellman and Ford from a first guess, or None and a cycle that gains."""
+        value, best = {s: guess.get(s, 0) for s in self.states}, {}
+        for _ in range(len(self.states) + 1):
+            improved = False
+            for s in self.states:
+                for energy, after in self.moves[s]:
+                    if energy + value[after] > value[s]:
+                        value[s], best[s], improved = energy + value[after], after, True
+            if not improved:
+                return value, None
+            loop = self._loop(best)
+            if loop:
+                return None, loop
+        raise AssertionError("more rounds than states, and no cycle")
+
+    def _loop(self, best):
+        seen = {}
+        for start in best:
+            s = start
+            while s in best and s not in seen:
+                seen[s] = start
+                s = best[s]
+            if s in best and seen[s] == start:
+                loop = [s]
+                while best[loop[-1]] != s:
+                    loop.append(best[loop[-1]])
+                return loop
+        return None
+
+
+def exact_gain(law, losses, positions, cells):
+    """Energy that one round of a cycle takes out, in rational arithmetic [J].
+
+    positions in counts, each with the cell it is read as; the last moves on to the first.
+    """
+    size, total = len(positions), Fraction(0)
+    taps = max(len(law.taps), 1)
+    for k in range(size):
+        readings = [cells[(k - losses.delay - i) % size] for i in range(taps)]
+        d = (positions[(k + 1) % size] - positions[k]) * losses.resolution
+        force = exact_force(law, readings, losses.resolution)
+        total -= force * d + losses.coulomb_friction * abs(d) + losses.damping / losses.period * d**2
+    return total
