@@ -5,13 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.cli.options import Once, add_parameters, overrides
-from zwidth.cli.output import check_new, print_json, writing
-from zwidth.errors import InputError
+from zwidth.cli.output import print_json, targets, writing
 
 if TYPE_CHECKING:
     from zwidth.passivity.real_hand import RealHand
@@ -19,8 +17,6 @@ if TYPE_CHECKING:
 
 STATUS = {"passive": 0, "active": 1, "undecided": 3}
 """Exit status of `check` by outcome; 2 is bad input."""
-
-PICTURES = (".png", ".svg", ".pdf")
 
 
 class Command(NamedTuple):
@@ -64,7 +60,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from zwidth.cli.specification import load
     from zwidth.passivity import check
 
-    plot, save = _targets(arguments)
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
     loop = load(arguments.sources, overrides(arguments))
     verdict = check(loop.device, loop.environment)
     if save is not None:
@@ -98,20 +94,6 @@ def _with_replay(verdict: Verdict, real_hand: RealHand) -> str:
     return json.dumps(document, indent=2, ensure_ascii=False)
 
 
-def _targets(arguments: argparse.Namespace) -> tuple[Path | None, Path | None]:
-    """The files to write, checked before anything is computed."""
-    plot = None if arguments.plot is None else Path(arguments.plot)
-    save = None if arguments.save is None else Path(arguments.save)
-    if plot is not None and plot.suffix.lower() not in PICTURES:
-        raise InputError(f"--plot: the file must end in {', '.join(PICTURES)}, got {str(plot)!r}")
-    if plot is not None and plot == save:
-        raise InputError("--plot and --save name the same file")
-    for path in (plot, save):
-        if path is not None:
-            check_new(path, arguments.force)
-    return plot, save
-
-
 def _configure_devices(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", metavar="NAME", nargs="?", help="only this device, with every value")
     parser.add_argument("--json", action="store_true", help="print JSON, units in the keys")
@@ -132,17 +114,28 @@ def _devices(arguments: argparse.Namespace) -> int:
 
 
 def _configure_verify(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="certificate, witness or verdict saved as JSON")
+    parser.add_argument("file", metavar="FILE", help="certificate, witness, verdict or limit saved as JSON")
 
 
 def _verify(arguments: argparse.Namespace) -> int:
-    from zwidth.cli.verification import checked, print_verification
+    from zwidth.cli.verification import print_verifications, verifications
     from zwidth.passivity.certificate import read_document
 
-    document = read_document(arguments.file)
-    verification = checked(document)
-    print_verification(document, verification)
-    return 0 if verification.valid else 1
+    found = verifications(read_document(arguments.file))
+    print_verifications(found)
+    return 0 if all(part.verification.valid for part in found) else 1
+
+
+def _configure_limit(parser: argparse.ArgumentParser) -> None:
+    from zwidth.cli.limit import configure_limit
+
+    configure_limit(parser)
+
+
+def _limit(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.limit import run_limit
+
+    return run_limit(arguments)
 
 
 def _configure_simulate(parser: argparse.ArgumentParser) -> None:
@@ -184,6 +177,20 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth check --damping 0.2 --rate '2 kHz' --stiffness 500 --virtual-damping 0.05",
             _configure_check,
             _check,
+        ),
+        "limit": Command(
+            "how far may a parameter go?",
+            "Bracket a limit: the last value that is proved passive, and the first at which a motion of the\n"
+            "hand takes energy out, contact made and broken at will.",
+            "A plain number is SI; others carry a unit, as in --penetration '2 mm'. A parameter is\n"
+            "named as its option is: --parameter virtual-damping, --parameter rate, …\n\n"
+            "exit status: 0 both sides found, 2 bad input, 3 one side or none found\n\n"
+            "examples:\n"
+            "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05\n"
+            "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05 --speed '0.5 m/s'\n"
+            "  zwidth limit my-wheel.toml my-wall.toml --parameter rate -o limit.json",
+            _configure_limit,
+            _limit,
         ),
         "simulate": Command(
             "what happens when a hand touches the wall?",

@@ -14,6 +14,8 @@ from typing import TextIO
 from zwidth.cli.table import plain
 from zwidth.errors import InputError
 
+PICTURES = (".png", ".svg", ".pdf")
+
 _ASCII = {
     "·": "*", "−": "-", "–": "-", "—": "-", "…": "...", "≥": ">=", "≤": "<=", "×": "x", "±": "+-",
     "²": "^2", "³": "^3", "°": "deg", "µ": "u", "μ": "mu", "Δ": "Delta", "Σ": "sum", "α": "alpha", "π": "pi",
@@ -109,6 +111,26 @@ def check_new(path: Path, force: bool) -> None:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{shown} cannot be written: {_reason(error)}") from None
+
+
+def targets(plot: str | None, save: str | None, force: bool) -> tuple[Path | None, Path | None]:
+    """The files of --plot and --save, checked before anything is computed.
+
+    Raises
+    ------
+    InputError
+        If one cannot be written or would be lost, or both are the same.
+    """
+    picture = None if plot is None else Path(plot)
+    document = None if save is None else Path(save)
+    if picture is not None and picture.suffix.lower() not in PICTURES:
+        raise InputError(f"--plot: the file must end in {', '.join(PICTURES)}, got {str(picture)!r}")
+    if picture is not None and picture == document:
+        raise InputError("--plot and --save name the same file")
+    for path in (picture, document):
+        if path is not None:
+            check_new(path, force)
+    return picture, document
 
 
 @contextmanager

@@ -17,13 +17,13 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.bars import PICTURE, bar, levels
+from zwidth.cli.bars import PICTURE, bar
 from zwidth.cli.description import GLUE, device_line, environment_line
+from zwidth.cli.motion import joules, motion_lines
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.output import encodes, quiet_pipe
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.verdict import Verdict
-from zwidth.passivity.witness import Witness
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 COLOURS = {"passive": "green", "active": "red", "undecided": "yellow"}
 _WIDEST = 100
 _LONGEST_BAR = 34
-_SAMPLES_SHOWN = 48
 _INTERVALS = "holds for every value"
 _ORDER = (
     "stiffness", "virtual_damping", "velocity_filter", "time_constant", "rate", "delay", "damping",
@@ -62,14 +61,14 @@ def print_verdict(verdict: Verdict, real_hand: RealHand | None = None) -> None:
         out.print(_headline(verdict))
         out.print(_loop(verdict))
         out.print(_numbers(verdict))
-        _section(out, "budget", _budget(verdict, fancy))
+        section(out, "budget", _budget(verdict, fancy))
         if verdict.witness is not None:
-            _section(out, "the motion", _motion(verdict.witness, fancy))
+            section(out, "the motion", motion_lines(verdict.witness, fancy))
         if real_hand is not None:
-            _section(out, "a real hand", _real_hand(real_hand))
-        _section(out, *_advice(verdict))
-        _section(out, "actuator", _actuator(verdict))
-        _section(out, "assumes", _assumptions(verdict))
+            section(out, "a real hand", _real_hand(real_hand))
+        section(out, *_advice(verdict))
+        section(out, "actuator", _actuator(verdict))
+        section(out, "assumes", assumption_lines(verdict.assumptions))
 
 
 def _real_hand(real_hand: RealHand) -> Iterator[Table]:
@@ -89,7 +88,7 @@ def _headline(verdict: Verdict) -> Padding:
 
 def _claim(verdict: Verdict) -> str:
     if verdict.outcome == "active" and verdict.witness is not None:
-        return f"The motion below takes {_joules(verdict.witness)} out of this loop, each time it is made."
+        return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
     return verdict.claim
 
 
@@ -165,30 +164,6 @@ def _balance(
     grid.add_row(name, picture, shown(have, unit))
 
 
-def _joules(witness: Witness) -> str:
-    total = shown(witness.energy, "J")
-    if witness.motion.rounds > 1 and len(witness.motion.repeats) == 1:
-        return f"{total} ({shown(witness.energy_per_cycle, 'J')} per cycle)"
-    return total
-
-
-def _motion(witness: Witness, fancy: bool) -> Iterator[Text]:
-    """The motion in words, and its first samples as a picture."""
-    rotary = witness.setting.motion == "rotary"
-    length, speed = ("rad", "rad/s") if rotary else ("m", "m/s")
-    yield Text(
-        f"{witness.motion.samples:.6g} samples in {shown(witness.duration, 's')}, to "
-        f"{shown(witness.depth, length)} at up to {shown(witness.peak_speed, speed)}"
-    )
-    for part in witness.motion.repeats:
-        if part.times > 1:
-            yield Text(f"samples {part.first} to {part.last} are a cycle, done {part.times:.6g} times")
-    yield Text(f"extracts {_joules(witness)}", style="bold")
-    first = witness.positions[:_SAMPLES_SHOWN]
-    more = " …" if len(witness.positions) > len(first) else ""
-    yield Text(f"x(kT)  {levels(first, fancy)}{more}", style="cyan")
-
-
 def _advice(verdict: Verdict) -> tuple[str, Iterator[Text]]:
     title = "slack" if verdict.outcome == "passive" else "what to change, any one of"
     return title, _advice_lines(verdict.advice)
@@ -228,8 +203,9 @@ def _actuator(verdict: Verdict) -> Iterator[Text]:
         yield Text.assemble((f"{mark} ", style), f"{check.name}: {check.text}")
 
 
-def _assumptions(verdict: Verdict) -> Iterator[Text]:
-    for line in verdict.assumptions:
+def assumption_lines(assumptions: Iterable[str]) -> Iterator[Text]:
+    """What is taken for granted, line by line."""
+    for line in assumptions:
         if not line.startswith(_INTERVALS):  # that one stands beside the loop
             yield _item(line, "dim")
 
@@ -238,7 +214,8 @@ def _item(text: str, style: str = "") -> Text:
     return Text(f"· {_named(text)}", style=style)
 
 
-def _section(out: Console, title: str, parts: Iterable[Text | Table]) -> None:
+def section(out: Console, title: str, parts: Iterable[Text | Table]) -> None:
+    """A title and what belongs to it, set in; nothing where there is nothing."""
     lines = list(parts)
     if not lines:
         return

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
+from typing import Any, NamedTuple
 
 from rich.table import Table
 from rich.text import Text
@@ -12,65 +13,103 @@ from rich.text import Text
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.report import page
 from zwidth.cli.table import plain
-from zwidth.passivity.certificate import verify_document
+from zwidth.passivity.certificate import evidence, verify_document
 from zwidth.passivity.checker import Verification
-from zwidth.passivity.document import unit_key
+from zwidth.passivity.document import unit_key, unit_suffix
 from zwidth.quantity.glossary import GLOSSARY
 
-_EVIDENCE = ("certificate", "witness")
+_OF_BOUNDED_HANDS = "zwidth worst hand 1"
+"""A document that claims nothing of hands beyond its bounds."""
 
 
-def checked(document: object) -> Verification:
-    """What the independent checker says, and of a whole verdict also whether its evidence fits its outcome.
+class Part(NamedTuple):
+    """One certificate or witness of a document, and what the checker says of it."""
+
+    evidence: Mapping[str, Any]
+    verification: Verification
+
+
+def verifications(document: object) -> list[Part]:
+    """What the independent checker says of each piece of evidence, and whether it fits the outcome claimed.
 
     Raises
     ------
     InputError
         If the document contains no evidence.
     """
-    verification = verify_document(document)
+    parts = evidence(document)
     outcome = document.get("outcome") if isinstance(document, Mapping) else None
-    if not verification.valid or outcome not in ("passive", "active"):
-        return verification
-    extracts = verification.energy is not None
-    if extracts == (outcome == "active"):
-        return verification
-    found = "a motion that extracts energy" if extracts else "a proof of passivity"
-    return Verification(False, f"the verdict says {outcome}, and its evidence is {found}")
+    bounded = isinstance(document, Mapping) and document.get("format") == _OF_BOUNDED_HANDS
+    found = [Part(part, verify_document(part)) for part in parts]
+    if outcome == "passive" and not bounded and all(map(_is_bounded, parts)):
+        return [_misfit(p, outcome, "covers hands within bounds only") for p in found]
+    misfit = {"passive": "is a motion that extracts energy", "active": "is a proof of passivity"}
+    return [
+        _misfit(p, outcome, misfit[outcome])
+        if outcome in ("passive", "active") and (p.verification.energy is not None) != (outcome == "active")
+        else p
+        for p in found
+    ]
 
 
-def print_verification(document: object, verification: Verification) -> None:
-    """Print whether the document holds, of which loop, and the joules of a motion."""
-    word, colour = ("VALID", "green") if verification.valid else ("NOT VALID", "red")
-    headline = Table.grid(padding=(0, 1))
-    badge = Text(f" {word} ", style=f"bold white on {colour}")
-    proof = (
-        "The loop below is passive, proved: " if verification.valid and verification.energy is None else ""
+def _misfit(part: Part, outcome: str, what: str) -> Part:
+    """Evidence that does not show what the document says; an invalid part stays as it is."""
+    if not part.verification.valid:
+        return part
+    return part._replace(
+        verification=Verification(False, f"the verdict says {outcome}, and its evidence {what}")
     )
-    headline.add_row(badge, Text(proof + plain(verification.reason, 400), style="bold"))
-    details = Table.grid(padding=(0, 2))
-    for name, text in _rows(document, verification):
-        details.add_row(Text(name, style="dim"), Text(text))
+
+
+def _is_bounded(part: Mapping[str, object]) -> bool:
+    """True for a storage function: it speaks of the hands on its board only."""
+    return part.get("kind") == "storage"
+
+
+def print_verifications(parts: Sequence[Part]) -> None:
+    """Print whether each holds, of which loop, and the joules of a motion."""
     with page() as out:
-        out.print(headline)
-        out.print()
-        out.print(details)
+        for part in parts:
+            headline = Table.grid(padding=(0, 1))
+            word, colour = ("VALID", "green") if part.verification.valid else ("NOT VALID", "red")
+            badge = Text(f" {word} ", style=f"bold white on {colour}")
+            headline.add_row(badge, Text(_claim(part), style="bold"))
+            details = Table.grid(padding=(0, 2))
+            for name, text in _rows(part):
+                details.add_row(Text(name, style="dim"), Text(text))
+            out.print(headline)
+            out.print()
+            out.print(details)
+            out.print()
 
 
-def _rows(document: object, verification: Verification) -> Iterator[tuple[str, str]]:
-    if verification.energy is not None:
-        yield "energy extracted", _joules(verification.energy)
-    evidence = _evidence(document)
-    corners = _corners(document)
-    if corners:
+def _claim(part: Part) -> str:
+    """What was checked, with the bounds on the hand where there are some."""
+    reason = plain(part.verification.reason, 400)
+    if not part.verification.valid or part.verification.energy is not None:
+        return reason
+    if _is_bounded(part.evidence):
+        return f"No hand within these bounds takes energy out of the loop below, proved: {reason}"
+    return f"The loop below is passive, proved: {reason}"
+
+
+def _rows(part: Part) -> Iterator[tuple[str, str]]:
+    if part.verification.energy is not None:
+        yield "energy extracted", _joules(part.verification.energy)
+    corners = part.evidence.get("corners")
+    shown_part: object = part.evidence
+    if isinstance(corners, list) and corners:
         yield "corner", f"1 of {len(corners)}, each with a proof of its own"
-    if "kind" in evidence:
-        yield "kind", plain(str(evidence["kind"]))
-    loop = evidence.get("loop")
-    if isinstance(loop, Mapping):
-        known = _known_keys()
-        for key, value in loop.items():
-            name, unit = known.get(str(key), (str(key), ""))
+        shown_part = corners[0]
+    if not isinstance(shown_part, Mapping):
+        return
+    if "kind" in shown_part:
+        yield "kind", plain(str(shown_part["kind"]))
+    known = _known_keys()
+    for table in ("loop", "law", "domain"):
+        content = shown_part.get(table)
+        for key, value in content.items() if isinstance(content, Mapping) else ():
+            name, unit = known.get(str(key), (str(key).replace("_", " "), ""))
             yield plain(name), f"{plain(_text(value))} {unit}".rstrip()
 
 
@@ -82,31 +121,8 @@ def _known_keys() -> dict[str, tuple[str, str]]:
         for motion in ("linear", "rotary")
     }
     powers = "in descending powers of z"
-    return {**keys, "numerator": ("numerator", powers), "denominator": ("denominator", powers)}
-
-
-def _inner(document: object) -> object:
-    """The certificate or witness itself, also where it is part of a verdict."""
-    while isinstance(document, Mapping):
-        inner = next((document[k] for k in _EVIDENCE if isinstance(document.get(k), Mapping)), None)
-        if inner is None:
-            break
-        document = inner
-    return document
-
-
-def _corners(document: object) -> list[object]:
-    inner = _inner(document)
-    corners = inner.get("corners") if isinstance(inner, Mapping) and inner.get("kind") == "corners" else None
-    return corners if isinstance(corners, list) else []
-
-
-def _evidence(document: object) -> Mapping[str, object]:
-    """What was checked, of several corners the first."""
-    inner = _inner(document)
-    for corner in _corners(inner)[:1]:
-        inner = _inner(corner)
-    return inner if isinstance(inner, Mapping) else {}
+    taps = {f"taps_{unit_suffix(u)}": ("taps", unit_text(u)) for u in ("N/m", "N*m/rad")}
+    return {**keys, **taps, "numerator": ("numerator", powers), "denominator": ("denominator", powers)}
 
 
 def _text(value: object) -> str:

@@ -159,7 +159,23 @@ def _positivity(sign: Positivity) -> dict[str, Any]:
 
 
 def verify_document(document: object) -> checker.Verification:
-    """Check a saved certificate, witness or `check --json` report, read as JSON.
+    """Check a saved certificate or witness, or a report that holds one or both, read as JSON.
+
+    Raises
+    ------
+    InputError
+        If it contains neither.
+    """
+    results = [_verify_one(part) for part in evidence(document)]
+    failed = next((r for r in results if not r.valid), None)
+    if failed is not None:
+        return failed
+    energy = next((r.energy for r in results if r.energy is not None), None)
+    return checker.Verification(True, "; and ".join(r.reason for r in results), energy)
+
+
+def evidence(document: object) -> list[Mapping[str, Any]]:
+    """The certificates and witnesses in a document, which may be one itself.
 
     Raises
     ------
@@ -168,17 +184,20 @@ def verify_document(document: object) -> checker.Verification:
     """
     if not isinstance(document, Mapping):
         raise InputError("expected a JSON object with a certificate or a witness")
-    inner = next(
-        (document[k] for k in ("certificate", "witness") if isinstance(document.get(k), Mapping)), None
-    )
-    evidence = document if inner is None else inner
-    if evidence.get("kind") == "corners":
-        return _verify_corners(evidence.get("corners"))
-    if "kind" not in evidence:
+    if "kind" in document:
+        return [document]
+    holders = [document, document.get("worst_hand")]
+    inner = (h[k] for h in holders if isinstance(h, Mapping) for k in ("certificate", "witness") if k in h)
+    found = [part for part in inner if isinstance(part, Mapping) and "kind" in part]
+    if not found:
         raise InputError(
             "no certificate or witness found: the object has no key kind, certificate or witness"
         )
-    return checker.verify(evidence)
+    return found
+
+
+def _verify_one(part: Mapping[str, Any]) -> checker.Verification:
+    return _verify_corners(part.get("corners")) if part["kind"] == "corners" else checker.verify(part)
 
 
 def _verify_corners(corners: object) -> checker.Verification:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.device.device import Device
@@ -12,11 +13,15 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.document import to_json
 from zwidth.passivity.verdict import Outcome
+from zwidth.passivity.witness import rounded_energy
 from zwidth.passivity.worst_hand.board import Board, Domain, Losses
 from zwidth.passivity.worst_hand.domain import domain_for, losses_of
 from zwidth.passivity.worst_hand.gain import Gain, gain
 from zwidth.passivity.worst_hand.law import FiniteLaw, finite_law
+from zwidth.passivity.worst_hand.play_relaxing import play_relaxing
+from zwidth.passivity.worst_hand.relaxing import RelaxingBoard
 from zwidth.passivity.worst_hand.solve import Played, play
 from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import RealLike
@@ -93,8 +98,12 @@ class WorstHand:
         if self.certificate is not None:
             document["certificate"] = self.certificate.to_dict()
         if self.witness is not None:
-            document["witness"] = self.witness.to_dict()
+            document["witness"] = rounded_energy(self.witness.to_dict())
         return document
+
+    def save(self, path: str | Path) -> None:
+        """Write the outcome with its evidence as JSON for `zwidth verify`."""
+        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
 
     def __repr__(self) -> str:
         return f"<WorstHand {self.outcome}: {self.claim}>"
@@ -119,7 +128,12 @@ class Game:
         length, speed = ("rad", "rad/s") if self.motion == "rotary" else ("m", "m/s")
         deepest = float(self.domain.highest * self.losses.resolution)
         fastest = float(self.domain.reach * self.losses.resolution / self.losses.period)
-        outside = "on either side" if self.law.surface == "none" else "inside and any distance outside"
+        if self.law.surface == "none":
+            outside = "on either side"
+        elif self.law.relaxing is not None and self.law.surface == "position":
+            outside = f"inside and {-self.domain.lowest} counts outside"
+        else:
+            outside = "inside and any distance outside"
         return (
             f"hands of up to {fastest:.4g} {speed} over one sample ({self.domain.reach} counts), "
             f"up to {deepest:.4g} {length} ({self.domain.highest} counts) {outside}"
@@ -138,6 +152,10 @@ class Game:
         return gain(played, self.motion) if played.cycle else None
 
     def _play(self, steps: int, rules: Any, deadline: float, tell: Tell | None) -> Played:
+        if self.law.relaxing is not None:
+            levels = max(1, steps // 8) if rules == "generous" else 2
+            board = RelaxingBoard(self.law, self.losses, self.domain, steps, rules, levels)
+            return play_relaxing(board, deadline, tell)
         return play(Board(self.law, self.losses, self.domain, steps, rules), deadline, tell)
 
 

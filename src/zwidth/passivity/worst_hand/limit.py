@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from fractions import Fraction
 from math import inf, log2, sqrt
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from zwidth.device.device import Device
@@ -16,10 +17,11 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check
-from zwidth.passivity.document import unit_suffix
-from zwidth.passivity.witness import Witness
+from zwidth.passivity.document import to_json, unit_suffix
+from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.worst_hand.gain import Gain
 from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of
+from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -54,6 +56,8 @@ class Bracket:
         What the proof covers and takes for granted.
     evaluations, seconds
         Loops decided, and the time that took [s].
+    storage
+        The storage function at `passive`, to look at; None where a closed condition proves it.
     """
 
     parameter: str
@@ -67,6 +71,7 @@ class Bracket:
     assumptions: tuple[str, ...]
     evaluations: int
     seconds: float
+    storage: Storage | None = None
 
     @property
     def relative_width(self) -> float:
@@ -106,8 +111,12 @@ class Bracket:
         if self.certificate is not None:
             document["certificate"] = self.certificate.to_dict()
         if self.witness is not None:
-            document["witness"] = self.witness.to_dict()
+            document["witness"] = rounded_energy(self.witness.to_dict())
         return document
+
+    def save(self, path: str | Path) -> None:
+        """Write the bracket with its evidence as JSON for `zwidth verify`."""
+        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
 
     def __repr__(self) -> str:
         return f"<Bracket {self.describe()}>"
@@ -268,12 +277,13 @@ class _Search:
             if abs(active - passive) <= self.tolerance * max(active, passive):
                 break
         at_first = game(self._first())
-        proof = None if passive is None else proofs[passive].certificate()
+        storage = None if passive is None else proofs[passive]
+        proof = None if storage is None else storage.certificate()
         if proof is not None and not proof.verify():  # nothing is claimed that the checker does not accept
-            passive, proof = None, None
+            passive, proof, storage = None, None, None
         motion = None if active is None else motions.get(active)
         said = assumptions(device, at_first)
-        return self._bracket(passive, active, proof, motion, at_first.hand, every_hand, said)
+        return self._bracket(passive, active, proof, motion, at_first.hand, every_hand, said, storage)
 
     def _first(self) -> Exact:
         return Exact(self.parameter.now or 1.0)
@@ -351,6 +361,7 @@ class _Search:
         hand: str,
         every_hand: tuple[float | None, float | None],
         said: tuple[str, ...],
+        storage: Storage | None = None,
     ) -> Bracket:
         return Bracket(
             self.parameter.name,
@@ -364,6 +375,7 @@ class _Search:
             said,
             self.evaluations,
             time.monotonic() - self.start,
+            storage,
         )
 
     def _late(self) -> bool:
@@ -395,7 +407,7 @@ def _parameter(device: Device, environment: Environment, name: str) -> _Paramete
     owner, _, key = name.rpartition(".")
     in_environment = {f.name for f in fields(environment)}
     in_device = {f.name for f in fields(device)} | {"rate"}
-    if name == "gain" and isinstance(environment, NonlinearSpring):
+    if key == "gain" and isinstance(environment, NonlinearSpring):
         spring = environment
 
         def scaled(value: Exact) -> tuple[Device, Environment]:

@@ -1,0 +1,115 @@
+"""The command `limit`: how far one parameter may go, proved on one side and refuted on the other."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from zwidth.cli.environments import option_keys
+from zwidth.cli.options import Once, add_parameters, overrides
+from zwidth.cli.output import print_json, targets, writing
+from zwidth.cli.table import quoted, suggestion
+from zwidth.device.catalogue import PROPERTIES
+from zwidth.errors import InputError
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse_number
+
+if TYPE_CHECKING:
+    from zwidth.passivity.worst_hand import Bracket
+
+BOTH, ONE_OR_NONE = 0, 3
+"""Exit status by the sides that were found; 2 is bad input."""
+
+
+def configure_limit(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth limit`."""
+    parser.usage = (
+        "%(prog)s [SOURCE ...] [--parameter NAME] [--penetration LENGTH] [--speed SPEED] "
+        "[--PARAMETER VALUE ...] [--json] [-o FILE] [--force]"
+    )
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both",
+    )
+    search = parser.add_argument_group("search")
+    for option, metavar, meaning in (
+        ("--parameter", "NAME", "which parameter, named as its option is (default: stiffness)"),
+        ("--penetration", "LENGTH", "the hand goes no deeper [m; rotary rad]"),
+        ("--speed", "SPEED", "the hand is no faster, over a sample [m/s; rotary rad/s]"),
+        ("--tolerance", "RATIO", "relative width of the bracket that is wanted (default: 0.01)"),
+        ("--seconds", "TIME", "time after which the bracket so far is given [s] (default: 60)"),
+    ):
+        search.add_argument(option, metavar=metavar, action=Once, help=meaning)
+    search.add_argument(
+        "--count-force-limit", action="store_true", help="count in the force limit of the device"
+    )
+    output = parser.add_argument_group("output")
+    output.add_argument("--json", action="store_true", help="print the bracket as JSON, units in the keys")
+    output.add_argument(
+        "-o", "--save", metavar="FILE", action=Once, help="save bracket and evidence, for zwidth verify"
+    )
+    output.add_argument("--force", action="store_true", help="replace files that exist")
+    add_parameters(parser)
+
+
+def run_limit(arguments: argparse.Namespace) -> int:
+    """`zwidth limit`: 0 if both sides of the limit were found, else 3."""
+    from zwidth.cli.specification import load
+
+    _, save = targets(None, arguments.save, arguments.force)
+    loop = load(arguments.sources, overrides(arguments))
+    parameter = _parameter(arguments.parameter or "stiffness")
+    options = _options(arguments, loop.device.motion)
+    from zwidth.cli.patience import warn_of_compiling_the_game
+    from zwidth.traces import passive_limit
+
+    warn_of_compiling_the_game()
+    bracket = passive_limit(loop.device, loop.environment, parameter, **options)
+    if save is not None:
+        with writing(save):
+            bracket.save(save)
+    if arguments.json:
+        print_json(_json(bracket))
+    else:
+        from zwidth.cli.limit_report import print_bracket
+
+        print_bracket(bracket, loop)
+    return BOTH if bracket.passive is not None and bracket.active is not None else ONE_OR_NONE
+
+
+def _parameter(typed: str) -> str:
+    """The name in Python of what is an option here: `damping` is always the device's."""
+    name = typed.strip().replace("-", "_")
+    on_device, in_environment = set(PROPERTIES) & set(GLOSSARY), {*option_keys(), "gain"}
+    if name not in on_device | in_environment:
+        known = sorted(key.replace("_", "-") for key in on_device | in_environment)
+        raise InputError(f"there is no parameter {quoted(typed)}; {suggestion(typed, known)}")
+    if name == "virtual_damping":
+        return "environment.damping"
+    return f"{'device' if name in on_device else 'environment'}.{name}"
+
+
+def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
+    """The search as `passive_limit` takes it."""
+    length = "rad" if motion == "rotary" else "m"
+    units = {"penetration": length, "speed": f"{length}/s", "tolerance": "1", "seconds": "s"}
+    options: dict[str, Any] = {"force_limit": arguments.count_force_limit}
+    for name, unit in units.items():
+        typed = getattr(arguments, name)
+        if typed is not None:
+            options[name] = parse_number(typed, unit, name)
+    if options.get("seconds", 1) <= 0:
+        raise InputError(f"seconds must be > 0, got {arguments.seconds}: the search takes some time")
+    return options
+
+
+def _json(bracket: Bracket) -> str:
+    """The bracket without the storage function, which is as large as the board; --save writes it."""
+    from zwidth.passivity.document import to_json
+
+    document = bracket.to_dict()
+    if bracket.storage is not None:
+        del document["certificate"]
+    return to_json(document)

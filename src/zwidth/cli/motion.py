@@ -1,0 +1,46 @@
+"""A motion that takes energy out: in words, and its first samples as a row of levels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from rich.text import Text
+
+from zwidth.cli.bars import levels
+from zwidth.cli.numerals import shown
+from zwidth.passivity.witness import Witness
+
+if TYPE_CHECKING:
+    from zwidth.passivity.worst_hand.gain import Gain
+
+_SAMPLES_SHOWN = 48
+
+
+def joules(witness: Witness | Gain) -> str:
+    """What comes out, and what one round of a cycle gives."""
+    total = shown(witness.energy, "J")
+    if witness.motion.rounds > 1 and len(witness.motion.repeats) == 1:
+        return f"{total} ({shown(witness.energy_per_cycle, 'J')} per cycle)"
+    return total
+
+
+def motion_lines(witness: Witness | Gain, fancy: bool) -> Iterator[Text]:
+    """The motion, line by line."""
+    length = witness.unit if not isinstance(witness, Witness) else _unit(witness)
+    yield Text(
+        f"{witness.motion.samples:.6g} samples in "
+        f"{shown(witness.motion.samples * witness.sample_period, 's')}, to "
+        f"{shown(witness.depth, length)} at up to {shown(witness.peak_speed, length + '/s')}"
+    )
+    for part in witness.motion.repeats:
+        if part.times > 1:
+            yield Text(f"samples {part.first} to {part.last} are a cycle, done {part.times:.6g} times")
+    yield Text(f"extracts {joules(witness)}", style="bold")
+    first = witness.positions[:_SAMPLES_SHOWN]
+    more = " …" if len(witness.positions) > len(first) else ""
+    yield Text(f"x(kT)  {levels(first, fancy)}{more}", style="cyan")
+
+
+def _unit(witness: Witness) -> str:
+    return "rad" if witness.setting.motion == "rotary" else "m"
