@@ -48,7 +48,7 @@ def places(random, number):
 @pytest.mark.parametrize("apart", [*range(1, 9), 100])
 @pytest.mark.parametrize("side", [-1, 1])
 def test_never_more_than_the_true_drag_on_a_rectangle(apart, side):
-    """Steps that differ: everywhere at most (x' − x)², with equality half way at a distance of three or more."""
+    """Steps that differ: everywhere at most (x' − x)², equal half way from three steps on."""
     random = Random(apart * side)
     for a, b in places(random, 300):
         assert on_rectangle(0, side * apart, a, b) <= (side * apart + b - a) ** 2
