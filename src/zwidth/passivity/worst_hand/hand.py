@@ -139,24 +139,30 @@ class Game:
             f"up to {deepest:.4g} {length} ({self.domain.highest} counts) {outside}"
         )
 
-    def prove(self, steps: int, deadline: float = float("inf"), tell: Tell | None = None) -> Storage | None:
+    def prove(
+        self, steps: int, deadline: float = float("inf"), tell: Tell | None = None, on: str = "cpu"
+    ) -> Storage | None:
         """A storage function on so many steps per count that the checker accepts, or None."""
-        played = self._play(steps, "generous", deadline, tell)
+        played = self._play(steps, "generous", deadline, tell, on)
         if played.value is None:
             return None
         return Storage(played, self.motion)
 
-    def refute(self, steps: int, deadline: float = float("inf"), tell: Tell | None = None) -> Gain | None:
+    def refute(
+        self, steps: int, deadline: float = float("inf"), tell: Tell | None = None, on: str = "cpu"
+    ) -> Gain | None:
         """A motion that gains, recomputed exactly, or None."""
-        played = self._play(steps, "strict", deadline, tell)
+        played = self._play(steps, "strict", deadline, tell, on)
         return gain(played, self.motion) if played.cycle else None
 
-    def _play(self, steps: int, rules: Any, deadline: float, tell: Tell | None) -> Played:
+    def _play(self, steps: int, rules: Any, deadline: float, tell: Tell | None, on: str) -> Played:
         if self.law.relaxing is not None:
+            if on != "cpu":
+                raise InputError("a law that relaxes is played on the processor: leave out on")
             levels = max(1, steps // 8) if rules == "generous" else 2
             board = RelaxingBoard(self.law, self.losses, self.domain, steps, rules, levels)
             return play_relaxing(board, deadline, tell)
-        return play(Board(self.law, self.losses, self.domain, steps, rules), deadline, tell)
+        return play(Board(self.law, self.losses, self.domain, steps, rules), deadline, tell, on)
 
 
 Tell = Callable[[int], None]
@@ -186,6 +192,7 @@ def worst_hand(
     force_limit: bool = False,
     seconds: float = 60.0,
     progress: Callable[[int], None] | None = None,
+    on: str = "cpu",
 ) -> WorstHand:
     """Play the game of the worst hand against one loop.
 
@@ -215,23 +222,26 @@ def worst_hand(
         Time after which the answer is "undecided".
     progress
         Told the number of states that still improve, round by round.
+    on
+        "cpu", or "gpu" for a graphics card with CUDA (install the extra `gpu`): the same V to the bit.
 
     Raises
     ------
     InputError
-        If the law remembers for ever, the encoder is ideal, or the board is too large.
+        If the law remembers for ever, the encoder is ideal, or the board is too large;
+        or if `on` is neither, or there is no card.
     """
     game = game_of(device, environment, penetration, speed, force_limit)
     law = as_environment(environment)
     said = assumptions(device, game)
     deadline = time.monotonic() + seconds
     for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
-        storage = game.prove(steps, deadline, progress)
+        storage = game.prove(steps, deadline, progress, on)
         if storage is not None:
             certificate = storage.certificate()
             if certificate.verify():  # nothing is claimed that the checker does not accept
                 return WorstHand("passive", said, device, law, certificate, None, storage)
-        motion = None if fine is None else game.refute(fine, deadline, progress)
+        motion = None if fine is None else game.refute(fine, deadline, progress, on)
         if motion is not None:
             return WorstHand("active", said, device, law, None, motion, None)
         if time.monotonic() >= deadline:

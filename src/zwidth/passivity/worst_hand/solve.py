@@ -15,7 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from zwidth.errors import InputError
 from zwidth.passivity.worst_hand.board import Board, Integers
+from zwidth.passivity.worst_hand.gpu import OnCard
 from zwidth.passivity.worst_hand.sweep import cycle, sweep
 
 THREADS = min(os.cpu_count() or 1, 8)
@@ -48,7 +50,10 @@ class Played:
 
 
 def play(
-    board: Board, deadline: float = float("inf"), progress: Callable[[int], None] | None = None
+    board: Board,
+    deadline: float = float("inf"),
+    progress: Callable[[int], None] | None = None,
+    on: str = "cpu",
 ) -> Played:
     """Improve every state until a storage function or a gaining cycle is left.
 
@@ -60,24 +65,28 @@ def play(
         When to give up, as `time.monotonic()`.
     progress
         Called after each round with the number of states that improved.
+    on
+        "cpu", or "gpu" for a graphics card with CUDA.
+
+    Raises
+    ------
+    InputError
+        If `on` is neither, or there is no card or no CUDA.
     """
-    forces, value = board.forces, board.first_guess
+    if on not in ("cpu", "gpu"):
+        raise InputError(f'on is "cpu" or "gpu", got {on!r}')
+    value = board.first_guess.copy()
     choice = np.full(value.shape, -1, np.int64)
-    costs, knots = board.costs, board.knots
-    groups = len(value) * (board.histories // board.width if board.memory else 1)
-    parts = np.linspace(0, groups, THREADS * 4 + 1).astype(int)
+    card = OnCard(board, value, choice) if on == "gpu" else None
     rounds = 0
     with ThreadPoolExecutor(THREADS) as pool:
         while time.monotonic() < deadline:
             rounds += 1
-            jobs = [
-                pool.submit(sweep, value, choice, forces, costs, knots, first, last, board.domain.reach)
-                for first, last in zip(parts[:-1], parts[1:], strict=True)
-                if first < last
-            ]
-            improved = sum(job.result() for job in jobs)
+            improved = _round(pool, board, value, choice) if card is None else card.round()
             if progress is not None:
                 progress(improved)
+            if card is not None and (improved == 0 or rounds % _LOOK == 0):
+                card.fetch()
             if improved == 0:
                 return Played(board, value, (), rounds)
             if rounds % _LOOK == 0:
@@ -85,6 +94,19 @@ def play(
                 if moves:
                     return Played(board, None, moves, rounds)
     return Played(board, None, (), rounds)
+
+
+def _round(pool: ThreadPoolExecutor, board: Board, value: Integers, choice: Integers) -> int:
+    """Improve every state, on all threads; returns how many improved."""
+    groups = len(value) * (board.histories // board.width if board.memory else 1)
+    parts = np.linspace(0, groups, THREADS * 4 + 1).astype(int)
+    tables = board.forces, board.costs, board.knots
+    jobs = [
+        pool.submit(sweep, value, choice, *tables, first, last, board.domain.reach)
+        for first, last in zip(parts[:-1], parts[1:], strict=True)
+        if first < last
+    ]
+    return sum(job.result() for job in jobs)
 
 
 def _gaining(board: Board, choice: Integers) -> tuple[tuple[int, int], ...]:
