@@ -12,6 +12,7 @@ from zwidth.cli.options import Once, add_parameters, overrides
 from zwidth.cli.output import print_json, targets, writing
 
 if TYPE_CHECKING:
+    from zwidth.cli.specification import Specification
     from zwidth.passivity.real_hand import RealHand
     from zwidth.passivity.verdict import Verdict
 
@@ -58,19 +59,17 @@ def _configure_check(parser: argparse.ArgumentParser) -> None:
 
 def _check(arguments: argparse.Namespace) -> int:
     from zwidth.cli.specification import load
-    from zwidth.passivity import check
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     loop = load(arguments.sources, overrides(arguments))
-    verdict = check(loop.device, loop.environment)
+    verdict = _decided(loop)
     if save is not None:
         with writing(save):
             verdict.save(save)
     if plot is not None:
         from zwidth.plots import save_check  # matplotlib takes its time
 
-        with writing(plot):
-            save_check(verdict, plot)
+        save_check(verdict, plot, overwrite=True)  # what is there was asked about before
     real_hand = _replayed(verdict) if arguments.replay else None
     if arguments.json:
         print_json(verdict.to_json() if real_hand is None else _with_replay(verdict, real_hand))
@@ -79,6 +78,23 @@ def _check(arguments: argparse.Namespace) -> int:
 
         print_verdict(verdict, real_hand)
     return STATUS[verdict.outcome]
+
+
+def _decided(loop: Specification) -> Verdict:
+    """What `zwidth.check` says, with a word to people who wait for the game."""
+    from zwidth.passivity.check import check_by_closed_forms
+    from zwidth.passivity.game import has_gap, with_game
+
+    verdict = check_by_closed_forms(loop.device, loop.environment)
+    if not has_gap(loop.device, loop.environment, verdict):
+        return verdict
+    from zwidth.cli.patience import warn_of_compiling_the_game
+    from zwidth.traces.progress import progress_bar
+    from zwidth.traces.run import falling
+
+    warn_of_compiling_the_game()
+    with progress_bar("states") as progress:
+        return with_game(loop.device, loop.environment, verdict, falling(progress))
 
 
 def _replayed(verdict: Verdict) -> RealHand:

@@ -5,8 +5,8 @@ Every value given was itself proved passive, all else as it was.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor, inf, isinf, log10
 from typing import Literal
@@ -53,21 +53,29 @@ class Advice:
 
 @dataclass(frozen=True)
 class _Knob:
-    """A number that one can turn; `more` is True when more of it is safer."""
+    """A number that one can turn; `more` is True when more of it is safer, `contact` as for `provable`."""
 
     parameter: str
     current: float
     change: Change
     more: bool
     name: str
+    contact: bool = False
+
+    def holds(self, value: Fraction) -> bool:
+        """True when the loop with this value is proved passive."""
+        return provable(self.change, value, self.contact)
 
 
-def advise(device: Device, environment: Environment, passive: bool) -> tuple[Advice, ...]:
-    """Advice on every parameter of a certain loop."""
+def advise(
+    device: Device, environment: Environment, passive: bool, contact: bool = False
+) -> tuple[Advice, ...]:
+    """Advice on every parameter of a certain loop; `contact` as for `provable`."""
     kind: Literal["change", "slack"] = "slack" if passive else "change"
-    found = [_turn(knob, device.motion, kind) for knob in _knobs(device, environment)]
+    knobs = (replace(knob, contact=contact) for knob in _knobs(device, environment))
+    found = [_turn(knob, device.motion, kind) for knob in knobs]
     if not passive and isinstance(environment, Wall) and environment.damping != 0:
-        found.extend(_estimators(device, environment))
+        found.extend(_estimators(device, environment, contact))
     return tuple(found)
 
 
@@ -109,11 +117,10 @@ def _time_constant(device: Device, wall: Wall) -> Iterator[_Knob]:
 
 
 def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"]) -> Advice:
-    holds: Holds = lambda value: provable(knob.change, value)  # noqa: E731
     search = smallest_holding if knob.more else largest_holding
-    to = search(holds, knob.current or 1e-4, COARSE)
+    to = search(knob.holds, knob.current or 1e-4, COARSE)
     if to is not None and SMALLEST < to < inf:
-        to = _simplest_near(to, holds, knob.more)
+        to = _simplest_near(to, knob.holds, knob.more)
     if knob.more and to is not None and to <= SMALLEST:
         to = inf if knob.parameter == "rate" else 0.0
     if kind == "change" and to is not None and not _is_change(knob, to):
@@ -146,7 +153,7 @@ def _outward(value: float, knob: _Knob) -> float:
         return value
     scale = 10.0 ** (floor(log10(abs(value))) - 3)
     rounded = float(f"{(ceil(value / scale) if knob.more else floor(value / scale)) * scale:.4g}")
-    return rounded if provable(knob.change, Exact(rounded).fraction) else value
+    return rounded if knob.holds(Exact(rounded).fraction) else value
 
 
 def _text(knob: _Knob, to: float | None, unit: str, kind: str) -> str:
@@ -164,20 +171,20 @@ def _text(knob: _Knob, to: float | None, unit: str, kind: str) -> str:
     return f"{knob.name} may go {bound} {to:.6g} {unit} (now {now})"
 
 
-def _estimators(device: Device, wall: Wall) -> Iterator[Advice]:
+def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
     """Another velocity estimator that makes the loop passive, if one of the usual does."""
     now = wall.velocity_filter.describe()
     for samples in _WINDOWS:
         law = wall.replace(velocity_filter=Window(samples))
-        if provable(lambda _, law=law: (device, law), Fraction(0)):  # type: ignore[misc]
+        if provable(lambda _, law=law: (device, law), Fraction(0), contact):  # type: ignore[misc]
             to = f"window of {samples} samples"
             text = f"estimate velocity with a {to} instead of the {now}"
             yield Advice("velocity_filter", now, to, "", "change", text)
             break
     if not isinstance(wall.velocity_filter, OnePole):
         change: Change = lambda t: (device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
-        knob = _Knob("time_constant", 0.0, change, True, "time constant")
-        tau = _first_scanned(change, device)
+        knob = _Knob("time_constant", 0.0, change, True, "time constant", contact)
+        tau = _first_scanned(knob, device)
         if tau is not None:
             shown = _outward(tau, knob)
             to = f"one-pole filter of {shown:.4g} s"
@@ -185,11 +192,10 @@ def _estimators(device: Device, wall: Wall) -> Iterator[Advice]:
             yield Advice("velocity_filter", now, to, "", "change", text)
 
 
-def _first_scanned(change: Change, device: Device) -> float | None:
+def _first_scanned(knob: _Knob, device: Device) -> float | None:
     """The smallest time constant found, from one sample to a thousand."""
     period = float(device.exact("sample_period"))
-    holds: Callable[[Fraction], bool] = lambda t: provable(change, t)  # noqa: E731
     for power in range(10):
-        if holds(Exact(period * 2**power).fraction):
-            return smallest_holding(holds, period * 2**power)
+        if knob.holds(Exact(period * 2**power).fraction):
+            return smallest_holding(knob.holds, period * 2**power)
     return None

@@ -24,6 +24,8 @@ DYNAMICS = "environment dynamics against viscous damping"
 QUANTIZATION = "quantization against Coulomb friction"
 UNSTABLE = "unstable environment"
 NEGATIVE = "negative static stiffness"
+CONTACT = "contact made and broken"
+"""The criterion holds while the hand stays inside, and a motion that touches and leaves gains."""
 
 
 @dataclass(frozen=True)

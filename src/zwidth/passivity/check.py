@@ -18,6 +18,7 @@ from zwidth.passivity.claims import assumptions, beyond_the_actuator, open_claim
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.delay_interval import prove_delays
+from zwidth.passivity.game import has_gap, with_game
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.refutation import refute_friction, refute_linear
 from zwidth.passivity.supremum import tightest
@@ -39,7 +40,8 @@ def check(device: Device, environment: Environment | Any) -> Verdict:
     encoder of resolution Δ, f_c must cover its error: f_c ≥ K Δ/2 for a spring
     (Abbott & Okamura 2005).  Equality counts as passive.  A damped wall is
     covered with contact made and broken where b ≥ (2d + 1) K T/2 + |B| Σ|w_j| and
-    f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.
+    f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.  Where these conditions leave a gap
+    the game of `worst_hand` is played, for some seconds at most.
 
     Parameters
     ----------
@@ -53,6 +55,13 @@ def check(device: Device, environment: Environment | Any) -> Verdict:
     InputError
         If the environment cannot be sampled at this rate or is not an environment.
     """
+    verdict = check_by_closed_forms(device, environment)
+    law = as_environment(environment)
+    return with_game(device, law, verdict) if has_gap(device, law, verdict) else verdict
+
+
+def check_by_closed_forms(device: Device, environment: Environment | Any) -> Verdict:
+    """`check` without the game: exact, in milliseconds, of every hand."""
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
     law = as_environment(environment)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
@@ -10,6 +12,12 @@ from zwidth.passivity.linear import LinearRefutation
 from zwidth.passivity.verdict import Outcome
 from zwidth.passivity.witness import Witness
 from zwidth.quantity.exact import Interval, ends
+
+if TYPE_CHECKING:
+    from zwidth.passivity.worst_hand.gain import Gain
+
+NOT_COVERED = "; making and breaking contact is not covered"
+"""How the first assumption of a proof in sustained contact ends."""
 
 
 def open_claim(decision: Decision) -> str:
@@ -97,25 +105,30 @@ def _surface(outcome: Outcome, decision: Decision, certificate: Certificate | No
     if not covered and decision.is_clamped:
         return f"{anywhere}; the law never pulls: a force below 0 is given as 0"
     if not covered:
-        return (
-            "sustained contact: the law is linear while the hand stays inside; making and breaking contact "
-            "is not covered"
-        )
+        return f"sustained contact: the law is linear while the hand stays inside{NOT_COVERED}"
     if certificate is not None and not certificate.is_of_springs:
         return f"{anywhere}; also for a wall that is clamped so that it never pulls"
     more = "; the same holds for every spring law of slope 0 to K" if outcome == "passive" else ""
     return f"{anywhere}{more}"
 
 
-def beyond_the_actuator(device: Device, witness: Witness | None) -> tuple[str, ...]:
+def beyond_the_actuator(device: Device, witness: Witness | Gain | None) -> tuple[str, ...]:
     """Says where the motion asks for more force than the actuator has."""
     if witness is None or device.force_limit is None:
         return ()
     unit = "N·m" if device.motion == "rotary" else "N"
-    most, needed = float(ends(device.force_limit)[1]), witness.peak_force
+    most, needed = float(ends(device.force_limit)[1]), _peak_force(witness)
     if needed <= most:
         return (f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}",)
     return (
         f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
         "limit respected no motion is shown, and none is excluded",
     )
+
+
+def _peak_force(witness: Witness | Gain) -> float:
+    if isinstance(witness, Witness):
+        return witness.peak_force
+    from zwidth.passivity.worst_hand.playback import peak_force  # the game's libraries are there by now
+
+    return peak_force(witness)

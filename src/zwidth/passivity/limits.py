@@ -23,20 +23,24 @@ from zwidth.quantity.exact import Exact
 Change = Callable[[Fraction], tuple[Device, Environment]]
 
 
-def provable(change: Change, value: Fraction) -> bool:
-    """True when the loop with this value is proved passive; a value that cannot be built is not."""
+def provable(change: Change, value: Fraction, contact: bool = False) -> bool:
+    """True when the loop with this value is proved passive; a value that cannot be built is not.
+
+    With `contact`, proved with contact made and broken.
+    """
     try:
-        return decide(*change(value)).is_provable
+        decision = decide(*change(value))
+        return decision.is_provable and (not contact or decision.is_spring or decision.covers_contact)
     except (InputError, ZeroDivisionError):
         return False
 
 
-def required_damping(decision: Decision) -> float | None:
+def required_damping(decision: Decision, contact: bool = False) -> float | None:
     """The smallest damping b that the linear criterion accepts [N·s/m]; None if none would do.
 
-    For a clamped law, that the condition for contact made and broken accepts.
+    For a clamped law and with `contact`, that the condition for contact made and broken accepts.
     """
-    if decision.is_clamped:
+    if decision.is_clamped or contact:
         need = decision.contact_damping
         return None if need is None else smallest_holding(lambda b: b >= need, float(need))
     loop = decision.loop
@@ -50,10 +54,10 @@ def required_damping(decision: Decision) -> float | None:
     return smallest_holding(holds, max(guess, 0.0))
 
 
-def max_stiffness(device: Device, environment: Environment) -> float | None:
+def max_stiffness(device: Device, environment: Environment, contact: bool = False) -> float | None:
     """The largest passive stiffness K [N/m; N·m/rad], all else as given.
 
-    inf if every stiffness is, None if none is or the law has no stiffness.
+    inf if every stiffness is, None if none is or the law has no stiffness; `contact` as for `provable`.
     """
     if not has_stiffness(environment):
         return None
@@ -63,7 +67,7 @@ def max_stiffness(device: Device, environment: Environment) -> float | None:
         return device, environment.replace(stiffness=Exact(k))
 
     def holds(k: Fraction) -> bool:
-        return provable(change, k)
+        return provable(change, k, contact)
 
     found = largest_holding(holds, now or 1.0)
     if found:
@@ -78,12 +82,12 @@ def _stiffer(stiffness: float) -> list[float]:
     return [(stiffness or 1.0) * 1.25**step for step in range(1, 62)]
 
 
-def max_gain(device: Device, environment: Environment) -> float | None:
-    """The largest factor on H(z) that stays passive; None where no factor does."""
+def max_gain(device: Device, environment: Environment, contact: bool = False) -> float | None:
+    """The largest factor on H(z) that stays passive, None where none does; `contact` as for `provable`."""
     scaled: Any = getattr(environment, "scaled", None)
     if scaled is None:
         return None
-    return largest_holding(lambda g: provable(lambda f: (device, scaled(f)), g), 1.0)
+    return largest_holding(lambda g: provable(lambda f: (device, scaled(f)), g, contact), 1.0)
 
 
 def stiffness_of(environment: Environment) -> Exact:

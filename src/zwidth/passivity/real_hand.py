@@ -25,12 +25,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from zwidth.errors import InputError
 from zwidth.passivity.motion import Motion
 from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.witness import Witness
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from zwidth.device.device import Device
     from zwidth.operator.operator import Operator
+    from zwidth.passivity.worst_hand.gain import Gain
 
 SLOWEST = 1.0
 """Bandwidth of the slowest hand that is tried [Hz]."""
@@ -165,7 +167,8 @@ def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> RealHand:
     Raises
     ------
     InputError
-        If the verdict has no witness, the mass is unknown, or ζ is not > 0.
+        If the verdict has no witness, the mass is unknown, ζ is not > 0, or the motion
+        has gained nothing yet in the rounds that are replayed.
     """
     if not isinstance(verdict, Verdict):
         raise InputError(f"replay takes a verdict of zwidth.check, got {type(verdict).__name__}")
@@ -176,7 +179,7 @@ def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> RealHand:
     if not 0 < damping_ratio < float("inf"):
         raise InputError(f"damping_ratio must be > 0, got {damping_ratio}: a hand without damping rings on")
     motion, rounds = _shortened(verdict.witness.motion)
-    claimed = verdict.witness.setting.energy(motion)
+    claimed = _claimed(verdict.witness, motion)
     mass = float(verdict.device.exact("mass"))
 
     def hand(device: Device) -> Callable[[float], Reached]:
@@ -198,13 +201,27 @@ def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> RealHand:
     return RealHand(
         rounds=rounds,
         rounds_found=verdict.witness.motion.rounds,
-        claimed=float(claimed or 0),
+        claimed=claimed,
         replayed=_ideal(verdict, motion),
         damping_ratio=damping_ratio,
         curve=tuple(map(hand(verdict.device), tried)),
         thresholds=tuple(thresholds),
         motion=verdict.device.motion,
     )
+
+
+def _claimed(witness: Witness | Gain, motion: Motion) -> float:
+    """Energy that the motion, with its rounds, extracts by exact arithmetic [J]."""
+    if isinstance(witness, Witness):
+        return float(witness.setting.energy(motion) or 0)
+    less = witness.motion.rounds - motion.rounds
+    energy = float(witness.exact_energy - less * witness.exact_gain)
+    if energy <= 0:
+        raise InputError(
+            f"in {motion.rounds} of its {witness.motion.rounds:,} rounds the motion has not gained yet what "
+            "the way in costs: there is too little to replay"
+        )
+    return energy
 
 
 def _shortened(motion: Motion) -> tuple[Motion, int]:

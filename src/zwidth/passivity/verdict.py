@@ -8,20 +8,24 @@ from fractions import Fraction
 from functools import cached_property
 from math import cos, pi
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from zwidth.device import Device
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.environment.environment import Environment
 from zwidth.passivity import limits
 from zwidth.passivity.advice import Advice, advise
-from zwidth.passivity.budget import QUANTIZATION, Budget, binding_limit, budget
+from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import to_json, unit_suffix
 from zwidth.passivity.stability_plane import admissible_speed
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
+
+if TYPE_CHECKING:
+    from zwidth.passivity.worst_hand import WorstHand
+    from zwidth.passivity.worst_hand.gain import Gain
 
 Outcome = Literal["passive", "active", "undecided"]
 
@@ -47,6 +51,9 @@ class Verdict:
         The loop decided: the worst corner where intervals were given.
     certificate, witness
         The evidence; the one that does not apply is None.
+    worst_hand
+        What the game of the worst hand adds, where the closed forms leave a gap: a motion,
+        then also the `witness`; or a proof for hands within bounds.
     """
 
     outcome: Outcome
@@ -56,7 +63,8 @@ class Verdict:
     environment: Environment
     decision: Decision
     certificate: Certificate | None
-    witness: Witness | None
+    witness: Witness | Gain | None
+    worst_hand: WorstHand | None = None
 
     @cached_property
     def budget(self) -> Budget:
@@ -66,12 +74,25 @@ class Verdict:
     @cached_property
     def limit(self) -> str:
         """The mechanism that binds: what is violated, or would be first."""
+        if self._in_contact_only:
+            return CONTACT
         return binding_limit(self.decision, self.budget, self.environment)
 
     @property
+    def _in_contact_only(self) -> bool:
+        """True when a hand that stays inside gains nothing, and one that touches and leaves does.
+
+        What is required is then what is proved enough with contact made and broken.
+        """
+        return self.outcome == "active" and self.decision.is_provable
+
+    @property
     def mode(self) -> str | None:
-        """How a violation shows itself (Abbott & Okamura 2005, section IV-C); None when passive."""
-        if self.outcome == "passive":
+        """How a violation shows itself (Abbott & Okamura 2005, section IV-C).
+
+        None when passive, and for a motion that has to touch and leave.
+        """
+        if self.outcome == "passive" or self._in_contact_only:
             return None
         return "active tactile" if self.limit == QUANTIZATION else "closed-loop instability"
 
@@ -82,12 +103,12 @@ class Verdict:
         inf if every stiffness is passive; None if none is, or the law has none
         (see `max_gain`).
         """
-        return limits.max_stiffness(self.device, self.environment)
+        return limits.max_stiffness(self.device, self.environment, self._in_contact_only)
 
     @cached_property
     def max_gain(self) -> float | None:
         """Largest passive factor on H(z), for a law without a stiffness of its own."""
-        return limits.max_gain(self.device, self.environment)
+        return limits.max_gain(self.device, self.environment, self._in_contact_only)
 
     @cached_property
     def required_damping(self) -> float | None:
@@ -95,7 +116,7 @@ class Verdict:
 
         None if no damping would do.  Coulomb friction is a need of its own: see `margins`.
         """
-        return limits.required_damping(self.decision)
+        return limits.required_damping(self.decision, self._in_contact_only)
 
     @property
     def critical_frequency(self) -> float:
@@ -125,6 +146,7 @@ class Verdict:
         Keys "damping" [N·s/m; N·m·s/rad] and "coulomb_friction" [N; N·m]; None where the need is unbounded.
         """
         need, friction = self.required_damping, self.decision.sufficient_friction
+        friction = self.decision.contact_friction if self._in_contact_only else friction
         b, setting = self.decision.loop.damping, self.decision.setting
         return {
             "damping": None if need is None else _difference(b, need),
@@ -134,7 +156,7 @@ class Verdict:
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
         """The smallest single changes that would do, or the slack of each parameter."""
-        return advise(self.device, self.environment, self.outcome == "passive")
+        return advise(self.device, self.environment, self.outcome == "passive", self._in_contact_only)
 
     @cached_property
     def actuator(self) -> tuple[ActuatorCheck, ...]:
@@ -180,6 +202,8 @@ class Verdict:
             document["certificate"] = self.certificate.to_dict()
         if self.witness is not None:
             document["witness"] = rounded_energy(self.witness.to_dict())
+        if self.worst_hand is not None:
+            document["worst_hand"] = self.worst_hand.to_dict(evidence=False)
         return document
 
     def to_json(self) -> str:
@@ -188,7 +212,10 @@ class Verdict:
 
     def save(self, path: str | Path) -> None:
         """Write the verdict with its evidence as JSON for `zwidth verify`."""
-        Path(path).write_text(self.to_json() + "\n", encoding="utf-8")
+        document = self.to_dict()
+        if self.worst_hand is not None and self.witness is None:
+            document["worst_hand"] = self.worst_hand.to_dict()
+        Path(path).write_text(to_json(document) + "\n", encoding="utf-8")
 
     def __repr__(self) -> str:
         return f"<Verdict {self.outcome}: {self.claim}>"

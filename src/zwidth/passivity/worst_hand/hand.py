@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 STEPS = (8, 16, 32, 64)
 """Steps in which a count is cut, coarse to fine, when a proof is sought."""
 
+_COVERS = "a proof covers "
+
 FINE = (1024, 16384)
 """The same when a motion is sought; its knots lie near the edges."""
 
@@ -87,14 +89,21 @@ class WorstHand:
             )
         return self.storage.to_xarray()
 
-    def to_dict(self) -> dict[str, Any]:
-        """Outcome, assumptions and evidence as plain data."""
+    @property
+    def hand(self) -> str:
+        """The hands that a proof covers, in words."""
+        return self.assumptions[1].removeprefix(_COVERS)
+
+    def to_dict(self, evidence: bool = True) -> dict[str, Any]:
+        """Outcome, assumptions and evidence as plain data; the evidence may be left out, it can be large."""
         document: dict[str, Any] = {
             "format": "zwidth worst hand 1",
             "outcome": self.outcome,
             "claim": self.claim,
             "assumptions": list(self.assumptions),
         }
+        if not evidence:
+            return document
         if self.certificate is not None:
             document["certificate"] = self.certificate.to_dict()
         if self.witness is not None:
@@ -263,7 +272,7 @@ def assumptions(device: Device, game: Game) -> tuple[str, ...]:
         "contact made and broken at any instant"
         + ("; the law never pulls" if game.law.clamped else "")
         + ("" if game.law.surface != "none" else "; the law acts on both sides of x = 0"),
-        f"a proof covers {game.hand}",
+        f"{_COVERS}{game.hand}",
         f"the device takes out at least b = {float(losses.damping):.6g} {drag} of viscous and "
         f"f_c = {float(losses.coulomb_friction):.6g} {force} of Coulomb friction",
         "a hand without limit on force; the mass of the device plays no part",

@@ -16,7 +16,7 @@ from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.check import check
+from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import to_json, unit_suffix
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.worst_hand.gain import Gain
@@ -222,7 +222,7 @@ class _Search:
         def verdict(value: Exact) -> Any:
             if value not in verdicts:
                 self._count()
-                verdicts[value] = check(*self.parameter.change(value))
+                verdicts[value] = check_by_closed_forms(*self.parameter.change(value))
             return verdicts[value]
 
         def proved(value: Exact) -> bool:

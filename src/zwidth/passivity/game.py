@@ -1,0 +1,66 @@
+"""Where the closed forms end: the game of the worst hand, played by `check` itself.
+
+The linear criterion speaks of a hand that stays inside, and between what is
+proved enough and what is refuted there is a gap.  The game covers contact made
+and broken.  A motion it finds refutes the loop; a proof it finds is of hands
+within bounds, so that it stands beside the verdict and does not change it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from zwidth.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.errors import InputError
+from zwidth.passivity.claims import NOT_COVERED, beyond_the_actuator
+from zwidth.passivity.verdict import Verdict
+
+SECONDS = 5.0
+"""Time that a check spends on the game."""
+
+
+def has_gap(device: Device, law: Environment, verdict: Verdict) -> bool:
+    """True where the closed forms leave something open that the game may settle."""
+    if not (device.is_certain and law.is_certain) or device.exact("resolution") == 0:
+        return False
+    if (device.exact("delay") / device.exact("sample_period")).denominator != 1:
+        return False
+    if verdict.outcome == "undecided":
+        return True
+    proof = verdict.certificate
+    return law.unilateral and proof is not None and not proof.covers_contact
+
+
+def with_game(
+    device: Device, law: Environment, verdict: Verdict, progress: Callable[[int], None] | None = None
+) -> Verdict:
+    """The verdict with what the game adds to it; as it is, for a law that the game cannot play."""
+    from zwidth.passivity.worst_hand.hand import worst_hand  # numpy and numba take their time
+
+    try:
+        found = worst_hand(device, law, seconds=SECONDS, progress=progress)
+    except InputError:
+        return verdict
+    if found.witness is not None:
+        claim = f"A motion of the hand takes energy out of this loop: {found.witness.describe()}."
+        said = (found.assumptions[0], *verdict.assumptions[1:])
+        said += beyond_the_actuator(device, found.witness)
+        return replace(
+            verdict,
+            outcome="active",
+            claim=claim,
+            assumptions=said,
+            certificate=None,
+            witness=found.witness,
+            worst_hand=found,
+        )
+    if found.outcome == "undecided":
+        return verdict
+    covered = f"contact made and broken: proved passive for {found.hand}"
+    if verdict.outcome == "undecided":
+        claim = f"{verdict.claim} {covered[0].upper()}{covered[1:]}."
+        return replace(verdict, claim=claim, worst_hand=found)
+    said = (verdict.assumptions[0].removesuffix(NOT_COVERED), covered, *verdict.assumptions[1:])
+    return replace(verdict, assumptions=said, worst_hand=found)
