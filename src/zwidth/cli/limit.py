@@ -25,7 +25,7 @@ def configure_limit(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth limit`."""
     parser.usage = (
         "%(prog)s [SOURCE ...] [--parameter NAME] [--penetration LENGTH] [--speed SPEED] "
-        "[--PARAMETER VALUE ...] [--json] [-o FILE] [--force]"
+        "[--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -47,6 +47,7 @@ def configure_limit(parser: argparse.ArgumentParser) -> None:
     )
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the bracket as JSON, units in the keys")
+    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
     output.add_argument(
         "-o", "--save", metavar="FILE", action=Once, help="save bracket and evidence, for zwidth verify"
     )
@@ -58,7 +59,7 @@ def run_limit(arguments: argparse.Namespace) -> int:
     """`zwidth limit`: 0 if both sides of the limit were found, else 3."""
     from zwidth.cli.specification import load
 
-    _, save = targets(None, arguments.save, arguments.force)
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
     loop = load(arguments.sources, overrides(arguments))
     parameter = _parameter(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
@@ -70,6 +71,10 @@ def run_limit(arguments: argparse.Namespace) -> int:
     if save is not None:
         with writing(save):
             bracket.save(save)
+    if plot is not None:
+        from zwidth.plots import save_limit  # matplotlib takes its time
+
+        save_limit(bracket, plot, overwrite=True)
     if arguments.json:
         print_json(_json(bracket))
     else:

@@ -2,15 +2,18 @@
 
 Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
-`witness`, `worst_case` and `check_figure` return a `matplotlib.figure.Figure`
-that belongs to no window; the `draw_…` functions draw on axes of your own, in
-the look of `LOOK` if your axes have it.
+`witness`, `worst_case`, `storage`, `cycle`, `check_figure` and `limit_figure`
+return a `matplotlib.figure.Figure` that belongs to no window; the `draw_…`
+functions draw on axes of your own, in the look of `LOOK` if your axes have it.
 """
 
 from zwidth.plots.budget import budget, draw_damping, draw_friction
 from zwidth.plots.criterion import criterion, draw_criterion
+from zwidth.plots.cycle import cycle, draw_cycle
+from zwidth.plots.limit import limit_figure, save_limit
 from zwidth.plots.plane import draw_plane, plane
 from zwidth.plots.report import check_figure, save_check
+from zwidth.plots.storage import draw_storage, storage
 from zwidth.plots.style import LOOK
 from zwidth.plots.witness import draw_witness, witness
 from zwidth.plots.worst_case import draw_worst_case, worst_case
@@ -20,14 +23,20 @@ __all__ = [
     "budget",
     "check_figure",
     "criterion",
+    "cycle",
     "draw_criterion",
+    "draw_cycle",
     "draw_damping",
     "draw_friction",
     "draw_plane",
+    "draw_storage",
     "draw_witness",
     "draw_worst_case",
+    "limit_figure",
     "plane",
     "save_check",
+    "save_limit",
+    "storage",
     "witness",
     "worst_case",
 ]

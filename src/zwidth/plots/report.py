@@ -1,34 +1,24 @@
-"""Everything about one verdict in one picture, and the file it goes to."""
+"""Everything about one verdict in one picture."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from io import BytesIO
 from math import ceil
 from pathlib import Path
 from textwrap import fill
-from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
-from zwidth.errors import InputError
 from zwidth.passivity.verdict import Verdict
 from zwidth.plots.budget import draw_damping, draw_friction, has_friction
 from zwidth.plots.criterion import draw_criterion
+from zwidth.plots.files import save_figure
 from zwidth.plots.plane import draw_plane, has_plane
+from zwidth.plots.storage import draw_storage
 from zwidth.plots.style import LOOK, OUTCOME, new_figure, shown_name
 from zwidth.plots.witness import draw_witness
-
-ENDINGS = ("png", "svg", "pdf")
-
-_METADATA: dict[str, dict[str, Any]] = {
-    "png": {},
-    "svg": {"Date": None},
-    "pdf": {"CreationDate": None},
-}
-"""No date in a file: the same verdict gives the same bytes."""
 
 _WIDTH = 125
 """Characters of the heading on one line."""
@@ -53,24 +43,7 @@ def save_check(verdict: Verdict, path: str | Path, overwrite: bool = False) -> N
     InputError
         If the ending is another one, the file exists, or it cannot be written.
     """
-    target = Path(path)
-    ending = target.suffix.removeprefix(".").lower()
-    if ending not in ENDINGS:
-        raise InputError(
-            f"a picture is written as .png, .svg or .pdf, got {target.name!r}; for example check.png"
-        )
-    picture = BytesIO()
-    with rc_context({"svg.hashsalt": "zwidth"}):
-        check_figure(verdict).savefig(picture, format=ending, dpi=160, metadata=_METADATA[ending])
-    try:
-        with target.open("wb" if overwrite else "xb") as file:
-            file.write(picture.getvalue())
-    except FileExistsError:
-        raise InputError(
-            f"{target} exists already and is not replaced; give another name or remove it first"
-        ) from None
-    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
-        raise InputError(f"{target} cannot be written: {getattr(error, 'strerror', error)}") from None
+    save_figure(lambda: check_figure(verdict), path, overwrite)
 
 
 @rc_context(LOOK)
@@ -103,6 +76,8 @@ def _panels(verdict: Verdict) -> list[_Draw]:
     panels.append(_budget)
     if verdict.witness is not None:
         panels.append(_witness)
+    elif verdict.worst_hand is not None:
+        panels.append(_storage)
     return panels
 
 
@@ -132,3 +107,9 @@ def _witness(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
     for axes in (top, others[0]):
         axes.tick_params(labelbottom=False)
     draw_witness([top, *others], verdict)
+
+
+def _storage(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+    assert verdict.worst_hand is not None
+    assert verdict.worst_hand.storage is not None
+    draw_storage(figure.add_subplot(place), verdict.worst_hand.storage)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil, floor
+from typing import TYPE_CHECKING
 
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -16,9 +17,13 @@ from matplotlib.figure import Figure
 from zwidth.errors import InputError
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness import Witness
+from zwidth.plots.cycle import draw_cycle
 from zwidth.plots.replay import WHOLE, Replay, replay
 from zwidth.plots.style import BLUE, GREY, LOOK, PURPLE, RED, label, new_figure, quantity_text, scale
 from zwidth.quantity.glossary import GLOSSARY
+
+if TYPE_CHECKING:
+    from zwidth.passivity.worst_hand.gain import Gain
 
 _DOTS = 60
 """Samples up to which each is marked."""
@@ -48,13 +53,21 @@ def draw_witness(rows: Sequence[Axes], verdict: Verdict) -> None:
     """The same on three given axes, one above the other."""
     if verdict.witness is None:
         raise InputError(f"the loop is {verdict.outcome}: there is no motion to draw")
-    played = replay(verdict.witness)
+    draw_motion(rows, verdict.witness)
+
+
+def draw_motion(rows: Sequence[Axes], found: Witness | Gain) -> None:
+    """The same of a motion by itself."""
+    if not isinstance(found, Witness):
+        draw_cycle(rows, found)
+        return
+    played = replay(found)
     factor, unit = scale([played.times[-1] - played.times[0]], "s")
     times = [factor * t for t in played.times]
-    _positions(rows[0], verdict.witness, played, times)
-    _forces(rows[1], verdict.witness, played, times)
+    _positions(rows[0], found, played, times)
+    _forces(rows[1], found, played, times)
     _energy(rows[2], played, times)
-    rows[0].set_title(_title(verdict.witness, played.caption), color=RED)
+    rows[0].set_title(_title(found, played.caption), color=RED)
     rows[2].set_xlabel(f"time t [{unit}]")
     rows[0].set_xlim(times[0], times[-1])
 

@@ -1,0 +1,82 @@
+"""A motion that gains with every round: where the hand is at the samples, what pushes it, what it gains."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil, floor
+from typing import TYPE_CHECKING
+
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from zwidth.plots.style import BLUE, GREY, LOOK, PURPLE, RED, label, new_figure, quantity_text, scale
+from zwidth.quantity.glossary import GLOSSARY
+
+if TYPE_CHECKING:
+    from zwidth.passivity.worst_hand.gain import Gain
+
+_EDGES = 24
+"""Encoder edges up to which each is drawn."""
+
+_SHOWN = 24
+"""Samples that are filled with rounds where one is shorter."""
+
+_DOTS = 60
+
+
+@rc_context(LOOK)
+def cycle(gain: Gain) -> Figure:
+    """Position at the samples, held force and energy out over some rounds of a motion that gains.
+
+    Parameters
+    ----------
+    gain
+        `zwidth.worst_hand(…).witness`.
+    """
+    figure = new_figure(6.4, 5.0)
+    draw_cycle(list(figure.subplots(3, 1, sharex=True)), gain)
+    return figure
+
+
+def draw_cycle(rows: Sequence[Axes], gain: Gain) -> None:
+    """The same on three given axes, one above the other."""
+    from zwidth.passivity.worst_hand.playback import settled_round  # the game's libraries take their time
+
+    motion = "rotary" if gain.unit == "rad" else "linear"
+    once = settled_round(gain)
+    samples = len(once.forces)
+    rounds = max(2, _SHOWN // samples // 2)
+    x = [*once.positions[:-1] * rounds, once.positions[-1]]
+    _positions(rows[0], x, once.resolution, motion)
+    factor, unit = scale(once.forces, GLOSSARY["force"].unit_for(motion))
+    rows[1].stairs([factor * f for f in once.forces * rounds], range(len(x)), color=PURPLE, baseline=None)
+    rows[1].axhline(0, color=GREY, lw=0.6)
+    rows[1].set_ylabel(label("force", motion, "", unit))
+    out = [n * once.energies[-1] + e for n in range(rounds) for e in once.energies[:-1]]
+    _energy(rows[2], [*out, rounds * once.energies[-1]])
+    rows[2].set_xlabel("sample k, the law settled")
+    rows[2].set_xlim(0, len(x) - 1)
+    rows[2].xaxis.set_major_locator(MaxNLocator(integer=True))
+    energy = quantity_text(gain.energy_per_cycle, "energy")
+    rows[0].set_title(f"{energy} out in every round of {samples} samples", color=RED)
+
+
+def _positions(axes: Axes, x: Sequence[float], resolution: float, motion: str) -> None:
+    factor, unit = scale(x, GLOSSARY["position"].unit_for(motion))
+    axes.plot(
+        [factor * v for v in x], color=BLUE, marker="o" if len(x) <= _DOTS else "", ms=3.5, clip_on=False
+    )
+    edges = range(floor(min(x) / resolution + 1e-9), ceil(max(x) / resolution - 1e-9) + 1)
+    if len(edges) <= _EDGES:
+        for n in edges:
+            axes.axhline(factor * n * resolution, color=GREY, lw=0.7, ls=":", gid="edge")
+    axes.set_ylabel(label("position", motion, "", unit))
+
+
+def _energy(axes: Axes, energies: Sequence[float]) -> None:
+    factor, unit = scale(energies, "J")
+    axes.plot([factor * e for e in energies], color=RED, gid="energy")
+    axes.axhline(0, color=GREY, lw=0.6)
+    axes.set_ylabel(f"energy out [{unit}]")

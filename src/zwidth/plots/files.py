@@ -1,0 +1,50 @@
+"""A picture as a file: the same picture gives the same bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from zwidth.errors import InputError
+
+ENDINGS = ("png", "svg", "pdf")
+
+_METADATA: dict[str, dict[str, Any]] = {
+    "png": {},
+    "svg": {"Date": None},
+    "pdf": {"CreationDate": None},
+}
+"""No date in a file."""
+
+
+def save_figure(draw: Callable[[], Figure], path: str | Path, overwrite: bool = False) -> None:
+    """Draw and write to a file; its ending, png, svg or pdf, says how.
+
+    Raises
+    ------
+    InputError
+        If the ending is another one, the file exists, or it cannot be written.
+    """
+    target = Path(path)
+    ending = target.suffix.removeprefix(".").lower()
+    if ending not in ENDINGS:
+        raise InputError(
+            f"a picture is written as .png, .svg or .pdf, got {target.name!r}; for example check.png"
+        )
+    picture = BytesIO()
+    with rc_context({"svg.hashsalt": "zwidth"}):
+        draw().savefig(picture, format=ending, dpi=160, metadata=_METADATA[ending])
+    try:
+        with target.open("wb" if overwrite else "xb") as file:
+            file.write(picture.getvalue())
+    except FileExistsError:
+        raise InputError(
+            f"{target} exists already and is not replaced; give another name or remove it first"
+        ) from None
+    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
+        raise InputError(f"{target} cannot be written: {getattr(error, 'strerror', error)}") from None

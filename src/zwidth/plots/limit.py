@@ -1,0 +1,100 @@
+"""Both sides of a limit: what proves the one value passive, and the motion that refutes the other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+
+from zwidth.errors import InputError
+from zwidth.plots.files import save_figure
+from zwidth.plots.storage import draw_storage
+from zwidth.plots.style import LOOK, OUTCOME, new_figure, number, pretty
+from zwidth.plots.witness import draw_motion
+
+if TYPE_CHECKING:
+    from zwidth.passivity.worst_hand import Bracket
+
+_WIDTH = 120
+"""Characters of the heading on one line."""
+
+
+def save_limit(bracket: Bracket, path: str | Path, overwrite: bool = False) -> None:
+    """Write `limit_figure` to a file; its ending, png, svg or pdf, says how.
+
+    Parameters
+    ----------
+    bracket
+        What `zwidth.passive_limit` returned.
+    path
+        The file to write.
+    overwrite
+        Replace a file that is already there.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to draw, or as `save_check`.
+    """
+    save_figure(lambda: limit_figure(bracket), path, overwrite)
+
+
+@rc_context(LOOK)
+def limit_figure(bracket: Bracket) -> Figure:
+    """The storage function at the value proved passive, beside the motion at the value refuted.
+
+    A value that a closed condition proves for every hand has no storage function to draw.
+
+    Parameters
+    ----------
+    bracket
+        What `zwidth.passive_limit` returned.
+
+    Raises
+    ------
+    InputError
+        If there is neither.
+    """
+    if bracket.storage is None and bracket.witness is None:
+        raise InputError("there is neither a storage function nor a motion to draw")
+    figure = new_figure(11.0, 5.0)
+    sides = [
+        *([_proved] if bracket.storage is not None else []),
+        *([_refuted] if bracket.witness is not None else []),
+    ]
+    grid = figure.add_gridspec(1, len(sides))
+    for k, draw in enumerate(sides):
+        draw(figure, grid[k], bracket)
+    text = fill(pretty(bracket.describe()), _WIDTH)
+    figure.suptitle(text, x=0.01, ha="left", fontsize=11, parse_math=False)
+    figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
+    return figure
+
+
+def _proved(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
+    assert bracket.storage is not None
+    axes = figure.add_subplot(place)
+    draw_storage(axes, bracket.storage)
+    axes.set_title(
+        f"{_value(bracket, bracket.passive)}\n{axes.get_title(loc='left')}", color=OUTCOME["passive"]
+    )
+
+
+def _refuted(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
+    assert bracket.witness is not None
+    rows = place.subgridspec(3, 1)
+    top = figure.add_subplot(rows[0])
+    axes = [top, *(figure.add_subplot(rows[k], sharex=top) for k in (1, 2))]
+    for upper in axes[:-1]:
+        upper.tick_params(labelbottom=False)
+    draw_motion(axes, bracket.witness)
+    top.set_title(f"{_value(bracket, bracket.active)}\n{top.get_title(loc='left')}", color=OUTCOME["active"])
+
+
+def _value(bracket: Bracket, value: float | None) -> str:
+    assert value is not None
+    return f"{number(value)} {pretty(bracket.unit)}".removesuffix(" 1")
