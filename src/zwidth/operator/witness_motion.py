@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class WitnessMotion(Operator):
-    """``x(kT) = x_k`` of a witness: the motion that `check` found to take energy out.
+    """``x(kT) = x_k`` of a witness: the motion that `check` or `worst_hand` found to take energy out.
 
     After its end the hand stays where it is; of a longer motion the touch sees the beginning.
 
     Parameters
     ----------
     witness
-        A witness, `zw.check(device, environment).witness`, or its motion.
+        A witness, `zw.check(device, environment).witness` or that of `zw.worst_hand`, or its motion.
     rounds
         How often its repeated parts are done, ≥ 1; None as in the witness.
 

@@ -10,9 +10,11 @@ from typing import Any
 from zwidth.errors import InputError
 from zwidth.passivity.motion import Motion, Repeat
 
+KINDS = ("motion", "contact motion")
+
 
 def saved_motion(document: object, name: str) -> Motion:
-    """The motion in a witness or in an active verdict, as `zwidth check` saves them.
+    """The motion in a witness, an active verdict or a limit, as `zwidth check` and `zwidth limit` save them.
 
     Parameters
     ----------
@@ -29,17 +31,17 @@ def saved_motion(document: object, name: str) -> Motion:
     found: Any = document
     if isinstance(found, Mapping) and isinstance(found.get("witness"), Mapping):
         found = found["witness"]
-    if not isinstance(found, Mapping) or found.get("kind") != "motion":
+    if not isinstance(found, Mapping) or found.get("kind") not in KINDS:
         raise InputError(
             f"{name} holds no motion that takes energy out: save one with zwidth check … -o FILE, of a loop "
-            "that is active"
+            "that is active, or with zwidth limit"
         )
     try:
         positions = _column(found, "positions_m", "positions_rad")
         switches = _column(found, "switch_positions_m", "switch_positions_rad")
-        repeats = tuple(
-            Repeat(int(r["first"]), int(r["last"]), int(r["times"])) for r in found.get("repeats", ())
-        )
+        parts = found.get("repeats", ())
+        parts = [parts] if isinstance(parts, Mapping) else parts  # one part, or a list of them
+        repeats = tuple(Repeat(int(r["first"]), int(r["last"]), int(r["times"])) for r in parts)
     except (TypeError, ValueError, KeyError, ZeroDivisionError) as error:
         raise InputError(f"{name} holds a motion that cannot be read: {error}") from None
     if len(positions) < 2:
