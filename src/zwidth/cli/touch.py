@@ -154,7 +154,7 @@ def _witness(table: Table) -> Operator:
     table.check_keys(("type", "file", "rounds"), f"the hand {WITNESS}")
     if "file" not in table.values:
         raise InputError(
-            f"{table.label}: a {WITNESS} needs the file that zwidth check or zwidth limit saved: --{BEFORE}file"
+            f"{table.label}: a {WITNESS} needs the file that zwidth check or limit saved: --{BEFORE}file"
         )
     name = table.text("file")
     motion = saved_motion(read_document(name), name)

@@ -1,0 +1,187 @@
+"""`zwidth limit`: both sides of a limit, saved, verified, drawn, and one clear line on bad input."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+import zwidth as zw
+from zwidth.cli.main import main
+
+WALL = ("limit", "haptic-paddle", "--stiffness", "100", "--virtual-damping", "0.05")
+BOUNDED = (*WALL, "--penetration", "0.5 mm", "--speed", "0.3 m/s")
+
+
+class Result(NamedTuple):
+    """What one command line left behind."""
+
+    status: int
+    out: str
+    err: str
+
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
+    """Runs a command line in this process and in an empty directory."""
+    monkeypatch.chdir(tmp_path)
+
+    def runner(*argv: str) -> Result:
+        status = main(argv)
+        return Result(status, *capsys.readouterr())
+
+    return runner
+
+
+def words(result: Result) -> str:
+    """The report on one line."""
+    return " ".join(result.out.split())
+
+
+def test_the_closed_limit_of_every_hand(run: Run) -> None:
+    """K = 2 (b − B)/T = 200 N/m: within a per cent on either side."""
+    result = run(*WALL)
+    assert result.status == 0
+    assert result.out.startswith(" BRACKETED ")
+    assert "this hand" not in result.out
+    document = json.loads(run(*WALL, "--json").out)
+    assert document["proved_passive_N_per_m"] <= 200 <= document["proved_active_N_per_m"]
+    assert document["relative_width"] < 0.01
+    assert document["hand"] == "every hand"
+    assert document["certificate"]["kind"] == "contact"
+
+
+def test_a_bounded_hand_stands_beside_every_hand(run: Run) -> None:
+    """Slow hands allow stiffer walls; the report says how slow, and what every hand allows."""
+    text = words(run(*BOUNDED))
+    assert "this hand every hand" in text
+    assert "0.3136 m/s" in text
+    assert "per cycle" in text
+    document = json.loads(run(*BOUNDED, "--json").out)
+    assert document["proved_passive_N_per_m"] > 2 * document["every_hand_N_per_m"][1]
+    assert "certificate" not in document  # as large as the board: --save writes it
+
+
+def test_what_is_saved_is_verified_on_both_sides(run: Run) -> None:
+    """A storage function with its bounds, and a motion with its joules; one forged, and neither passes."""
+    assert run(*BOUNDED, "-o", "limit.json").status == 0
+    result = run("verify", "limit.json")
+    assert result.status == 0
+    assert result.out.count(" VALID ") == 2
+    assert "No hand within these bounds" in words(result)
+    assert "readings up to 23 counts inside" in words(result)
+    assert "is passive, proved" not in words(result)
+    document = json.loads(Path("limit.json").read_text())
+    document["certificate"]["loop"]["damping_N_s_per_m"] = "0.1"
+    Path("forged.json").write_text(json.dumps(document))
+    forged = run("verify", "forged.json")
+    assert forged.status == 1
+    assert "NOT VALID" in forged.out
+    assert " VALID " in forged.out.replace("NOT VALID", "")
+
+
+def test_bounded_evidence_does_not_carry_a_verdict_for_every_hand(run: Run) -> None:
+    """A storage function alone cannot say that a loop is passive."""
+    run(*BOUNDED, "-o", "limit.json")
+    certificate = json.loads(Path("limit.json").read_text())["certificate"]
+    Path("verdict.json").write_text(json.dumps({"outcome": "passive", "certificate": certificate}))
+    result = run("verify", "verdict.json")
+    assert result.status == 1
+    assert "hands within bounds only" in words(result)
+
+
+def test_the_saved_motion_is_prescribed_to_the_simulator(run: Run) -> None:
+    """Its repeats are one object, not a list."""
+    run(*BOUNDED, "-o", "limit.json")
+    active = json.loads(Path("limit.json").read_text())["proved_active_N_per_m"]
+    result = run(
+        "simulate", "haptic-paddle", "--stiffness", str(active), "--virtual-damping", "0.05",
+        "--operator", "witness", "--operator.file", "limit.json", "--operator.rounds", "100000",
+        "--amplifier", "ideal", "--json",
+    )  # fmt: skip
+    energy = json.loads(Path("limit.json").read_text())["witness"]["energy_J"]
+    assert -json.loads(result.out)["energy"]["hand_work_J"] == pytest.approx(energy, rel=1e-6)
+
+
+@pytest.mark.parametrize("more", [(), ("--penetration", "0.5 mm")])
+def test_a_picture_is_saved(run: Run, more: tuple[str, ...]) -> None:
+    assert run(*WALL, *more, "--plot", "limit.png").status == 0
+    assert Path("limit.png").read_bytes().startswith(b"\x89PNG")
+    assert "exists" in run(*WALL, "--plot", "limit.png").err
+    assert run(*WALL, *more, "--plot", "limit.png", "--force").status == 0
+
+
+@pytest.mark.parametrize(
+    ("parameter", "low", "high"),
+    [("virtual-damping", 0.0998, 0.1002), ("damping", 0.0998, 0.1003), ("rate", 499, 501)],
+)
+def test_a_parameter_is_named_as_its_option(run: Run, parameter: str, low: float, high: float) -> None:
+    document = json.loads(run(*WALL, "--parameter", parameter, "--json").out)
+    sides = [v for k, v in document.items() if k.startswith("proved_")]
+    assert len(sides) == 2
+    assert all(low < side < high for side in sides)
+
+
+def test_one_side_is_status_three(run: Run) -> None:
+    """A mass takes no part: every value is passive."""
+    result = run("limit", "haptic-paddle", "--stiffness", "100", "--parameter", "mass", "--seconds", "0.5")
+    assert result.status == 3
+    assert result.out.startswith(" ONE SIDE ")
+    assert "none known" in result.out
+
+
+def test_the_force_limit_is_counted_in(run: Run) -> None:
+    """What the actuator cannot push cannot be taken out."""
+    loop = (*BOUNDED, "--force-limit", "0.1 N", "--seconds", "2")
+    with_limit = json.loads(run(*loop, "--count-force-limit", "--json").out)
+    without = json.loads(run(*loop, "--json").out)
+    assert with_limit["proved_passive_N_per_m"] > without["proved_active_N_per_m"]
+    assert any("the force limit is counted in" in line for line in with_limit["assumptions"])
+
+
+@pytest.mark.parametrize(
+    ("argv", "part"),
+    [
+        (("--parameter", "stifness"), 'did you mean "stiffness"'),
+        (("--parameter", "velocity-filter"), "not one number"),
+        (("--speed", "-1"), "speed must be > 0"),
+        (("--speed", "3 N"), "speed is in m/s"),
+        (("--seconds", "0"), "seconds must be > 0"),
+        (("--tolerance", "2"), "tolerance must be from"),
+        (("--resolution", "0", "--velocity-filter", "window 3"), "resolution is 0"),
+        (("--damping", "0.1 .. 0.2"), "no single value"),
+        (("--plot", "limit.txt"), ".png"),
+        (("--plot", "same.svg", "-o", "same.svg"), "same file"),
+    ],
+)
+def test_bad_input_is_one_line(run: Run, argv: tuple[str, ...], part: str) -> None:
+    result = run(*WALL, *argv)
+    assert result.status == 2
+    assert result.out == ""
+    lines = [line for line in result.err.splitlines() if "compiling" not in line]
+    assert len(lines) == 1
+    assert part in lines[0]
+
+
+def test_a_spring_given_by_points_has_a_gain(tmp_path: Path, run: Run) -> None:
+    """The parameter of a law without a stiffness of its own."""
+    Path("detent.toml").write_text(
+        '[environment]\ntype = "nonlinear-spring"\npositions = [-0.002, -0.001, 0, 0.001, 0.002]\n'
+        "forces = [0, -0.4, 0, 0.4, 0]\n"
+    )
+    result = run("limit", "haptic-paddle", "detent.toml", "--parameter", "gain", "--tolerance", "0.1")
+    assert result.status in (0, 3)
+    assert "gain" in result.out
+
+
+def test_python_gives_what_the_command_line_prints(run: Run) -> None:
+    document = json.loads(run(*WALL, "--json").out)
+    bracket = zw.passive_limit(zw.catalogue.device("haptic-paddle"), zw.Wall(100, 0.05))
+    assert bracket.passive == document["proved_passive_N_per_m"]
+    assert bracket.active == document["proved_active_N_per_m"]
