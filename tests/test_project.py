@@ -252,7 +252,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
     assert not missing
 
 
-@pytest.mark.parametrize("command", ["check", "simulate", "traces", "devices", "verify"])
+@pytest.mark.parametrize("command", ["check", "limit", "simulate", "traces", "devices", "verify"])
 def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:
     """What `--help` offers, the page explains."""
     page = _command_line_page()
@@ -278,8 +278,9 @@ def test_every_key_of_the_json_is_on_its_page() -> None:
         (paddle, zw.Wall(stiffness=200, damping=0.02)),
         (paddle.replace(coulomb_friction=0), zw.Wall(stiffness=100)),
         (paddle.replace(damping=(0.2, 0.3)), solid),
+        (paddle, zw.Wall(stiffness=250, damping=0.05, clamped=True)),
     ]
-    keys: set[str] = set()
+    keys = _keys(zw.passive_limit(paddle, zw.Wall(100, 0.05), speed="0.2", penetration="0.0005").to_dict())
     for device, environment in loops:
         keys |= _keys(zw.check(device, environment).to_dict())
     assert not [key for key in sorted(keys) if f"`{key}`" not in page]

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -185,3 +187,25 @@ def test_python_gives_what_the_command_line_prints(run: Run) -> None:
     bracket = zw.passive_limit(zw.catalogue.device("haptic-paddle"), zw.Wall(100, 0.05))
     assert bracket.passive == document["proved_passive_N_per_m"]
     assert bracket.active == document["proved_active_N_per_m"]
+
+
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "limit.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("command", re.findall(r"^\$ zwidth (.+)$", PAGE, re.MULTILINE))
+def test_the_commands_of_the_page_find_both_sides(command: str, run: Run) -> None:
+    assert run(*shlex.split(command)).status == 0
+
+
+def test_the_python_of_the_page_says_what_comes_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its comments and the table of speeds are true."""
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, Any] = {}
+    exec("".join(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)), names)
+    bracket, found = names["bracket"], names["found"]
+    assert f"# ({bracket.passive:g}, {bracket.active:g})" in PAGE
+    assert f"# ({bracket.every_hand[0]:g}, {bracket.every_hand[1]:g})" in PAGE
+    assert found.outcome == "passive"
+    for speed in ("0.1", "0.25", "0.5", "1"):
+        row = zw.passive_limit(names["paddle"], names["wall"], speed=speed, penetration="0.002")
+        assert f"| {speed} m/s | {row.passive:.0f} N/m | {row.active:.0f} N/m |" in PAGE

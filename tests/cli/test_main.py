@@ -226,7 +226,7 @@ def test_what_cannot_be_read_is_bad_input(run: Run, content: str, tmp_path: Path
 
 def test_plot_gets_the_verdict(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[tuple[Verdict, Path]] = []
-    monkeypatch.setattr("zwidth.plots.save_check", lambda v, p, overwrite: calls.append((v, p)), raising=False)
+    monkeypatch.setattr("zwidth.plots.save_check", lambda v, p, overwrite: calls.append((v, p)))
     path = tmp_path / "loop.SVG"
     assert run(*PASSIVE, "--plot", str(path)).status == 0
     assert calls[0][0].outcome == "passive"

@@ -17,7 +17,7 @@ from zwidth.quantity.glossary import GLOSSARY
 if TYPE_CHECKING:
     from zwidth.passivity.worst_hand.gain import Gain
 
-_EDGES = 24
+_EDGES = 16
 """Encoder edges up to which each is drawn."""
 
 _SHOWN = 24
