@@ -31,9 +31,11 @@ class Law(NamedTuple):
     surface: str
     clamped: bool
     limit: Fraction | None
+    relaxing: tuple[Fraction, Fraction] | None
+    resets: bool
 
-    def force(self, readings: Sequence[Fraction]) -> Fraction:
-        """The force for q_k, q_{k−1}, …, as many as there are taps."""
+    def force(self, readings: Sequence[Fraction], average: Fraction = Fraction(0)) -> Fraction:
+        """The force for q_k, q_{k−1}, …, as many as there are taps, and the average a_k."""
         q = readings[0]
         if self.surface != "none" and q <= 0:
             return Fraction(0)
@@ -42,11 +44,21 @@ class Law(NamedTuple):
         else:
             u = [max(v, Fraction(0)) for v in readings] if self.surface == "penetration" else readings
             f = sum((c * v for c, v in zip(self.taps, u, strict=True)), Fraction(0))
+            if self.relaxing is not None:
+                f += self.relaxing[1] * (u[0] - average)
         if self.clamped and f < 0:
             f = Fraction(0)
         if self.limit is not None:
             f = max(-self.limit, min(self.limit, f))
         return f
+
+    def averaged(self, average: Fraction, reading: Fraction) -> Fraction:
+        """a_{k+1} from a_k and q_k."""
+        if self.relaxing is None or (self.resets and reading <= 0):
+            return Fraction(0)
+        pole = self.relaxing[0]
+        u = max(reading, Fraction(0)) if self.surface == "penetration" else reading
+        return pole * average + (1 - pole) * u
 
     def _spring(self, q: Fraction) -> Fraction:
         before = [p for p in self.points if p[0] <= q]
@@ -77,7 +89,7 @@ def read_losses(document: Mapping[str, Any]) -> Losses:
 
 def read_law(document: Mapping[str, Any]) -> Law:
     law = get(document, "law")
-    known = {"surface", "clamped"}
+    known = {"surface", "clamped", "relaxing", "resets"}
     surface, clamped = get(law, "surface"), get(law, "clamped")
     if surface not in ("none", "position", "penetration") or not isinstance(clamped, bool):
         raise Invalid("surface must be none, position or penetration, and clamped true or false")
@@ -97,7 +109,20 @@ def read_law(document: Mapping[str, Any]) -> Law:
     limit = None if limit is None else number(limit)
     if limit is not None and limit < 0:
         raise Invalid("the force limit must be ≥ 0")
-    return Law(taps, points, surface, clamped, limit)
+    resets = law.get("resets", False)
+    if not isinstance(resets, bool):
+        raise Invalid("resets must be true or false")
+    return Law(taps, points, surface, clamped, limit, _relaxing(law, taps), resets)
+
+
+def _relaxing(law: Mapping[str, Any], taps: list[Fraction]) -> tuple[Fraction, Fraction] | None:
+    part = law.get("relaxing")
+    if part is None:
+        return None
+    pole, stiffness = number(get(part, "pole")), number(_one(part, "stiffness"))
+    if not 0 <= pole < 1 or len(taps) != 1 or "points" in " ".join(law):
+        raise Invalid("a relaxing part has a pole from 0 to 1 and stands beside one spring")
+    return pole, stiffness
 
 
 _REQUIRED = object()

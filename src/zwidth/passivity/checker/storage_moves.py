@@ -48,3 +48,72 @@ def first_violation(value: Any, forces: Any, exists: Any, costs: Any, reach: int
         if worst[n] >= 0:
             return int(worst[n])
     return -1
+
+
+@njit(cache=True)
+def _between(value: Any, n: int, h: int, at: int, j: int) -> int:
+    """V at a level given in 2⁻¹⁶ parts, rounded up."""
+    level, part = at >> 16, at & 0xFFFF
+    here = value[n, h, level, j]
+    if part == 0:
+        return int(here)
+    return int(here - ((-(value[n, h, level + 1, j] - here) * part) >> 16))
+
+
+@njit(cache=True, parallel=True)
+def first_relaxing_violation(
+    value: Any,
+    rows: Any,
+    inwards: Any,
+    outwards: Any,
+    lower: Any,
+    upper: Any,
+    costs: Any,
+    reach: int,
+    steps: int,
+) -> int:
+    """The first state from which some move takes out more energy than V falls; −1 if there is none.
+
+    value is (cells, histories, levels, steps + 1); lower and upper enclose the image of each level.
+    """
+    cells, histories, levels, knots = value.shape
+    older = histories // (2 * reach + 1) if histories > 1 else 1
+    worst = np.full(cells, -1, np.int64)
+    for n in prange(cells):
+        for h in range(histories):
+            row = rows[n, h]
+            if row < 0:
+                continue
+            for n2 in range(max(0, n - reach), min(cells, n + reach + 1)):
+                h2 = (n - n2 + reach) * older + h // (2 * reach + 1) if histories > 1 else 0
+                for j in range(knots):
+                    for j2 in range(knots):
+                        d = (n2 - n) * steps + j2 - j
+                        if abs(d) >= costs.size:
+                            continue
+                        cost = costs[abs(d)]
+                        for i in range(levels):
+                            f = inwards[row, i] if d > 0 else outwards[row, i]
+                            have = value[n, h, i, j] + f * d + cost
+                            goal = max(
+                                _between(value, n2, h2, lower[row, i], j2),
+                                _between(value, n2, h2, upper[row, i], j2),
+                            )
+                            bad = have < goal
+                            if i + 1 < levels:
+                                passed = (lower[row, i] >> 16) + 1  # the level that the image may pass
+                                gap = passed * (1 << 16) - upper[row, i]
+                                if passed * (1 << 16) < upper[row, i + 1] and gap >= 0:
+                                    width = upper[row, i + 1] - lower[row, i]
+                                    f = inwards[row, i + 1] if d > 0 else outwards[row, i + 1]
+                                    rise = value[n, h, i + 1, j] + f * d + cost - have
+                                    early = (gap << 16) // width
+                                    late = min(-((-(gap + 1) << 16) // max(width - 2, 1)), 1 << 16)
+                                    least = have + min((rise * early) >> 16, (rise * late) >> 16)
+                                    bad = bad or least < value[n2, h2, passed, j2]
+                            if bad and worst[n] < 0:
+                                worst[n] = ((n * histories + h) * levels + i) * knots + j
+    for n in range(cells):
+        if worst[n] >= 0:
+            return int(worst[n])
+    return -1

@@ -19,6 +19,7 @@ import zlib
 from collections.abc import Mapping
 from fractions import Fraction
 from itertools import product
+from math import prod
 from typing import Any
 
 from .contact_law import Law, Losses, read_law, read_losses
@@ -32,8 +33,12 @@ def storage(document: Mapping[str, Any]) -> str:
     import numpy as np  # loaded only where a storage function is to be checked
 
     losses, law = read_losses(document), read_law(document)
+    if law.relaxing is not None:
+        from .storage_relaxing import storage_of_relaxing
+
+        return storage_of_relaxing(document, losses, law)
     domain = get(document, "domain")
-    low, high = (_signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
+    low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
     reach, steps = integer(get(domain, "largest_move_counts"), 1), integer(get(domain, "steps_per_count"), 1)
     unit = number(get(document, "force_unit"))
     memory = max(len(law.taps) - 1, 0) + losses.delay
@@ -43,7 +48,7 @@ def storage(document: Mapping[str, Any]) -> str:
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
     shape = (cells, width**memory, steps + 1)
-    value = _values(get(document, "storage"), shape)
+    value = values_of(get(document, "storage"), shape)
     if value.min() < 0:
         raise Invalid("a storage function must be bounded below by 0")
     forces, off = _forces(law, losses, unit, low, high, reach, memory)
@@ -68,19 +73,19 @@ def storage(document: Mapping[str, Any]) -> str:
     )
 
 
-def _signed(value: Any) -> int:
+def signed(value: Any) -> int:
     found = number(value)
     if found.denominator != 1 or abs(found) > 10**7:
         raise Invalid("a cell is a whole number of ordinary size")
     return int(found)
 
 
-def _values(text: Any, shape: tuple[int, int, int]) -> Any:
+def values_of(text: Any, shape: tuple[int, ...]) -> Any:
     import numpy as np
 
     if not isinstance(text, str):
         raise Invalid("the storage function must be text")
-    size = 8 * shape[0] * shape[1] * shape[2]
+    size = 8 * prod(shape)
     try:
         packed = base64.b64decode(text, validate=True)
         raw = zlib.decompressobj().decompress(packed, size + 1)
@@ -91,7 +96,7 @@ def _values(text: Any, shape: tuple[int, int, int]) -> Any:
     return np.frombuffer(raw, dtype="<i8").reshape(shape)
 
 
-def _histories(reach: int, memory: int) -> list[tuple[int, ...]]:
+def histories_of(reach: int, memory: int) -> list[tuple[int, ...]]:
     return list(product(range(-reach, reach + 1), repeat=memory))
 
 
@@ -101,7 +106,7 @@ def _exists(low: int, high: int, reach: int, memory: int) -> Any:
 
     out = np.ones((high - low + 1, (2 * reach + 1) ** memory), dtype=np.bool_)
     cells = np.arange(low, high + 1)
-    for column, differences in enumerate(_histories(reach, memory)):
+    for column, differences in enumerate(histories_of(reach, memory)):
         reading = cells.copy()
         for e in differences:
             reading = reading + e
@@ -116,7 +121,7 @@ def _forces(
     import numpy as np
 
     cells = np.arange(low, high + 1, dtype=np.int64)
-    histories = _histories(reach, memory)
+    histories = histories_of(reach, memory)
     columns = np.array(histories, dtype=np.int64).reshape(len(histories), memory)
     ages = [cells[:, None] + columns[:, :age].sum(axis=1)[None, :] for age in range(memory + 1)]
     ages = [np.broadcast_to(a, (len(cells), len(columns))) for a in ages][losses.delay :]

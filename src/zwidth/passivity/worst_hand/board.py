@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
-from math import ceil, floor
+from math import ceil, floor, isqrt
 from typing import Literal
 
 import numpy as np
@@ -37,9 +37,6 @@ Rules = Literal["generous", "strict"]
 
 NOWHERE = 2**62
 """In place of the force of a state that is not on the board."""
-
-_LARGEST_ENERGY = 2**48
-"""Force × span stays below: sums of moves stay exact in doubles and products in 64 bits."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +107,7 @@ class Board:
         """Where in a cell the hand may stand, in steps."""
         if self.rules == "generous":
             return np.arange(self.steps + 1, dtype=np.int64)
-        near = [self.steps * part // 1024 for part in (0, 1, 16, 256)]
+        near = [0, 1, isqrt(self.steps), self.steps // 4]
         return np.unique([*near, self.steps // 2, *(self.steps - k for k in near)]).astype(np.int64)
 
     @property
@@ -133,14 +130,22 @@ class Board:
         """A power of two, so small that rounding does not matter and so large that sums are exact."""
         span = 4 * self.domain.cells * self.steps
         most = max(self._largest_force, self.losses.coulomb_friction, Fraction(1, 10**12))
-        exponent = _power_above(most * span / _LARGEST_ENERGY)
+        exponent = _power_above(most * span / self._largest_energy)
         return Fraction(2) ** exponent
+
+    @property
+    def _largest_energy(self) -> int:
+        """Force × span stays below: sums of moves stay exact in doubles and products in 64 bits."""
+        return 2**48
 
     @property
     def _largest_force(self) -> Fraction:
         n = max(abs(self.domain.lowest), abs(self.domain.highest)) + self.domain.reach
         spring = max((abs(f) for _, f in self.law.points), default=Fraction(0))
-        return sum((abs(c) for c in self.law.taps), Fraction(0)) * n * self.losses.resolution + spring
+        relaxing = Fraction(0) if self.law.relaxing is None else 2 * abs(self.law.relaxing[1])
+        stiffness = sum((abs(c) for c in self.law.taps), Fraction(0)) + relaxing
+        drag = self.losses.damping / self.losses.period * (self.domain.reach + 1)
+        return (stiffness * n + drag) * self.losses.resolution + spring
 
     @property
     def rounding(self) -> int:

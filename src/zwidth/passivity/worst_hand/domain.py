@@ -7,9 +7,12 @@ from math import ceil, floor
 
 from zwidth.device.device import Device
 from zwidth.errors import InputError
-from zwidth.passivity.worst_hand.board import Board, Domain, Losses
+from zwidth.passivity.worst_hand.board import Domain, Losses
 from zwidth.passivity.worst_hand.law import FiniteLaw
 from zwidth.quantity.exact import Exact, RealLike
+
+RELAXING_COUNTS = {0: 24, 1: 6, 2: 3}
+"""The same for a law with a part that relaxes, by samples of delay."""
 
 COUNTS = {0: 256, 1: 64, 2: 16, 3: 7, 4: 4, 5: 3, 6: 2}
 """Counts inside, and counts per sample, that are looked at by default, by readings remembered."""
@@ -62,15 +65,19 @@ def domain_for(
         If a number is not positive, or the board would be too large.
     """
     memory = law.memory + losses.delay
-    usual = COUNTS.get(memory, 1)
+    usual = (COUNTS if law.relaxing is None else RELAXING_COUNTS).get(memory, 1)
     inside = _counts("penetration", penetration, losses.resolution) or _extent(law, losses) or usual
     reach = _counts("speed", speed, losses.resolution / losses.period) or min(usual, 2 * inside + 1)
     if law.surface == "none":
         domain = Domain(-inside, inside, reach)
     else:
         domain = Domain(1 - (memory + 1) * reach, inside, reach)  # beyond it, a hand has been forgotten
-    states = Board(law, losses, domain, 8, "generous")
-    if states.domain.cells * states.histories * 9 > MOST_STATES:
+        if law.relaxing is not None and law.surface == "position":  # which never is
+            domain = Domain(min(domain.lowest, -inside), inside, reach)
+    states = domain.cells * (2 * reach + 1) ** memory * 9
+    if law.relaxing is not None:
+        states *= domain.cells
+    if states > MOST_STATES:
         raise InputError(
             f"the law remembers {memory} readings before the last one, and {domain.cells} counts with moves "
             f"of up to {reach} counts make too many states: give a smaller penetration or speed"

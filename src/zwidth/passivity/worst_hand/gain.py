@@ -120,13 +120,13 @@ def gain(played: Played, motion: str) -> Gain | None:
         part = Repeat(len(approach) - 1, len(x) - 1, 1)
         document = _document(board, Motion(tuple(x), (), (part,)), motion)
         for _ in range(3):  # rounds that settle the law, rounds that pay for the approach, and once more
-            found = _recomputed(document)
+            found = _recomputed(document, _settling(board, len(round_)))
             if found is None:
                 break
             energy, per_round = found
             if energy > 0:
                 return _witness(board, document, Motion(tuple(x), (), (part,)), energy, per_round, motion)
-            part = part._replace(times=part.times + ceil(-energy / per_round) + 1)
+            part = part._replace(times=document["repeats"]["times"] + ceil(-energy / per_round) + 1)
             document = _document(board, Motion(tuple(x), (), (part,)), motion)
     return None
 
@@ -155,11 +155,18 @@ def _steps(start: Fraction, end: Fraction, most: Fraction) -> list[Fraction]:
     return [start + (end - start) * Fraction(k, count) for k in range(count + 1)]
 
 
-def _recomputed(document: dict[str, Any]) -> tuple[Fraction, Fraction] | None:
-    """Energy and gain per round, with as many more rounds as the law needs to settle; None without gain."""
+def _settling(board: Board, samples: int) -> int:
+    """Rounds after which the law does the same in each, however finely it remembers."""
+    if board.law.relaxing is None:
+        return 20
+    return 20 + ceil(64 / (1 - board.law.relaxing[0]) / samples)
+
+
+def _recomputed(document: dict[str, Any], settling: int) -> tuple[Fraction, Fraction] | None:
+    """Energy and gain per round, over enough rounds for the law to settle; None without gain."""
     from zwidth.passivity.checker.contact_motion import contact_motion_energy
 
-    document["repeats"]["times"] = max(document["repeats"]["times"], 20)
+    document["repeats"]["times"] = max(document["repeats"]["times"], settling)
     energy, per_round = contact_motion_energy(document)
     return (energy, per_round) if per_round > 0 else None
 

@@ -4,9 +4,10 @@
     f = 0 where q ≤ 0                  for laws with a surface
     f = max(0, f)                      for laws that never pull
 
-q is the encoder's reading, a whole number of counts.  Only laws that remember a
-few readings are here: springs, dampers on differenced counts, windows, filters
-of finite response.
+q is the encoder's reading, a whole number of counts.  Laws that remember a few
+readings are here: springs, dampers on differenced counts, windows, filters
+of finite response; and one that never quite forgets, a Maxwell branch or a
+one-pole filter (see `relaxing`).
 """
 
 from __future__ import annotations
@@ -46,6 +47,11 @@ class FiniteLaw:
         A spring given by (position [m; rad], force [N; N·m]) in place of taps.
     force_limit
         Largest force of the actuator [N; N·m], or None.
+    relaxing
+        (p, g) of a part y = g (u_k − a_k), a_{k+1} = p a_k + (1 − p) u_k that never
+        quite forgets, 0 ≤ p < 1, g [N/m; N·m/rad]; or None.
+    resets
+        True if a becomes 0 where the hand is outside.
     """
 
     taps: tuple[Fraction, ...]
@@ -53,6 +59,8 @@ class FiniteLaw:
     clamped: bool = False
     points: tuple[tuple[Fraction, Fraction], ...] = ()
     force_limit: Fraction | None = None
+    relaxing: tuple[Fraction, Fraction] | None = None
+    resets: bool = False
 
     @property
     def memory(self) -> int:
@@ -93,6 +101,10 @@ class FiniteLaw:
             document[f"points_{length}_{force}"] = [[exact_text(x), exact_text(f)] for x, f in self.points]
         if self.force_limit is not None:
             document[f"force_limit_{force}"] = exact_text(self.force_limit)
+        if self.relaxing is not None:
+            pole, stiffness = (exact_text(c) for c in self.relaxing)
+            document["relaxing"] = {"pole": pole, unit_key("stiffness", motion): stiffness}
+            document["resets"] = self.resets
         return document
 
 
@@ -119,9 +131,8 @@ def finite_law(device: Device, environment: Environment, *, force_limit: bool = 
     Raises
     ------
     InputError
-        If the law remembers for ever, as a one-pole filter or a relaxing solid
-        does, or longer than `LONGEST_MEMORY` readings; or if there is no force
-        limit to count in.
+        If the law has two or more parts that relax, or one that swings, or remembers
+        longer than `LONGEST_MEMORY` readings; or if there is no force limit to count in.
     """
     limit = None
     if force_limit:
@@ -135,10 +146,7 @@ def finite_law(device: Device, environment: Environment, *, force_limit: bool = 
     h = environment.pulse_transfer_function(device.exact("sample_period"))
     numerator, denominator = _trimmed(h.numerator, h.denominator)
     if any(denominator[1:]):
-        raise InputError(
-            "the worst hand is sought against laws that remember a few readings, and this one remembers for "
-            f"ever: {environment.describe()}; zwidth check covers it in sustained contact"
-        )
+        return _relaxing(environment, numerator, denominator, limit)
     taps = tuple(c / denominator[0] for c in numerator)
     while len(taps) > 1 and taps[-1] == 0:
         taps = taps[:-1]
@@ -148,6 +156,27 @@ def finite_law(device: Device, environment: Environment, *, force_limit: bool = 
             "hand is sought: the number of states grows with the power of it"
         )
     return FiniteLaw(taps, _surface(environment), environment.clamped, (), limit)
+
+
+def _relaxing(
+    environment: Environment, numerator: list[Fraction], denominator: list[Fraction], limit: Fraction | None
+) -> FiniteLaw:
+    """H = K + g (1 − ζ)/(1 − p ζ): a spring and one part that relaxes."""
+    n, d = ([c / denominator[0] for c in part] for part in (numerator, denominator))
+    while d and d[-1] == 0 and n[-1] == 0:
+        n, d = n[:-1], d[:-1]
+    if len(d) != 2 or not 0 < -d[1] < 1:
+        raise InputError(
+            "the worst hand is sought against laws that remember a few readings, or have one part that "
+            f"relaxes and does not swing; this one has more: {environment.describe()}; zwidth check covers "
+            "it in sustained contact"
+        )
+    if limit is not None:
+        raise InputError("the force limit cannot be counted in for a law that relaxes; leave it out")
+    pole = -d[1]
+    stiffness = (n[0] + n[1]) / (1 - pole)
+    surface = _surface(environment)
+    return FiniteLaw((stiffness,), surface, environment.clamped, (), None, (pole, n[0] - stiffness))
 
 
 def _surface(environment: Environment) -> Surface:

@@ -272,9 +272,9 @@ class _Search:
                 return motion is not None
 
             passive, active = self._both_sides(proved, refuted, passive, active)
-            if passive is None or active is None or self._late():
+            if passive is None or self._late():
                 break
-            if abs(active - passive) <= self.tolerance * max(active, passive):
+            if active is not None and abs(active - passive) <= self.tolerance * max(active, passive):
                 break
         at_first = game(self._first())
         storage = None if passive is None else proofs[passive]

@@ -15,6 +15,7 @@ import numpy as np
 
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.worst_hand.relaxing import RelaxingBoard
 from zwidth.passivity.worst_hand.solve import Played
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ class Storage:
         board = self.played.board
         assert self.played.value is not None, "only a game that nobody wins leaves a storage function"
         packed = zlib.compress(self.played.value.astype("<i8").tobytes(), 6)
-        document = {
+        document: dict[str, Any] = {
             "format": FORMAT,
             "kind": "storage",
             "loop": loop_document(board.losses, self.motion),
@@ -55,6 +56,8 @@ class Storage:
             "force_unit": exact_text(board.force_unit),
             "storage": base64.b64encode(packed).decode("ascii"),
         }
+        if isinstance(board, RelaxingBoard):
+            document["domain"]["levels_per_count"] = board.levels
         return Certificate((document,))
 
     def to_xarray(self) -> xr.DataArray:
@@ -67,6 +70,8 @@ class Storage:
 
         board = self.played.board
         assert self.played.value is not None
+        if isinstance(board, RelaxingBoard):
+            return self._relaxing_array(board)
         resolution = float(board.losses.resolution)
         cells = np.arange(board.domain.lowest, board.domain.highest + 1)
         x = (cells[:, None] + board.knots[None, :] / board.steps) * resolution
@@ -86,6 +91,27 @@ class Storage:
             dims=("reading_before", "position"),
             coords={
                 "reading_before": ("reading_before", cells, {"units": "counts"}),
+                "position": ("position", x.ravel(), {"units": unit}),
+            },
+            attrs={"units": "J", "long_name": "available storage, at most"},
+            name="available_storage",
+        )
+
+    def _relaxing_array(self, board: RelaxingBoard) -> xr.DataArray:
+        """V along the position, for each level of the average reading, the hand at rest before."""
+        import xarray as xr
+
+        assert self.played.value is not None
+        cells = np.arange(board.domain.lowest, board.domain.highest + 1)
+        x = (cells[:, None] + board.knots[None, :] / board.steps) * float(board.losses.resolution)
+        energy = self.played.value[:, board.histories // 2] * float(board.energy_unit)
+        levels = board.readings[0] + np.arange(board.averages) / board.levels
+        unit = "rad" if self.motion == "rotary" else "m"
+        return xr.DataArray(
+            energy.transpose(1, 0, 2).reshape(len(levels), -1),
+            dims=("average_reading", "position"),
+            coords={
+                "average_reading": ("average_reading", levels, {"units": "counts"}),
                 "position": ("position", x.ravel(), {"units": unit}),
             },
             attrs={"units": "J", "long_name": "available storage, at most"},
