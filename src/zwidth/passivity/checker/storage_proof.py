@@ -26,6 +26,7 @@ from .contact_law import Law, Losses, read_law, read_losses
 from .reading import Invalid, get, integer, number
 
 MOST_VALUES = 60_000_000
+MOST_MOVES = 10_000_000
 _EXACT = 2**53
 
 
@@ -43,8 +44,11 @@ def storage(document: Mapping[str, Any]) -> str:
     unit = number(get(document, "force_unit"))
     memory = max(len(law.taps) - 1, 0) + losses.delay
     width, cells = 2 * reach + 1, high - low + 1
-    if cells < 1 or unit <= 0 or cells * width**memory * (steps + 1) > MOST_VALUES:
-        raise Invalid("the board is empty, or larger than can be checked")
+    if cells < 1 or unit <= 0 or reach * steps > MOST_MOVES:
+        raise Invalid("the board is empty, or its moves are longer than can be checked")
+    if cells * width**memory * (steps + 1) > MOST_VALUES:
+        raise Invalid("the board is larger than can be checked")
+    _require_small(law, losses, unit, max(abs(low), abs(high)))
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
     shape = (cells, width**memory, steps + 1)
@@ -71,6 +75,14 @@ def storage(document: Mapping[str, Any]) -> str:
         "no move takes out more than the storage function falls, from any position and memory, "
         f"for readings up to {high} counts inside and moves up to {reach} counts a sample"
     )
+
+
+def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int) -> None:
+    """Forces must fit their numbers before they are multiplied."""
+    most = sum((abs(c) for c in law.taps), Fraction(0)) * losses.resolution * farthest
+    most += max((abs(f) for _, f in law.points), default=Fraction(0)) + (law.limit or 0)
+    if most / unit >= _EXACT:
+        raise Invalid("the forces are too large to be compared exactly")
 
 
 def signed(value: Any) -> int:

@@ -14,7 +14,7 @@ from typing import Any
 
 from .contact_law import Law, Losses
 from .reading import Invalid, get, integer, number
-from .storage_proof import MOST_VALUES, histories_of, signed, values_of
+from .storage_proof import MOST_MOVES, MOST_VALUES, histories_of, signed, values_of
 
 PART = 2**16
 _MOST = 2**61
@@ -37,6 +37,8 @@ def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -
     least = 0 if law.surface == "penetration" else low
     levels = (max(high, least + 1) - least) * per_count + 1
     columns = (2 * reach + 1) ** losses.delay
+    if reach * steps > MOST_MOVES:
+        raise Invalid("the moves are longer than can be checked")
     if high < low or unit <= 0 or (high - low + 1) * columns * levels * (steps + 1) > MOST_VALUES:
         raise Invalid("the board is empty, or larger than can be checked")
     if law.surface == "penetration" and low > 1 - (losses.delay + 1) * reach:

@@ -70,16 +70,30 @@ class Domain:
         The first and the last cell.
     reach
         The largest difference of two successive readings.
+    deepest, fastest
+        The bounds themselves, which need not be whole counts: no motion goes beyond
+        them.  None: the upper edge of the last cell, and the reach.
     """
 
     lowest: int
     highest: int
     reach: int
+    deepest: Fraction | None = None
+    fastest: Fraction | None = None
 
     @property
     def cells(self) -> int:
         """How many there are."""
         return self.highest - self.lowest + 1
+
+    @property
+    def within(self) -> Domain:
+        """Only the cells that lie within the bounds."""
+        if self.deepest is None:
+            return self
+        highest = floor(self.deepest) - 1
+        lowest = self.lowest if self.lowest < -self.highest else max(self.lowest, -floor(self.deepest))
+        return Domain(lowest, highest, self.reach, self.deepest, self.fastest)
 
 
 @dataclass(frozen=True)
@@ -174,8 +188,10 @@ class Board:
     @property
     def farthest(self) -> int:
         """The longest move, in steps."""
-        slack = 2 if self.rules == "generous" else 0  # both ends of a move lie between knots
-        return self.domain.reach * self.steps + slack
+        if self.rules == "strict":
+            fastest = self.domain.reach if self.domain.fastest is None else self.domain.fastest
+            return floor(fastest * self.steps)
+        return self.domain.reach * self.steps + 2  # both ends of a move lie between knots
 
     @cached_property
     def costs(self) -> Integers:

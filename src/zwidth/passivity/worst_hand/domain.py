@@ -66,14 +66,18 @@ def domain_for(
     """
     memory = law.memory + losses.delay
     usual = (COUNTS if law.relaxing is None else RELAXING_COUNTS).get(memory, 1)
-    inside = _counts("penetration", penetration, losses.resolution) or _extent(law, losses) or usual
-    reach = _counts("speed", speed, losses.resolution / losses.period) or min(usual, 2 * inside + 1)
+    deepest = (
+        _counts("penetration", penetration, losses.resolution) or _extent(law, losses) or Fraction(usual)
+    )
+    fastest = _counts("speed", speed, losses.resolution / losses.period)
+    highest = max(1, ceil(deepest) - 1)
+    reach = ceil(fastest) if fastest else min(usual, 2 * highest + 1)
+    lowest = 1 - (memory + 1) * reach  # beyond it, a hand has been forgotten
     if law.surface == "none":
-        domain = Domain(-inside, inside, reach)
-    else:
-        domain = Domain(1 - (memory + 1) * reach, inside, reach)  # beyond it, a hand has been forgotten
-        if law.relaxing is not None and law.surface == "position":  # which never is
-            domain = Domain(min(domain.lowest, -inside), inside, reach)
+        lowest = -highest - 1
+    elif law.relaxing is not None and law.surface == "position":  # which never is
+        lowest = min(lowest, -highest - 1)
+    domain = Domain(lowest, highest, reach, deepest, fastest or None)
     states = domain.cells * (2 * reach + 1) ** memory * 9
     if law.relaxing is not None:
         states *= domain.cells
@@ -85,18 +89,18 @@ def domain_for(
     return domain
 
 
-def _counts(name: str, value: RealLike | None, unit: Fraction) -> int:
+def _counts(name: str, value: RealLike | None, unit: Fraction) -> Fraction:
     if value is None:
-        return 0
+        return Fraction(0)
     exact = Exact(value).fraction
     if exact <= 0:
         raise InputError(f"{name} must be > 0, got {value}: a hand that does not move takes nothing out")
-    return max(1, ceil(exact / unit))
+    return exact / unit
 
 
-def _extent(law: FiniteLaw, losses: Losses) -> int:
+def _extent(law: FiniteLaw, losses: Losses) -> Fraction:
     """Counts from 0 to the farthest given point of a spring; beyond it the force is constant."""
     if not law.points:
-        return 0
+        return Fraction(0)
     ends = (law.points[0][0] / losses.resolution, law.points[-1][0] / losses.resolution)
-    return max(abs(floor(ends[0])), abs(ceil(ends[1]))) + 1
+    return Fraction(max(abs(floor(ends[0])), abs(ceil(ends[1]))) + 2)

@@ -135,8 +135,9 @@ class Game:
     def hand(self) -> str:
         """The hands that a proof covers, in words."""
         length, speed = ("rad", "rad/s") if self.motion == "rotary" else ("m", "m/s")
-        deepest = float(self.domain.highest * self.losses.resolution)
-        fastest = float(self.domain.reach * self.losses.resolution / self.losses.period)
+        resolution = self.losses.resolution
+        deepest = float((self.domain.highest + 1) * resolution)
+        fastest = float(self.domain.reach * resolution / self.losses.period)
         if self.law.surface == "none":
             outside = "on either side"
         elif self.law.relaxing is not None and self.law.surface == "position":
@@ -145,7 +146,7 @@ class Game:
             outside = "inside and any distance outside"
         return (
             f"hands of up to {fastest:.4g} {speed} over one sample ({self.domain.reach} counts), "
-            f"up to {deepest:.4g} {length} ({self.domain.highest} counts) {outside}"
+            f"up to {deepest:.4g} {length} ({self.domain.highest + 1} counts) {outside}"
         )
 
     def prove(
@@ -161,17 +162,20 @@ class Game:
         self, steps: int, deadline: float = float("inf"), tell: Tell | None = None, on: str = "cpu"
     ) -> Gain | None:
         """A motion that gains, recomputed exactly, or None."""
+        if self.domain.within.highest < 1:  # no reading inside lies within the bounds
+            return None
         played = self._play(steps, "strict", deadline, tell, on)
         return gain(played, self.motion) if played.cycle else None
 
     def _play(self, steps: int, rules: Any, deadline: float, tell: Tell | None, on: str) -> Played:
+        domain = self.domain.within if rules == "strict" else self.domain
         if self.law.relaxing is not None:
             if on != "cpu":
                 raise InputError("a law that relaxes is played on the processor: leave out on")
             levels = max(1, steps // 8) if rules == "generous" else 2
-            board = RelaxingBoard(self.law, self.losses, self.domain, steps, rules, levels)
+            board = RelaxingBoard(self.law, self.losses, domain, steps, rules, levels)
             return play_relaxing(board, deadline, tell)
-        return play(Board(self.law, self.losses, self.domain, steps, rules), deadline, tell, on)
+        return play(Board(self.law, self.losses, domain, steps, rules), deadline, tell, on)
 
 
 Tell = Callable[[int], None]
@@ -243,7 +247,7 @@ def worst_hand(
     game = game_of(device, environment, penetration, speed, force_limit)
     law = as_environment(environment)
     said = assumptions(device, game)
-    deadline = time.monotonic() + seconds
+    deadline = time.monotonic() + patience(seconds)
     for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
         storage = game.prove(steps, deadline, progress, on)
         if storage is not None:
@@ -256,6 +260,19 @@ def worst_hand(
         if time.monotonic() >= deadline:
             break
     return WorstHand("undecided", said, device, law, None, None, None)
+
+
+def patience(seconds: float) -> float:
+    """The time that a search may take [s].
+
+    Raises
+    ------
+    InputError
+        If it is not a number ≥ 0.
+    """
+    if not isinstance(seconds, int | float) or not seconds >= 0:
+        raise InputError(f"seconds must be a number ≥ 0, got {seconds!r}: it is the time that may pass")
+    return float(seconds)
 
 
 def assumptions(device: Device, game: Game) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import to_json, unit_suffix
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.worst_hand.gain import Gain
-from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of
+from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of, patience
 from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
@@ -182,12 +182,16 @@ def passive_limit(
     """
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
-    if not 1e-6 <= tolerance < 1:
+    if not isinstance(tolerance, int | float) or not 1e-6 <= tolerance < 1:
         raise InputError(
-            f"tolerance must be from 1e-6 to 1, got {tolerance}: it is the relative width wanted"
+            f"tolerance must be a number from 1e-6 to 1, got {tolerance!r}: it is the relative width wanted"
         )
+    if not isinstance(parameter, str):
+        raise InputError(f"parameter is the name of one, such as 'stiffness', got {parameter!r}")
     law = as_environment(environment)
-    search = _Search(_parameter(device, law, parameter), tolerance, time.monotonic(), seconds, progress)
+    search = _Search(
+        _parameter(device, law, parameter), tolerance, time.monotonic(), patience(seconds), progress
+    )
     bracket = None if force_limit else search.by_closed_forms()
     bounded = penetration is not None or speed is not None
     if bracket is not None and not bounded and bracket.relative_width <= tolerance:
@@ -233,9 +237,10 @@ class _Search:
             return bool(verdict(value).outcome == "active")
 
         try:
-            passive, active = self._both_sides(proved, refuted)
+            verdict(self._first())
         except InputError:  # a law without H(z), which only the game can decide
             return None
+        passive, active = self._both_sides(proved, refuted)
         good = None if passive is None else verdict(passive)
         bad = None if active is None else verdict(active)
         said = (good or bad or verdict(self._first())).assumptions
@@ -423,7 +428,7 @@ def _parameter(device: Device, environment: Environment, name: str) -> _Paramete
         def change(value: Exact) -> tuple[Device, Environment]:
             return device, environment.replace(**{key: value})
 
-        return _Parameter(f"environment.{key}", unit, float(now) or _guess(device, key), change, False)
+        return _Parameter(f"environment.{key}", unit, abs(float(now)) or _guess(device, key), change, False)
     if owner in ("", "device") and key in in_device:
         known = 1 / device.exact("sample_period") if key == "rate" else device.exact(key)
 
