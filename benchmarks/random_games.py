@@ -1,9 +1,9 @@
-"""Do the worst hand and `zwidth check` ever contradict each other?  Random walls near their limits.
+"""Do the worst hand and the closed forms ever contradict each other?  Random walls near their limits.
 
 Springs, damped walls, windows of two and finite filters of velocity, clamped or not,
 no delay or one sample, stiffness, damping and friction within a third of what is
-needed.  Each loop is decided twice: by `zw.check`, and by the game of the worst hand
-on a small board of a dozen counts.  What may not be:
+needed.  Each loop is decided twice: by the closed forms of `zw.check`, and by the game of
+the worst hand on a small board of a dozen counts.  What may not be:
 
   proof against motion     a certificate of kind "spring" or "contact", and a motion of
                            the game that gains
@@ -37,6 +37,7 @@ import numpy as np
 from rich.progress import track
 
 import zwidth as zw
+from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.worst_hand.board import Domain
 from zwidth.passivity.worst_hand.domain import losses_of
 from zwidth.passivity.worst_hand.hand import Game
@@ -228,7 +229,7 @@ def _got_by_tracking(loop: Loop, motion: Any, rounds: int, off_the_edge: float) 
 
 def compare(loop: Loop, tally: Tally, replay: bool) -> None:
     """Decide a loop twice and write down what was noticed."""
-    verdict = zw.check(loop.device, loop.wall)
+    verdict = check_by_closed_forms(loop.device, loop.wall)
     kind = verdict.certificate.kind if verdict.certificate is not None else ""
     outcome, evidence = decide(loop)
     tally.outcomes[f"check {verdict.outcome} {kind}".strip() + f", game {outcome}"] += 1
@@ -285,7 +286,7 @@ def _replay(loop: Loop, motion: Any, tally: Tally) -> None:
 
 def main() -> None:
     """Run all and print what was noticed."""
-    parser = argparse.ArgumentParser(description="The worst hand against zwidth check on random walls.")
+    parser = argparse.ArgumentParser(description="The worst hand against the closed forms on random walls.")
     parser.add_argument("--loops", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--replays", type=int, default=20, help="replay every so many-th loop")

@@ -1,4 +1,4 @@
-"""The worst hand and `zw.check` on random walls near their limits: never a contradiction."""
+"""The worst hand and the closed forms on random walls near their limits: never a contradiction."""
 
 from __future__ import annotations
 
