@@ -147,6 +147,18 @@ def test_the_force_limit_is_counted_in(run: Run) -> None:
     assert any("the force limit is counted in" in line for line in with_limit["assumptions"])
 
 
+def test_the_converter_is_counted_in(run: Run) -> None:
+    """Steps that the friction does not cover take the loop apart; without any there is nothing to count."""
+    loop = ("limit", "haptic-paddle", "--stiffness", "100", "--speed", "0.1 m/s", "--penetration", "0.3 mm")
+    coarse = (*loop, "--force-resolution", "0.05 N", "--parameter", "coulomb-friction", "--seconds", "5")
+    found = json.loads(run(*coarse, "--count-force-resolution", "--json").out)
+    assert found["proved_active_N"] < 0.025 <= found["proved_passive_N"]
+    assert any("the converter steps are counted in" in line for line in found["assumptions"])
+    refused = run("limit", "novint-falcon", "--damping", "0.1", *loop[2:], "--count-force-resolution")
+    assert refused.status == 2
+    assert "no force_resolution" in refused.err
+
+
 @pytest.mark.parametrize(
     ("argv", "part"),
     [

@@ -42,9 +42,11 @@ def configure_limit(parser: argparse.ArgumentParser) -> None:
         ("--seconds", "TIME", "time after which the bracket so far is given [s] (default: 60)"),
     ):
         search.add_argument(option, metavar=metavar, action=Once, help=meaning)
-    search.add_argument(
-        "--count-force-limit", action="store_true", help="count in the force limit of the device"
-    )
+    for option, meaning in (
+        ("--count-force-limit", "count in the force limit of the device"),
+        ("--count-force-resolution", "count in the steps of its D/A converter"),
+    ):
+        search.add_argument(option, action="store_true", help=meaning)
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the bracket as JSON, units in the keys")
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
@@ -100,7 +102,10 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     """The search as `passive_limit` takes it."""
     length = "rad" if motion == "rotary" else "m"
     units = {"penetration": length, "speed": f"{length}/s", "tolerance": "1", "seconds": "s"}
-    options: dict[str, Any] = {"force_limit": arguments.count_force_limit}
+    options: dict[str, Any] = {
+        "force_limit": arguments.count_force_limit,
+        "force_resolution": arguments.count_force_resolution,
+    }
     for name, unit in units.items():
         typed = getattr(arguments, name)
         if typed is not None:

@@ -18,6 +18,8 @@ def force(law, readings, resolution):
         total = sum(float(c) * u[..., i] for i, c in enumerate(law.taps))
     if law.clamped:
         total = np.maximum(total, 0.0)
+    if law.force_step is not None:
+        total = float(law.force_step) * np.floor(total / float(law.force_step) + 0.5)
     if law.force_limit is not None:
         total = np.clip(total, -float(law.force_limit), float(law.force_limit))
     return total if law.surface == "none" else np.where(readings[..., 0] > 0, total, 0.0)

@@ -25,6 +25,9 @@ def exact_force(law, readings, resolution):
         total = sum(c * v for c, v in zip(law.taps, u, strict=True))
     if law.clamped and total < 0:
         total = 0
+    if law.force_step is not None:
+        below = Fraction(total) // law.force_step * law.force_step
+        total = below if total - below < law.force_step / 2 else below + law.force_step
     if law.force_limit is not None:
         total = min(law.force_limit, max(-law.force_limit, total))
     return Fraction(0) if law.surface != "none" and q[0] <= 0 else Fraction(total)
@@ -55,8 +58,8 @@ class PlainGame:
         readings = (state[0], *state[2])[self.losses.delay :]
         if law.surface != "none" and readings[0] <= 0:
             return 0
-        if law.points:
-            total = floor(exact_force(replace(law, force_limit=None), readings[:1], resolution) / unit)
+        if law.points or law.force_step is not None:
+            total = floor(exact_force(replace(law, force_limit=None), readings, resolution) / unit)
         else:
             total = 0
             for tap, n in zip(law.taps, readings, strict=True):

@@ -200,6 +200,12 @@ IIR = zw.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
         (SPRING, {"tolerance": "fine"}, "tolerance"),
         (SPRING, {"seconds": "60"}, "seconds"),
         (SPRING, {"force_limit": True}, "no force_limit"),
+        (SPRING, {"force_resolution": True}, "no force_resolution"),
+        (
+            (device(1, 1, force_resolution=1), zw.Maxwell(stiffness=300, damping=1)),
+            {"force_resolution": True},
+            "converter steps cannot be counted in",
+        ),
         (SPRING, {"parameter": "colour"}, "no parameter 'colour'"),
         (SPRING, {"parameter": "device.stiffness"}, "no parameter"),
         (SPRING, {"parameter": ""}, "no parameter"),

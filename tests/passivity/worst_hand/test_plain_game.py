@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from random import Random
@@ -26,6 +27,11 @@ LAWS = {
     "longer memory, clamped": ("penetration", 3, True, 0),
     "points": ("none", 0, False, 0),
     "points with a delay": ("none", 0, False, 1),
+    "spring behind a converter": ("position", 1, False, 0),
+    "damped behind a converter": ("position", 2, False, 0),
+    "damped on both sides behind a converter": ("none", 2, False, 0),
+    "clamped behind a converter, with a delay": ("penetration", 2, True, 1),
+    "points behind a converter": ("none", 0, False, 0),
 }
 """A surface, how many taps (0: a spring given by points), clamped, the delay in samples."""
 
@@ -55,7 +61,11 @@ def drawn(random, name, easier):
     limit = rough * step * random.choice([1, 2]) if random.random() < 0.25 else None
     share = [Fraction(random.randint(60, 160), 100) * easier for _ in range(2)]
     damping, friction = share[0] * rough * period / 2 * (2 * delay + 1), share[1] * rough * step / 2
-    return FiniteLaw(taps, surface, clamped, points, limit), Losses(damping, friction, step, period, delay)
+    law = FiniteLaw(taps, surface, clamped, points, limit)
+    if "converter" in name:  # of some steps a count, or some counts a step, and with ties
+        coarse = rough * step * random.choice([2, 1, Fraction(1, 2), Fraction(3, 7)])
+        law, friction = replace(law, force_step=coarse), friction + share[1] * coarse / 2
+    return law, Losses(damping, friction, step, period, delay)
 
 
 def domain_of(random, law, delay):

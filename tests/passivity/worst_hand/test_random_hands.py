@@ -38,26 +38,35 @@ LOOPS = {
     "spring with a delay": (device("0.45", "0.0165", 1), zw.Wall(300)),
     "damped with a delay": (device("0.4", "0.0275", 1), zw.Wall(300, "0.1")),
     "force limit": (device("0.16", "0.0165", force_limit="0.2"), zw.Wall(300)),
+    "converter": (device("0.36", "0.036", force_resolution="0.07"), zw.Wall(300)),
+    "damped behind a converter": (
+        device("0.4", "0.043", force_resolution="0.04", force_limit="0.23"),
+        zw.Wall(300, "0.1"),
+    ),
     "detents": (device("0.16", "0.0165"), zw.NonlinearSpring.detents(2, "0.0012", "0.08")),
 }
 """Loops near the limit; some of them active for a faster or deeper hand."""
+
+
+def counted(loop):
+    """Of the actuator, what is known."""
+    return {f"force_{key}": getattr(loop, f"force_{key}") is not None for key in ("limit", "resolution")}
 
 
 @cache
 def proved(name):
     """The game and the storage function."""
     loop, law = LOOPS[name]
-    limited = name == "force limit"
-    found = worst_hand(loop, law, force_limit=limited, **BOUNDS)
+    found = worst_hand(loop, law, **counted(loop), **BOUNDS)
     assert found.outcome == "passive"
-    return game_of(loop, law, force_limit=limited, **BOUNDS), found.storage
+    return game_of(loop, law, **counted(loop), **BOUNDS), found.storage
 
 
 def weaker(name, share):
     """The same game on a device with a share of the damping and friction."""
     loop, law = LOOPS[name]
     less = {key: loop.exact(key) * share for key in ("damping", "coulomb_friction")}
-    return game_of(loop.replace(**less), law, force_limit=name == "force limit", **BOUNDS)
+    return game_of(loop.replace(**less), law, **counted(loop), **BOUNDS)
 
 
 def left_over(crowd, state, move):

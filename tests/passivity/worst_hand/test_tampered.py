@@ -40,6 +40,7 @@ LOOPS = {
     "clamped": (device("0.26", "0.027"), zw.Wall(300, "0.1", clamped=True)),
     "delayed": (device("0.46", "0.017", 1), zw.Wall(300)),
     "limited": (device("0.26", "0.027", force_limit="0.1"), zw.Wall(300, "0.1")),
+    "stepped": (device("0.5", "0.043", force_resolution="0.04", force_limit="0.2"), zw.Wall(300, "0.1")),
     "points": (
         device("0.16", "0.0165"),
         zw.NonlinearSpring([-4e-4, -2e-4, 0, 2e-4, 4e-4], [0, "-0.05", 0, "0.05", 0]),
@@ -51,7 +52,8 @@ LOOPS = {
 def least(name):
     """The smallest storage function there is, every value of it attained by a move; and its document."""
     loop, law = LOOPS[name]
-    game = game_of(loop, law, force_limit=name == "limited", **BOUNDS)
+    counted = {f"force_{key}": getattr(loop, f"force_{key}") is not None for key in ("limit", "resolution")}
+    game = game_of(loop, law, **counted, **BOUNDS)
 
     class FromNothing(Board):
         """A board whose search starts at 0."""
@@ -118,7 +120,8 @@ def test_every_number_of_the_loop_binds(name, key):
             if Fraction(delay) != Fraction(loop[key]):
                 rejected(changed(document, ("loop", key), delay))
         return
-    worse = changed(document, ("loop", key), scaled(loop[key], WORSE[key]))
+    factor = "1.1" if (name, key) == ("stepped", "resolution_m") else WORSE[key]  # less changes no step
+    worse = changed(document, ("loop", key), scaled(loop[key], factor))
     if key == "sample_period_s":
         worse["loop"]["delay_s"] = scaled(loop["delay_s"], WORSE[key])
     assert "takes out more" in rejected(worse)
@@ -133,7 +136,8 @@ def test_every_number_of_the_law_binds(name):
     _, document = least(name)
     law = document["law"]
     if law["taps_N_per_m"]:
-        first = [scaled(law["taps_N_per_m"][0], "1.00001"), *law["taps_N_per_m"][1:]]
+        factor = "1.1" if name == "stepped" else "1.00001"  # less changes no step
+        first = [scaled(law["taps_N_per_m"][0], factor), *law["taps_N_per_m"][1:]]
         rejected(changed(document, ("law", "taps_N_per_m"), first))
         rejected(changed(document, ("law", "taps_N_per_m"), [*law["taps_N_per_m"], "0"]))
         rejected(changed(document, ("law", "taps_N_per_m"), []))
@@ -152,6 +156,11 @@ def test_every_number_of_the_law_binds(name):
         rejected(changed(document, ("law", "force_limit_N"), scaled(law["force_limit_N"], "1.001")))
         rejected(changed(document, ("law", "force_limit_N"), None))
         rejected(changed(document, ("law", "force_limit_N"), "-0.1"))
+    if name == "stepped":
+        for step in ("1.001", "0.999", "0.5", "2"):
+            rejected(changed(document, ("law", "force_step_N"), scaled(law["force_step_N"], step)))
+        for step in (None, "0", "-0.04", "nan", [], True):
+            rejected(changed(document, ("law", "force_step_N"), step))
     for bad in ("yes", "", 1):
         rejected(changed(document, ("law", "clamped"), bad))
         rejected(changed(document, ("law", "surface"), bad))

@@ -2,7 +2,8 @@
 
 u = q, or max(q, 0) if fed with the penetration
 f = Σ c_j u_{k−j}  or  a spring through given points
-f = max(0, f) if clamped;  |f| ≤ the force limit;  f = 0 where q_k ≤ 0 if there is a surface
+f = max(0, f) if clamped;  f = 0 where q_k ≤ 0 if there is a surface
+f = the nearest whole step of a converter, the upper of two;  then |f| ≤ the force limit
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ class Law(NamedTuple):
     limit: Fraction | None
     relaxing: tuple[Fraction, Fraction] | None
     resets: bool
+    step: Fraction | None = None
 
     def force(self, readings: Sequence[Fraction], average: Fraction = Fraction(0)) -> Fraction:
         """The force for q_k, q_{k−1}, …, as many as there are taps, and the average a_k."""
@@ -48,6 +50,8 @@ class Law(NamedTuple):
                 f += self.relaxing[1] * (u[0] - average)
         if self.clamped and f < 0:
             f = Fraction(0)
+        if self.step is not None:
+            f = (2 * f + self.step) // (2 * self.step) * self.step
         if self.limit is not None:
             f = max(-self.limit, min(self.limit, f))
         return f
@@ -94,7 +98,7 @@ def read_law(document: Mapping[str, Any]) -> Law:
     if surface not in ("none", "position", "penetration") or not isinstance(clamped, bool):
         raise Invalid("surface must be none, position or penetration, and clamped true or false")
     for key in law:
-        if key not in known and not key.startswith(("taps_", "points_", "force_limit_")):
+        if key not in known and not key.startswith(("taps_", "points_", "force_limit_", "force_step_")):
             raise Invalid(f"the law has a key that is not understood: {str(key)[:40]}")
     taps = numbers(_one(law, "taps"), MOST_TAPS)
     pairs = _one(law, "points", [])
@@ -109,10 +113,14 @@ def read_law(document: Mapping[str, Any]) -> Law:
     limit = None if limit is None else number(limit)
     if limit is not None and limit < 0:
         raise Invalid("the force limit must be ≥ 0")
+    step = _one(law, "force_step", None)
+    step = None if step is None else number(step)
+    if step is not None and (step <= 0 or law.get("relaxing") is not None):
+        raise Invalid("the converter's step must be > 0, and the law none that relaxes")
     resets = law.get("resets", False)
     if not isinstance(resets, bool):
         raise Invalid("resets must be true or false")
-    return Law(taps, points, surface, clamped, limit, _relaxing(law, taps), resets)
+    return Law(taps, points, surface, clamped, limit, _relaxing(law, taps), resets, step)
 
 
 def _relaxing(law: Mapping[str, Any], taps: list[Fraction]) -> tuple[Fraction, Fraction] | None:

@@ -19,7 +19,7 @@ import zlib
 from collections.abc import Mapping
 from fractions import Fraction
 from itertools import product
-from math import prod
+from math import lcm, prod
 from typing import Any
 
 from .contact_law import Law, Losses, read_law, read_losses
@@ -80,7 +80,7 @@ def storage(document: Mapping[str, Any]) -> str:
 def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int) -> None:
     """Forces must fit their numbers before they are multiplied."""
     most = sum((abs(c) for c in law.taps), Fraction(0)) * losses.resolution * farthest
-    most += max((abs(f) for _, f in law.points), default=Fraction(0)) + (law.limit or 0)
+    most += max((abs(f) for _, f in law.points), default=Fraction(0)) + (law.limit or 0) + (law.step or 0)
     if most / unit >= _EXACT:
         raise Invalid("the forces are too large to be compared exactly")
 
@@ -137,7 +137,9 @@ def _forces(
     columns = np.array(histories, dtype=np.int64).reshape(len(histories), memory)
     ages = [cells[:, None] + columns[:, :age].sum(axis=1)[None, :] for age in range(memory + 1)]
     ages = [np.broadcast_to(a, (len(cells), len(columns))) for a in ages][losses.delay :]
-    if law.points:
+    if law.step is not None:
+        total = _stepped(law, law.step, losses, unit, ages)
+    elif law.points:
         table = [int(law._spring(n * losses.resolution) // unit) for n in range(low, high + 1)]
         total = np.array(table, dtype=np.int64)[np.clip(ages[0], low, high) - low]
     else:
@@ -154,3 +156,21 @@ def _forces(
         total = np.where(ages[0] <= 0, 0, total)
     off = len(law.taps) * max(abs(low), abs(high)) + 2  # each tap is rounded down, times a reading
     return total, off
+
+
+def _stepped(law: Law, step: Fraction, losses: Losses, unit: Fraction, ages: list[Any]) -> Any:
+    """What a converter makes of the law, in units rounded down; its step is found without rounding."""
+    import numpy as np
+
+    if law.points:
+        readings, place = np.unique(ages[0], return_inverse=True)
+        wished = [law._spring(int(n) * losses.resolution) / step for n in readings]
+    else:
+        fed = [np.where(a > 0, a, 0) if law.surface == "penetration" else a for a in ages]
+        per_count = [c * losses.resolution / step for c in law.taps]
+        whole = lcm(*(c.denominator for c in per_count))
+        parts = sum(int(c * whole) * a.astype(object) for c, a in zip(per_count, fed, strict=True))
+        several, place = np.unique(parts, return_inverse=True)
+        wished = [Fraction(n, whole) for n in several]
+    given = [int((w + Fraction(1, 2)) // 1 * step // unit) for w in wished]
+    return np.array(given, dtype=np.int64)[place].reshape(ages[0].shape)

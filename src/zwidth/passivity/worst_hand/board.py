@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
-from math import ceil, floor, isqrt
+from math import ceil, floor, isqrt, lcm
 from typing import Literal
 
 import numpy as np
@@ -159,7 +159,7 @@ class Board:
         relaxing = Fraction(0) if self.law.relaxing is None else 2 * abs(self.law.relaxing[1])
         stiffness = sum((abs(c) for c in self.law.taps), Fraction(0)) + relaxing
         drag = self.losses.damping / self.losses.period * (self.domain.reach + 1)
-        return (stiffness * n + drag) * self.losses.resolution + spring
+        return (stiffness * n + drag) * self.losses.resolution + spring + (self.law.force_step or 0)
 
     @property
     def rounding(self) -> int:
@@ -220,7 +220,9 @@ class Board:
     def _force(self, readings: list[Integers]) -> Integers:
         force: Integers
         law, shape = self.law, np.broadcast_shapes(*(r.shape for r in readings))
-        if law.points:
+        if law.force_step is not None:
+            force = self._stepped(readings, law.force_step)
+        elif law.points:
             low, high = self.domain.lowest, self.domain.highest
             table = [
                 floor(interpolated(law.points, n * self.losses.resolution) / self.force_unit)
@@ -241,6 +243,31 @@ class Board:
         if law.surface != "none":
             force = np.where(np.broadcast_to(readings[0], shape) > 0, force, 0)
         return force
+
+    def _stepped(self, readings: list[Integers], step: Fraction) -> Integers:
+        """What a converter makes of the law, in units: which of its steps is decided exactly."""
+        wish, per = self._wish(readings)
+        steps = (2 * wish * step.denominator + per * step.numerator) // (2 * per * step.numerator)
+        several, where = np.unique(steps, return_inverse=True)
+        units = np.array([floor(k * step / self.force_unit) for k in several], dtype=np.int64)
+        force: Integers = units[where].reshape(steps.shape)
+        return force
+
+    def _wish(self, readings: list[Integers]) -> tuple[NDArray[np.object_], int]:
+        """The force of the law alone, exactly: whole numbers of any size, over one denominator [N; N·m]."""
+        law, resolution = self.law, self.losses.resolution
+        if law.points:
+            low, high = self.domain.lowest, self.domain.highest
+            table = [interpolated(law.points, n * resolution) for n in range(low, high + 1)]
+            per = lcm(*(f.denominator for f in table))
+            whole = np.array([int(f * per) for f in table], dtype=object)
+            shape = np.broadcast_shapes(*(r.shape for r in readings))
+            return np.broadcast_to(whole[np.clip(readings[0] - low, 0, high - low)], shape), per
+        counts = [np.maximum(r, 0) if law.surface == "penetration" else r for r in readings]
+        per = lcm(*((c * resolution).denominator for c in law.taps))
+        taps = [int(c * resolution * per) for c in law.taps]
+        parts = [c * u.astype(object) for c, u in zip(taps, counts, strict=True)]
+        return np.add.reduce(np.broadcast_arrays(*parts)), per
 
     @cached_property
     def first_guess(self) -> Integers:

@@ -187,11 +187,13 @@ def game_of(
     penetration: RealLike | None = None,
     speed: RealLike | None = None,
     force_limit: bool = False,
+    force_resolution: bool = False,
 ) -> Game:
     """The game of a loop; arguments as for `worst_hand`."""
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
-    law = finite_law(device, as_environment(environment), force_limit=force_limit)
+    given = as_environment(environment)
+    law = finite_law(device, given, force_limit=force_limit, force_resolution=force_resolution)
     losses = losses_of(device)
     return Game(law, losses, domain_for(law, losses, penetration, speed), device.motion)
 
@@ -203,6 +205,7 @@ def worst_hand(
     penetration: RealLike | None = None,
     speed: RealLike | None = None,
     force_limit: bool = False,
+    force_resolution: bool = False,
     seconds: float = 60.0,
     progress: Callable[[int], None] | None = None,
     on: str = "cpu",
@@ -229,8 +232,8 @@ def worst_hand(
         for a damped wall, fewer the more the law remembers.
     speed
         Largest mean speed of the hand over one sample [m/s; rad/s]; None likewise.
-    force_limit
-        True to count in the device's force limit.
+    force_limit, force_resolution
+        True to count in the device's force limit, the steps of its converter.
     seconds
         Time after which the answer is "undecided".
     progress
@@ -244,7 +247,7 @@ def worst_hand(
         If the law remembers for ever, the encoder is ideal, or the board is too large;
         or if `on` is neither, or there is no card.
     """
-    game = game_of(device, environment, penetration, speed, force_limit)
+    game = game_of(device, environment, penetration, speed, force_limit, force_resolution)
     law = as_environment(environment)
     said = assumptions(device, game)
     deadline = time.monotonic() + patience(seconds)
@@ -279,12 +282,6 @@ def assumptions(device: Device, game: Game) -> tuple[str, ...]:
     """What a proof of a game covers, in words."""
     force, drag = ("N·m", "N·m·s/rad") if device.motion == "rotary" else ("N", "N·s/m")
     losses = game.losses
-    actuator = (
-        "the force limit is counted in; converter steps, current rise and added filters are not"
-        if game.law.force_limit is not None
-        else "ideal actuator: force limit, converter steps, current rise and added filters are not in the "
-        "claim"
-    )
     return (
         "contact made and broken at any instant"
         + ("; the law never pulls" if game.law.clamped else "")
@@ -293,8 +290,19 @@ def assumptions(device: Device, game: Game) -> tuple[str, ...]:
         f"the device takes out at least b = {float(losses.damping):.6g} {drag} of viscous and "
         f"f_c = {float(losses.coulomb_friction):.6g} {force} of Coulomb friction",
         "a hand without limit on force; the mass of the device plays no part",
-        actuator,
+        _actuator(game.law),
         "a constant sample period and delay, no missed samples",
         "encoder counts of one size, their phase against the surface unknown",
         *(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed),
     )
+
+
+def _actuator(law: FiniteLaw) -> str:
+    """What of the actuator is in the game."""
+    parts = {"force limit": law.force_limit, "converter steps": law.force_step}
+    counted = [name for name, value in parts.items() if value is not None]
+    rest = ", ".join([name for name in parts if name not in counted] + ["current rise and added filters"])
+    if not counted:
+        return f"ideal actuator: {rest} are not in the claim"
+    verb = "is" if counted == ["force limit"] else "are"
+    return f"the {' and the '.join(counted)} {verb} counted in; {rest} are not"

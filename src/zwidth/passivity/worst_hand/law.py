@@ -3,6 +3,8 @@
     f = K u_k + Σ_j c_j u_{k−j}        u = q, or max(q, 0) for a solid that is left
     f = 0 where q ≤ 0                  for laws with a surface
     f = max(0, f)                      for laws that never pull
+    f = ΔF ⌊f/ΔF + ½⌋                  what a converter makes of it, where its steps are counted in
+    |f| ≤ F_max                        likewise the force limit, after the converter
 
 q is the encoder's reading, a whole number of counts.  Laws that remember a few
 readings are here: springs, dampers on differenced counts, windows, filters
@@ -12,8 +14,9 @@ one-pole filter (see `relaxing`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import floor
 from typing import Any, Literal
 
 from zwidth.device.device import Device
@@ -47,6 +50,9 @@ class FiniteLaw:
         A spring given by (position [m; rad], force [N; N·m]) in place of taps.
     force_limit
         Largest force of the actuator [N; N·m], or None.
+    force_step
+        Step of the converter [N; N·m], or None: the nearest whole step, the upper one of two
+        equally near.  Then comes the force limit.
     relaxing
         (p, g) of a part y = g (u_k − a_k), a_{k+1} = p a_k + (1 − p) u_k that never
         quite forgets, 0 ≤ p < 1, g [N/m; N·m/rad]; or None.
@@ -61,6 +67,7 @@ class FiniteLaw:
     force_limit: Fraction | None = None
     relaxing: tuple[Fraction, Fraction] | None = None
     resets: bool = False
+    force_step: Fraction | None = None
 
     @property
     def memory(self) -> int:
@@ -82,6 +89,8 @@ class FiniteLaw:
             f += interpolated(self.points, u[0])
         if self.clamped:
             f = max(f, Fraction(0))
+        if self.force_step is not None:
+            f = self.force_step * floor(f / self.force_step + Fraction(1, 2))
         if self.force_limit is not None:
             f = min(max(f, -self.force_limit), self.force_limit)
         return f
@@ -101,6 +110,8 @@ class FiniteLaw:
             document[f"points_{length}_{force}"] = [[exact_text(x), exact_text(f)] for x, f in self.points]
         if self.force_limit is not None:
             document[f"force_limit_{force}"] = exact_text(self.force_limit)
+        if self.force_step is not None:
+            document[f"force_step_{force}"] = exact_text(self.force_step)
         if self.relaxing is not None:
             pole, stiffness = (exact_text(c) for c in self.relaxing)
             document["relaxing"] = {"pole": pole, unit_key("stiffness", motion): stiffness}
@@ -118,35 +129,50 @@ def interpolated(points: tuple[tuple[Fraction, Fraction], ...], x: Fraction) -> 
     return points[-1][1]
 
 
-def finite_law(device: Device, environment: Environment, *, force_limit: bool = False) -> FiniteLaw:
+def finite_law(
+    device: Device, environment: Environment, *, force_limit: bool = False, force_resolution: bool = False
+) -> FiniteLaw:
     """The law of an environment in a device's loop.
 
     Parameters
     ----------
     device, environment
         Without intervals.
-    force_limit
-        True to count in the actuator's force limit.
+    force_limit, force_resolution
+        True to count in the actuator's force limit, the steps of its converter.
 
     Raises
     ------
     InputError
         If the law has two or more parts that relax, or one that swings, or remembers
-        longer than `LONGEST_MEMORY` readings; or if there is no force limit to count in.
+        longer than `LONGEST_MEMORY` readings; or if there is no force limit or no step of
+        the converter to count in.
     """
-    limit = None
-    if force_limit:
-        if device.force_limit is None:
-            raise InputError("the force limit is to be counted in, but the device has no force_limit")
-        limit = device.exact("force_limit")
+    limit = _counted(device, "force_limit", "the force limit is") if force_limit else None
+    step = _counted(device, "force_resolution", "converter steps are") if force_resolution else None
+    law = _unlimited(device, environment)
+    if law.relaxing is not None and (limit or step):
+        what = "the force limit" if limit else "converter steps"
+        raise InputError(f"{what} cannot be counted in for a law that relaxes; leave it out")
+    return replace(law, force_limit=limit, force_step=step)
+
+
+def _counted(device: Device, key: str, what: str) -> Fraction:
+    if getattr(device, key) is None:
+        raise InputError(f"{what} to be counted in, but the device has no {key}")
+    return device.exact(key)
+
+
+def _unlimited(device: Device, environment: Environment) -> FiniteLaw:
+    """The law by itself, with an actuator that gives every force."""
     if isinstance(environment, NonlinearSpring):
         ends = zip(environment.positions, environment.forces, strict=True)
         points = tuple((x.fraction, f.fraction) for x, f in ends)
-        return FiniteLaw((), "none", False, points, limit)
+        return FiniteLaw((), "none", False, points)
     h = environment.pulse_transfer_function(device.exact("sample_period"))
     numerator, denominator = _trimmed(h.numerator, h.denominator)
     if any(denominator[1:]):
-        return _relaxing(environment, numerator, denominator, limit)
+        return _relaxing(environment, numerator, denominator)
     taps = tuple(c / denominator[0] for c in numerator)
     while len(taps) > 1 and taps[-1] == 0:
         taps = taps[:-1]
@@ -155,12 +181,10 @@ def finite_law(device: Device, environment: Environment, *, force_limit: bool = 
             f"the law remembers {len(taps) - 1} readings, more than the {LONGEST_MEMORY} for which the worst "
             "hand is sought: the number of states grows with the power of it"
         )
-    return FiniteLaw(taps, _surface(environment), environment.clamped, (), limit)
+    return FiniteLaw(taps, _surface(environment), environment.clamped)
 
 
-def _relaxing(
-    environment: Environment, numerator: list[Fraction], denominator: list[Fraction], limit: Fraction | None
-) -> FiniteLaw:
+def _relaxing(environment: Environment, numerator: list[Fraction], denominator: list[Fraction]) -> FiniteLaw:
     """H = K + g (1 − ζ)/(1 − p ζ): a spring and one part that relaxes."""
     n, d = ([c / denominator[0] for c in part] for part in (numerator, denominator))
     while d and d[-1] == 0 and n[-1] == 0:
@@ -171,8 +195,6 @@ def _relaxing(
             f"relaxes and does not swing; this one has more: {environment.describe()}; zwidth check covers "
             "it in sustained contact"
         )
-    if limit is not None:
-        raise InputError("the force limit cannot be counted in for a law that relaxes; leave it out")
     pole = -d[1]
     stiffness = (n[0] + n[1]) / (1 - pole)
     surface = _surface(environment)

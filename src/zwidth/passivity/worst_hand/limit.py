@@ -146,6 +146,7 @@ def passive_limit(
     penetration: RealLike | None = None,
     speed: RealLike | None = None,
     force_limit: bool = False,
+    force_resolution: bool = False,
     tolerance: float = 0.01,
     seconds: float = 60.0,
     progress: Callable[[int, int], None] | None = None,
@@ -166,8 +167,8 @@ def passive_limit(
         of a `NonlinearSpring` "gain", a factor on its forces.
     penetration, speed
         Bounds on the hand [m; rad], [m/s; rad/s], as for `worst_hand`.
-    force_limit
-        True to count in the device's force limit.
+    force_limit, force_resolution
+        True to count in the device's force limit, the steps of its converter.
     tolerance
         Relative width of the bracket that is wanted.
     seconds
@@ -192,14 +193,15 @@ def passive_limit(
     search = _Search(
         _parameter(device, law, parameter), tolerance, time.monotonic(), patience(seconds), progress
     )
-    bracket = None if force_limit else search.by_closed_forms()
+    bracket = None if force_limit or force_resolution else search.by_closed_forms()
     bounded = penetration is not None or speed is not None
     if bracket is not None and not bounded and bracket.relative_width <= tolerance:
         return bracket
     known = (None, None) if bracket is None else (bracket.passive, bracket.active)
 
     def game(value: Exact) -> Game:
-        return game_of(*search.parameter.change(value), penetration, speed, force_limit)
+        loop = search.parameter.change(value)
+        return game_of(*loop, penetration, speed, force_limit, force_resolution)
 
     return search.by_games(device, game, known)
 
