@@ -138,7 +138,7 @@ def test_the_json_names_the_game_and_a_saved_file_holds_its_proof(law: zw.Wall, 
     assert [part.evidence["kind"] for part in parts] == kinds[verdict.outcome]
 
 
-@pytest.mark.parametrize("delay", [0, "0.001"])
+@pytest.mark.parametrize("delay", [0, "0.001", "0.0003"])
 def test_the_prescribed_motion_takes_out_what_it_claims(delay: float | str) -> None:
     """In the simulator, with an ideal amplifier and the encoder's edges where the game has them."""
     device = PADDLE.replace(delay=delay)
@@ -151,7 +151,7 @@ def test_the_prescribed_motion_takes_out_what_it_claims(delay: float | str) -> N
     assert -float(trace.hand_work[-1]) == pytest.approx(gain.energy, rel=1e-9)
 
 
-@pytest.mark.parametrize("delay", [0, "0.001"])
+@pytest.mark.parametrize("delay", [0, "0.001", "0.0003"])
 def test_a_settled_round_gains_what_one_more_round_does(delay: float | str) -> None:
     """The forces that are drawn are those that the checker multiplies."""
     gain = zw.worst_hand(PADDLE.replace(delay=delay), STIFF).witness

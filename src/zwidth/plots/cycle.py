@@ -46,28 +46,32 @@ def draw_cycle(rows: Sequence[Axes], gain: Gain) -> None:
 
     motion = "rotary" if gain.unit == "rad" else "linear"
     once = settled_round(gain)
-    samples = len(once.forces)
+    samples = round(once.times[-1])
     rounds = max(2, _SHOWN // samples // 2)
+    times = [n * samples + t for n in range(rounds) for t in once.times[:-1]] + [rounds * samples]
     x = [*once.positions[:-1] * rounds, once.positions[-1]]
-    _positions(rows[0], x, once.resolution, motion)
+    _positions(rows[0], times, x, once.resolution, motion)
     factor, unit = scale(once.forces, GLOSSARY["force"].unit_for(motion))
-    rows[1].stairs([factor * f for f in once.forces * rounds], range(len(x)), color=PURPLE, baseline=None)
+    rows[1].stairs([factor * f for f in once.forces * rounds], times, color=PURPLE, baseline=None)
     rows[1].axhline(0, color=GREY, lw=0.6)
     rows[1].set_ylabel(label("force", motion, "", unit))
     out = [n * once.energies[-1] + e for n in range(rounds) for e in once.energies[:-1]]
-    _energy(rows[2], [*out, rounds * once.energies[-1]])
+    _energy(rows[2], times, [*out, rounds * once.energies[-1]])
     rows[2].set_xlabel("sample k, the law settled")
-    rows[2].set_xlim(0, len(x) - 1)
+    rows[2].set_xlim(0, times[-1])
     rows[2].xaxis.set_major_locator(MaxNLocator(integer=True))
     energy = quantity_text(gain.energy_per_cycle, "energy")
     rows[0].set_title(f"{energy} out in every round of {samples} samples", color=RED)
 
 
-def _positions(axes: Axes, x: Sequence[float], resolution: float, motion: str) -> None:
+def _positions(
+    axes: Axes, times: Sequence[float], x: Sequence[float], resolution: float, motion: str
+) -> None:
     factor, unit = scale(x, GLOSSARY["position"].unit_for(motion))
-    axes.plot(
-        [factor * v for v in x], color=BLUE, marker="o" if len(x) <= _DOTS else "", ms=3.5, clip_on=False
-    )
+    axes.plot(times, [factor * v for v in x], color=BLUE)
+    if len(x) <= _DOTS:  # a dot where the encoder is read
+        read = [(t, factor * v) for t, v in zip(times, x, strict=True) if t == round(t)]
+        axes.plot(*zip(*read, strict=True), "o", color=BLUE, ms=3.5, clip_on=False, gid="samples")
     edges = range(floor(min(x) / resolution + 1e-9), ceil(max(x) / resolution - 1e-9) + 1)
     if len(edges) <= _EDGES:
         for n in edges:
@@ -75,8 +79,8 @@ def _positions(axes: Axes, x: Sequence[float], resolution: float, motion: str) -
     axes.set_ylabel(label("position", motion, "", unit))
 
 
-def _energy(axes: Axes, energies: Sequence[float]) -> None:
+def _energy(axes: Axes, times: Sequence[float], energies: Sequence[float]) -> None:
     factor, unit = scale(energies, "J")
-    axes.plot([factor * e for e in energies], color=RED, gid="energy")
+    axes.plot(times, [factor * e for e in energies], color=RED, gid="energy")
     axes.axhline(0, color=GREY, lw=0.6)
     axes.set_ylabel(f"energy out [{unit}]")

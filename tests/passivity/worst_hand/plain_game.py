@@ -48,14 +48,21 @@ class PlainGame:
             if all(abs(p - q) <= domain.reach for p, q in zip((cell, *before), before, strict=False))
             for knot in knots
         ]
-        self.forces = {s: self._rounded_force(s) for s in self.states}
-        self.costs = [self._cost(d) for d in range(domain.reach * steps + (3 if self.generous else 1))]
+        self.forces = {s: self._rounded_force(s, losses.delay) for s in self.states}
+        self.costs = self._all_costs(losses.part)
+        if losses.part < 1:
+            self.later_forces = {s: self._rounded_force(s, losses.delay - 1) for s in self.states}
+            self.later_costs = self._all_costs(1 - losses.part)
         self.moves = {s: list(self._moves(s)) for s in self.states}
 
-    def _rounded_force(self, state):
-        """In units, every tap, limit and point rounded down."""
+    def _all_costs(self, part):
+        far = self.domain.reach * part * self.steps
+        return [self._cost(d, part) for d in range((ceil(far) if self.generous else floor(far)) + 1)]
+
+    def _rounded_force(self, state, age):
+        """Of the reading of an age and those before it, in units, every tap, limit and point rounded down."""
         law, resolution, unit = self.law, self.losses.resolution, self.unit
-        readings = (state[0], *state[2])[self.losses.delay :]
+        readings = (state[0], *state[2])[age : age + max(len(law.taps), 1)]
         if law.surface != "none" and readings[0] <= 0:
             return 0
         if law.points or law.force_step is not None:
@@ -71,14 +78,15 @@ class PlainGame:
             total = min(most, max(-most, total))
         return total
 
-    def _cost(self, d):
+    def _cost(self, d, part):
         farthest = max(abs(self.domain.lowest), abs(self.domain.highest))
         off = len(self.law.taps) * farthest + 2
         friction = floor(self.losses.coulomb_friction / self.unit)
-        drag = self.losses.damping / self.losses.period * (self.losses.resolution / self.steps) / self.unit
+        period = self.losses.period * part
+        drag = self.losses.damping / period * (self.losses.resolution / self.steps) / self.unit
         if not self.generous:
             return (friction + off + 1) * d + ceil(drag) * d**2
-        return (friction - off) * d + (floor(drag) * d**2 - ceil(Fraction(floor(drag), 2)) if d > 1 else 0)
+        return (friction - off) * d + (floor(drag) * d**2 - ceil(Fraction(floor(drag), 4)) if d > 1 else 0)
 
     def _moves(self, state):
         """(energy out, next state) of every move."""
@@ -88,9 +96,28 @@ class PlainGame:
                 continue
             after = (cell, *before)[: self.memory]
             for stop in self.knots:
-                d = (there - cell) * self.steps + stop - knot
-                if abs(d) < len(self.costs):
-                    yield -self.forces[state] * d - self.costs[abs(d)], (there, stop, after)
+                x = (there - cell) * self.steps + stop - knot
+                for energy in self._energies(state, x):
+                    yield energy, (there, stop, after)
+
+    def _energies(self, state, x):
+        """Energy out of a move by x: one, or one for each place where the hand may be in between."""
+        if self.losses.part == 1:
+            if abs(x) < len(self.costs):
+                yield -self.forces[state] * x - self.costs[abs(x)]
+            return
+        cell, knot, _ = state
+        places = {
+            (n - cell) * self.steps + k - knot
+            for n in self.cells
+            if abs(n - cell) <= self.domain.reach
+            for k in self.knots
+        }
+        for m in places:
+            early, late = abs(m), abs(x - m)
+            if early < len(self.costs) and late < len(self.later_costs):
+                first = -self.forces[state] * m - self.costs[early]
+                yield first - self.later_forces[state] * (x - m) - self.later_costs[late]
 
     def solved(self, guess):
         """V by Bellman and Ford from a first guess, or None and a cycle that gains."""
@@ -127,12 +154,28 @@ def exact_gain(law, losses, positions, cells):
     """Energy that one round of a cycle takes out, in rational arithmetic [J].
 
     positions in counts, each with the cell it is read as; the last moves on to the first.
+    Where the force changes within an interval, the hand is then where it is best, of 2000 places.
     """
     size, total = len(positions), Fraction(0)
     taps = max(len(law.taps), 1)
     for k in range(size):
-        readings = [cells[(k - losses.delay - i) % size] for i in range(taps)]
-        d = (positions[(k + 1) % size] - positions[k]) * losses.resolution
-        force = exact_force(law, readings, losses.resolution)
-        total -= force * d + losses.coulomb_friction * abs(d) + losses.damping / losses.period * d**2
+        forces = [
+            exact_force(law, [cells[(k - age - i) % size] for i in range(taps)], losses.resolution)
+            for age in (losses.delay, losses.delay - 1)
+        ]
+        start, end = positions[k], positions[(k + 1) % size]
+        if losses.part == 1:
+            total += _taken(losses, forces[0], end - start, 1)
+        else:
+            total += max(
+                _taken(losses, forces[0], m - start, losses.part)
+                + _taken(losses, forces[1], end - m, 1 - losses.part)
+                for m in (Fraction(n, 200) + min(start, end) - 5 for n in range(2000))
+            )
     return total
+
+
+def _taken(losses, force, counts, part):
+    d = counts * losses.resolution
+    drag = losses.damping / (part * losses.period)
+    return -force * d - losses.coulomb_friction * abs(d) - drag * d**2

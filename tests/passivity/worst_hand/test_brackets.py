@@ -28,12 +28,14 @@ def device(damping, friction, delay=0, **more):
 SPRING = device("0.16", "0.0165"), zw.Wall(300)
 DAMPED = device("0.27", "0.027"), zw.Wall(300, "0.1")
 DELAYED = device("0.46", "0.017", 1), zw.Wall(300)
+LATE = device("0.46", "0.017", "0.3"), zw.Wall(300)
 DETENT = device("0.16", "0.0165"), zw.NonlinearSpring.detents(2, "0.001", "0.07")
 
 LIMITS = {
     "stiffness": (SPRING, "stiffness", "N/m"),
     "stiffness beside damping": (DAMPED, "stiffness", "N/m"),
     "stiffness, delayed": (DELAYED, "stiffness", "N/m"),
+    "stiffness, delayed by part of a sample": (LATE, "stiffness", "N/m"),
     "virtual damping": (DAMPED, "damping", "N*s/m"),
     "virtual damping, by its full name": (DAMPED, "environment.damping", "N*s/m"),
     "device damping": (DAMPED, "device.damping", "N*s/m"),
@@ -182,7 +184,7 @@ IIR = zw.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
     ("loop", "arguments", "said"),
     [
         ((device(1, 1, resolution=0), zw.Wall(300)), BOUNDS, "ideal encoder"),
-        ((device(1, 1, delay="0.4"), zw.Wall(300)), BOUNDS, "whole samples"),
+        ((device(1, 1, "0.4"), zw.StandardLinearSolid(100, 200, 0.5)), BOUNDS, "whole samples"),
         ((device(1, 1), zw.Wall(300, 1, IIR)), BOUNDS, "remember"),
         ((device(1, 1), zw.Wall(300, 1, zw.Window(9))), BOUNDS, "remembers 9 readings"),
         ((device(1, 1), zw.Wall((200, 300))), BOUNDS, "not one number"),

@@ -13,28 +13,23 @@ import zwidth as zw
 from zwidth.passivity.worst_hand.board import Board, Domain, Losses
 from zwidth.passivity.worst_hand.law import FiniteLaw
 
-HALF = Fraction(1, 2)
+HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
 
 
-def lost(distance, spared=HALF):
-    """L(D): nothing up to one step, D² − ½ beyond."""
+def lost(distance, spared=QUARTER):
+    """L(D): nothing up to one step, D² − ¼ beyond."""
     return Fraction(0) if distance <= 1 else distance**2 - spared
 
 
-def on_rectangle(i, j, a, b, spared=HALF):
-    """L interpolated at x = i + a, x' = j + b: linear in either."""
-    corners = {
-        (p, q): (a if p else 1 - a) * (b if q else 1 - b) * lost(abs(j + q - i - p), spared)
-        for p, q in product((0, 1), repeat=2)
-    }
-    return sum(corners.values())
+def interpolated(i, j, a, b, spared=QUARTER):
+    """L at x = i + a, x' = j + b, linear on both triangles of the square, cut where x' − x is constant.
 
-
-def on_triangle(a, b, spared=HALF):
-    """L interpolated on the square of one step with itself, cut along its diagonal."""
-    high, low = max(a, b), min(a, b)
-    along, across = low, high - low  # from (0, 0) to (1, 1), and to the corner beside it
-    return along * lost(0, spared) + across * lost(1, spared) + (1 - high) * lost(0, spared)
+    V(x) − V'(x') is linear on the whole square, so that any cut of it will do.
+    """
+    apart, high, low = j - i, max(a, b), min(a, b)
+    beside = apart + (1 if b >= a else -1)
+    weights = ((apart, 1 - high), (apart, low), (beside, high - low))
+    return sum(w * lost(abs(d), spared) for d, w in weights)
 
 
 def places(random, number):
@@ -45,45 +40,64 @@ def places(random, number):
         yield Fraction(random.randint(0, size), size), Fraction(random.randint(0, size), size)
 
 
-@pytest.mark.parametrize("apart", [*range(1, 9), 100])
+@pytest.mark.parametrize("apart", [*range(9), 100])
 @pytest.mark.parametrize("side", [-1, 1])
-def test_never_more_than_the_true_drag_on_a_rectangle(apart, side):
-    """Steps that differ: everywhere at most (x' − x)², equal half way from three steps on."""
+def test_never_more_than_the_true_drag(apart, side):
+    """Everywhere at most (x' − x)², equal half way between two distances of two steps or more."""
     random = Random(apart * side)
     for a, b in places(random, 300):
-        assert on_rectangle(0, side * apart, a, b) <= (side * apart + b - a) ** 2
+        assert interpolated(0, side * apart, a, b) <= (side * apart + b - a) ** 2
     if apart >= 3:
-        assert on_rectangle(0, side * apart, HALF, HALF) == apart**2
+        assert interpolated(0, apart, HALF, Fraction(1)) == (apart + HALF) ** 2
 
 
-def test_never_more_than_the_true_drag_on_the_triangles():
-    """The same step: nothing is counted there at all."""
-    for a, b in places(Random(0), 300):
-        assert on_triangle(a, b) <= (b - a) ** 2
+@pytest.mark.parametrize("seed", range(40))
+def test_every_move_between_knots_is_covered(seed):
+    """V and V' drawn at random, just large enough at the knots: then nowhere between them too small."""
+    random = Random(seed)
+    steps, drag, force = 5, Fraction(random.randint(0, 9), 4), Fraction(random.randint(-9, 9), 2)
+    friction = Fraction(random.randint(0, 4), 2)
+    there = [Fraction(random.randint(-20, 20)) for _ in range(steps + 1)]
+
+    def left(x, y, here, spent):
+        return here + force * (y - x) + friction * abs(y - x) + spent - _linear(there, y)
+
+    needed = [
+        max(-left(Fraction(x), Fraction(y), 0, drag * lost(abs(y - x))) for y in range(steps + 1))
+        for x in range(steps + 1)
+    ]
+    for _ in range(400):
+        x, y = (Fraction(random.randint(0, 1000 * steps), 1000) for _ in range(2))
+        assert left(x, y, _linear(needed, x), drag * (y - x) ** 2) >= 0
+
+
+def _linear(values, x):
+    at = min(int(x), len(values) - 2)
+    return values[at] + (values[at + 1] - values[at]) * (x - at)
 
 
 def test_the_worst_place_is_searched_for():
     """Downhill from many places: the difference does not become negative, and comes to 0."""
     random, least = Random(1), []
     for apart in range(1, 7):
-        best = min(_descended(random, apart, HALF) for _ in range(5))
+        best = min(_descended(random, apart, QUARTER) for _ in range(5))
         least.append(best)
     assert min(least) == 0
 
 
 @pytest.mark.parametrize("apart", [3, 4, 50])
-def test_a_quarter_would_be_too_little(apart):
-    """With D² − ¼ it fails half way, so that the half is needed."""
-    quarter = Fraction(1, 4)
-    assert on_rectangle(0, apart, HALF, HALF, quarter) > apart**2
-    assert _descended(Random(apart), apart, quarter) < 0
+def test_a_fifth_would_be_too_little(apart):
+    """With D² − 1/5 it fails half way, so that the quarter is needed."""
+    fifth = Fraction(1, 5)
+    assert interpolated(0, apart, HALF, Fraction(1), fifth) > (apart + HALF) ** 2
+    assert _descended(Random(apart), apart, fifth) < 0
 
 
 def _descended(random, apart, spared):
     """(x' − x)² less the interpolation, followed downhill from a place at random."""
 
     def left(a, b):
-        return (apart + b - a) ** 2 - on_rectangle(0, apart, a, b, spared)
+        return (apart + b - a) ** 2 - interpolated(0, apart, a, b, spared)
 
     grid = 64
     a, b = Fraction(random.randint(0, grid), grid), Fraction(random.randint(0, grid), grid)

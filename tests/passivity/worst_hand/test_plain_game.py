@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
+from math import ceil
 from random import Random
 
 import numpy as np
@@ -32,6 +33,10 @@ LAWS = {
     "damped on both sides behind a converter": ("none", 2, False, 0),
     "clamped behind a converter, with a delay": ("penetration", 2, True, 1),
     "points behind a converter": ("none", 0, False, 0),
+    "spring with half a sample of delay": ("position", 1, False, Fraction(1, 2)),
+    "spring with a delay just over nothing": ("position", 1, False, Fraction(1, 10)),
+    "damped with part of a sample of delay": ("penetration", 2, True, Fraction(2, 3)),
+    "points with a delay of one sample and a part": ("none", 0, False, Fraction(7, 5)),
 }
 """A surface, how many taps (0: a spring given by points), clamped, the delay in samples."""
 
@@ -65,7 +70,7 @@ def drawn(random, name, easier):
     if "converter" in name:  # of some steps a count, or some counts a step, and with ties
         coarse = rough * step * random.choice([2, 1, Fraction(1, 2), Fraction(3, 7)])
         law, friction = replace(law, force_step=coarse), friction + share[1] * coarse / 2
-    return law, Losses(damping, friction, step, period, delay)
+    return law, Losses(damping, friction, step, period, ceil(delay), delay - ceil(delay) + 1)
 
 
 def domain_of(random, law, delay):

@@ -35,7 +35,9 @@ def _start(rng, board):
     some = (guess * rng.random(guess.shape)).astype(np.int64)
     x = np.arange(board.domain.cells)[:, None] * board.steps + board.knots
     length = board.steps * rng.uniform(2, 9)
-    force = np.abs(board.forces[board.forces != NOWHERE]).max() + abs(board.costs[-1] / board.farthest)
+    force = np.abs(board.forces[board.forces != NOWHERE]).max() + abs(
+        board.costs[-1] / (board.costs.size - 1)
+    )
     hills = force * length * rng.uniform(0.1, 1) * np.cos(x / length + rng.uniform(0, 6))
     hills = np.repeat(hills.astype(np.int64)[:, None, :], board.histories, axis=1)
     any_ = rng.integers(0, 4, guess.shape) * max(1, int(guess.max()) // int(rng.integers(2, 50)))

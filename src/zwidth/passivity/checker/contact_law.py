@@ -19,11 +19,18 @@ MOST_POINTS = 10_000
 
 
 class Losses(NamedTuple):
+    """`part` of an interval has the force of the reading `delay` samples ago, the rest that of the next."""
+
     damping: Fraction
     friction: Fraction
     resolution: Fraction
     period: Fraction
     delay: int
+    part: Fraction
+
+    def lost(self, move: Fraction, part: Fraction) -> Fraction:
+        """The least that the device takes out over a move in a part of an interval."""
+        return self.friction * abs(move) + self.damping / (part * self.period) * move * move
 
 
 class Law(NamedTuple):
@@ -85,10 +92,10 @@ def read_losses(document: Mapping[str, Any]) -> Losses:
     period, delay = quantity("sample_period"), quantity("delay")
     if period <= 0 or resolution <= 0 or min(b, friction, delay) < 0:
         raise Invalid("T and Δ must be > 0, and b, f_c and the delay ≥ 0")
-    samples = delay / period
-    if samples.denominator != 1 or samples > MOST_TAPS:
-        raise Invalid("the delay must be a small whole number of samples")
-    return Losses(b, friction, resolution, period, int(samples))
+    whole = -(-delay // period)
+    if whole > MOST_TAPS:
+        raise Invalid("the delay is longer than can be checked")
+    return Losses(b, friction, resolution, period, int(whole), delay / period - whole + 1)
 
 
 def read_law(document: Mapping[str, Any]) -> Law:

@@ -28,6 +28,11 @@ def contact_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fracti
     if key is None:
         raise Invalid("positions_m is missing")
     x = numbers(document[key], MOST_POSITIONS)
+    switches = x[1:]
+    if losses.part < 1:
+        switches = numbers(get(document, f"switch_{key}"), MOST_POSITIONS)
+        if len(switches) != len(x) - 1:
+            raise Invalid("there must be one switch position in each interval")
     part = get(document, "repeats")
     first, last, times = (integer(get(part, k)) for k in ("first", "last", "times"))
     if not 0 <= first < last < len(x) or times < 1 or x[first] != x[last]:
@@ -43,9 +48,11 @@ def contact_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fracti
     def run(begin: int, end: int) -> Fraction:
         out = Fraction(0)
         for k in range(begin, end):
-            force = state.read(losses.resolution * (x[k] // losses.resolution), law, losses, taps)
-            d = x[k + 1] - x[k]
-            out -= force * d + losses.friction * abs(d) + losses.damping / losses.period * d * d
+            older, newer = state.read(losses.resolution * (x[k] // losses.resolution), law, losses, taps)
+            early, late = switches[k] - x[k], x[k + 1] - switches[k]
+            out -= older * early + losses.lost(early, losses.part)
+            if losses.part < 1:
+                out -= newer * late + losses.lost(late, 1 - losses.part)
         return out
 
     energy = run(0, first)
@@ -80,14 +87,17 @@ class _State:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def read(self, reading: Fraction, law: Law, losses: Losses, taps: int) -> Fraction:
-        """Take a reading; the force that acts in the interval that follows."""
+    def read(self, reading: Fraction, law: Law, losses: Losses, taps: int) -> tuple[Fraction, Fraction]:
+        """Take a reading; the two forces that act in the interval that follows."""
         self.readings = [reading, *self.readings[:-1]]
-        force = law.force(self.readings[losses.delay : losses.delay + taps], self.averages[losses.delay])
+        older, newer = (
+            law.force(self.readings[age : age + taps], self.averages[age])
+            for age in (losses.delay, max(losses.delay - 1, 0))
+        )
         fine = losses.resolution / FINEST
         after = law.averaged(self.averages[0], reading)
         self.averages = [round(after / fine) * fine, *self.averages[:-1]]
-        return force
+        return older, newer
 
 
 def _uncertainty(law: Law, losses: Losses, x: list[Fraction]) -> Fraction:

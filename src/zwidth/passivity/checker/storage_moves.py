@@ -9,7 +9,7 @@ from numba import njit, prange
 
 
 @njit(cache=True, parallel=True)
-def first_violation(value: Any, forces: Any, exists: Any, costs: Any, reach: int, steps: int) -> int:
+def first_violation(value: Any, exists: Any, forces: Any, costs: Any, reach: int, steps: int) -> int:
     """The first state from which some move takes out more energy than V falls; −1 if there is none.
 
     value is (cells, histories, steps + 1), forces and exists are (cells, histories).
@@ -43,6 +43,62 @@ def first_violation(value: Any, forces: Any, exists: Any, costs: Any, reach: int
                             best = max(best, gain[t] - f * move[t])
                         done_force, done_best = f, best
                     if value[n, h, j] < done_best and worst[n] < 0:
+                        worst[n] = (n * histories + h) * knots + j
+    for n in range(cells):
+        if worst[n] >= 0:
+            return int(worst[n])
+    return -1
+
+
+@njit(cache=True, parallel=True)
+def first_violation_in_parts(
+    value: Any,
+    exists: Any,
+    forces: Any,
+    costs: Any,
+    later_forces: Any,
+    later_costs: Any,
+    reach: int,
+    steps: int,
+) -> int:
+    """The same where each interval is two moves with two forces, the hand anywhere between them."""
+    cells, histories, knots = value.shape
+    width = 2 * reach + 1
+    older = histories // width
+    worst = np.full(cells, -1, np.int64)
+    for n in prange(cells):
+        low, high = max(0, n - reach), min(cells, n + reach + 1)
+        start, size = (low - n) * steps, (high - low) * steps + 1
+        goal, middle = np.empty(size), np.empty(size)
+        for newer in range(older):
+            any_h = -1
+            for oldest in range(width):
+                if exists[n, newer * width + oldest]:
+                    any_h = newer * width + oldest
+            if any_h < 0:
+                continue
+            later = later_forces[n, any_h]  # does not depend on the oldest reading
+            goal[:] = -1.0
+            for n2 in range(low, high):
+                h2 = (n - n2 + reach) * older + newer
+                for j2 in range(knots):
+                    at = (n2 - low) * steps + j2
+                    goal[at] = max(goal[at], value[n2, h2, j2])
+            for m in range(size):
+                middle[m] = goal[m]
+                for to in range(max(0, m - later_costs.size + 1), min(size, m + later_costs.size)):
+                    middle[m] = max(middle[m], goal[to] - later * (to - m) - later_costs[abs(to - m)])
+            for oldest in range(width):
+                h = newer * width + oldest
+                if not exists[n, h]:
+                    continue
+                f = forces[n, h]
+                for j in range(knots):
+                    best = 0.0
+                    at = j - start
+                    for m in range(max(0, at - costs.size + 1), min(size, at + costs.size)):
+                        best = max(best, middle[m] - f * (m - at) - costs[abs(m - at)])
+                    if value[n, h, j] < best and worst[n] < 0:
                         worst[n] = (n * histories + h) * knots + j
     for n in range(cells):
         if worst[n] >= 0:

@@ -5,11 +5,15 @@ and every remembered reading.  Whole numbers throughout: forces in multiples of
 a unit, energies in multiples of unit × step.  Between two neighbouring knots V is
 meant to be linear.  If for all knots x, x' that are D steps apart
 
-    V(s, x) ≥ −f (x' − x) − φ D − β (D² − ½) [D ≥ 2] + V(s', x')
+    V(s, x) ≥ −f (x' − x) − φ D − β (D² − ¼) [D ≥ 2] + V(s', x')
 
-then the same holds for all positions between, with φ |d| + β d²: on a rectangle
-of two different steps of cells the linear interpolation of D² − ½ (0 for D ≤ 1)
-is at most d², and on both triangles of the square of one step with itself too.
+then the same holds for all positions between, with φ |d| + β d²: on both triangles of the
+square of two steps, cut where d is constant, V(s, x) − V(s', x') and f d and φ |d| are
+linear, and the linear interpolation of D² − ¼ (0 for D ≤ 1) between two neighbouring D
+is at most d².
+
+Where a delay changes the force within a sample, the interval is two such moves, the
+function between them being the most that the second can lead to.
 """
 
 from __future__ import annotations
@@ -37,6 +41,8 @@ def storage(document: Mapping[str, Any]) -> str:
     if law.relaxing is not None:
         from .storage_relaxing import storage_of_relaxing
 
+        if losses.part < 1:
+            raise Invalid("laws that relax are checked for delays of whole samples")
         return storage_of_relaxing(document, losses, law)
     domain = get(document, "domain")
     low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
@@ -55,26 +61,39 @@ def storage(document: Mapping[str, Any]) -> str:
     value = values_of(get(document, "storage"), shape)
     if value.min() < 0:
         raise Invalid("a storage function must be bounded below by 0")
-    forces, off = _forces(law, losses, unit, low, high, reach, memory)
-    friction = losses.friction // unit - off
-    drag = losses.damping / losses.period * (losses.resolution / steps) // unit
-    far = np.arange(reach * steps + 3, dtype=object)
-    costs = friction * far + np.where(far > 1, drag * far * far - -(-drag // 2), 0)
-    largest = int(value.max()) + int(abs(costs).max()) + int(np.abs(forces).max()) * (len(far) + 1)
+    moves = []  # of one interval: the forces, and what a move costs
+    for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):
+        if part > 0:
+            forces, off = _forces(law, losses, unit, low, high, reach, memory, age)
+            moves.append((forces, _costs(losses, unit, off, part, reach, steps)))
+    largest = int(value.max())
+    for forces, costs in moves:
+        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
     exists = _exists(low, high, reach, memory)
-    from .storage_moves import first_violation
+    from .storage_moves import first_violation, first_violation_in_parts
 
-    at = first_violation(
-        value.astype(np.float64), forces.astype(np.float64), exists, costs.astype(np.float64), reach, steps
-    )
+    look: Any = first_violation if len(moves) == 1 else first_violation_in_parts
+    tables = [table.astype(np.float64) for move in moves for table in move]
+    at = look(value.astype(np.float64), exists, *tables, reach, steps)
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     return (
         "no move takes out more than the storage function falls, from any position and memory, "
         f"for readings up to {high} counts inside and moves up to {reach} counts a sample"
+        + ("" if losses.part == 1 else ", as fast in each part of a sample with one force")
     )
+
+
+def _costs(losses: Losses, unit: Fraction, off: int, part: Fraction, reach: int, steps: int) -> Any:
+    """What a move over 0, 1, … steps in a part of the interval costs."""
+    import numpy as np
+
+    friction = losses.friction // unit - off
+    drag = losses.damping / (part * losses.period) * (losses.resolution / steps) // unit
+    far = np.arange(-int(-reach * steps * part // 1) + 1, dtype=object)
+    return friction * far + np.where(far > 1, drag * far * far - -(-drag // 4), 0)
 
 
 def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int) -> None:
@@ -127,16 +146,17 @@ def _exists(low: int, high: int, reach: int, memory: int) -> Any:
 
 
 def _forces(
-    law: Law, losses: Losses, unit: Fraction, low: int, high: int, reach: int, memory: int
+    law: Law, losses: Losses, unit: Fraction, low: int, high: int, reach: int, memory: int, age: int
 ) -> tuple[Any, int]:
-    """Every state's force in units, and by how many units one may be off."""
+    """Every state's force of a reading's age in units, and by how many units one may be off."""
     import numpy as np
 
     cells = np.arange(low, high + 1, dtype=np.int64)
     histories = histories_of(reach, memory)
     columns = np.array(histories, dtype=np.int64).reshape(len(histories), memory)
-    ages = [cells[:, None] + columns[:, :age].sum(axis=1)[None, :] for age in range(memory + 1)]
-    ages = [np.broadcast_to(a, (len(cells), len(columns))) for a in ages][losses.delay :]
+    ages = [cells[:, None] + columns[:, :a].sum(axis=1)[None, :] for a in range(memory + 1)]
+    ages = [np.broadcast_to(a, (len(cells), len(columns))) for a in ages]
+    ages = ages[age : age + max(len(law.taps), 1)]
     if law.step is not None:
         total = _stepped(law, law.step, losses, unit, ages)
     elif law.points:

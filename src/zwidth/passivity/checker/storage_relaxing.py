@@ -51,8 +51,8 @@ def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -
     off = max(abs(low), abs(high)) + 2 + 2 * levels + 2
     friction = losses.friction // unit - off
     drag = losses.damping / losses.period * (losses.resolution / steps) // unit
-    far = np.arange(reach * steps + 3, dtype=object)
-    costs = friction * far + np.where(far > 1, drag * far * far - -(-drag // 2), 0)
+    far = np.arange(reach * steps + 1, dtype=object)
+    costs = friction * far + np.where(far > 1, drag * far * far - -(-drag // 4), 0)
     forces = _forces(law, spring, branch, low, high, least, per_count, levels)
     images = _images(law, low, high, least, per_count, levels)
     rows = _rows(low, high, reach, losses.delay)

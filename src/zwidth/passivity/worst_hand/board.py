@@ -8,7 +8,7 @@ is rounded while the game is played.
 
 Two sets of rules, one for each side of the bracket:
 
-generous   every step is a knot.  A move over D steps costs φ D + β (D² − ½), but
+generous   every step is a knot.  A move over D steps costs φ D + β (D² − ¼), but
            φ D if D ≤ 1, and forces are rounded in the hand's favour.  Whoever
            cannot win by these rules cannot win at all: a function that is linear
            between the knots and satisfies every move between knots satisfies
@@ -50,7 +50,10 @@ class Losses:
     resolution, period
         Δ > 0 [m] and T [s].
     delay
-        Whole samples from a reading to its force.
+        Samples from a reading to the last interval in which its force acts.
+    part
+        Part of that interval for which it still does, 0 < part ≤ 1; the force of the
+        reading after it follows.  1 for a delay of whole samples.
     """
 
     damping: Fraction
@@ -58,6 +61,12 @@ class Losses:
     resolution: Fraction
     period: Fraction
     delay: int
+    part: Fraction = Fraction(1)
+
+    @property
+    def lag(self) -> Fraction:
+        """The delay [s]."""
+        return (self.delay - 1 + self.part) * self.period
 
 
 @dataclass(frozen=True)
@@ -122,6 +131,9 @@ class Board:
         if self.rules == "generous":
             return np.arange(self.steps + 1, dtype=np.int64)
         near = [0, 1, isqrt(self.steps), self.steps // 4]
+        if self.losses.part < 1:  # the hand turns within the cell, and goes as far as it may in each part
+            far = (self._farthest(part) % self.steps for part in (self.losses.part, 1 - self.losses.part))
+            near += [*far, *range(0, self.steps, max(self.steps // 16, 1))]
         return np.unique([*near, self.steps // 2, *(self.steps - k for k in near)]).astype(np.int64)
 
     @property
@@ -158,7 +170,8 @@ class Board:
         spring = max((abs(f) for _, f in self.law.points), default=Fraction(0))
         relaxing = Fraction(0) if self.law.relaxing is None else 2 * abs(self.law.relaxing[1])
         stiffness = sum((abs(c) for c in self.law.taps), Fraction(0)) + relaxing
-        drag = self.losses.damping / self.losses.period * (self.domain.reach + 1)
+        shortest = min(self.losses.part, 1 - self.losses.part) or Fraction(1)
+        drag = self.losses.damping / self.losses.period * (self.domain.reach + 1 / shortest)
         return (stiffness * n + drag) * self.losses.resolution + spring + (self.law.force_step or 0)
 
     @property
@@ -174,37 +187,51 @@ class Board:
         return units - self.rounding if self.rules == "generous" else units + self.rounding + 1
 
     @property
-    def drag(self) -> int:
-        """β: b/T times one step, in force units."""
-        step = self.losses.resolution / self.steps
-        units = self.losses.damping / self.losses.period * step / self.force_unit
-        return floor(units) if self.rules == "generous" else ceil(units)
-
-    @property
     def energy_unit(self) -> Fraction:
         """One force unit over one step [J]."""
         return self.force_unit * self.losses.resolution / self.steps
 
-    @property
-    def farthest(self) -> int:
+    @cached_property
+    def costs(self) -> Integers:
+        """What a move over 0, 1, … steps costs while the first force of an interval acts, in energy units."""
+        return self._costs(self.losses.part)
+
+    @cached_property
+    def later_costs(self) -> Integers:
+        """The same for the rest of the interval; of no use where there is none."""
+        return self._costs(1 - self.losses.part)
+
+    def _costs(self, part: Fraction) -> Integers:
+        step = self.losses.resolution / self.steps
+        units = self.losses.damping / (part * self.losses.period) * step / self.force_unit
+        drag = floor(units) if self.rules == "generous" else ceil(units)
+        far = np.arange(self._farthest(part) + 1, dtype=np.int64)
+        lost = drag * far**2
+        if self.rules == "generous":
+            lost = np.where(far <= 1, 0, lost - (drag + 3) // 4)
+        return self.friction * far + lost
+
+    def _farthest(self, part: Fraction) -> int:
         """The longest move, in steps."""
         if self.rules == "strict":
             fastest = self.domain.reach if self.domain.fastest is None else self.domain.fastest
-            return floor(fastest * self.steps)
-        return self.domain.reach * self.steps + 2  # both ends of a move lie between knots
-
-    @cached_property
-    def costs(self) -> Integers:
-        """What a move over 0, 1, … steps costs, in energy units."""
-        far = np.arange(self.farthest + 1, dtype=np.int64)
-        lost = self.drag * far**2
-        if self.rules == "generous":
-            lost = np.where(far <= 1, 0, lost - (self.drag + 1) // 2)
-        return self.friction * far + lost
+            return floor(fastest * part * self.steps)
+        return ceil(self.domain.reach * part * self.steps)
 
     @cached_property
     def forces(self) -> Integers:
-        """Force in units for every cell (rows) and history (columns); NOWHERE off the board."""
+        """Force in units for every cell (rows) and history (columns); NOWHERE off the board.
+
+        The first of the interval, where a delay makes two.
+        """
+        return self._forces(self.losses.delay)
+
+    @cached_property
+    def later_forces(self) -> Integers:
+        """The force in the rest of the interval; of no use where there is none."""
+        return self._forces(self.losses.delay - 1)
+
+    def _forces(self, age: int) -> Integers:
         low, high = self.domain.lowest, self.domain.highest
         cells = np.arange(low, high + 1, dtype=np.int64)[:, None]
         differences = np.arange(-self.domain.reach, self.domain.reach + 1, dtype=np.int64)
@@ -214,7 +241,8 @@ class Board:
         on_board = np.ones((len(cells), self.histories), dtype=bool)
         for reading in readings:
             on_board &= (reading >= low) & (reading <= high)
-        forces: Integers = np.where(on_board, self._force(readings[self.losses.delay :]), NOWHERE)
+        used = readings[age : age + max(len(self.law.taps), 1)]
+        forces: Integers = np.where(on_board, self._force(used), NOWHERE)
         return forces
 
     def _force(self, readings: list[Integers]) -> Integers:

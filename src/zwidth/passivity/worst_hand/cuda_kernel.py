@@ -65,6 +65,8 @@ def improve_all(
                     ranges[0, group],
                     ranges[1, group],
                     ranges[2, group],
+                    values,
+                    there[:, group],
                     place[:, group],
                     there[:, group],
                     item % knots.size,

@@ -27,7 +27,7 @@ def losses_of(device: Device) -> Losses:
     Raises
     ------
     InputError
-        If a parameter is an interval, the encoder is ideal, or the delay is not whole samples.
+        If a parameter is an interval, or the encoder is ideal.
     """
     resolution, period, delay = (device.exact(k) for k in ("resolution", "sample_period", "delay"))
     if resolution == 0:
@@ -35,13 +35,10 @@ def losses_of(device: Device) -> Losses:
             "the worst hand is sought count by count, and the resolution is 0: an ideal encoder has no "
             "counts; zwidth check decides linear laws there exactly"
         )
-    samples = delay / period
-    if samples.denominator != 1:
-        raise InputError(
-            f"the worst hand is sought for delays of whole samples; {float(delay):g} s is {float(samples):g} "
-            f"samples of {float(period):g} s: take {float(ceil(samples) * period):g} s, the next longer one"
-        )
-    return Losses(device.exact("damping"), device.exact("coulomb_friction"), resolution, period, int(samples))
+    samples = ceil(delay / period)
+    part = delay / period - samples + 1
+    losses = device.exact("damping"), device.exact("coulomb_friction"), resolution, period
+    return Losses(*losses, samples, part)
 
 
 def domain_for(
@@ -57,13 +54,21 @@ def domain_for(
         Deepest position of the hand [m; rad], > 0; None: as many counts as are quickly played.
         For a law on both sides of x = 0 it holds on both.
     speed
-        Largest mean speed of the hand over a sample [m/s; rad/s], > 0; None likewise.
+        Largest mean speed of the hand over a sample, or over each part of it between two
+        changes of the force [m/s; rad/s], > 0; None likewise.
 
     Raises
     ------
     InputError
-        If a number is not positive, or the board would be too large.
+        If a number is not positive, the board would be too large, or a law that relaxes
+        meets a delay that is not whole samples.
     """
+    if law.relaxing is not None and losses.part < 1:
+        raise InputError(
+            "the worst hand of a law that relaxes is sought for delays of whole samples; this one is "
+            f"{float(losses.lag):g} s with a sample period of {float(losses.period):g} s; zwidth check "
+            "covers it in sustained contact"
+        )
     memory = law.memory + losses.delay
     usual = (COUNTS if law.relaxing is None else RELAXING_COUNTS).get(memory, 1)
     deepest = (

@@ -18,6 +18,7 @@ from zwidth.passivity.worst_hand.board import Board
 from zwidth.passivity.worst_hand.law import FiniteLaw
 from zwidth.passivity.worst_hand.solve import Played
 from zwidth.passivity.worst_hand.storage import loop_document
+from zwidth.passivity.worst_hand.switching import switch_positions
 
 _NEAREST = 40
 """Halvings of a count by which a hand on the upper edge of a cell may have to stay below it."""
@@ -27,7 +28,8 @@ _NEAREST = 40
 class Gain:
     """A motion with contact made and broken that takes energy out, and again with every round.
 
-    Energy out, in rational arithmetic: −Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx².
+    Energy out, in rational arithmetic: −Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx², over each part of
+    a sample with one force.
 
     Parameters
     ----------
@@ -118,16 +120,17 @@ def gain(played: Played, motion: str) -> Gain | None:
         approach = _steps(start, round_[0], board.domain.reach * board.losses.resolution)
         x = [*approach, *round_[1:], round_[0]]
         part = Repeat(len(approach) - 1, len(x) - 1, 1)
-        document = _document(board, Motion(tuple(x), (), (part,)), motion)
+        path = Motion(tuple(x), switch_positions(board, x, part), (part,))
+        document = _document(board, path, motion)
         for _ in range(3):  # rounds that settle the law, rounds that pay for the approach, and once more
             found = _recomputed(document, _settling(board, len(round_)))
             if found is None:
                 break
             energy, per_round = found
             if energy > 0:
-                return _witness(board, document, Motion(tuple(x), (), (part,)), energy, per_round, motion)
-            part = part._replace(times=document["repeats"]["times"] + ceil(-energy / per_round) + 1)
-            document = _document(board, Motion(tuple(x), (), (part,)), motion)
+                return _witness(board, document, path, energy, per_round, motion)
+            path = path.repeated(document["repeats"]["times"] + ceil(-energy / per_round) + 1)
+            document = _document(board, path, motion)
     return None
 
 
@@ -183,6 +186,7 @@ def _document(board: Board, motion: Motion, kind: str) -> dict[str, Any]:
         "energy_J": Fraction(0),
         "repeats": part._asdict(),
         f"positions_{length}": list(motion.positions),
+        **({f"switch_positions_{length}": list(motion.switch_positions)} if motion.switch_positions else {}),
     }
 
 
@@ -192,7 +196,7 @@ def _witness(
     part = motion.repeats[0]._replace(times=int(document["repeats"]["times"]))
     return Gain(
         {**document, "energy_J": energy},
-        Motion(motion.positions, (), (part,)),
+        motion.repeated(part.times),
         energy,
         per_round,
         board.law,

@@ -144,8 +144,9 @@ class Game:
             outside = f"inside and {-self.domain.lowest} counts outside"
         else:
             outside = "inside and any distance outside"
+        over = "one sample" if self.losses.part == 1 else "each part of a sample with one force"
         return (
-            f"hands of up to {fastest:.4g} {speed} over one sample ({self.domain.reach} counts), "
+            f"hands of up to {fastest:.4g} {speed} over {over} ({self.domain.reach} counts a sample), "
             f"up to {deepest:.4g} {length} ({self.domain.highest + 1} counts) {outside}"
         )
 
@@ -223,7 +224,7 @@ def worst_hand(
     Parameters
     ----------
     device
-        Without intervals, with an encoder (Δ > 0) and a delay of whole samples.
+        Without intervals, with an encoder (Δ > 0); for a law that relaxes, a delay of whole samples.
     environment
         A law that remembers a few readings: walls with or without damping, windows,
         finite filters, springs given by points; clamped or not.

@@ -18,16 +18,19 @@ class Round(NamedTuple):
 
     Parameters
     ----------
+    times
+        The samples, and the instants between them at which a delayed force changes [T].
     positions
-        x at the samples, the last as the first [m; rad].
+        x then, the last as the first [m; rad].
     forces
-        Held from each sample to the next [N; N·m].
+        Held from each of them to the next [N; N·m].
     energies
         Taken out since the first sample, at each [J].
     resolution
         Δ [m; rad].
     """
 
+    times: tuple[float, ...]
     positions: tuple[float, ...]
     forces: tuple[float, ...]
     energies: tuple[float, ...]
@@ -38,11 +41,27 @@ def settled_round(gain: Gain) -> Round:
     """The round that is gained with, again and again."""
     _, forces = _forces(gain)
     losses = read_losses(gain.document)
-    friction, drag = float(losses.friction), float(losses.damping / losses.period)
-    moves = [b - a for a, b in pairwise(gain.cycle)]
-    out = (-f * d - friction * abs(d) - drag * d * d for f, d in zip(forces, moves, strict=True))
+    first, last, _ = gain.motion.repeats[0]
+    x, switches = gain.motion.positions, gain.motion.switch_positions
+    times, positions = [Fraction(0)], [x[first]]
+    for k in range(first, last):
+        if switches:
+            times.append(k - first + losses.part)
+            positions.append(switches[k])
+        times.append(Fraction(k - first + 1))
+        positions.append(x[k + 1])
+    out = (
+        -f * float(b - a) - float(losses.lost(b - a, t1 - t0))
+        for f, (a, b), (t0, t1) in zip(forces, pairwise(positions), pairwise(times), strict=True)
+    )
     energies = tuple(accumulate(out, initial=0.0))
-    return Round(gain.cycle, tuple(forces), energies, float(losses.resolution))
+    return Round(
+        tuple(map(float, times)),
+        tuple(map(float, positions)),
+        tuple(forces),
+        energies,
+        float(losses.resolution),
+    )
 
 
 def peak_force(gain: Gain) -> float:
@@ -54,10 +73,10 @@ def _forces(gain: Gain) -> tuple[list[float], list[float]]:
     """Forces on the way in, and in a round once the law has settled."""
     controller = _Controller(read_law(gain.document), read_losses(gain.document), gain.motion.positions[0])
     x, (first, last, _) = gain.motion.positions, gain.motion.repeats[0]
-    way_in = [controller.force(position) for position in x[:first]]
+    way_in = [force for position in x[:first] for force in controller.forces(position)]
     before: list[float] = []
     for _ in range(_SETTLING):
-        forces = [controller.force(position) for position in x[first:last]]
+        forces = [force for position in x[first:last] for force in controller.forces(position)]
         if forces == before:
             break
         before = forces
@@ -68,21 +87,25 @@ class _Controller:
     """The law behind the encoder, sample by sample."""
 
     def __init__(self, law: Law, losses: Losses, start: Fraction) -> None:
-        self._law, self._late, self._resolution = law, losses.delay, losses.resolution
+        self._law, self._losses = law, losses
         self._taps = max(len(law.taps), 1)
         rested = self._read(start)
         average = Fraction(0) if law.surface == "penetration" or law.relaxing is None else rested
-        self._readings = [rested] * (self._taps + self._late)
-        self._averages = [average] * (self._late + 1)
+        self._readings = [rested] * (self._taps + losses.delay)
+        self._averages = [average] * (losses.delay + 1)
 
-    def force(self, position: Fraction) -> float:
-        """The force held after a sample at this position."""
+    def forces(self, position: Fraction) -> list[float]:
+        """The force held after a sample at this position; two where it changes within the interval."""
         reading = self._read(position)
         self._readings = [reading, *self._readings[:-1]]
-        force = self._law.force(self._readings[self._late :], self._averages[self._late])
+        late = self._losses.delay
+        ages = [late] if self._losses.part == 1 else [late, late - 1]
+        forces = [
+            self._law.force(self._readings[age : age + self._taps], self._averages[age]) for age in ages
+        ]
         after = float(self._law.averaged(self._averages[0], reading))  # exact, its digits would grow
         self._averages = [Fraction(after), *self._averages[:-1]]
-        return float(force)
+        return [float(force) for force in forces]
 
     def _read(self, position: Fraction) -> Fraction:
-        return self._resolution * (position // self._resolution)
+        return self._losses.resolution * (position // self._losses.resolution)

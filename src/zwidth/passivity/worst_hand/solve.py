@@ -18,6 +18,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.passivity.worst_hand.board import Board, Integers
 from zwidth.passivity.worst_hand.gpu import OnCard
+from zwidth.passivity.worst_hand.parts import sweep_parts
 from zwidth.passivity.worst_hand.sweep import cycle, sweep
 
 THREADS = min(os.cpu_count() or 1, 8)
@@ -75,6 +76,8 @@ def play(
     """
     if on not in ("cpu", "gpu"):
         raise InputError(f'on is "cpu" or "gpu", got {on!r}')
+    if on == "gpu" and board.losses.part < 1:
+        raise InputError("a delay of part of a sample is played on the processor: leave out on")
     value = board.first_guess.copy()
     choice = np.full(value.shape, -1, np.int64)
     card = OnCard(board, value, choice) if on == "gpu" else None
@@ -100,9 +103,12 @@ def _round(pool: ThreadPoolExecutor, board: Board, value: Integers, choice: Inte
     """Improve every state, on all threads; returns how many improved."""
     groups = len(value) * (board.histories // board.width if board.memory else 1)
     parts = np.linspace(0, groups, THREADS * 4 + 1).astype(int)
-    tables = board.forces, board.costs, board.knots
+    tables: tuple[Integers, ...] = board.forces, board.costs, board.knots
+    improve: Callable[..., int] = sweep
+    if board.losses.part < 1:
+        tables, improve = (*tables, board.later_forces, board.later_costs), sweep_parts
     jobs = [
-        pool.submit(sweep, value, choice, *tables, first, last, board.domain.reach)
+        pool.submit(improve, value, choice, *tables, first, last, board.domain.reach)
         for first, last in zip(parts[:-1], parts[1:], strict=True)
         if first < last
     ]

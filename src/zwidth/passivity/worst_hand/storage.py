@@ -126,6 +126,6 @@ def loop_document(losses: Any, motion: str) -> dict[str, str]:
         "coulomb_friction": losses.coulomb_friction,
         "resolution": losses.resolution,
         "sample_period": losses.period,
-        "delay": losses.delay * losses.period,
+        "delay": losses.lag,
     }
     return {unit_key(name, motion): exact_text(value) for name, value in quantities.items()}

@@ -55,8 +55,8 @@ def sweep(
         points = worthwhile(values, forces, costs, knots, group, reach, least, most, gain, place, there)
         for knot in range(knots.size):
             improved += improve(
-                values, choices, forces, costs, knots, group, reach, least, most, points, place, there,
-                knot, gain, move, goal,
+                values, choices, forces, costs, knots, group, reach, least, most, points, values, there,
+                place, there, knot, gain, move, goal,
             )  # fmt: skip
     return improved
 
@@ -143,6 +143,8 @@ def improve(
     least: int,
     most: int,
     points: int,
+    worth: Integers,
+    which: Integers,
     place: Integers,
     there: Integers,
     knot: int,
@@ -152,6 +154,7 @@ def improve(
 ) -> int:
     """Improve the states of a group on one knot by moves to its worthwhile points; returns how many.
 
+    worth[which] of a point is what can still be taken out there; a move to it ends in there.
     gain, move and goal are scratch, for the corners of the hull.
     """
     histories, edges = forces.shape[1], knots.size
@@ -164,7 +167,7 @@ def improve(
         far = abs(d)
         if far >= costs.size:
             continue
-        a = values[there[point]] - costs[far]
+        a = worth[which[point]] - costs[far]
         if corners > 0:
             top = corners - 1
             if a - gain[top] <= least * (d - move[top]):
