@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from zwidth import catalogue
-from zwidth.cli.environments import TYPES, Key
+from zwidth.cli.environments import TYPES, Key, all_keys
 from zwidth.cli.options import Parameter, device_parameters, environment_parameters
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -73,10 +73,8 @@ def environment_types() -> str:
 
 def environment_keys() -> str:
     """Every key that an environment table may have, with its unit."""
-    keys = {key: kind for row in TYPES.values() for key, kind in row.keys.items()}
-    return markdown(
-        ("key", "unit", "meaning"), [(f"`{k}`", _key_unit(v), v.meaning) for k, v in keys.items()]
-    )
+    rows = [(f"`{name}`", _key_unit(key), key.meaning) for name, key in all_keys().items()]
+    return markdown(("key", "unit", "meaning"), rows)
 
 
 def devices() -> str:

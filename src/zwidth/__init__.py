@@ -25,7 +25,7 @@ from zwidth.rendering import VirtualCoupling
 if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.device import amplifier as amplifiers
-    from zwidth.environment import NonlinearSpring
+    from zwidth.environment import HuntCrossley, NonlinearSpring
     from zwidth.loop.timing import Timing
     from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.passivity.worst_hand import Bracket, WorstHand
@@ -48,6 +48,7 @@ __all__ = [
     "FrictionCurve",
     "FrictionModel",
     "GeneralizedMaxwell",
+    "HuntCrossley",
     "InputError",
     "Interval",
     "Maxwell",
@@ -82,6 +83,7 @@ __all__ = [
 
 _LATER = {
     "Bracket": "zwidth.passivity.worst_hand",
+    "HuntCrossley": "zwidth.environment",
     "NonlinearSpring": "zwidth.environment",
     "Timing": "zwidth.loop.timing",
     "amplifiers": "zwidth.device.amplifier",

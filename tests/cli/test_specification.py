@@ -156,6 +156,10 @@ ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
         lambda: zw.NonlinearSpring([0, 0.001, 0.002], [-0.1, 0.2, 3]),
     ),
     (
+        'type = "hunt-crossley"\nstiffness = 2e4\nexponent = 2\ndissipation = "3 s/m"\nclamped = false\n',
+        lambda: zw.HuntCrossley(20000, 2, 3, clamped=False),
+    ),
+    (
         'type = "virtual-coupling"\nstiffness = 1\ndamping = 2\n'
         'environment = { type = "wall", stiffness = 9 }\n',
         lambda: zw.VirtualCoupling(1, 2, zw.Wall(9)),
@@ -210,6 +214,8 @@ def test_lists_on_the_command_line(read: Load) -> None:
     points = {"positions": "-1 mm, 0, 2 mm", "forces": "[-1, 0, 0.5 N]"}
     s = load(["phantom"], {"type": "nonlinear-spring", **points})
     assert s.environment == zw.NonlinearSpring([-0.001, 0, 0.002], [-1, 0, 0.5])
+    contact = {"type": "hunt-crossley", "stiffness": "2e4", "dissipation": "3 s/m"}
+    assert load(["phantom"], contact).environment == zw.HuntCrossley(20000, "1.5", 3)
     s = load(["phantom"], {"type": "generalized-maxwell", "stiffness": "1", "branches": "800:3, 1 N/mm : 20"})
     assert s.environment == zw.GeneralizedMaxwell(1, [(800, 3), (1000, 20)])
     coupling = '[environment]\ntype = "virtual-coupling"\nstiffness = 1\ndamping = 2\n'
@@ -230,9 +236,16 @@ def bad(device: str, environment: str = WALL) -> str:
     return f"[device]\n{device}\n{environment}"
 
 
+CONTACT = '[environment]\ntype = "hunt-crossley"\n'
+
 BAD: list[tuple[str | bytes, str]] = [
     (bad("dampng = 1\nrate = 1"), 'file0.toml: [device]: a device has no "dampng"; did you mean "damping"?'),
     (bad("damping = 1"), "rate"),
+    (DEVICE + CONTACT + "exponent = 2\n", 'type "hunt-crossley" needs stiffness'),
+    (DEVICE + CONTACT + 'stiffness = "300 N/m"\n', 'stiffness is a plain number; got "300 N/m"'),
+    (DEVICE + CONTACT + "stiffness = [1, 2]\n", "stiffness is a plain number"),
+    (DEVICE + CONTACT + 'stiffness = 1\ndissipation = "3 m/s"\n', "dissipation is in s/m"),
+    (DEVICE + CONTACT + "stiffness = 1\nexponent = 0.5\n", "exponent must be from 1 to 10"),
     (bad("rate = 1"), "damping"),
     (bad("damping = -1\nrate = 1"), "damping must be ≥ 0 N*s/m, got -1"),
     (bad("damping = 1\nrate = 1\ncoulomb_friction = -1e-9"), "coulomb_friction must be ≥ 0"),

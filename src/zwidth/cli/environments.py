@@ -16,10 +16,18 @@ from zwidth.cli.values import branches, coefficients, flag, quantities, velocity
 from zwidth.environment import Environment
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.units import parse
+from zwidth.quantity.units import parse, parse_number
 
 Form = Literal[
-    "quantity", "coefficients", "branches", "word", "flag", "list", "velocity filter", "environment"
+    "quantity",
+    "number",
+    "coefficients",
+    "branches",
+    "word",
+    "flag",
+    "list",
+    "velocity filter",
+    "environment",
 ]
 
 DEEPEST = 4
@@ -49,7 +57,11 @@ def _number(quantity: str, required: bool = True) -> Key:
 
 
 _DISCRETIZATION = Key("word", "backward, forward, tustin, zoh, impulse or matched", required=False)
-_CLAMPED = Key("flag", "true for a law that never pulls, f = max(0, …); false by default", required=False)
+_CLAMPED = Key(
+    "flag",
+    "true for a law that never pulls, f = max(0, …); by default only of a Hunt–Crossley contact",
+    required=False,
+)
 _NUMERATOR = Key("coefficients", "numerator, descending powers")
 _DENOMINATOR = Key("coefficients", "denominator, descending powers")
 
@@ -113,6 +125,17 @@ TYPES: Mapping[str, EnvironmentType] = MappingProxyType(
                 "forces": Key("list", "forces at the points, > 0 towards smaller positions", "force"),
             },
         ),
+        "hunt-crossley": EnvironmentType(
+            "zwidth.environment",
+            "HuntCrossley",
+            "contact whose damping grows with the depth, K uⁿ (1 + λ v)",
+            {
+                "stiffness": Key("number", "K of a Hunt–Crossley contact, in N/mⁿ"),
+                "exponent": _number("exponent", required=False),
+                "dissipation": _number("dissipation", required=False),
+                "clamped": _CLAMPED,
+            },
+        ),
         "transfer-function": EnvironmentType(
             "zwidth.environment",
             "ContinuousTransferFunction",
@@ -144,7 +167,7 @@ TYPES: Mapping[str, EnvironmentType] = MappingProxyType(
 
 
 def option_keys() -> dict[str, Key]:
-    """Every environment key under its name on the command line.
+    """Every environment key under its name on the command line; with several meanings it has the first.
 
     There `damping` is the device's, so the environment's is `virtual_damping`;
     `sample_period`, too, is the device's. A key of the environment behind a
@@ -152,10 +175,18 @@ def option_keys() -> dict[str, Key]:
     """
     return {
         "virtual_damping" if name == "damping" else name: key
-        for row in TYPES.values()
-        for name, key in row.keys.items()
+        for name, key in all_keys().items()
         if key.form != "environment" and name != "sample_period"
     }
+
+
+def all_keys() -> dict[str, Key]:
+    """Every key of every environment; one with several meanings has the first."""
+    keys: dict[str, Key] = {}
+    for row in TYPES.values():
+        for name, key in row.keys.items():
+            keys.setdefault(name, key)
+    return keys
 
 
 def build_environment(table: Table, motion: str, depth: int = 0) -> Environment:
@@ -206,6 +237,8 @@ def _read(table: Table, key: str, kind: Key, motion: str, depth: int) -> Any:
     with located(table.where(key)):
         if kind.form == "quantity":
             return parse(value, GLOSSARY[kind.quantity].unit_for(motion), key)
+        if kind.form == "number":
+            return parse_number(value, "1", key)
         if kind.form == "list":
             return quantities(value, GLOSSARY[kind.quantity].unit_for(motion), key)
         if kind.form == "coefficients":

@@ -1,5 +1,6 @@
-"""What the hand meets: walls, viscoelastic solids, transfer functions, nonlinear springs."""
+"""What the hand meets: walls, solids, transfer functions; contacts and springs that are not linear."""
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from zwidth.environment.environment import Environment, RationalFunction
@@ -13,6 +14,7 @@ from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, Standar
 from zwidth.environment.wall import Wall
 
 if TYPE_CHECKING:
+    from zwidth.environment.hunt_crossley import HuntCrossley
     from zwidth.environment.nonlinear_spring import NonlinearSpring
 
 __all__ = [
@@ -20,6 +22,7 @@ __all__ = [
     "ContinuousTransferFunction",
     "Environment",
     "GeneralizedMaxwell",
+    "HuntCrossley",
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
@@ -33,9 +36,11 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    if name != "NonlinearSpring":
-        raise AttributeError(f"module 'zwidth.environment' has no attribute {name!r}")
-    from zwidth.environment.nonlinear_spring import NonlinearSpring  # few loops have one
+_RARE = {"HuntCrossley": "hunt_crossley", "NonlinearSpring": "nonlinear_spring"}
+"""Few loops have one: where they are, until they are first used."""
 
-    return NonlinearSpring
+
+def __getattr__(name: str) -> Any:
+    if name not in _RARE:
+        raise AttributeError(f"module 'zwidth.environment' has no attribute {name!r}")
+    return getattr(import_module(f"zwidth.environment.{_RARE[name]}"), name)

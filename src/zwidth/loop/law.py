@@ -3,6 +3,7 @@
     x_m = Δ floor(x/Δ + φ)              what the encoder reads, φ its phase
     f   = g x_m + Σ (sections)          H(z), each section a transposed direct form;
     f   = table(x_m)                    or points, linear between them
+    f   = K uⁿ (1 + λ v)                or a contact, u = max(x_m, 0), v the backward difference of x_m
     f   = max(f, 0)                     where the law never pulls
     f   = ΔF round(f/ΔF)                what the converter makes of it
 
@@ -19,10 +20,11 @@ BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 """At the surface: a law without one; one fed with max(x_m, 0); one fed with x_m.  Both push inside only."""
 
 # The packed law: gate, encoder resolution, phase, force step, force limit (0: none), whether it never
-# pulls, number of sections, number of points; then for each section its order n, b_0 … b_n, a_1 … a_n;
-# or, where there are points and no section, their positions and their forces.
-GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS, POINTS = range(8)
-HEADER = 8
+# pulls, number of sections, number of points, whether it is a contact; then for each section its order n,
+# b_0 … b_n, a_1 … a_n; or, where there are points and no section, their positions and their forces; or K, n
+# and λ/T of a contact, which remembers the last reading.
+GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS, POINTS, CONTACT = range(9)
+HEADER = 9
 
 
 @compiled
@@ -57,6 +59,15 @@ def table_force(law: Array, points: int, x: float) -> float:
 
 
 @compiled
+def contact_force(law: Array, memory: Array, reading: float) -> float:
+    """K uⁿ (1 + λ v); the last reading moves on."""
+    moved = reading - memory[0]
+    memory[0] = reading
+    depth = max(reading, 0.0)
+    return law[HEADER] * depth ** law[HEADER + 1] * (1.0 + law[HEADER + 2] * moved)
+
+
+@compiled
 def law_force(law: Array, memory: Array, reading: float) -> float:
     """The force that the law commands at a measured position; its memory moves on."""
     gate = law[GATE]
@@ -76,6 +87,8 @@ def law_force(law: Array, memory: Array, reading: float) -> float:
         f += y
         at += 2 * order + 2
         slot += order
+    if law[CONTACT] > 0.0:
+        f = contact_force(law, memory, reading)
     if law[CLAMPED] > 0.0:
         f = max(f, 0.0)
     return 0.0 if gate != BILATERAL and reading <= 0.0 else f

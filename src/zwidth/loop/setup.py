@@ -12,6 +12,7 @@ import numpy as np
 from zwidth.device.amplifier import Actuation, Amplifier, CurrentAmplifier
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
+from zwidth.environment.hunt_crossley import HuntCrossley
 from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.environment.transfer_function import as_environment
 from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell
@@ -234,11 +235,14 @@ def _plant(device: Device, operator: Operator, actuation: Actuation) -> Plant:
 
 
 def _body(law: Environment, period: Fraction) -> list[float]:
-    """The numbers of sections and of points, and what they are."""
+    """The numbers of sections and of points, whether it is a contact, and what they are."""
     if isinstance(law, NonlinearSpring):
-        return [0.0, float(len(law.positions)), *map(float, law.positions), *map(float, law.forces)]
+        return [0.0, float(len(law.positions)), 0.0, *map(float, law.positions), *map(float, law.forces)]
+    if isinstance(law, HuntCrossley):
+        per_length = float(law.dissipation.fraction / period)
+        return [0.0, 0.0, 1.0, float(law.stiffness), float(law.exponent), per_length]
     sections = sections_of(law, period)
-    return [float(len(sections)), 0.0, *(c for s in sections for c in s)]
+    return [float(len(sections)), 0.0, 0.0, *(c for s in sections for c in s)]
 
 
 def sections_of(environment: Environment, period: Fraction) -> list[list[float]]:
@@ -269,6 +273,8 @@ def _section(environment: Environment, period: Fraction) -> list[float]:
 def at_rest(law: Array, reading: float) -> Array:
     """The law's memory after it has read this position for ever; 0 where it would not settle."""
     gate, at = law[laws.GATE], laws.HEADER
+    if law[laws.CONTACT] > 0.0:
+        return np.array([reading])
     x = max(reading, 0.0) if gate == laws.PENETRATION else reading
     slots: list[float] = []
     for _ in range(int(law[laws.SECTIONS])):
@@ -289,7 +295,7 @@ def at_rest(law: Array, reading: float) -> Array:
 def _gate(environment: Environment) -> float:
     if not environment.unilateral:
         return laws.BILATERAL
-    return laws.SURFACE if isinstance(environment, Wall) else laws.PENETRATION
+    return laws.SURFACE if isinstance(environment, Wall | HuntCrossley) else laws.PENETRATION
 
 
 def _samples(duration: RealLike, period: Fraction) -> int:

@@ -69,6 +69,8 @@ _KINDS: dict[Dimension, str] = {
     (0, 0, 0, 0, 1): "an angle (rad)",
     (0, 0, -1, 0, 1): "an angular speed (rad/s)",
     (0, 1, -1, 0, 0): "a speed (m/s)",
+    (0, -1, 1, 0, 0): "a dissipation (s/m)",
+    (0, 0, 1, 0, -1): "a rotary dissipation (s/rad)",
     (1, 1, -2, 0, 0): "a force (N)",
     (1, 0, -2, 0, 0): "a stiffness (N/m)",
     (1, 0, -1, 0, 0): "a damping (N*s/m)",

@@ -1,0 +1,150 @@
+"""Contact after Hunt and Crossley: a spring that stiffens, and damping that grows with the depth.
+
+    f = K uⁿ (1 + λ v),     u = max(x, 0),   v = (x(k) − x(k−1))/T
+
+and f = max(f, 0) where the contact never pulls.  Unlike a Kelvin–Voigt wall it
+begins without a jump of force and lets go without holding back; two bodies that
+meet at the speed v_i part at about (1 − ⅔ λ v_i) v_i.  n = 3/2 is a sphere on a
+plane (Hertz).
+
+Hunt & Crossley, Journal of Applied Mechanics 42(2), 1975; clamped so that it
+never pulls as in Drake and Simbody, where λ is called the dissipation too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from decimal import Context, Decimal
+from fractions import Fraction
+from typing import NoReturn
+
+from zwidth.environment.coefficients import read_coefficient
+from zwidth.environment.environment import Environment, as_clamped
+from zwidth.environment.wording import never_pulls, with_unit
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike
+
+LARGEST_EXPONENT = 10
+"""A contact much harder than any is."""
+
+DIGITS = 17
+"""Digits to which K uⁿ is rounded where n is no whole number: more than a double has."""
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class HuntCrossley(Environment):
+    """Contact inside x > 0 whose damping grows with the depth, ``f = K uⁿ (1 + λ v)``.
+
+    v is the backward difference of the measured positions, inside and outside.
+
+    Parameters
+    ----------
+    stiffness
+        K ≥ 0 [N/mⁿ; N·m/radⁿ].
+    exponent
+        n from 1 to 10. Default 1.5, a sphere on a plane.
+    dissipation
+        λ ≥ 0 [s/m; s/rad]. Default 0.
+    clamped
+        True (default) for a contact that never pulls, ``f = max(0, K uⁿ (1 + λ v))``.
+
+    Raises
+    ------
+    InputError
+        If one of them is not such a number, or clamped is not a bool.
+    """
+
+    stiffness: Exact
+    exponent: Exact
+    dissipation: Exact
+    clamped: bool = True
+
+    def __init__(
+        self,
+        stiffness: RealLike,
+        exponent: RealLike = "1.5",
+        dissipation: RealLike = 0,
+        clamped: bool = True,
+    ) -> None:
+        k, n, d = (
+            read_coefficient(value, key)
+            for value, key in ((stiffness, "stiffness"), (exponent, "exponent"), (dissipation, "dissipation"))
+        )
+        if k < 0:
+            raise InputError(f"stiffness must be ≥ 0, got {k:g}: a contact that pulls the hand in has no end")
+        if not 1 <= n <= LARGEST_EXPONENT:
+            raise InputError(
+                f"exponent must be from 1 to {LARGEST_EXPONENT}, got {n:g}: below 1 a contact is stiffest "
+                "where it begins; a sphere on a plane has 1.5"
+            )
+        if d < 0:
+            raise InputError(f"dissipation must be ≥ 0, got {d:g}: it would give energy to the hand")
+        object.__setattr__(self, "stiffness", k)
+        object.__setattr__(self, "exponent", n)
+        object.__setattr__(self, "dissipation", d)
+        object.__setattr__(self, "clamped", as_clamped(clamped))
+
+    @property
+    def unilateral(self) -> bool:
+        return True
+
+    @property
+    def linear(self) -> bool:
+        return False
+
+    def unit_of(self, key: str, motion: str = "linear") -> str:
+        """The SI unit of a parameter, that of the stiffness with the exponent in it."""
+        force, length = ("N*m", "rad") if motion == "rotary" else ("N", "m")
+        power = f"^{self.exponent:g}" if self.exponent != 1 else ""
+        return {"stiffness": f"{force}/{length}{power}", "dissipation": f"s/{length}"}.get(key, "1")
+
+    def force(self, position: RealLike, velocity: RealLike = 0) -> Exact:
+        """f at a position [m; rad] and a velocity [m/s; rad/s], K uⁿ as `resting_force` has it [N; N·m].
+
+        Raises
+        ------
+        InputError
+            If one of them is no finite number.
+        """
+        x, v = (
+            read_coefficient(value, key).fraction
+            for value, key in ((position, "position"), (velocity, "velocity"))
+        )
+        f = resting_force(self.stiffness.fraction, self.exponent.fraction, x)
+        f *= 1 + self.dissipation.fraction * v
+        return Exact(max(f, Fraction(0)) if self.clamped else f)
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> NoReturn:
+        """There is none.
+
+        Raises
+        ------
+        InputError
+            Always: only a linear law has an H(z).
+        """
+        raise InputError(
+            "a Hunt–Crossley contact has no H(z): the law is not linear; "
+            "zwidth.simulate and zwidth.passive_limit take it"
+        )
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, on one line, in linear or rotary units."""
+        k = f"{self.stiffness:.6g} {self.unit_of('stiffness', motion)}"
+        parts = [k, f"exponent {self.exponent:g}"]
+        if self.dissipation:
+            parts.append(with_unit("dissipation", self.dissipation, motion))
+        return f"Hunt–Crossley contact, {', '.join(parts)}{never_pulls(self.clamped)}"
+
+
+def resting_force(stiffness: Fraction, exponent: Fraction, position: Fraction) -> Fraction:
+    """K uⁿ for u = max(x, 0): exact where n is a whole number, else rounded to `DIGITS` digits [N; N·m]."""
+    if position <= 0 or stiffness == 0:
+        return Fraction(0)
+    if exponent.denominator == 1:
+        return stiffness * position**exponent.numerator
+    wide = Context(prec=2 * DIGITS)
+    k, n, u = (
+        wide.divide(Decimal(v.numerator), Decimal(v.denominator)) for v in (stiffness, exponent, position)
+    )
+    exact = wide.multiply(k, wide.power(u, n))
+    return Fraction(Context(prec=DIGITS).plus(exact))
