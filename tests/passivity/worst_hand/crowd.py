@@ -13,9 +13,13 @@ def force(law, readings, resolution):
     if law.points:
         x, f = (np.array([float(v) for v in column]) for column in zip(*law.points, strict=True))
         total = np.interp(q[..., 0], x, f)
+    elif law.power is not None:
+        total = float(law.power[0]) * np.maximum(q[..., 0], 0.0) ** float(law.power[1])
     else:
         u = np.maximum(q, 0.0) if law.surface == "penetration" else q
         total = sum(float(c) * u[..., i] for i, c in enumerate(law.taps))
+    if law.rate:
+        total = total * (1 + float(law.rate) * (q[..., 0] - q[..., 1]))
     if law.clamped:
         total = np.maximum(total, 0.0)
     if law.force_step is not None:
@@ -30,7 +34,7 @@ class Crowd:
 
     def __init__(self, game, storage=None, seed=0):
         self.law, self.losses, self.domain = game.law, game.losses, game.domain
-        self.taps = max(len(self.law.taps), 1)
+        self.taps = self.law.memory + 1
         self.memory = self.taps - 1 + self.losses.delay
         self.step, self.random = float(self.losses.resolution), np.random.default_rng(seed)
         self.board = None if storage is None else storage.played.board

@@ -20,6 +20,8 @@ def exact_force(law, readings, resolution):
         else:
             (x0, f0), (x1, f1) = below[-1], law.points[len(below)]
             total = f0 * (x1 - x) / (x1 - x0) + f1 * (x - x0) / (x1 - x0)
+        if law.rate:
+            total += total * law.rate * (q[0] - q[1])
     else:
         u = [max(v, 0) for v in q] if law.surface == "penetration" else q
         total = sum(c * v for c, v in zip(law.taps, u, strict=True))
@@ -39,7 +41,7 @@ class PlainGame:
     def __init__(self, law, losses, domain, steps, knots, rules, unit):
         self.law, self.losses, self.domain, self.steps, self.knots = law, losses, domain, steps, knots
         self.generous, self.unit = rules == "generous", unit
-        self.memory = max(len(law.taps) - 1, 0) + losses.delay
+        self.memory = law.memory + losses.delay
         self.cells = range(domain.lowest, domain.highest + 1)
         self.states = [
             (cell, knot, before)
@@ -62,7 +64,7 @@ class PlainGame:
     def _rounded_force(self, state, age):
         """Of the reading of an age and those before it, in units, every tap, limit and point rounded down."""
         law, resolution, unit = self.law, self.losses.resolution, self.unit
-        readings = (state[0], *state[2])[age : age + max(len(law.taps), 1)]
+        readings = (state[0], *state[2])[age : age + law.memory + 1]
         if law.surface != "none" and readings[0] <= 0:
             return 0
         if law.points or law.force_step is not None:
@@ -157,10 +159,10 @@ def exact_gain(law, losses, positions, cells):
     Where the force changes within an interval, the hand is then where it is best, of 2000 places.
     """
     size, total = len(positions), Fraction(0)
-    taps = max(len(law.taps), 1)
+    used = law.memory + 1
     for k in range(size):
         forces = [
-            exact_force(law, [cells[(k - age - i) % size] for i in range(taps)], losses.resolution)
+            exact_force(law, [cells[(k - age - i) % size] for i in range(used)], losses.resolution)
             for age in (losses.delay, losses.delay - 1)
         ]
         start, end = positions[k], positions[(k + 1) % size]

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.worst_hand.board import Board, Domain, Losses
+from zwidth.passivity.worst_hand.board import Board, Domain
 from zwidth.passivity.worst_hand.law import FiniteLaw
+from zwidth.passivity.worst_hand.losses import Losses
 
 HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
 
@@ -147,4 +148,5 @@ def test_the_losses_are_hardly_touched_by_rounding():
         paddle.exact("sample_period"), 1,
     )  # fmt: skip
     board = Board(law, losses, Domain(-47, 64, 16), 64, "generous")
-    assert board.friction * board.force_unit > losses.coulomb_friction * (1 - Fraction(1, 10**6))
+    friction = int(board.costs[1]) * board.force_unit
+    assert friction > losses.coulomb_friction * (1 - Fraction(1, 10**6))

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from plain_game import PlainGame, exact_gain
 
-from zwidth.passivity.worst_hand.board import Board, Domain, Losses
+from zwidth.passivity.worst_hand.board import Board, Domain
 from zwidth.passivity.worst_hand.law import FiniteLaw
+from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.solve import play
 
 LAWS = {
@@ -28,6 +29,9 @@ LAWS = {
     "longer memory, clamped": ("penetration", 3, True, 0),
     "points": ("none", 0, False, 0),
     "points with a delay": ("none", 0, False, 1),
+    "contact": ("position", 0, True, 0),
+    "contact that pulls": ("position", 0, False, 0),
+    "contact behind a converter, with a delay": ("position", 0, True, 1),
     "spring behind a converter": ("position", 1, False, 0),
     "damped behind a converter": ("position", 2, False, 0),
     "damped on both sides behind a converter": ("none", 2, False, 0),
@@ -38,7 +42,7 @@ LAWS = {
     "damped with part of a sample of delay": ("penetration", 2, True, Fraction(2, 3)),
     "points with a delay of one sample and a part": ("none", 0, False, Fraction(7, 5)),
 }
-"""A surface, how many taps (0: a spring given by points), clamped, the delay in samples."""
+"""A surface, how many taps (0: points), clamped, the delay in samples."""
 
 
 def decimal(random, low, high):
@@ -51,6 +55,7 @@ def drawn(random, name, easier):
     surface, count, clamped, delay = LAWS[name]
     step, period = decimal(random, 1e-5, 1e-3), decimal(random, 1e-4, 1e-2)
     k = decimal(random, 1, 1000)
+    rate = Fraction(random.randint(1, 20), 10) / step if "contact" in name else Fraction(0)
     if count == 0:
         heights = [random.randint(-9, 9) for _ in range(5)]
         points = tuple(
@@ -58,6 +63,9 @@ def drawn(random, name, easier):
             for n, h in enumerate(heights)
         )
         taps, rough = (), k * max(abs(a - b) for a, b in zip(heights, heights[1:], strict=False)) / 9 + k / 9
+        if rate:
+            points = tuple((n * step, k * step * n**2 / 4) for n in range(3))
+            rough = k * (1 + 2 * rate * step)
     else:
         points = ()
         rest = [k * Fraction(random.randint(-9, 9), 10) for _ in range(count - 1)]
@@ -66,7 +74,7 @@ def drawn(random, name, easier):
     limit = rough * step * random.choice([1, 2]) if random.random() < 0.25 else None
     share = [Fraction(random.randint(60, 160), 100) * easier for _ in range(2)]
     damping, friction = share[0] * rough * period / 2 * (2 * delay + 1), share[1] * rough * step / 2
-    law = FiniteLaw(taps, surface, clamped, points, limit)
+    law = FiniteLaw(taps, surface, clamped, points, limit, rate=rate)
     if "converter" in name:  # of some steps a count, or some counts a step, and with ties
         coarse = rough * step * random.choice([2, 1, Fraction(1, 2), Fraction(3, 7)])
         law, friction = replace(law, force_step=coarse), friction + share[1] * coarse / 2
@@ -75,7 +83,7 @@ def drawn(random, name, easier):
 
 def domain_of(random, law, delay):
     """A few cells, reaching as far out as they must."""
-    memory = max(len(law.taps) - 1, 0) + delay
+    memory = law.memory + delay
     reach = 1 if memory >= 2 else random.choice([1, 2])
     if law.surface == "none":
         return Domain(-2, 2, reach)

@@ -37,7 +37,7 @@ def contact_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fracti
     first, last, times = (integer(get(part, k)) for k in ("first", "last", "times"))
     if not 0 <= first < last < len(x) or times < 1 or x[first] != x[last]:
         raise Invalid("the repeated part must lie in the motion and return to where it began")
-    taps = max(len(law.taps), 1)
+    taps = law.memory + 1
     start = losses.resolution * (x[0] // losses.resolution)
     if start > 0 or law.force([start] * taps) != 0:
         raise Invalid("the motion must begin at rest where the law gives no force")

@@ -41,20 +41,20 @@ def storage(document: Mapping[str, Any]) -> str:
     if law.relaxing is not None:
         from .storage_relaxing import storage_of_relaxing
 
-        if losses.part < 1:
-            raise Invalid("laws that relax are checked for delays of whole samples")
+        if losses.part < 1 or losses.curve:
+            raise Invalid("laws that relax are checked for delays of whole samples and one friction model")
         return storage_of_relaxing(document, losses, law)
     domain = get(document, "domain")
     low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
     reach, steps = integer(get(domain, "largest_move_counts"), 1), integer(get(domain, "steps_per_count"), 1)
     unit = number(get(document, "force_unit"))
-    memory = max(len(law.taps) - 1, 0) + losses.delay
+    memory = law.memory + losses.delay
     width, cells = 2 * reach + 1, high - low + 1
     if cells < 1 or unit <= 0 or reach * steps > MOST_MOVES:
         raise Invalid("the board is empty, or its moves are longer than can be checked")
     if cells * width**memory * (steps + 1) > MOST_VALUES:
         raise Invalid("the board is larger than can be checked")
-    _require_small(law, losses, unit, max(abs(low), abs(high)))
+    _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
     shape = (cells, width**memory, steps + 1)
@@ -65,7 +65,7 @@ def storage(document: Mapping[str, Any]) -> str:
     for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):
         if part > 0:
             forces, off = _forces(law, losses, unit, low, high, reach, memory, age)
-            moves.append((forces, _costs(losses, unit, off, part, reach, steps)))
+            moves.append((forces, costs_of(losses, unit, off, part, reach, steps)))
     largest = int(value.max())
     for forces, costs in moves:
         largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
@@ -86,20 +86,32 @@ def storage(document: Mapping[str, Any]) -> str:
     )
 
 
-def _costs(losses: Losses, unit: Fraction, off: int, part: Fraction, reach: int, steps: int) -> Any:
+def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, reach: int, steps: int) -> Any:
     """What a move over 0, 1, … steps in a part of the interval costs."""
     import numpy as np
 
-    friction = losses.friction // unit - off
-    drag = losses.damping / (part * losses.period) * (losses.resolution / steps) // unit
     far = np.arange(-int(-reach * steps * part // 1) + 1, dtype=object)
-    return friction * far + np.where(far > 1, drag * far * far - -(-drag // 4), 0)
+    costs = []
+    for friction, damping in losses.models:
+        drag = damping / (part * losses.period) * (losses.resolution / steps) // unit
+        lost = np.where(far > 1, drag * far * far - -(-drag // 4), 0)
+        costs.append((friction // unit - off) * far + lost)
+    if len(costs) == 1:
+        return costs[0]
+    # between two steps only one model counts, and at a step the lesser of the two beside it
+    least = [None] * len(far)
+    for d in range(len(far) - 1):
+        used = max(costs, key=lambda c: c[d] + c[d + 1])
+        for end in (d, d + 1):
+            least[end] = used[end] if least[end] is None else min(least[end], used[end])
+    return np.array(least, dtype=object)
 
 
-def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int) -> None:
+def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int, reach: int) -> None:
     """Forces must fit their numbers before they are multiplied."""
     most = sum((abs(c) for c in law.taps), Fraction(0)) * losses.resolution * farthest
-    most += max((abs(f) for _, f in law.points), default=Fraction(0)) + (law.limit or 0) + (law.step or 0)
+    highest = max((abs(f) for _, f in law.points), default=Fraction(0))
+    most += highest * (1 + abs(law.rate) * losses.resolution * reach) + (law.limit or 0) + (law.step or 0)
     if most / unit >= _EXACT:
         raise Invalid("the forces are too large to be compared exactly")
 
@@ -156,9 +168,9 @@ def _forces(
     columns = np.array(histories, dtype=np.int64).reshape(len(histories), memory)
     ages = [cells[:, None] + columns[:, :a].sum(axis=1)[None, :] for a in range(memory + 1)]
     ages = [np.broadcast_to(a, (len(cells), len(columns))) for a in ages]
-    ages = ages[age : age + max(len(law.taps), 1)]
-    if law.step is not None:
-        total = _stepped(law, law.step, losses, unit, ages)
+    ages = ages[age : age + law.memory + 1]
+    if law.step is not None or law.rate:
+        total = _unrounded(law, losses, unit, ages)
     elif law.points:
         table = [int(law._spring(n * losses.resolution) // unit) for n in range(low, high + 1)]
         total = np.array(table, dtype=np.int64)[np.clip(ages[0], low, high) - low]
@@ -178,19 +190,24 @@ def _forces(
     return total, off
 
 
-def _stepped(law: Law, step: Fraction, losses: Losses, unit: Fraction, ages: list[Any]) -> Any:
-    """What a converter makes of the law, in units rounded down; its step is found without rounding."""
+def _unrounded(law: Law, losses: Losses, unit: Fraction, ages: list[Any]) -> Any:
+    """The force before clamp and limit in units, rounded down last, after the steps of a converter."""
     import numpy as np
 
     if law.points:
-        readings, place = np.unique(ages[0], return_inverse=True)
-        wished = [law._spring(int(n) * losses.resolution) / step for n in readings]
+        moved = ages[0] - ages[1] if law.rate else 0 * ages[0]
+        several, place = np.unique(np.stack([ages[0].ravel(), moved.ravel()]), axis=1, return_inverse=True)
+        springs = {n: law._spring(int(n) * losses.resolution) for n in np.unique(several[0])}
+        rise = law.rate * losses.resolution
+        wished = [springs[n] * (1 + rise * int(e)) for n, e in several.T]
     else:
         fed = [np.where(a > 0, a, 0) if law.surface == "penetration" else a for a in ages]
-        per_count = [c * losses.resolution / step for c in law.taps]
+        per_count = [c * losses.resolution for c in law.taps]
         whole = lcm(*(c.denominator for c in per_count))
         parts = sum(int(c * whole) * a.astype(object) for c, a in zip(per_count, fed, strict=True))
         several, place = np.unique(parts, return_inverse=True)
         wished = [Fraction(n, whole) for n in several]
-    given = [int((w + Fraction(1, 2)) // 1 * step // unit) for w in wished]
-    return np.array(given, dtype=np.int64)[place].reshape(ages[0].shape)
+    if law.step is not None:
+        wished = [(w / law.step + Fraction(1, 2)) // 1 * law.step for w in wished]
+    units = np.array([int(w // unit) for w in wished], dtype=np.int64)
+    return units[place].reshape(ages[0].shape)

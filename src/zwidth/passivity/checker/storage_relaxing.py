@@ -14,7 +14,7 @@ from typing import Any
 
 from .contact_law import Law, Losses
 from .reading import Invalid, get, integer, number
-from .storage_proof import MOST_MOVES, MOST_VALUES, histories_of, signed, values_of
+from .storage_proof import MOST_MOVES, MOST_VALUES, costs_of, histories_of, signed, values_of
 
 PART = 2**16
 _MOST = 2**61
@@ -49,16 +49,13 @@ def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -
     spring = int(law.taps[0] * losses.resolution // unit)
     branch = int(law.relaxing[1] * losses.resolution / per_count // unit)
     off = max(abs(low), abs(high)) + 2 + 2 * levels + 2
-    friction = losses.friction // unit - off
-    drag = losses.damping / losses.period * (losses.resolution / steps) // unit
-    far = np.arange(reach * steps + 1, dtype=object)
-    costs = friction * far + np.where(far > 1, drag * far * far - -(-drag // 4), 0)
+    costs = costs_of(losses, unit, off, Fraction(1), reach, steps)
     forces = _forces(law, spring, branch, low, high, least, per_count, levels)
     images = _images(law, low, high, least, per_count, levels)
     rows = _rows(low, high, reach, losses.delay)
-    span = int(value.max()) + 2 * int(np.abs(forces).max()) * len(far) + int(abs(costs).max())
-    rise = int(np.abs(np.diff(value, axis=2)).max()) + 2 * abs(branch) * len(far) if levels > 1 else 0
-    if span >= _MOST or max(rise, int(np.abs(forces).max()) * len(far)) * PART >= 2**62:
+    span = int(value.max()) + 2 * int(np.abs(forces).max()) * len(costs) + int(abs(costs).max())
+    rise = int(np.abs(np.diff(value, axis=2)).max()) + 2 * abs(branch) * len(costs) if levels > 1 else 0
+    if span >= _MOST or max(rise, int(np.abs(forces).max()) * len(costs)) * PART >= 2**62:
         raise Invalid("the numbers are too large to be compared exactly")
     tables = (rows, forces[0], forces[1], images[0], images[1], costs.astype(np.int64))
     at = first_relaxing_violation(value, *tables, reach, steps)

@@ -25,48 +25,19 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import product
 from math import ceil, floor, isqrt, lcm
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.passivity.worst_hand.law import FiniteLaw, interpolated
+from zwidth.passivity.worst_hand.law import FiniteLaw
+from zwidth.passivity.worst_hand.losses import Losses, generous, strict
 
 Integers = NDArray[np.int64]
 Rules = Literal["generous", "strict"]
 
 NOWHERE = 2**62
 """In place of the force of a state that is not on the board."""
-
-
-@dataclass(frozen=True)
-class Losses:
-    """What a hand meets besides the law, exact.
-
-    Parameters
-    ----------
-    damping, coulomb_friction
-        b [N·s/m] and f_c [N] of the device.
-    resolution, period
-        Δ > 0 [m] and T [s].
-    delay
-        Samples from a reading to the last interval in which its force acts.
-    part
-        Part of that interval for which it still does, 0 < part ≤ 1; the force of the
-        reading after it follows.  1 for a delay of whole samples.
-    """
-
-    damping: Fraction
-    coulomb_friction: Fraction
-    resolution: Fraction
-    period: Fraction
-    delay: int
-    part: Fraction = Fraction(1)
-
-    @property
-    def lag(self) -> Fraction:
-        """The delay [s]."""
-        return (self.delay - 1 + self.part) * self.period
 
 
 @dataclass(frozen=True)
@@ -155,7 +126,7 @@ class Board:
     def force_unit(self) -> Fraction:
         """A power of two, so small that rounding does not matter and so large that sums are exact."""
         span = 4 * self.domain.cells * self.steps
-        most = max(self._largest_force, self.losses.coulomb_friction, Fraction(1, 10**12))
+        most = max(self._largest_force, self.losses.largest[0], Fraction(1, 10**12))
         exponent = _power_above(most * span / self._largest_energy)
         return Fraction(2) ** exponent
 
@@ -168,23 +139,25 @@ class Board:
     def _largest_force(self) -> Fraction:
         n = max(abs(self.domain.lowest), abs(self.domain.highest)) + self.domain.reach
         spring = max((abs(f) for _, f in self.law.points), default=Fraction(0))
+        if self.law.power is not None:
+            spring = self.law.resting(self.domain.highest * self.losses.resolution)
+        spring *= 1 + abs(self.law.rate) * self.domain.reach * self.losses.resolution
         relaxing = Fraction(0) if self.law.relaxing is None else 2 * abs(self.law.relaxing[1])
         stiffness = sum((abs(c) for c in self.law.taps), Fraction(0)) + relaxing
         shortest = min(self.losses.part, 1 - self.losses.part) or Fraction(1)
-        drag = self.losses.damping / self.losses.period * (self.domain.reach + 1 / shortest)
+        drag = self.losses.largest[1] / self.losses.period * (self.domain.reach + 1 / shortest)
         return (stiffness * n + drag) * self.losses.resolution + spring + (self.law.force_step or 0)
+
+    def law_document(self, motion: str) -> dict[str, Any]:
+        """The law as exact data, a contact by its force at every reading on the board."""
+        readings = range(self.domain.highest + 1)
+        return self.law.document(motion, (n * self.losses.resolution for n in readings))
 
     @property
     def rounding(self) -> int:
         """Units by which a force may be off: each tap is rounded down and times a reading."""
         farthest = max(abs(self.domain.lowest), abs(self.domain.highest))
         return len(self.law.taps) * farthest + 2
-
-    @property
-    def friction(self) -> int:
-        """φ in force units, the rounding of forces taken off or added."""
-        units = floor(self.losses.coulomb_friction / self.force_unit)
-        return units - self.rounding if self.rules == "generous" else units + self.rounding + 1
 
     @property
     def energy_unit(self) -> Fraction:
@@ -202,14 +175,11 @@ class Board:
         return self._costs(1 - self.losses.part)
 
     def _costs(self, part: Fraction) -> Integers:
+        span = part * self.losses.period
         step = self.losses.resolution / self.steps
-        units = self.losses.damping / (part * self.losses.period) * step / self.force_unit
-        drag = floor(units) if self.rules == "generous" else ceil(units)
         far = np.arange(self._farthest(part) + 1, dtype=np.int64)
-        lost = drag * far**2
-        if self.rules == "generous":
-            lost = np.where(far <= 1, 0, lost - (drag + 3) // 4)
-        return self.friction * far + lost
+        rule = generous if self.rules == "generous" else strict
+        return rule(self.losses, far, span, step, self.force_unit, self.rounding)
 
     def _farthest(self, part: Fraction) -> int:
         """The longest move, in steps."""
@@ -241,23 +211,15 @@ class Board:
         on_board = np.ones((len(cells), self.histories), dtype=bool)
         for reading in readings:
             on_board &= (reading >= low) & (reading <= high)
-        used = readings[age : age + max(len(self.law.taps), 1)]
+        used = readings[age : age + self.law.memory + 1]
         forces: Integers = np.where(on_board, self._force(used), NOWHERE)
         return forces
 
     def _force(self, readings: list[Integers]) -> Integers:
         force: Integers
         law, shape = self.law, np.broadcast_shapes(*(r.shape for r in readings))
-        if law.force_step is not None:
-            force = self._stepped(readings, law.force_step)
-        elif law.points:
-            low, high = self.domain.lowest, self.domain.highest
-            table = [
-                floor(interpolated(law.points, n * self.losses.resolution) / self.force_unit)
-                for n in range(low, high + 1)
-            ]
-            index = np.clip(readings[0] - low, 0, high - low)
-            force = np.broadcast_to(np.array(table, dtype=np.int64)[index], shape)
+        if law.force_step is not None or law.is_curve:
+            force = self._floored(*self._wish(readings))
         else:
             force = np.zeros(shape, dtype=np.int64)
             for tap, reading in zip(law.taps, readings, strict=True):
@@ -272,25 +234,31 @@ class Board:
             force = np.where(np.broadcast_to(readings[0], shape) > 0, force, 0)
         return force
 
-    def _stepped(self, readings: list[Integers], step: Fraction) -> Integers:
-        """What a converter makes of the law, in units: which of its steps is decided exactly."""
-        wish, per = self._wish(readings)
+    def _floored(self, wish: NDArray[np.object_], per: int) -> Integers:
+        """Forces in units, those of a converter after its rounding, which is decided exactly."""
+        step, unit = self.law.force_step, self.force_unit
+        if step is None:
+            return (wish * unit.denominator // (per * unit.numerator)).astype(np.int64)
         steps = (2 * wish * step.denominator + per * step.numerator) // (2 * per * step.numerator)
         several, where = np.unique(steps, return_inverse=True)
-        units = np.array([floor(k * step / self.force_unit) for k in several], dtype=np.int64)
+        units = np.array([floor(k * step / unit) for k in several], dtype=np.int64)
         force: Integers = units[where].reshape(steps.shape)
         return force
 
     def _wish(self, readings: list[Integers]) -> tuple[NDArray[np.object_], int]:
         """The force of the law alone, exactly: whole numbers of any size, over one denominator [N; N·m]."""
         law, resolution = self.law, self.losses.resolution
-        if law.points:
+        if law.is_curve:
             low, high = self.domain.lowest, self.domain.highest
-            table = [interpolated(law.points, n * resolution) for n in range(low, high + 1)]
+            table = [law.resting(n * resolution) for n in range(low, high + 1)]
             per = lcm(*(f.denominator for f in table))
             whole = np.array([int(f * per) for f in table], dtype=object)
-            shape = np.broadcast_shapes(*(r.shape for r in readings))
-            return np.broadcast_to(whole[np.clip(readings[0] - low, 0, high - low)], shape), per
+            resting = whole[np.clip(readings[0] - low, 0, high - low)]
+            if not law.rate:
+                return np.broadcast_to(resting, np.broadcast_shapes(*(r.shape for r in readings))), per
+            rise = law.rate * resolution
+            moved = (readings[0] - readings[1]).astype(object)
+            return resting * (rise.denominator + rise.numerator * moved), per * rise.denominator
         counts = [np.maximum(r, 0) if law.surface == "penetration" else r for r in readings]
         per = lcm(*((c * resolution).denominator for c in law.taps))
         taps = [int(c * resolution * per) for c in law.taps]

@@ -6,9 +6,11 @@ from fractions import Fraction
 from math import ceil, floor
 
 from zwidth.device.device import Device
+from zwidth.device.friction import FrictionCurve
 from zwidth.errors import InputError
-from zwidth.passivity.worst_hand.board import Domain, Losses
+from zwidth.passivity.worst_hand.board import Domain
 from zwidth.passivity.worst_hand.law import FiniteLaw
+from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.quantity.exact import Exact, RealLike
 
 RELAXING_COUNTS = {0: 24, 1: 6, 2: 3}
@@ -17,17 +19,21 @@ RELAXING_COUNTS = {0: 24, 1: 6, 2: 3}
 COUNTS = {0: 256, 1: 64, 2: 16, 3: 7, 4: 4, 5: 3, 6: 2}
 """Counts inside, and counts per sample, that are looked at by default, by readings remembered."""
 
+MOST_DEPTHS = 9000
+"""Readings inside at which the force of a contact is written down."""
+
 MOST_STATES = 40_000_000
 """States of the largest board."""
 
 
-def losses_of(device: Device) -> Losses:
+def losses_of(device: Device, friction: FrictionCurve | None = None) -> Losses:
     """What the hand meets besides the law.
 
     Raises
     ------
     InputError
-        If a parameter is an interval, or the encoder is ideal.
+        If a parameter is an interval, the encoder is ideal, or a friction curve meets a
+        delay that is not whole samples.
     """
     resolution, period, delay = (device.exact(k) for k in ("resolution", "sample_period", "delay"))
     if resolution == 0:
@@ -37,8 +43,13 @@ def losses_of(device: Device) -> Losses:
         )
     samples = ceil(delay / period)
     part = delay / period - samples + 1
+    if friction is not None and part < 1:
+        raise InputError(
+            f"a friction curve is played with delays of whole samples; this one is {float(delay):g} s with a "
+            f"sample period of {float(period):g} s: take a model below the curve, such as curve.best(…)"
+        )
     losses = device.exact("damping"), device.exact("coulomb_friction"), resolution, period
-    return Losses(*losses, samples, part)
+    return Losses(*losses, samples, part, friction)
 
 
 def domain_for(
@@ -63,6 +74,8 @@ def domain_for(
         If a number is not positive, the board would be too large, or a law that relaxes
         meets a delay that is not whole samples.
     """
+    if law.relaxing is not None and losses.curve is not None:
+        raise InputError("a friction curve is not played against a law that relaxes: take a model below it")
     if law.relaxing is not None and losses.part < 1:
         raise InputError(
             "the worst hand of a law that relaxes is sought for delays of whole samples; this one is "
@@ -82,6 +95,11 @@ def domain_for(
         lowest = -highest - 1
     elif law.relaxing is not None and law.surface == "position":  # which never is
         lowest = min(lowest, -highest - 1)
+    if law.power is not None and highest > MOST_DEPTHS:
+        raise InputError(
+            f"a contact is played up to {MOST_DEPTHS} counts deep, and penetration is {highest + 1} counts: "
+            "give a smaller one"
+        )
     domain = Domain(lowest, highest, reach, deepest, fastest or None)
     states = domain.cells * (2 * reach + 1) ** memory * 9
     if law.relaxing is not None:

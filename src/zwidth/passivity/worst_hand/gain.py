@@ -181,7 +181,7 @@ def _document(board: Board, motion: Motion, kind: str) -> dict[str, Any]:
         "format": FORMAT,
         "kind": "contact motion",
         "loop": loop_document(board.losses, kind),
-        "law": board.law.document(kind),
+        "law": board.law_document(kind),
         unit_key("sample_period"): board.losses.period,
         "energy_J": Fraction(0),
         "repeats": part._asdict(),

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.device.device import Device
+from zwidth.device.friction import FrictionCurve
 from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
@@ -16,10 +17,11 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import to_json
 from zwidth.passivity.verdict import Outcome
 from zwidth.passivity.witness import rounded_energy
-from zwidth.passivity.worst_hand.board import Board, Domain, Losses
+from zwidth.passivity.worst_hand.board import Board, Domain
 from zwidth.passivity.worst_hand.domain import domain_for, losses_of
 from zwidth.passivity.worst_hand.gain import Gain, gain
 from zwidth.passivity.worst_hand.law import FiniteLaw, finite_law
+from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.play_relaxing import play_relaxing
 from zwidth.passivity.worst_hand.relaxing import RelaxingBoard
 from zwidth.passivity.worst_hand.solve import Played, play
@@ -189,13 +191,16 @@ def game_of(
     speed: RealLike | None = None,
     force_limit: bool = False,
     force_resolution: bool = False,
+    friction: FrictionCurve | None = None,
 ) -> Game:
     """The game of a loop; arguments as for `worst_hand`."""
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
     given = as_environment(environment)
     law = finite_law(device, given, force_limit=force_limit, force_resolution=force_resolution)
-    losses = losses_of(device)
+    if friction is not None and not isinstance(friction, FrictionCurve):
+        raise InputError(f"friction is a FrictionCurve, got {type(friction).__name__}")
+    losses = losses_of(device, friction)
     return Game(law, losses, domain_for(law, losses, penetration, speed), device.motion)
 
 
@@ -207,6 +212,7 @@ def worst_hand(
     speed: RealLike | None = None,
     force_limit: bool = False,
     force_resolution: bool = False,
+    friction: FrictionCurve | None = None,
     seconds: float = 60.0,
     progress: Callable[[int], None] | None = None,
     on: str = "cpu",
@@ -235,6 +241,9 @@ def worst_hand(
         Largest mean speed of the hand over one sample [m/s; rad/s]; None likewise.
     force_limit, force_resolution
         True to count in the device's force limit, the steps of its converter.
+    friction
+        Friction measured at several speeds, in place of the device's b and f_c.  A proof uses
+        all models below the curve at once; a motion pays what the curve says.
     seconds
         Time after which the answer is "undecided".
     progress
@@ -248,7 +257,7 @@ def worst_hand(
         If the law remembers for ever, the encoder is ideal, or the board is too large;
         or if `on` is neither, or there is no card.
     """
-    game = game_of(device, environment, penetration, speed, force_limit, force_resolution)
+    game = game_of(device, environment, penetration, speed, force_limit, force_resolution, friction)
     law = as_environment(environment)
     said = assumptions(device, game)
     deadline = time.monotonic() + patience(seconds)
@@ -289,7 +298,9 @@ def assumptions(device: Device, game: Game) -> tuple[str, ...]:
         + ("" if game.law.surface != "none" else "; the law acts on both sides of x = 0"),
         f"{_COVERS}{game.hand}",
         f"the device takes out at least b = {float(losses.damping):.6g} {drag} of viscous and "
-        f"f_c = {float(losses.coulomb_friction):.6g} {force} of Coulomb friction",
+        f"f_c = {float(losses.coulomb_friction):.6g} {force} of Coulomb friction"
+        if losses.curve is None
+        else f"the device takes out what its friction curve says; {losses.curve.assumption}",
         "a hand without limit on force; the mass of the device plays no part",
         _actuator(game.law),
         "a constant sample period and delay, no missed samples",

@@ -1,6 +1,7 @@
 """What a law remembers: the force as an exact function of the last few encoder readings.
 
     f = K u_k + Σ_j c_j u_{k−j}        u = q, or max(q, 0) for a solid that is left
+    f = p(q_k) (1 + ρ (q_k − q_{k−1}))  for a contact, p(q) = K qⁿ
     f = 0 where q ≤ 0                  for laws with a surface
     f = max(0, f)                      for laws that never pull
     f = ΔF ⌊f/ΔF + ½⌋                  what a converter makes of it, where its steps are counted in
@@ -14,6 +15,7 @@ one-pole filter (see `relaxing`).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import floor
@@ -21,6 +23,7 @@ from typing import Any, Literal
 
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
+from zwidth.environment.hunt_crossley import HuntCrossley, resting_force
 from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
 from zwidth.environment.wall import Wall
@@ -48,6 +51,11 @@ class FiniteLaw:
         True if a negative force is replaced by 0.
     points
         A spring given by (position [m; rad], force [N; N·m]) in place of taps.
+    power
+        K and n of a contact K qⁿ in place of taps, or None.
+    rate
+        ρ = λ/T [1/m; 1/rad], by which the force of points or of a contact grows with the
+        way since the last reading.
     force_limit
         Largest force of the actuator [N; N·m], or None.
     force_step
@@ -68,16 +76,27 @@ class FiniteLaw:
     relaxing: tuple[Fraction, Fraction] | None = None
     resets: bool = False
     force_step: Fraction | None = None
+    power: tuple[Fraction, Fraction] | None = None
+    rate: Fraction = Fraction(0)
 
     @property
     def memory(self) -> int:
         """Readings remembered besides the last one."""
-        return max(len(self.taps) - 1, 0)
+        return max(len(self.taps) - 1, 1 if self.rate else 0)
 
     @property
     def static_stiffness(self) -> Fraction:
         """Σ c_j [N/m; N·m/rad]: the force per depth of a hand that waits."""
         return sum(self.taps, Fraction(0))
+
+    @property
+    def is_curve(self) -> bool:
+        """True for a spring given by points and for a contact."""
+        return bool(self.points) or self.power is not None
+
+    def resting(self, x: Fraction) -> Fraction:
+        """The force of a spring given by points, or of a contact, to a hand that waits at x [N; N·m]."""
+        return interpolated(self.points, x) if self.power is None else resting_force(*self.power, x)
 
     def force(self, readings: tuple[Fraction, ...]) -> Fraction:
         """The force for the readings q_k, q_{k−1}, … [N; N·m]."""
@@ -85,8 +104,10 @@ class FiniteLaw:
             return Fraction(0)
         u = [max(q, Fraction(0)) for q in readings] if self.surface == "penetration" else list(readings)
         f = sum((c * v for c, v in zip(self.taps, u, strict=False)), Fraction(0))
-        if self.points:
-            f += interpolated(self.points, u[0])
+        if self.is_curve:
+            f += self.resting(u[0])
+        if self.rate:
+            f *= 1 + self.rate * (readings[0] - readings[1])
         if self.clamped:
             f = max(f, Fraction(0))
         if self.force_step is not None:
@@ -95,8 +116,8 @@ class FiniteLaw:
             f = min(max(f, -self.force_limit), self.force_limit)
         return f
 
-    def document(self, motion: str) -> dict[str, Any]:
-        """The law as exact data, a unit in each key."""
+    def document(self, motion: str, places: Iterable[Fraction] = ()) -> dict[str, Any]:
+        """The law as exact data, a unit in each key; a contact by its forces at these places [m; rad]."""
         force = unit_key("force_limit", motion).removeprefix("force_limit_")
         document: dict[str, Any] = {
             "surface": self.surface,
@@ -105,9 +126,12 @@ class FiniteLaw:
                 exact_text(c) for c in self.taps
             ],
         }
-        if self.points:
-            length = unit_key("position", motion).removeprefix("position_")
-            document[f"points_{length}_{force}"] = [[exact_text(x), exact_text(f)] for x, f in self.points]
+        length = unit_key("position", motion).removeprefix("position_")
+        points = self.points if self.power is None else [(x, self.resting(x)) for x in places]
+        if points:
+            document[f"points_{length}_{force}"] = [[exact_text(x), exact_text(f)] for x, f in points]
+        if self.rate:
+            document[f"rate_per_{length}"] = exact_text(self.rate)
         if self.force_limit is not None:
             document[f"force_limit_{force}"] = exact_text(self.force_limit)
         if self.force_step is not None:
@@ -169,6 +193,10 @@ def _unlimited(device: Device, environment: Environment) -> FiniteLaw:
         ends = zip(environment.positions, environment.forces, strict=True)
         points = tuple((x.fraction, f.fraction) for x, f in ends)
         return FiniteLaw((), "none", False, points)
+    if isinstance(environment, HuntCrossley):
+        power = environment.stiffness.fraction, environment.exponent.fraction
+        rate = environment.dissipation.fraction / device.exact("sample_period")
+        return FiniteLaw((), "position", environment.clamped, power=power, rate=rate)
     h = environment.pulse_transfer_function(device.exact("sample_period"))
     numerator, denominator = _trimmed(h.numerator, h.denominator)
     if any(denominator[1:]):

@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from zwidth.device.device import Device
+from zwidth.device.friction import FrictionCurve
 from zwidth.environment.environment import Environment
+from zwidth.environment.hunt_crossley import HuntCrossley
 from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
@@ -147,6 +149,7 @@ def passive_limit(
     speed: RealLike | None = None,
     force_limit: bool = False,
     force_resolution: bool = False,
+    friction: FrictionCurve | None = None,
     tolerance: float = 0.01,
     seconds: float = 60.0,
     progress: Callable[[int, int], None] | None = None,
@@ -164,11 +167,14 @@ def passive_limit(
     parameter
         A parameter of the environment ("stiffness", "damping") or of the device
         ("coulomb_friction", "device.damping", "sample_period", "resolution", …);
-        of a `NonlinearSpring` "gain", a factor on its forces.
+        of a `NonlinearSpring` "gain", a factor on its forces; of a `HuntCrossley` contact
+        "stiffness" or "dissipation".
     penetration, speed
         Bounds on the hand [m; rad], [m/s; rad/s], as for `worst_hand`.
     force_limit, force_resolution
         True to count in the device's force limit, the steps of its converter.
+    friction
+        Friction measured at several speeds, in place of the device's b and f_c.
     tolerance
         Relative width of the bracket that is wanted.
     seconds
@@ -193,7 +199,10 @@ def passive_limit(
     search = _Search(
         _parameter(device, law, parameter), tolerance, time.monotonic(), patience(seconds), progress
     )
-    bracket = None if force_limit or force_resolution else search.by_closed_forms()
+    if friction is not None and search.parameter.name in ("device.damping", "device.coulomb_friction"):
+        raise InputError(f"{parameter} plays no part beside a friction curve: leave out one of the two")
+    closed = not (force_limit or force_resolution or friction is not None)
+    bracket = search.by_closed_forms() if closed else None
     bounded = penetration is not None or speed is not None
     if bracket is not None and not bounded and bracket.relative_width <= tolerance:
         return bracket
@@ -201,7 +210,7 @@ def passive_limit(
 
     def game(value: Exact) -> Game:
         loop = search.parameter.change(value)
-        return game_of(*loop, penetration, speed, force_limit, force_resolution)
+        return game_of(*loop, penetration, speed, force_limit, force_resolution, friction)
 
     return search.by_games(device, game, known)
 
@@ -412,7 +421,7 @@ def _decimal(value: float) -> Exact:
 
 def _parameter(device: Device, environment: Environment, name: str) -> _Parameter:
     owner, _, key = name.rpartition(".")
-    in_environment = {f.name for f in fields(environment)}
+    in_environment = {f.name for f in fields(environment)} - {"exponent"}  # it changes the unit of K
     in_device = {f.name for f in fields(device)} | {"rate"}
     if key == "gain" and isinstance(environment, NonlinearSpring):
         spring = environment
@@ -425,7 +434,10 @@ def _parameter(device: Device, environment: Environment, name: str) -> _Paramete
         now = getattr(environment, key)
         if not isinstance(now, float):
             raise InputError(f"{key} is not one number: give an environment with a certain value of it")
-        unit = GLOSSARY["damping" if key == "damping" else key].unit_for(device.motion)
+        if isinstance(environment, HuntCrossley):
+            unit = environment.unit_of(key, device.motion)
+        else:
+            unit = GLOSSARY[key].unit_for(device.motion)
 
         def change(value: Exact) -> tuple[Device, Environment]:
             return device, environment.replace(**{key: value})

@@ -15,7 +15,7 @@ import numpy as np
 
 from zwidth.loop.compiled import compiled
 from zwidth.passivity.worst_hand.board import NOWHERE, Integers
-from zwidth.passivity.worst_hand.sweep import extremes, improve
+from zwidth.passivity.worst_hand.sweep import extremes, improve, targets
 
 
 @compiled
@@ -63,38 +63,6 @@ def sweep_parts(
                 place, ends, knot, gain, move, goal,
             )  # fmt: skip
     return improved
-
-
-@compiled
-def targets(
-    values: Integers,
-    forces: Integers,
-    knots: Integers,
-    group: int,
-    reach: int,
-    worth: Integers,
-    place: Integers,
-    there: Integers,
-) -> int:
-    """Where a group may go, by place, the better state where an edge is two; returns how many."""
-    cells, histories = forces.shape
-    edges, steps = knots.size, knots[knots.size - 1]
-    per_cell = histories // (2 * reach + 1)
-    n, newer = group // per_cell, group % per_cell
-    count = 0
-    for n2 in range(max(0, n - reach), min(cells - 1, n + reach) + 1):
-        h2 = (n - n2 + reach) * per_cell + newer
-        for j2 in range(edges):
-            target = (n2 * histories + h2) * edges + j2
-            y = (n2 - n) * steps + knots[j2]
-            if count > 0 and place[count - 1] == y:
-                count -= 1
-                if values[target] <= worth[count]:
-                    count += 1
-                    continue
-            worth[count], place[count], there[count] = values[target], y, target
-            count += 1
-    return count
 
 
 @compiled

@@ -88,10 +88,10 @@ class _Controller:
 
     def __init__(self, law: Law, losses: Losses, start: Fraction) -> None:
         self._law, self._losses = law, losses
-        self._taps = max(len(law.taps), 1)
+        self._used = law.memory + 1
         rested = self._read(start)
         average = Fraction(0) if law.surface == "penetration" or law.relaxing is None else rested
-        self._readings = [rested] * (self._taps + losses.delay)
+        self._readings = [rested] * (self._used + losses.delay)
         self._averages = [average] * (losses.delay + 1)
 
     def forces(self, position: Fraction) -> list[float]:
@@ -101,7 +101,7 @@ class _Controller:
         late = self._losses.delay
         ages = [late] if self._losses.part == 1 else [late, late - 1]
         forces = [
-            self._law.force(self._readings[age : age + self._taps], self._averages[age]) for age in ages
+            self._law.force(self._readings[age : age + self._used], self._averages[age]) for age in ages
         ]
         after = float(self._law.averaged(self._averages[0], reading))  # exact, its digits would grow
         self._averages = [Fraction(after), *self._averages[:-1]]

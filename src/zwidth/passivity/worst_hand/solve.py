@@ -19,7 +19,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.worst_hand.board import Board, Integers
 from zwidth.passivity.worst_hand.gpu import OnCard
 from zwidth.passivity.worst_hand.parts import sweep_parts
-from zwidth.passivity.worst_hand.sweep import cycle, sweep
+from zwidth.passivity.worst_hand.sweep import cycle, sweep, sweep_any
 
 THREADS = min(os.cpu_count() or 1, 8)
 
@@ -76,8 +76,10 @@ def play(
     """
     if on not in ("cpu", "gpu"):
         raise InputError(f'on is "cpu" or "gpu", got {on!r}')
-    if on == "gpu" and board.losses.part < 1:
-        raise InputError("a delay of part of a sample is played on the processor: leave out on")
+    if on == "gpu" and (board.losses.part < 1 or board.losses.curve is not None):
+        raise InputError(
+            "delays of part of a sample and friction curves are played on the processor: leave out on"
+        )
     value = board.first_guess.copy()
     choice = np.full(value.shape, -1, np.int64)
     card = OnCard(board, value, choice) if on == "gpu" else None
@@ -104,7 +106,7 @@ def _round(pool: ThreadPoolExecutor, board: Board, value: Integers, choice: Inte
     groups = len(value) * (board.histories // board.width if board.memory else 1)
     parts = np.linspace(0, groups, THREADS * 4 + 1).astype(int)
     tables: tuple[Integers, ...] = board.forces, board.costs, board.knots
-    improve: Callable[..., int] = sweep
+    improve: Callable[..., int] = sweep if board.losses.curve is None else sweep_any
     if board.losses.part < 1:
         tables, improve = (*tables, board.later_forces, board.later_costs), sweep_parts
     jobs = [

@@ -15,6 +15,7 @@ import numpy as np
 
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.relaxing import RelaxingBoard
 from zwidth.passivity.worst_hand.solve import Played
 
@@ -46,7 +47,7 @@ class Storage:
             "format": FORMAT,
             "kind": "storage",
             "loop": loop_document(board.losses, self.motion),
-            "law": board.law.document(self.motion),
+            "law": board.law_document(self.motion),
             "domain": {
                 "lowest_count": board.domain.lowest,
                 "highest_count": board.domain.highest,
@@ -119,13 +120,22 @@ class Storage:
         )
 
 
-def loop_document(losses: Any, motion: str) -> dict[str, str]:
+def loop_document(losses: Losses, motion: str) -> dict[str, Any]:
     """The losses and the clock of a loop as exact data."""
-    quantities = {
-        "damping": losses.damping,
-        "coulomb_friction": losses.coulomb_friction,
-        "resolution": losses.resolution,
-        "sample_period": losses.period,
-        "delay": losses.lag,
+    quantities = {"resolution": losses.resolution, "sample_period": losses.period, "delay": losses.lag}
+    if losses.curve is None:
+        quantities = {"damping": losses.damping, "coulomb_friction": losses.coulomb_friction} | quantities
+    document: dict[str, Any] = {
+        unit_key(name, motion): exact_text(value) for name, value in quantities.items()
     }
-    return {unit_key(name, motion): exact_text(value) for name, value in quantities.items()}
+    if losses.curve is not None:
+        speed, force = ("rad_per_s", "N_m") if motion == "rotary" else ("m_per_s", "N")
+        drag = unit_key("damping", motion).removeprefix("damping_")
+        points = zip(losses.curve.speeds, losses.curve.forces, strict=True)
+        document[f"friction_curve_{speed}_{force}"] = [
+            [exact_text(v.fraction), exact_text(f.fraction)] for v, f in points
+        ]
+        document[f"friction_models_{force}_{drag}"] = [
+            [exact_text(f), exact_text(b)] for f, b in losses.models
+        ]
+    return document

@@ -62,6 +62,70 @@ def sweep(
 
 
 @compiled
+def sweep_any(
+    value: Integers,
+    choice: Integers,
+    forces: Integers,
+    costs: Integers,
+    knots: Integers,
+    first: int,
+    last: int,
+    reach: int,
+) -> int:
+    """The same for costs of any kind, nothing left out before the hull of each knot."""
+    values, choices = value.reshape(-1), choice.reshape(-1)
+    most_points = (2 * reach + 1) * knots.size
+    worth, place = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
+    there, gain = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
+    move, goal = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
+    improved = 0
+    for group in range(first, last):
+        least, most = extremes(forces, group, reach)
+        if least > most:
+            continue
+        points = targets(values, forces, knots, group, reach, worth, place, there)
+        for knot in range(knots.size):
+            improved += improve(
+                values, choices, forces, costs, knots, group, reach, least, most, points, values, there,
+                place, there, knot, gain, move, goal,
+            )  # fmt: skip
+    return improved
+
+
+@compiled
+def targets(
+    values: Integers,
+    forces: Integers,
+    knots: Integers,
+    group: int,
+    reach: int,
+    worth: Integers,
+    place: Integers,
+    there: Integers,
+) -> int:
+    """Where a group may go, by place, the better state where an edge is two; returns how many."""
+    cells, histories = forces.shape
+    edges, steps = knots.size, knots[knots.size - 1]
+    has_memory = histories > 1
+    per_cell = histories // (2 * reach + 1) if has_memory else 1
+    n, newer = group // per_cell, group % per_cell
+    count = 0
+    for n2 in range(max(0, n - reach), min(cells - 1, n + reach) + 1):
+        h2 = (n - n2 + reach) * per_cell + newer if has_memory else 0
+        for j2 in range(edges):
+            target = (n2 * histories + h2) * edges + j2
+            y = (n2 - n) * steps + knots[j2]
+            if count > 0 and place[count - 1] == y:
+                count -= 1
+                if values[target] <= worth[count]:
+                    count += 1
+                    continue
+            worth[count], place[count], there[count] = values[target], y, target
+            count += 1
+    return count
+
+
+@compiled
 def extremes(forces: Integers, group: int, reach: int) -> tuple[int, int]:
     """The least and the greatest force of a group; the least is the greater one if it is not on the board."""
     histories = forces.shape[1]

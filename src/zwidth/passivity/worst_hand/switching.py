@@ -13,7 +13,8 @@ from fractions import Fraction
 from itertools import pairwise
 
 from zwidth.passivity.motion import Repeat
-from zwidth.passivity.worst_hand.board import Board, Losses
+from zwidth.passivity.worst_hand.board import Board
+from zwidth.passivity.worst_hand.losses import Losses
 
 _GRID = 2**20
 """Positions between samples are whole multiples of a count over this, to keep them short."""
@@ -24,14 +25,14 @@ def switch_positions(board: Board, x: list[Fraction], part: Repeat) -> tuple[Fra
     if board.losses.part == 1:
         return ()
     law, losses = board.law, board.losses
-    taps = max(len(law.taps), 1)
-    readings = [losses.resolution * (x[0] // losses.resolution)] * (taps + losses.delay)
+    used = law.memory + 1
+    readings = [losses.resolution * (x[0] // losses.resolution)] * (used + losses.delay)
     found: dict[int, Fraction] = {}
     rounds = 2 + len(readings) // (part.last - part.first)  # until all readings are of the cycle
     for k in [*range(part.first), *[*range(part.first, part.last)] * rounds, *range(part.last, len(x) - 1)]:
         readings = [losses.resolution * (x[k] // losses.resolution), *readings[:-1]]
-        older = law.force(tuple(readings[losses.delay : losses.delay + taps]))
-        newer = law.force(tuple(readings[losses.delay - 1 : losses.delay - 1 + taps]))
+        older = law.force(tuple(readings[losses.delay : losses.delay + used]))
+        newer = law.force(tuple(readings[losses.delay - 1 : losses.delay - 1 + used]))
         found[k] = _best(losses, x[k], x[k + 1], older, newer, *_allowed(board, x[k], x[k + 1]))
     return tuple(found[k] for k in range(len(x) - 1))
 
@@ -70,8 +71,7 @@ def _best(
         for (a, b), force, span in zip(
             pairwise((start, m, end)), (older, newer), (part, 1 - part), strict=True
         ):
-            d = b - a
-            out -= force * d + friction * abs(d) + losses.damping / (span * losses.period) * d * d
+            out -= force * (b - a) + losses.lost(b - a, span)
         return out
 
     return max((min(max(m, low), high) for m in candidates), key=taken)
