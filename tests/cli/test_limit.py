@@ -159,6 +159,26 @@ def test_the_converter_is_counted_in(run: Run) -> None:
     assert "no force_resolution" in refused.err
 
 
+def test_a_contact(run: Run) -> None:
+    """K in its own unit, and λ as a parameter."""
+    loop = (
+        "limit",
+        "haptic-paddle",
+        "--type",
+        "hunt-crossley",
+        "--stiffness",
+        "1e4",
+        "--dissipation",
+        "1 s/m",
+    )
+    found = run(*loop, "--speed", "0.2 m/s", "--penetration", "0.5 mm")
+    assert found.status == 0
+    assert "N/m^1.5 is proved passive" in found.out
+    short = ("--speed", "0.2 m/s", "--penetration", "0.5 mm", "--parameter", "dissipation", "--json")
+    document = json.loads(run(*loop, *short).out)
+    assert document["proved_passive_s_per_m"] < document["proved_active_s_per_m"]
+
+
 @pytest.mark.parametrize(
     ("argv", "part"),
     [

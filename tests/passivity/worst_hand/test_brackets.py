@@ -29,6 +29,7 @@ SPRING = device("0.16", "0.0165"), zw.Wall(300)
 DAMPED = device("0.27", "0.027"), zw.Wall(300, "0.1")
 DELAYED = device("0.46", "0.017", 1), zw.Wall(300)
 LATE = device("0.46", "0.017", "0.3"), zw.Wall(300)
+CONTACT = device("2.2", "0.24"), zw.HuntCrossley(20000, "1.5", 2)
 DETENT = device("0.16", "0.0165"), zw.NonlinearSpring.detents(2, "0.001", "0.07")
 
 LIMITS = {
@@ -45,6 +46,9 @@ LIMITS = {
     "sample period": (DAMPED, "sample_period", "s"),
     "rate": (DAMPED, "rate", "Hz"),
     "gain": (DETENT, "gain", "1"),
+    "contact": (CONTACT, "stiffness", "N/m^1.5"),
+    "dissipation": (CONTACT, "dissipation", "s/m"),
+    "friction of a contact": (CONTACT, "coulomb_friction", "N"),
 }
 
 
@@ -57,7 +61,7 @@ def at(loop, parameter, value):
         return held, zw.NonlinearSpring(law.positions, forces)
     if key == "rate":
         return held.replace(sample_period=1 / Fraction(str(value))), law
-    if parameter in ("stiffness", "damping", "environment.damping"):
+    if parameter in ("stiffness", "damping", "environment.damping", "dissipation"):
         return held, law.replace(**{key: str(value)})
     return held.replace(**{key: str(value)}), law
 
@@ -212,6 +216,8 @@ IIR = zw.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
         (SPRING, {"parameter": "device.stiffness"}, "no parameter"),
         (SPRING, {"parameter": ""}, "no parameter"),
         (SPRING, {"parameter": "gain"}, "no parameter"),
+        (CONTACT, {"parameter": "exponent"}, "no parameter 'exponent'"),
+        (CONTACT, {"penetration": 1, "speed": "0.1"}, "9000 counts deep"),
         (SPRING, {"parameter": "clamped"}, "not one number"),
         (SPRING, {"parameter": "velocity_filter"}, "not one number"),
         (SPRING, {"parameter": "motion"}, "no single value"),

@@ -38,6 +38,11 @@ LOOPS = {
     "spring with a delay": (device("0.45", "0.0165", 1), zw.Wall(300)),
     "damped with a delay": (device("0.4", "0.0275", 1), zw.Wall(300, "0.1")),
     "force limit": (device("0.16", "0.0165", force_limit="0.2"), zw.Wall(300)),
+    "contact": (device("2.2", "0.24"), zw.HuntCrossley(20000, "1.5", 2)),
+    "contact that pulls, with a delay": (
+        device("1.6", "0.085", 1),
+        zw.HuntCrossley(20000, "1.7", 4, clamped=False),
+    ),
     "converter": (device("0.36", "0.036", force_resolution="0.07"), zw.Wall(300)),
     "damped behind a converter": (
         device("0.4", "0.043", force_resolution="0.04", force_limit="0.23"),

@@ -41,6 +41,7 @@ LOOPS = {
     "delayed": (device("0.46", "0.017", 1), zw.Wall(300)),
     "limited": (device("0.26", "0.027", force_limit="0.1"), zw.Wall(300, "0.1")),
     "stepped": (device("0.5", "0.043", force_resolution="0.04", force_limit="0.2"), zw.Wall(300, "0.1")),
+    "contact": (device("0.9", "0.08"), zw.HuntCrossley(20000, "1.5", 2)),
     "points": (
         device("0.16", "0.0165"),
         zw.NonlinearSpring([-4e-4, -2e-4, 0, 2e-4, 4e-4], [0, "-0.05", 0, "0.05", 0]),
@@ -144,12 +145,21 @@ def test_every_number_of_the_law_binds(name):
         rejected(changed(document, ("law", "surface"), "none"))
     else:
         for i, (x, f) in enumerate(law["points_m_N"]):
+            if name == "contact" and i == 0:
+                continue  # on the surface there is no force whatever the point says
             points = copy.deepcopy(law["points_m_N"])
-            points[i] = [x, str(Fraction(f) + (Fraction(1, 1000) if i >= 2 else -Fraction(1, 1000)))]
+            worse = Fraction(1, 10) if name == "contact" else Fraction(1 if i >= 2 else -1, 1000)
+            points[i] = [x, str(Fraction(f) + worse)]
             rejected(changed(document, ("law", "points_m_N"), points))
         rejected(changed(document, ("law", "points_m_N"), law["points_m_N"][::-1]))
         rejected(changed(document, ("law", "points_m_N"), [["0"]]))
         rejected(changed(document, ("law", "points_m_N"), []))
+    if name == "contact":
+        for rate in ("1.00001", "2", "-1"):
+            rejected(changed(document, ("law", "rate_per_m"), scaled(law["rate_per_m"], rate)))
+        for rate in (None, "0", "nan", [], True):
+            rejected(changed(document, ("law", "rate_per_m"), rate))
+        rejected({**document, "law": {**law, "taps_N_per_m": ["1", "-1"], "points_m_N": []}})
     if name == "clamped":
         rejected(changed(document, ("law", "clamped"), False))
     if name == "limited":

@@ -236,13 +236,15 @@ class Board:
 
     def _floored(self, wish: NDArray[np.object_], per: int) -> Integers:
         """Forces in units, those of a converter after its rounding, which is decided exactly."""
+        force: Integers
         step, unit = self.law.force_step, self.force_unit
         if step is None:
-            return (wish * unit.denominator // (per * unit.numerator)).astype(np.int64)
+            force = (wish * unit.denominator // (per * unit.numerator)).astype(np.int64)
+            return force
         steps = (2 * wish * step.denominator + per * step.numerator) // (2 * per * step.numerator)
         several, where = np.unique(steps, return_inverse=True)
         units = np.array([floor(k * step / unit) for k in several], dtype=np.int64)
-        force: Integers = units[where].reshape(steps.shape)
+        force = units[where].reshape(steps.shape)
         return force
 
     def _wish(self, readings: list[Integers]) -> tuple[NDArray[np.object_], int]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from zwidth.device.device import Device
 from zwidth.device.friction import FrictionCurve
 from zwidth.environment.environment import Environment
+from zwidth.environment.hunt_crossley import DIGITS
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
@@ -233,7 +234,7 @@ def worst_hand(
         Without intervals, with an encoder (Δ > 0); for a law that relaxes, a delay of whole samples.
     environment
         A law that remembers a few readings: walls with or without damping, windows,
-        finite filters, springs given by points; clamped or not.
+        finite filters, springs given by points, Hunt–Crossley contacts; clamped or not.
     penetration
         Deepest position of the hand [m; rad]; None: some 256 counts for a spring, 64
         for a damped wall, fewer the more the law remembers.
@@ -306,7 +307,15 @@ def assumptions(device: Device, game: Game) -> tuple[str, ...]:
         "a constant sample period and delay, no missed samples",
         "encoder counts of one size, their phase against the surface unknown",
         *(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed),
+        *_rounded(game.law),
     )
+
+
+def _rounded(law: FiniteLaw) -> tuple[str, ...]:
+    """What of the law is not exact."""
+    if law.power is None or law.power[1].denominator == 1:
+        return ()
+    return (f"K uⁿ is rounded to {DIGITS} digits, as no decimal writes it",)
 
 
 def _actuator(law: FiniteLaw) -> str:
