@@ -32,6 +32,8 @@ LAWS = {
     "contact": ("position", 0, True, 0),
     "contact that pulls": ("position", 0, False, 0),
     "contact behind a converter, with a delay": ("position", 0, True, 1),
+    "contact with half a sample of delay": ("position", 0, True, Fraction(1, 2)),
+    "damped behind a converter, with a third of a sample": ("position", 2, False, Fraction(1, 3)),
     "spring behind a converter": ("position", 1, False, 0),
     "damped behind a converter": ("position", 2, False, 0),
     "damped on both sides behind a converter": ("none", 2, False, 0),

@@ -32,6 +32,8 @@ from .reading import Invalid, get, integer, number
 MOST_VALUES = 60_000_000
 MOST_MOVES = 10_000_000
 _EXACT = 2**53
+AT_ONCE = 10**6
+"""Forces computed at once in whole numbers of any size, which take room."""
 
 
 def storage(document: Mapping[str, Any]) -> str:
@@ -170,7 +172,9 @@ def _forces(
     ages = [np.broadcast_to(a, (len(cells), len(columns))) for a in ages]
     ages = ages[age : age + law.memory + 1]
     if law.step is not None or law.rate:
-        total = _unrounded(law, losses, unit, ages)
+        rows = max(1, AT_ONCE // len(columns))
+        parts = [slice(first, first + rows) for first in range(0, len(cells), rows)]
+        total = np.concatenate([_unrounded(law, losses, unit, [a[part] for a in ages]) for part in parts])
     elif law.points:
         table = [int(law._spring(n * losses.resolution) // unit) for n in range(low, high + 1)]
         total = np.array(table, dtype=np.int64)[np.clip(ages[0], low, high) - low]
@@ -191,7 +195,7 @@ def _forces(
 
 
 def _unrounded(law: Law, losses: Losses, unit: Fraction, ages: list[Any]) -> Any:
-    """The force before clamp and limit in units, rounded down last, after the steps of a converter."""
+    """The forces of some states before clamp and limit, in units: the only rounding comes last."""
     import numpy as np
 
     if law.points:
