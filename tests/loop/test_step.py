@@ -135,6 +135,53 @@ def test_a_grazing_stop_against_a_receding_force_is_no_turn() -> None:
     assert state[VELOCITY] > 0.0
 
 
+@pytest.mark.parametrize("ulps", [-3, -1, 0, 1, 3, 40])
+def test_a_hand_that_pushes_with_the_friction_force_waits_for_a_lagging_force(ulps: int) -> None:
+    """At rest until F − f_a = −f_c, then M v' = F + f_c − f_a; the last digits of F make no difference."""
+    friction, goal, lag, h = 0.003906, 3.0, 7e-4, 0.03125
+    force = friction + ulps * np.spacing(friction)
+    plant = _plant(mass=1.0, damping=0.0, coulomb=friction, stiction=friction, lag=lag)
+    state = _go(plant, _state(goal=goal), h, force)
+    with mp.workdps(30):
+        e0 = 1 - (mpf(force) + mpf(friction)) / goal  # e^(−t/τ) when the mass breaks away
+        start, e1 = -mpf(lag) * mp.log(e0), mp.exp(-mpf(h) / mpf(lag))
+        speed = (mpf(force) + mpf(friction) - goal) * (h - start) + goal * mpf(lag) * (e0 - e1)
+    assert state[VELOCITY] == pytest.approx(float(speed), rel=1e-13)
+    assert state[STOPS] <= 1
+
+
+@settings(max_examples=400, deadline=None)
+@given(
+    h=st.sampled_from([1e-5, 1e-3, 0.03]),
+    friction=st.sampled_from([0.0, 1e-7]) | st.floats(1e-3, 1.0),
+    extra=st.sampled_from([0.0, 1e-17, 0.1]),
+    stiffness=st.sampled_from([0.0, 1e-3, 500.0]),
+    hand_damping=st.sampled_from([0.0, 1.7]),
+    drive=st.sampled_from(["ideal", "lag", "slew", "crawl"]),
+    side=st.sampled_from([-1.0, 1.0]),
+    ulps=st.integers(-4, 4),
+    now=st.sampled_from([0.0, 0.3, -2.718]),
+    speed=st.sampled_from([0.0, 0.3, -1e-4]),
+    goal=st.floats(-5.0, 5.0),
+)
+def test_a_mass_at_the_edge_of_friction_moves_on(
+    h, friction, extra, stiffness, hand_damping, drive, side, ulps, now, speed, goal
+) -> None:
+    """Held to the last digit: it rests, goes, or stops once more; it never stops without end."""
+    plant = _plant(
+        coulomb=friction, stiction=friction + extra, stiffness=stiffness, hand_damping=hand_damping,
+        lag=7e-4 if drive == "lag" else 0.0, slew={"slew": 900.0, "crawl": 1e-3}.get(drive, 0.0),
+    )  # fmt: skip
+    edge = side * plant.stiction + now - stiffness * 0.002 - hand_damping * speed
+    force = edge + ulps * np.spacing(edge)
+    state = _go(plant, _state(0.0, 0.0, now, now if drive == "ideal" else goal), h, force, 0.002, speed)
+    assert state[STOPS] <= 4
+    assert np.isfinite(state).all()
+    if friction > 1e-3 and drive == "ideal" and stiffness == 0.0:
+        assert state[VELOCITY] * side >= 0.0
+        assert state[POSITION] * side >= 0.0
+
+
 def _typed(low: float, high: float) -> st.SearchStrategy[float]:
     """Numbers as a person types them, six decimals at most."""
     return st.floats(low, high).map(lambda value: round(value, 6))

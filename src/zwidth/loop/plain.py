@@ -1,7 +1,7 @@
 """The plain loop, quickly: free mass, spring wall, regular clock, one force per interval.
 
-The same motion as `kernel.run`, to the last bit.  An interval without a stop in
-it is one line of multiplications with the responses of that interval, computed
+The same motion as `kernel.run`, to the last bit.  An interval without a stop or
+a start in it is one line of multiplications with the responses of that interval, computed
 once; the others go through `turn`.
 
 The time per sample is that of the chain position → count → force → position, so
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.loop.compiled import Array, compiled
+from zwidth.compiled import Array, compiled
 from zwidth.loop.free import free_response
 from zwidth.loop.kernel import (
     R_ACTUATOR,
@@ -118,11 +118,8 @@ def run_plain(
         if k == samples:
             break
         push = force[k]
-        if side == 0.0:
-            external = push - f
-            if abs(external) <= stiction:
-                continue
-            side = 1.0 if external > 0.0 else -1.0
+        if side == 0.0 and abs(push - f) <= stiction:
+            continue
         base = (push - side * coulomb - drag * v) * inverse
         v1 = (v + base * h1) - f * g1
         if v1 * side > 0.0:
@@ -137,10 +134,10 @@ def run_plain(
             x = (x + ahead) - f * g2
             v = v1
         else:
+            state[STOPS] += abs(side)
             free = Free(x, v, side, hand, actuator, viscous, dry, source)
             free = turn(free, f, push, drag, coulomb, stiction, inverse, half_hand, h)
             x, v, side, hand, actuator, viscous, dry, source = free
-            state[STOPS] += 1.0
     state[POSITION], state[VELOCITY], state[DIRECTION] = x, v, side
     state[FORCE], state[GOAL] = f, f
     state[HAND_WORK], state[ACTUATOR_WORK] = hand, actuator

@@ -36,7 +36,7 @@ class Drive(NamedTuple):
 
     `force` F, `slack` x_a − x, `speed` ẋ_a; then the external force at rest,
 
-        F_e = push + rate t − transient e^{−t/lag}
+        F_e = external + rate t + transient (1 − e^{−t/lag})
 
     and `ramp`, the part of −rate that is the actuator's own change df_a/dt.
     """
@@ -44,7 +44,7 @@ class Drive(NamedTuple):
     force: float
     slack: float
     speed: float
-    push: float
+    external: float
     rate: float
     ramp: float
     transient: float

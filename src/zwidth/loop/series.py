@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from math import ceil, sqrt
 
-from zwidth.loop.compiled import Array, compiled
+from zwidth.compiled import Array, compiled
 from zwidth.loop.plant import Plant
 
 TERMS = 28
@@ -37,10 +37,10 @@ def pieces(plant: Plant, h: float) -> float:
 
 
 @compiled
-def expand(plant: Plant, v0: float, push: float, ramp: float, transient: float, h: float, work: Array) -> int:
+def expand(plant: Plant, v0: float, net: float, ramp: float, transient: float, h: float, work: Array) -> int:
     """Fill `work` with the coefficients of v, ξ and φ; returns how many of each.
 
-    `push` G0 [N], `ramp` G1 [N/s], `transient` φ(0) [N].
+    `net` G0 − φ(0) [N], `ramp` G1 [N/s], `transient` φ(0) [N].
     """
     mass = plant.mass + plant.hand_mass
     drag = plant.damping + plant.hand_damping
@@ -48,13 +48,12 @@ def expand(plant: Plant, v0: float, push: float, ramp: float, transient: float, 
     v, x, p = 0, TERMS, 2 * TERMS
     work[v], work[x], work[p] = v0, 0.0, transient
     size, small = abs(v0) * h, 0
+    given = net
     for n in range(TERMS - 1):
-        given = push if n == 0 else (ramp * h if n == 1 else 0.0)
-        work[v + n + 1] = (
-            scale * (given - drag * work[v + n] - plant.stiffness * work[x + n] - work[p + n]) / (n + 1.0)
-        )
+        work[v + n + 1] = scale * (given - drag * work[v + n] - plant.stiffness * work[x + n]) / (n + 1.0)
         work[x + n + 1] = h * work[v + n] / (n + 1.0)
         work[p + n + 1] = -h * work[p + n] / (plant.lag * (n + 1.0)) if plant.lag > 0.0 else 0.0
+        given = (ramp * h if n == 0 else 0.0) - work[p + n + 1]
         term = max(abs(work[v + n + 1]) * h, abs(work[x + n + 1]))
         if transient != 0.0:
             term = max(term, scale * h * abs(work[p + n + 1]))
@@ -109,7 +108,9 @@ def first_zero(work: Array, terms: int, sign: float) -> float:
     skip = 0
     while skip < terms - 1 and work[skip] == 0.0:
         skip += 1
-    if sign * work[skip] <= 0.0:
+    if work[skip] == 0.0:  # forces so small that the series has no digit of them: it stays where it is
+        return 2.0
+    if sign * work[skip] < 0.0:
         return 0.0
     rest, curve = 0.0, 0.0
     for n in range(terms - skip - 1, 0, -1):

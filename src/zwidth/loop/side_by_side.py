@@ -1,7 +1,7 @@
 """Plain loops side by side: one interval of LANES of them at a time, in vector instructions.
 
 The arithmetic of each lane is that of `plain.run_plain`, to the last bit.  A lane
-that stops or turns round in an interval leaves the straight line: it is stepped
+that starts, stops or turns round in an interval leaves the straight line: it is stepped
 alone by `turn`, and the others do not wait.
 
 All numbers lie in one flat buffer, quantity by quantity and lane by lane: only
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.loop.compiled import Array, compiled
+from zwidth.compiled import Array, compiled
 from zwidth.loop.free import free_response
 from zwidth.loop.kernel import packed_plant
 from zwidth.loop.law import BILATERAL, GATE, HEADER, LIMIT, PHASE, RESOLUTION, STEP
@@ -116,19 +116,16 @@ def _measure(b: Array) -> None:
 
 @compiled
 def _move(b: Array) -> int:
-    """One interval of the lanes that have no stop in it; returns how many have, and marks them."""
+    """One interval of the lanes that neither stop nor start in it; returns how many do, and marks them."""
     left = 0
     for i in range(LANES):
         x, v, f, push = b[_X + i], b[_V + i], b[_F + i], b[_PUSH + i]
-        external = push - f
-        onward = 1.0 if external > 0.0 else -1.0
-        still = 1.0 if abs(external) <= b[_FS + i] else 0.0
-        resting = still if b[_SIDE + i] == 0.0 else 0.0
-        side = onward if b[_SIDE + i] == 0.0 else b[_SIDE + i]
+        side = b[_SIDE + i]
+        still = 1.0 if abs(push - f) <= b[_FS + i] else 0.0
+        resting = still if side == 0.0 else 0.0
         base = (push - side * b[_FC + i] - b[_DRAG + i] * v) * b[_INV + i]
         v1 = (v + base * b[_H1 + i]) - f * b[_G1 + i]
-        onwards = 1.0 if v1 * side > 0.0 else 0.0
-        goes = onwards if resting == 0.0 else 0.0
+        goes = 1.0 if v1 * side > 0.0 else 0.0
         ahead = v * b[_H + i] + base * b[_H2 + i]
         moved = ahead - f * b[_G2 + i]
         a0 = base - f * b[_INV + i]
@@ -141,7 +138,6 @@ def _move(b: Array) -> int:
         b[_HAND + i] += push * moved - inertia if goes > 0.0 else 0.0
         b[_X + i] = (x + ahead) - f * b[_G2 + i] if goes > 0.0 else x
         b[_V + i] = v1 if goes > 0.0 else v
-        b[_SIDE + i] = 0.0 if resting > 0.0 else side
         b[_LEFT + i] = 1.0 - goes - resting
         left += 1 if goes + resting == 0.0 else 0
     return left
@@ -182,7 +178,7 @@ def _watch(b: Array, ending: bool) -> None:
 
 @compiled
 def _alone(b: Array, i: int) -> None:
-    """One interval of lane i, with its stop."""
+    """One interval of lane i, with its stop or its start."""
     free = Free(
         b[_X + i],
         b[_V + i],
@@ -195,9 +191,9 @@ def _alone(b: Array, i: int) -> None:
     )
     f, push, drag, dry, most = b[_F + i], b[_PUSH + i], b[_DRAG + i], b[_FC + i], b[_FS + i]
     free = turn(free, f, push, drag, dry, most, b[_INV + i], b[_HALF + i], b[_H + i])
+    b[_STOPS + i] += abs(b[_SIDE + i])
     b[_X + i], b[_V + i], b[_SIDE + i], b[_HAND + i] = free[0], free[1], free[2], free[3]
     b[_ACT + i], b[_VISC + i], b[_DRY + i], b[_SOURCE + i] = free[4], free[5], free[6], free[7]
-    b[_STOPS + i] += 1.0
 
 
 @compiled

@@ -8,9 +8,9 @@ between two of them the motion has a closed form.
 
 from __future__ import annotations
 
-from math import exp, log
+from math import exp, expm1, log
 
-from zwidth.loop.compiled import Array, compiled
+from zwidth.compiled import Array, compiled
 from zwidth.loop.free import free_response, free_stop
 from zwidth.loop.ledger import book, book_rest
 from zwidth.loop.plant import (
@@ -36,6 +36,8 @@ from zwidth.loop.series import (
 
 _MOST_EVENTS = 100_000
 _BISECTIONS = 200
+_ROUNDING = 4 * 2.3e-16
+"""Of the sum of forces, relative to their sizes."""
 
 
 @compiled
@@ -94,16 +96,13 @@ def _stretch(
     """Move by at most h seconds, up to the first stop; returns the time used."""
     slack = anchor - state[POSITION]
     transient = state[FORCE] - state[GOAL] if plant.lag > 0.0 else 0.0
-    settled = state[GOAL] if plant.lag > 0.0 else state[FORCE]
-    push = force + plant.stiffness * slack + plant.hand_damping * speed - settled
-    drive = Drive(force, slack, speed, push, plant.stiffness * speed - ramp, ramp, transient)
+    pull, drag = plant.stiffness * slack, plant.hand_damping * speed
+    external = force + pull + drag - state[FORCE]
+    drive = Drive(force, slack, speed, external, plant.stiffness * speed - ramp, ramp, transient)
     if state[DIRECTION] == 0.0:
-        external = push - transient
-        if abs(external) <= plant.stiction:
-            wait, side = breakaway(drive, plant, h)
-            book_rest(state, plant, drive, wait)
-            state[DIRECTION] = side
-            return wait
+        size = abs(force) + abs(pull) + abs(drag) + abs(state[FORCE]) + abs(state[GOAL])
+        if _holds(drive, plant, _ROUNDING * size):
+            return _rest(state, plant, drive, h)
         state[DIRECTION] = 1.0 if external > 0.0 else -1.0
     if drive.rate == 0.0 and transient == 0.0 and plant.stiffness == 0.0:
         return _slide_free(state, plant, drive, h)
@@ -111,38 +110,61 @@ def _stretch(
 
 
 @compiled
+def _holds(drive: Drive, plant: Plant, rounding: float) -> bool:
+    """True where friction holds a mass at rest: |F_e| ≤ f_s; or F_e falls, and is beyond by rounding only.
+
+    Such a mass would stop again before any of the forces has changed in its last digit.
+    """
+    beyond = abs(drive.external) - plant.stiction
+    if beyond <= 0.0:
+        return True
+    slope = drive.rate + (drive.transient / plant.lag if plant.lag > 0.0 else 0.0)
+    falls = slope < 0.0 if drive.external > 0.0 else slope > 0.0
+    return beyond <= rounding and falls
+
+
+@compiled
+def _rest(state: Array, plant: Plant, drive: Drive, h: float) -> float:
+    wait, side = breakaway(drive, plant, h)
+    book_rest(state, plant, drive, wait)
+    state[DIRECTION] = side if wait < h else 0.0  # what comes after h may hold it
+    return wait
+
+
+@compiled
 def breakaway(drive: Drive, plant: Plant, h: float) -> tuple[float, float]:
-    """When |F_e| exceeds the stiction, which at t = 0 it does not: (time, side), or (h, 0).
+    """When |F_e| exceeds what holds the mass at t = 0, the stiction: (time, side), or (h, 0).
 
     F_e has one turning point at most.
     """
     rate, transient, lag = drive.rate, drive.transient, plant.lag
     if rate == 0.0 and transient == 0.0:
         return h, 0.0
+    held = max(plant.stiction, abs(drive.external))
     turn = h
     if transient != 0.0 and rate != 0.0 and -transient / (lag * rate) > 0.0:
         turn = min(h, max(0.0, lag * log(-transient / (lag * rate))))
     start = 0.0
     for end in (turn, h):
         level = _external(drive, lag, end)
-        if abs(level) > plant.stiction:
+        if abs(level) > held:
             side = 1.0 if level > 0.0 else -1.0
-            return _crossing(drive, lag, plant.stiction * side, side, start, end), side
+            return _crossing(drive, lag, held * side, side, start, end), side
         start = end
     return h, 0.0
 
 
 @compiled
 def _external(drive: Drive, lag: float, t: float) -> float:
-    fading = drive.transient * exp(-t / lag) if lag > 0.0 else 0.0
-    return drive.push + drive.rate * t - fading
+    faded = drive.transient * expm1(-t / lag) if lag > 0.0 else 0.0
+    return drive.external + drive.rate * t - faded
 
 
 @compiled
 def _crossing(drive: Drive, lag: float, level: float, side: float, start: float, end: float) -> float:
     """The time in [start, end] at which the monotone external force passes `level`."""
     if drive.transient == 0.0:
-        return min(end, max(start, (level - drive.push) / drive.rate))
+        return min(end, max(start, (level - drive.external) / drive.rate))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (start + end)
         if middle <= start or middle >= end:
@@ -159,22 +181,25 @@ def _slide_free(state: Array, plant: Plant, drive: Drive, h: float) -> float:
     inverse = 1.0 / (plant.mass + plant.hand_mass)
     drag = plant.damping + plant.hand_damping
     side, v0, f = state[DIRECTION], state[VELOCITY], state[FORCE]
-    others = drive.force + plant.hand_damping * drive.speed - side * plant.coulomb - drag * v0
-    base = others * inverse  # the actuator's part comes last: its force is known last
-    a0 = base - f * inverse
+    if v0 == 0.0:  # from rest: what friction leaves may be less than the last digit of either force
+        base, held = (drive.external - side * plant.coulomb) * inverse, 0.0
+    else:
+        others = drive.force + plant.hand_damping * drive.speed - side * plant.coulomb - drag * v0
+        base, held = others * inverse, f  # the actuator's part comes last: its force is known last
+    a0 = base - held * inverse
     t = h
     h1, h2, h3 = free_response(drag * inverse, t)
-    v1 = (v0 + base * h1) - f * (inverse * h1)
+    v1 = (v0 + base * h1) - held * (inverse * h1)
     stopped = v1 * side <= 0.0 and a0 * side < 0.0
     if stopped:
         t = min(h, free_stop(drag * inverse, v0, a0))
         h1, h2, h3 = free_response(drag * inverse, t)
         v1 = 0.0
     ahead = v0 * t + base * h2
-    moved = ahead - f * (inverse * h2)
+    moved = ahead - held * (inverse * h2)
     squares = v0 * v0 * t + 2.0 * v0 * a0 * h2 + a0 * a0 * h3
     book(state, plant, drive, t, moved, 0.0, squares, f * moved, v0, v1)
-    _arrive(state, (state[POSITION] + ahead) - f * (inverse * h2), v1, stopped)
+    _arrive(state, (state[POSITION] + ahead) - held * (inverse * h2), v1, stopped)
     return t
 
 
@@ -182,10 +207,10 @@ def _slide_free(state: Array, plant: Plant, drive: Drive, h: float) -> float:
 def _slide_tied(state: Array, plant: Plant, drive: Drive, h: float, work: Array) -> float:
     length = h / pieces(plant, h)
     side, v0 = state[DIRECTION], state[VELOCITY]
-    push = drive.push - side * plant.coulomb
-    if v0 == 0.0 and abs(drive.push - drive.transient) <= plant.stiction:  # it has just broken away
-        push = side * (plant.stiction - plant.coulomb) + drive.transient
-    terms = expand(plant, v0, push, drive.rate, drive.transient, length, work)
+    net = drive.external - side * plant.coulomb
+    if v0 == 0.0 and side * drive.external <= plant.stiction:  # it has just broken away
+        net = side * (plant.stiction - plant.coulomb)
+    terms = expand(plant, v0, net, drive.rate, drive.transient, length, work)
     u = first_zero(work, terms, side)
     stopped = u <= 1.0
     if not stopped:
