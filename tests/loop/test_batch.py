@@ -92,12 +92,49 @@ def test_threads_do_not_change_a_bit() -> None:
         ({"device.stiffness": [1.0]}, "no parameter 'device.stiffness'"),
         ({"environment.stiffness": [-1.0]}, "stiffness must be"),
         ({"device.mass": [0.0]}, "mass must be > 0"),
+        ({"stiffness": [[100.0, 200.0], [300.0, 400.0]]}, "'stiffness' is varied over single values"),
+        ({"stiffness": [[100.0], [300.0, 400.0]]}, "'stiffness' is varied over single values"),
+        ({"stiffness": {100.0, 200.0}}, "'stiffness' is varied over single values"),
     ],
 )
 def test_what_cannot_be_varied_is_refused(vary: dict, says: str) -> None:
     """The message names the parameter."""
     with pytest.raises(zw.InputError, match=says):
         zw.simulate_batch(PADDLE, zw.Wall(300.0), zw.operators.Finger(), 0.1, vary=vary)
+
+
+@pytest.mark.parametrize(
+    ("environment", "vary"),
+    [
+        (zw.GeneralizedMaxwell(0, branches=[(800, 3)]), {"branches": [[(800, 3)], [(200, 20), (50, 1)]]}),
+        (zw.NonlinearSpring([0, 0.01], [0, 3]), {"positions": [[0, 0.01], [0, 0.02]]}),
+        (zw.NonlinearSpring([0, 0.01], [0, 3]), {"forces": np.array([[0, 3], [0, 4]])}),
+    ],
+)
+def test_a_parameter_that_is_a_list_is_not_varied(environment, vary: dict) -> None:
+    """One message, whatever the shape."""
+    with pytest.raises(zw.InputError, match="simulate each value on its own"):
+        zw.simulate_batch(PADDLE, environment, zw.operators.Finger(), 0.1, vary=vary)
+
+
+def test_plain_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> None:
+    """Hands that push with the stiction, give or take the last digits: they rest, or creep onwards."""
+    count = 3 * LANES
+    rng = np.random.default_rng(3)
+    friction, stiffness = rng.uniform(0.001, 0.5, count), rng.uniform(100, 2000, count)
+    edge = stiffness * 22.4e-6 * 7 + friction  # the wall pushes from the seventh count
+    pushes = edge + rng.integers(-3, 4, count) * np.spacing(edge)
+    vary = {"environment.stiffness": stiffness, "coulomb_friction": friction, "force": pushes}
+    hand, start = zw.operators.ConstantForce(1.0), {"initial_position": 7.5 * 22.4e-6}
+    batch = zw.simulate_batch(PADDLE, zw.Wall(1.0), hand, 0.003, vary=vary, together=True, **start)
+    assert (batch.velocity >= 0).all()
+    assert 0 < (batch.velocity > 0).sum() < count
+    for i in range(count):
+        own = PADDLE.replace(coulomb_friction=float(friction[i]))
+        wall, push = zw.Wall(float(stiffness[i])), zw.operators.ConstantForce(float(pushes[i]))
+        _same(batch.isel(case=i), zw.simulate(own, wall, push, 0.003, **start))
+        general = zw.simulate(own, wall, push, 0.003, points_per_sample=2, **start)
+        assert float(general.velocity[-1]) == pytest.approx(float(batch.velocity[i]), rel=1e-12, abs=1e-17)
 
 
 def test_values_varied_together_are_equally_many() -> None:

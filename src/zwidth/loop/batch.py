@@ -157,7 +157,7 @@ class _Base(NamedTuple):
 
 
 def _axes(vary: Mapping[str, Sequence[Any]], together: bool) -> dict[str, list[Any]]:
-    axes = {str(name): list(np.atleast_1d(values)) for name, values in vary.items()}
+    axes = {str(name): _values(str(name), values) for name, values in vary.items()}
     if not axes or not all(axes.values()):
         raise InputError(
             "vary needs one parameter with one value at least, such as {'stiffness': [100, 300]}"
@@ -166,6 +166,18 @@ def _axes(vary: Mapping[str, Sequence[Any]], together: bool) -> dict[str, list[A
         lengths = ", ".join(f"{name} {len(values)}" for name, values in axes.items())
         raise InputError(f"values varied together must be equally many, got {lengths}")
     return axes
+
+
+def _values(name: str, values: Sequence[Any]) -> list[Any]:
+    try:
+        listed = list(np.atleast_1d(values))
+        hash(tuple(listed))
+    except (TypeError, ValueError):  # an array, a list or a set in it, or lists of different lengths
+        raise InputError(
+            f"{name!r} is varied over single values, such as [100, 300], got {values!r}: of a parameter that "
+            "is itself a list simulate each value on its own"
+        ) from None
+    return listed
 
 
 def _owner(name: str, base: _Base) -> tuple[str, str]:
