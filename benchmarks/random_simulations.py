@@ -20,6 +20,7 @@ import numpy as np
 from numba import njit
 
 from zwidth.loop import kernel as k
+from zwidth.loop import law as laws
 from zwidth.loop.plant import FAULT, STATE_SIZE, STOPS
 from zwidth.loop.series import WORK
 
@@ -58,11 +59,12 @@ def _draw(rng, numbers, law, force, anchor):
     if kind == 4:
         numbers[8] = size / period * _spread(rng, 0.01, 10.0)
     reach = size * period * period / total * 30.0
-    law[0] = 2.0
-    law[1] = 0.0 if rng.random() < 0.3 else reach * _spread(rng, 1e-4, 0.3)
-    law[2] = rng.random()
-    law[3], law[4], law[5], law[6] = 0.0, 20.0 * size, 1.0, 0.0
-    law[7] = total / period**2 * _spread(rng, 1e-3, 2.0)
+    law[:] = 0.0
+    law[laws.GATE], law[laws.SECTIONS] = laws.SURFACE, 1.0
+    law[laws.RESOLUTION] = 0.0 if rng.random() < 0.3 else reach * _spread(rng, 1e-4, 0.3)
+    law[laws.PHASE] = rng.random()
+    law[laws.LIMIT] = 20.0 * size
+    law[laws.HEADER + 1] = total / period**2 * _spread(rng, 1e-3, 2.0)
     for i in range(SAMPLES):
         force[i] = size * rng.standard_normal()
     here = 0.0
@@ -77,7 +79,7 @@ def _draw(rng, numbers, law, force, anchor):
 @njit
 def _residuals(loops, rng, worst):
     """The largest residuals relative to the energy moved; `worst` gets the numbers of the worst loop."""
-    state, numbers, law = np.zeros(STATE_SIZE), np.zeros(9), np.zeros(8)
+    state, numbers, law = np.zeros(STATE_SIZE), np.zeros(9), np.zeros(laws.HEADER + 2)
     force, anchor = np.zeros(SAMPLES), np.zeros(SAMPLES + 1)
     memory, work, commands = np.zeros(1), np.zeros(WORK), np.zeros(SAMPLES + 1)
     record = np.zeros((k.RECORDED, SAMPLES + 1))
