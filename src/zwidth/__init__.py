@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from zwidth.loop.timing import Timing
     from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.passivity.worst_hand import Bracket, WorstHand
+    from zwidth.rendering.rendered import render
     from zwidth.traces import (
         compare_traces,
         load_trace,
@@ -74,6 +75,8 @@ __all__ = [
     "operators",
     "passive_limit",
     "quantization",
+    "render",
+    "rendering",
     "replay",
     "rotary",
     "simulate",
@@ -90,6 +93,8 @@ _LATER = {
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
+    "render": "zwidth.rendering.rendered",
+    "rendering": "zwidth.rendering",
     "replay": "zwidth.passivity.real_hand",
     "compare_traces": "zwidth.traces",
     "load_trace": "zwidth.traces",

@@ -7,7 +7,7 @@ loop and a thousand side by side give the same bits.
 
 What is kept on disk is keyed by the file of each function alone, although one
 function holds the code of all that it calls.  So whatever is older than the
-youngest source here is thrown away first.
+youngest source beside it is thrown away first.
 """
 
 from __future__ import annotations
@@ -24,20 +24,28 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def _discard_stale(folder: Path) -> None:
-    youngest = max(path.stat().st_mtime for path in folder.glob("*.py"))
-    for index in (folder / "__pycache__").glob("*.nbi"):
+_PACKAGE = Path(__file__).parent
+
+_TOGETHER = (("rendering", "loop"), ("passivity/worst_hand",), ("passivity/checker",))
+"""Chapters whose functions call each other."""
+
+
+def _discard_stale(chapters: tuple[str, ...]) -> None:
+    folders = [_PACKAGE / chapter for chapter in chapters]
+    youngest = max(path.stat().st_mtime for folder in folders for path in folder.glob("*.py"))
+    for index in (path for folder in folders for path in folder.glob("__pycache__/*.nbi")):
         with suppress(OSError):
             if index.stat().st_mtime < youngest:
                 index.unlink()
 
 
-_discard_stale(Path(__file__).parent)
+for _chapters in _TOGETHER:
+    _discard_stale(_chapters)
 
 
-def is_compiled() -> bool:
-    """True where the simulator has been compiled before and is kept on disk."""
-    return any((Path(__file__).parent / "__pycache__").glob("*.nbi"))
+def is_compiled(chapter: str) -> bool:
+    """True where a chapter of the package, "loop", has been compiled before and is kept on disk."""
+    return any((_PACKAGE / chapter).glob("__pycache__/*.nbi"))
 
 
 F = TypeVar("F", bound=Callable[..., Any])

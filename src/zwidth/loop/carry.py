@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import expm1
 
-from zwidth.loop.compiled import Array, compiled
+from zwidth.compiled import Array, compiled
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numba import cuda
 
-from zwidth.loop.compiled import Array
+from zwidth.compiled import Array
 from zwidth.loop.unrecorded import run_unrecorded
 
 

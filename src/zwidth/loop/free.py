@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from math import expm1, log1p
 
-from zwidth.loop.compiled import compiled
+from zwidth.compiled import compiled
 
 _SERIES_UP_TO = 1.0
 _TERMS = 40

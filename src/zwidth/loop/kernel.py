@@ -9,17 +9,19 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from zwidth.compiled import Array, compiled
 from zwidth.loop.carry import carry
-from zwidth.loop.compiled import Array, compiled
 from zwidth.loop.law import (
     BILATERAL,
     GATE,
     LIMIT,
     PHASE,
+    REMEMBERED,
     RESOLUTION,
+    STAGES,
     STEP,
-    law_force,
     measured,
+    rendered_force,
     rounded,
 )
 from zwidth.loop.plant import (
@@ -231,13 +233,15 @@ def sample(
 @compiled
 def commanded(state: Array, law: Array, memory: Array, reading: float) -> float:
     """What the law and the converter make of a reading; counts samples inside and saturated."""
-    wish = law_force(law, memory, reading)
+    wish = rendered_force(law, memory, reading)
     if law[GATE] == BILATERAL or reading > 0.0:
         state[INSIDE] += 1.0
     f = rounded(wish, law[STEP])
     if law[LIMIT] > 0.0 and abs(f) > law[LIMIT]:
         state[SATURATED] += 1.0
         f = law[LIMIT] if f > 0.0 else -law[LIMIT]
+    if law[STAGES] > 0.0:
+        memory[int(law[REMEMBERED])] = f
     return f
 
 

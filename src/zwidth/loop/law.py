@@ -5,6 +5,7 @@
     f   = table(x_m)                    or points, linear between them
     f   = K uⁿ (1 + λ v)                or a contact, u = max(x_m, 0), v the backward difference of x_m
     f   = max(f, 0)                     where the law never pulls
+    f   = law(x_m, f)                   one after the other, where laws render the environment
     f   = ΔF round(f/ΔF)                what the converter makes of it
 
 A wall's velocity estimator runs on every measured position; a viscoelastic
@@ -14,7 +15,8 @@ x_m ≤ 0.
 
 from __future__ import annotations
 
-from zwidth.loop.compiled import Array, compiled
+from zwidth.compiled import Array, compiled
+from zwidth.rendering.chain import after
 
 BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 """At the surface: a law without one; one fed with max(x_m, 0); one fed with x_m.  Both push inside only."""
@@ -23,8 +25,9 @@ BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 # pulls, number of sections, number of points, whether it is a contact; then for each section its order n,
 # b_0 … b_n, a_1 … a_n; or, where there are points and no section, their positions and their forces; or K, n
 # and λ/T of a contact, which remembers the last reading.
-GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS, POINTS, CONTACT = range(9)
-HEADER = 9
+# Behind all that the laws in a row, see `rendering.chain`: how many, where they begin, where their memory.
+GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS, POINTS, CONTACT, STAGES, ROW, REMEMBERED = range(12)
+HEADER = 12
 
 
 @compiled
@@ -92,3 +95,13 @@ def law_force(law: Array, memory: Array, reading: float) -> float:
     if law[CLAMPED] > 0.0:
         f = max(f, 0.0)
     return 0.0 if gate != BILATERAL and reading <= 0.0 else f
+
+
+@compiled
+def rendered_force(law: Array, memory: Array, reading: float) -> float:
+    """The same through the laws that render it, if there are any."""
+    f = law_force(law, memory, reading)
+    stages = int(law[STAGES])
+    if stages > 0:
+        f = after(law, int(law[ROW]), stages, memory, int(law[REMEMBERED]), reading, f)
+    return f

@@ -13,7 +13,7 @@ stretch), e0 the slack x_a − x at the start and u the speed of the anchor,
 
 from __future__ import annotations
 
-from zwidth.loop.compiled import Array, compiled
+from zwidth.compiled import Array, compiled
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,

@@ -25,6 +25,8 @@ from zwidth.loop.series import WORK
 from zwidth.loop.timing import Timing
 from zwidth.operator.operator import Operator, Signals
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.rendered import Rendered
+from zwidth.rendering.stage import Stage, Surroundings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -67,6 +69,7 @@ class Setup:
         memoryless = self.law[laws.SECTIONS] == 1 and self.law[laws.HEADER] == 0
         linear = self.law[laws.CLAMPED] == 0
         clock = f.offset == 0.0 and f.points == 1 and not f.arrivals.size and not f.missed.size
+        memoryless &= self.law[laws.STAGES] == 0
         return bool(free and memoryless and linear and clock and f.signals.position is None)
 
     @property
@@ -122,9 +125,15 @@ def prepare(
     state[VELOCITY] = _number(initial_velocity, "initial_velocity")
     state[DIRECTION] = np.sign(state[VELOCITY])
     actuation = frame.actuation
-    clamped = float(law.clamped and not law.spring)  # a spring pushes wherever it acts
-    header = [_gate(law), frame.resolution, phase, actuation.step, actuation.limit, clamped]
-    packed = np.array([*header, *_body(law, frame.period)])
+    met, row = (law.environment, law.stages) if isinstance(law, Rendered) else (law, ())
+    clamped = float(met.clamped and not met.spring)  # a spring pushes wherever it acts
+    header = [_gate(met), frame.resolution, phase, actuation.step, actuation.limit, clamped]
+    kinds, body = _body(met, frame.period)
+    reading = laws.measured(state[POSITION], frame.resolution, phase)
+    memory = at_rest(np.array([*header, *kinds, 0.0, 0.0, 0.0, *body]), reading)
+    numbers, remembered = _row(row, Surroundings(device, met), reading)
+    begins = [float(len(row)), float(laws.HEADER + len(body)), float(len(memory))]
+    packed = np.array([*header, *kinds, *begins, *body, *numbers])
     return Setup(
         device=device,
         environment=law,
@@ -132,7 +141,7 @@ def prepare(
         timing=timing,
         encoder_phase=phase,
         law=packed,
-        memory=at_rest(packed, laws.measured(state[POSITION], frame.resolution, phase)),
+        memory=np.array([*memory, *remembered]),
         state=state,
         frame=frame,
     )
@@ -234,15 +243,29 @@ def _plant(device: Device, operator: Operator, actuation: Actuation) -> Plant:
     )
 
 
-def _body(law: Environment, period: Fraction) -> list[float]:
-    """The numbers of sections and of points, whether it is a contact, and what they are."""
+def _body(law: Environment, period: Fraction) -> tuple[list[float], list[float]]:
+    """The numbers of sections and of points and whether it is a contact; and what they are."""
     if isinstance(law, NonlinearSpring):
-        return [0.0, float(len(law.positions)), 0.0, *map(float, law.positions), *map(float, law.forces)]
+        points = [*map(float, law.positions), *map(float, law.forces)]
+        return [0.0, float(len(law.positions)), 0.0], points
     if isinstance(law, HuntCrossley):
         per_length = float(law.dissipation.fraction / period)
-        return [0.0, 0.0, 1.0, float(law.stiffness), float(law.exponent), per_length]
+        return [0.0, 0.0, 1.0], [float(law.stiffness), float(law.exponent), per_length]
     sections = sections_of(law, period)
-    return [float(len(sections)), 0.0, 0.0, *(c for s in sections for c in s)]
+    return [float(len(sections)), 0.0, 0.0], [c for s in sections for c in s]
+
+
+def _row(
+    stages: tuple[Stage, ...], surroundings: Surroundings, reading: float
+) -> tuple[list[float], list[float]]:
+    """The laws that render, packed as `rendering.chain` reads them, and what they remember at rest."""
+    packed: list[float] = []
+    remembered = [0.0] if stages else []  # the force that was applied last
+    for stage in stages:
+        numbers = stage.numbers(surroundings)
+        packed += [stage.code, float(len(numbers)), float(stage.slots), *numbers]
+        remembered += stage.rested(reading)
+    return packed, remembered
 
 
 def sections_of(environment: Environment, period: Fraction) -> list[list[float]]:

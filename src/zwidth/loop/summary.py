@@ -7,7 +7,7 @@ highest, lowest   of x over the last quarter of the samples: does it still move?
 
 from __future__ import annotations
 
-from zwidth.loop.compiled import Array, compiled
+from zwidth.compiled import Array, compiled
 from zwidth.loop.kernel import R_ACTUATOR, R_HAND_WORK, R_POSITION
 
 DEEPEST, PEAK, EXTRACTED, HIGHEST, LOWEST = range(5)

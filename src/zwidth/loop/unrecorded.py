@@ -5,7 +5,7 @@ The same steps as `kernel.run`; what a graphics card runs, one loop per thread.
 
 from __future__ import annotations
 
-from zwidth.loop.compiled import Array, compiled
+from zwidth.compiled import Array, compiled
 from zwidth.loop.kernel import apply_due, commanded, in_interval, packed_plant, travel
 from zwidth.loop.law import PHASE, RESOLUTION, measured
 from zwidth.loop.plant import FORCE, HAND_WORK, POSITION

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.loop.compiled import compiled
+from zwidth.compiled import compiled
 from zwidth.passivity.worst_hand.board import NOWHERE, Integers
 from zwidth.passivity.worst_hand.sweep import extremes, improve, targets
 

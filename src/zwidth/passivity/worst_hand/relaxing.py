@@ -20,7 +20,7 @@ from math import ceil, floor
 
 import numpy as np
 
-from zwidth.loop.compiled import compiled
+from zwidth.compiled import compiled
 from zwidth.passivity.worst_hand.board import NOWHERE, Board, Integers
 
 ONE = 1 << 16

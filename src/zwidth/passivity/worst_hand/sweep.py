@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zwidth.loop.compiled import compiled
+from zwidth.compiled import compiled
 from zwidth.passivity.worst_hand.board import NOWHERE, Integers
 
 

@@ -1,0 +1,187 @@
+"""Passivity observer and controller: software friction of just the size that the energy lacks.
+
+Observer, in the energy that the hand has put in (sampled: the force that was held acts
+on the move that followed, which is exact behind a hold):
+
+    E_k = E_{k−1} + f_{k−1} (x_k − x_{k−1}) [+ f_c |Δx| + (b/T) Δx²]
+
+Controller, Δx_k = x_k − x_{k−1} taken for the move to come:
+
+    lack = E_ref − (E_k + f_k Δx_k)
+    f_k ← f_k + lack/Δx_k    where lack > 0,  |lack/Δx_k| ≤ α |Δx_k|/T and ≤ F
+
+Published in series form by Hannaford & Ryu (2002), with the observer that pairs f_k with
+the move before it; with the exact observer by Ryu, Kim & Hannaford (2004).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from zwidth.compiled import Array, compiled
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.stage import Stage, Surroundings, positive
+
+PASSIVITY_CONTROLLER = 1.0
+
+_PERIOD, _DAMPING, _FORCE, _FLOOR, _PUBLISHED, _FRICTION, _DRAG, _REFERENCE, _RESETS, _CEILING = range(10)
+_BEFORE, _ENERGY, _ADDED, _MOVED = range(4)
+
+UNLIMITED = 1e300
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class PassivityController(Stage):
+    """Passivity observer and controller in series, ``f ← f + (E_ref − E − f Δx)/Δx`` where that dissipates.
+
+    Parameters
+    ----------
+    observer
+        "sampled": the held force is paired with the move that follows it, exact behind a hold without
+        delay.  "published": with the move before it (Hannaford & Ryu 2002), which takes the leak of the
+        hold for dissipation.
+    largest_damping
+        α, the damping that the controller adds at most [N·s/m; N·m·s/rad]; None: no limit.
+    largest_force
+        What it adds at most [N; N·m]; None: no limit.  What it cannot pay is carried over.
+    slowest
+        Speed below which it does nothing [m/s; rad/s]: there counts of the encoder make
+        its force large and rough.
+    credit
+        True to count in what the device dissipates by its own b and f_c.
+    reference
+        "zero", or "spring" for the energy ½ K x² that the environment's spring stores at x:
+        the controller then acts as soon as the hand has put in less (Ryu et al. 2005).
+    resets
+        True to set the energy to 0 where the law pushes no force: the hand then begins each
+        contact without credit from the one before.
+    ceiling
+        Energy above which no credit is kept [J], ≥ 0: what was dissipated long ago cannot hide
+        what comes out now; None: all is kept.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive, or a word is not one of these.
+    """
+
+    code: ClassVar[float] = PASSIVITY_CONTROLLER
+    slots: ClassVar[int] = 4
+
+    observer: Literal["sampled", "published"]
+    largest_damping: Exact | None
+    largest_force: Exact | None
+    slowest: Exact
+    credit: bool
+    reference: Literal["zero", "spring"]
+    resets: bool
+    ceiling: Exact | None
+
+    def __init__(
+        self,
+        *,
+        observer: Literal["sampled", "published"] = "sampled",
+        largest_damping: RealLike | None = None,
+        largest_force: RealLike | None = None,
+        slowest: RealLike = 0,
+        credit: bool = False,
+        reference: Literal["zero", "spring"] = "zero",
+        resets: bool = False,
+        ceiling: RealLike | None = None,
+    ) -> None:
+        _one_of("observer", observer, "sampled", "published")
+        _one_of("reference", reference, "zero", "spring")
+        own = {
+            "observer": observer,
+            "largest_damping": _limit("largest_damping", largest_damping),
+            "largest_force": _limit("largest_force", largest_force),
+            "slowest": positive("slowest", slowest, "it is a speed below which nothing is added", zero=True),
+            "credit": bool(credit),
+            "reference": reference,
+            "resets": bool(resets),
+            "ceiling": None
+            if ceiling is None
+            else positive("ceiling", ceiling, "it is the energy that is kept at most", zero=True),
+        }
+        for name, value in own.items():
+            object.__setattr__(self, name, value)
+
+    def numbers(self, at: Surroundings) -> list[float]:
+        """As the step reads them.
+
+        Raises
+        ------
+        InputError
+            If the reference is a spring's energy and the environment has no stiffness.
+        """
+        if self.reference == "spring" and at.stiffness <= 0:
+            raise InputError(
+                'reference="spring" needs an environment with a stiffness; this has none: '
+                f"{at.environment.describe()}"
+            )
+        friction, damping = (
+            float(at.device.exact(key)) if self.credit else 0.0 for key in ("coulomb_friction", "damping")
+        )
+        period = at.period
+        return [
+            period,
+            UNLIMITED if self.largest_damping is None else float(self.largest_damping),
+            UNLIMITED if self.largest_force is None else float(self.largest_force),
+            float(self.slowest) * period,
+            float(self.observer == "published"),
+            friction,
+            damping / period,
+            at.stiffness / 2 if self.reference == "spring" else 0.0,
+            float(self.resets),
+            UNLIMITED if self.ceiling is None else float(self.ceiling),
+        ]
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, in a few words."""
+        unit, force = ("N·m·s/rad", "N·m") if motion == "rotary" else ("N·s/m", "N")
+        parts = [f"{self.observer} observer"]
+        if self.largest_damping is not None:
+            parts.append(f"at most {float(self.largest_damping):g} {unit}")
+        if self.largest_force is not None:
+            parts.append(f"at most {float(self.largest_force):g} {force}")
+        parts += [word for word, said in (("device credited", self.credit), ("resets", self.resets)) if said]
+        if self.reference == "spring":
+            parts.append("the spring's energy as reference")
+        return f"passivity controller ({', '.join(parts)})"
+
+
+def _one_of(name: str, value: object, *words: str) -> None:
+    if value not in words:
+        raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
+
+
+def _limit(name: str, value: RealLike | None) -> Exact | None:
+    return None if value is None else positive(name, value, "it limits what the controller adds; None: none")
+
+
+@compiled
+def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: float) -> float:
+    """One sample; p from i and s from j on are this law's, `applied` is the force that was held."""
+    moved = x - s[j + _BEFORE]
+    lost = p[i + _FRICTION] * abs(moved) + p[i + _DRAG] * moved * moved
+    if p[i + _PUBLISHED] > 0.0:
+        energy = s[j + _ENERGY] + force * moved + s[j + _ADDED] * s[j + _MOVED] + lost
+        ahead = energy
+    else:
+        energy = s[j + _ENERGY] + applied * moved + lost
+        ahead = energy + force * moved
+    if p[i + _RESETS] > 0.0 and force == 0.0:
+        energy, ahead = 0.0, 0.0
+    energy = min(energy, p[i + _CEILING])
+    inside = max(x, 0.0)
+    lack = p[i + _REFERENCE] * inside * inside - min(ahead, p[i + _CEILING])
+    added = 0.0
+    if lack > 0.0 and abs(moved) > p[i + _FLOOR]:
+        most = min(p[i + _DAMPING] * abs(moved) / p[i + _PERIOD], p[i + _FORCE])
+        added = min(lack / abs(moved), most)
+        if moved < 0.0:
+            added = -added
+    s[j + _BEFORE], s[j + _ENERGY], s[j + _ADDED], s[j + _MOVED] = x, energy, added, moved
+    return force + added

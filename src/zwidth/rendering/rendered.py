@@ -1,0 +1,91 @@
+"""An environment with the laws that render it, in a row: wall, then controller, then limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from zwidth.environment.environment import Environment, RationalFunction
+from zwidth.environment.transfer_function import as_environment
+from zwidth.errors import InputError
+from zwidth.rendering.stage import Stage
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class Rendered(Environment):
+    """An environment behind one or more laws: what `render` gives.
+
+    Parameters
+    ----------
+    environment
+        What the hand meets: an `Environment`, or a discrete system of python-control or scipy.signal.
+    stages
+        The laws, from the environment to the actuator.
+
+    Raises
+    ------
+    InputError
+        If there is no law, or one of them is none.
+    """
+
+    environment: Environment
+    stages: tuple[Stage, ...]
+
+    def __init__(self, environment: Environment | Any, stages: tuple[Stage, ...]) -> None:
+        inner = as_environment(environment)
+        while isinstance(inner, Rendered):
+            stages = (*inner.stages, *stages)
+            inner = inner.environment
+        if not stages:
+            raise InputError("no law was given: an environment alone is simulated as it is")
+        for stage in stages:
+            if not isinstance(stage, Stage):
+                raise InputError(
+                    f"a law is one of zwidth.rendering, such as PassivityController(), got "
+                    f"{type(stage).__name__}"
+                )
+        object.__setattr__(self, "environment", inner)
+        object.__setattr__(self, "stages", tuple(stages))
+
+    @property
+    def unilateral(self) -> bool:
+        """As the environment."""
+        return self.environment.unilateral
+
+    @property
+    def clamped(self) -> bool:
+        """As the environment; a controller behind it may pull."""
+        return self.environment.clamped
+
+    @property
+    def linear(self) -> bool:
+        """Not: the laws look at the sign of energy, contact or motion."""
+        return False
+
+    def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
+        """None: raises InputError."""
+        raise InputError(f"there is no H(z) of this, its laws are not linear: {self.describe()}")
+
+    def describe(self, motion: str = "linear") -> str:
+        """Environment and laws, on one line."""
+        laws = ", ".join(stage.describe(motion) for stage in self.stages)
+        return f"{self.environment.describe(motion)}, with {laws}"
+
+
+def render(environment: Environment | Any, *stages: Stage) -> Rendered:
+    """An environment rendered by laws in a row, from the environment to the actuator.
+
+    Parameters
+    ----------
+    environment
+        What the hand meets.
+    stages
+        `PassivityController()`, `SlewLimit(…)`, …, see `zwidth.rendering`.
+
+    Raises
+    ------
+    InputError
+        If there is no law, or one of them is none.
+    """
+    return Rendered(environment, stages)

@@ -1,0 +1,84 @@
+"""One law more between the environment and the actuator, a step per sample.
+
+    f ← step(x, f)        x the reading, f the force so far
+    x ← step(x)           for a law that comes before the environment
+
+`rendered.Rendered` puts them in a row.  Each is a frozen data class with its law in
+its docstring, and a compiled `step` that the simulator runs.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike
+
+
+class Surroundings(NamedTuple):
+    """What a law is told once, before the loop runs.
+
+    Parameters
+    ----------
+    device
+        What the hand holds.
+    environment
+        What it meets.
+    """
+
+    device: Device
+    environment: Environment
+
+    @property
+    def period(self) -> float:
+        """T [s]."""
+        return float(self.device.exact("sample_period"))
+
+    @property
+    def stiffness(self) -> float:
+        """Of the environment per depth, the hand at rest; 0 where it has no such number [N/m; N·m/rad]."""
+        return float(getattr(self.environment, "stiffness", 0.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stage(ABC):
+    """A law that changes the force of an environment, or the reading before it."""
+
+    code: ClassVar[float]
+    """Which step the compiled chain takes; its own for each law."""
+
+    slots: ClassVar[int]
+    """Numbers that it remembers."""
+
+    @abstractmethod
+    def numbers(self, at: Surroundings) -> list[float]:
+        """The parameters of the step, defaults filled in from the device."""
+
+    def rested(self, reading: float) -> list[float]:
+        """What it remembers after the hand has been at a reading for ever."""
+        return [reading] + [0.0] * (self.slots - 1)
+
+    @abstractmethod
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, in a few words."""
+
+
+def positive(name: str, value: RealLike, why: str, zero: bool = False) -> Exact:
+    """A parameter > 0, or ≥ 0.
+
+    Raises
+    ------
+    InputError
+        If it is not.
+    """
+    try:
+        number = Exact(value)
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    if number < 0 or (number == 0 and not zero):
+        raise InputError(f"{name} must be {'≥' if zero else '>'} 0, got {float(number):g}: {why}")
+    return number
