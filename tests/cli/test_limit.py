@@ -174,6 +174,7 @@ def test_a_contact(run: Run) -> None:
     found = run(*loop, "--speed", "0.2 m/s", "--penetration", "0.5 mm")
     assert found.status == 0
     assert "N/m^1.5 is proved passive" in found.out
+    assert "Hunt–Crossley contact, 10000 N/m^1.5, exponent 1.5, 1 s/m" in words(found)
     short = ("--speed", "0.2 m/s", "--penetration", "0.5 mm", "--parameter", "dissipation", "--json")
     document = json.loads(run(*loop, *short).out)
     assert document["proved_passive_s_per_m"] < document["proved_active_s_per_m"]

@@ -30,7 +30,7 @@ def environment_line(environment: Environment, motion: str) -> str:
     """The environment's type and its parameters."""
     found = next((n for n, t in TYPES.items() if t.class_name == type(environment).__name__), None)
     if found is None or any(
-        k.form in ("coefficients", "branches", "list") for k in TYPES[found].keys.values()
+        k.form in ("coefficients", "branches", "list", "number") for k in TYPES[found].keys.values()
     ):
         return environment.describe(motion)
     parts = [_part(environment, name, key, motion) for name, key in TYPES[found].keys.items()]
