@@ -24,6 +24,7 @@ from zwidth.rendering import VirtualCoupling
 
 if TYPE_CHECKING:
     from zwidth import operator as operators
+    from zwidth.bench import LawComparison
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring
     from zwidth.loop.timing import Timing
@@ -52,6 +53,7 @@ __all__ = [
     "HuntCrossley",
     "InputError",
     "Interval",
+    "LawComparison",
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
@@ -70,6 +72,7 @@ __all__ = [
     "catalogue",
     "check",
     "closed_forms",
+    "compare",
     "compare_traces",
     "load_trace",
     "operators",
@@ -86,6 +89,8 @@ __all__ = [
 
 _LATER = {
     "Bracket": "zwidth.passivity.worst_hand",
+    "LawComparison": "zwidth.bench",
+    "compare": "zwidth.traces",
     "HuntCrossley": "zwidth.environment",
     "NonlinearSpring": "zwidth.environment",
     "Timing": "zwidth.loop.timing",

@@ -154,6 +154,18 @@ def _limit(arguments: argparse.Namespace) -> int:
     return run_limit(arguments)
 
 
+def _configure_compare(parser: argparse.ArgumentParser) -> None:
+    from zwidth.cli.comparison import configure_compare
+
+    configure_compare(parser)
+
+
+def _compare(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.comparison import run_compare
+
+    return run_compare(arguments)
+
+
 def _configure_simulate(parser: argparse.ArgumentParser) -> None:
     from zwidth.cli.simulation import configure_simulate  # knows the hands, which load numpy
 
@@ -226,6 +238,18 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "example:\n  zwidth traces finger.nc dowel.nc --plot both.png",
             _configure_traces,
             _traces,
+        ),
+        "compare": Command(
+            "which rendering law suits this wall on this device?",
+            "Put rendering laws on one bench: the same touches, the same hand that tries to take energy\n"
+            "out; what is felt, what is given out, and what is proved.",
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth compare haptic-paddle --stiffness 2000\n"
+            "  zwidth compare haptic-paddle --stiffness 2000 --laws virtual-damping,passivity-controller "
+            "--plot laws.png",
+            _configure_compare,
+            _compare,
         ),
         "devices": Command(
             "the catalogue of real devices, each value with its source",

@@ -3,12 +3,13 @@
 from zwidth.traces.accessor import TraceAccessor
 from zwidth.traces.comparison import Comparison, compare_traces
 from zwidth.traces.files import load_trace, save_trace
-from zwidth.traces.run import passive_limit, simulate, simulate_batch, worst_hand
+from zwidth.traces.run import compare, passive_limit, simulate, simulate_batch, worst_hand
 from zwidth.traces.sound import save_sound
 
 __all__ = [
     "Comparison",
     "TraceAccessor",
+    "compare",
     "compare_traces",
     "load_trace",
     "passive_limit",

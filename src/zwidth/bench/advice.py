@@ -1,0 +1,85 @@
+"""One paragraph on which a person can act, computed from the scores."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from zwidth.quantity.exact import Exact
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from zwidth.bench.bench import LawComparison
+
+QUIET = 0.02
+"""Force above 30 Hz below which a wall is called quiet, as part of the largest force."""
+
+
+def advice(comparison: LawComparison) -> str:
+    """What the wall needs, which law is safest, which feels stiffest, and what none of them can do."""
+    scores, device = comparison.scores, comparison.device
+    wanted = float(comparison.environment.stiffness)  # type: ignore[attr-defined]
+    limit = _limit(device)
+    words = [
+        f"Alone, a wall of {wanted:g} N/m needs no law on this device, which renders up to {limit:.4g} N/m."
+        if wanted <= limit
+        else f"The device alone renders {limit:.4g} N/m passively, so that {wanted:g} N/m needs a law or "
+        "other hardware."
+    ]
+    proved = scores.where(scores["status"] == "passive", drop=True)
+    if proved.sizes["law"]:
+        best = _stiffest(proved)
+        felt = float(proved["static_stiffness"].sel(law=best))
+        words.append(f"Proved for every hand, the stiffest here is {best!r}: {felt:.4g} N/m are felt.")
+    else:
+        words.append("None of these laws is proved for every hand.")
+    quiet = scores.where(scores["tap_chatter"] <= QUIET * scores["peak_force"], drop=True)
+    if quiet.sizes["law"]:
+        best = min(
+            (str(name) for name in quiet["law"].values),
+            key=lambda name: abs(float(quiet["static_stiffness"].sel(law=name)) - wanted),
+        )
+        felt = float(quiet["static_stiffness"].sel(law=best))
+        status = str(quiet["status"].sel(law=best).item())
+        words.append(
+            f"Quiet under a fast finger and closest to what is wanted is {best!r} with {felt:.4g} N/m"
+            + (
+                ""
+                if status == "passive"
+                else f"; it is {status}: a skilled hand takes energy out, an ordinary one did not"
+                if status == "active"
+                else "; for every hand it is undecided"
+            )
+            + "."
+        )
+    else:
+        words.append("All of them chatter under a fast finger.")
+    broken = [
+        str(name)
+        for name in scores["law"].values
+        if "controller" in str(name) and str(scores["status"].sel(law=name).item()) == "active"
+    ]
+    if broken:
+        words.append(f"A hand that turns back in time breaks the promise of {_listed(broken)}.")
+    return " ".join(words)
+
+
+def _limit(device: object) -> float:
+    """min(2b/T, 2f_c/Δ) (Abbott & Okamura 2005)."""
+    values: dict[str, Exact] = {
+        key: device.exact(key)  # type: ignore[attr-defined]
+        for key in ("damping", "coulomb_friction", "resolution", "sample_period")
+    }
+    limits = [2 * float(values["damping"]) / float(values["sample_period"])]
+    if values["resolution"]:
+        limits.append(2 * float(values["coulomb_friction"]) / float(values["resolution"]))
+    return min(limits)
+
+
+def _stiffest(scores: xr.Dataset) -> str:
+    return str(scores["law"].values[int(scores["static_stiffness"].values.argmax())])
+
+
+def _listed(names: list[str]) -> str:
+    quoted = [repr(name) for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"

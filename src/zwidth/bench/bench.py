@@ -1,0 +1,222 @@
+"""Many laws, the same touches: what each promises, what it keeps, what it costs the feel."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from zwidth.bench import scores
+from zwidth.bench.adversary import Attack, attack
+from zwidth.bench.laws import standard_laws
+from zwidth.bench.touches import Touch, standard_touches
+from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.environment.wall import Wall
+from zwidth.errors import InputError
+from zwidth.loop.setup import empty_record, prepare
+from zwidth.loop.simulate import run_setup, simulate
+from zwidth.passivity.check import check
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_TIMED = 20_000
+"""Samples over which a step is timed."""
+
+
+class Score(NamedTuple):
+    """One column: what is measured, in which touch, and its unit."""
+
+    meaning: str
+    touch: str
+    unit: str
+    of: Callable[[xr.Dataset], float]
+
+
+SCORES: Mapping[str, Score] = {
+    "static_stiffness": Score("stiffness felt at rest", "press", "N/m", scores.static_stiffness),
+    "rate_hardness": Score("rate-hardness in the first 10 ms", "press", "N/m", scores.rate_hardness),
+    "chatter": Score("force above 30 Hz in contact", "press", "N", scores.chatter),
+    "penetration": Score("deepest position", "press", "m", scores.penetration),
+    "settling_time": Score("time until at rest", "press", "s", scores.settling_time),
+    "rms_force": Score("RMS force in contact", "press", "N", scores.rms_force),
+    "peak_force": Score("largest force", "tap", "N", scores.peak_force),
+    "bounces": Score("times that contact is lost", "tap", "1", scores.bounces),
+    "tap_chatter": Score("force above 30 Hz after a tap", "tap", "N", scores.chatter),
+    "generated_energy": Score("energy given out", "tap", "J", scores.generated_energy),
+    "dowel_energy": Score("energy given out to a dowel", "dowel", "J", scores.generated_energy),
+    "free_damping": Score("damping felt in free air", "free air", "N*s/m", scores.free_damping),
+}
+"""What is computed of each law, by variable."""
+
+
+@dataclass(frozen=True)
+class LawComparison:
+    """What became of each law.
+
+    Attributes
+    ----------
+    scores
+        Dimension `law`; the variables of `SCORES`, units and meanings in the attributes, and
+        `gain`, energy that the worst motion takes out in a round [J], `step_time` [s],
+        `status`, "passive", "active" or "undecided".
+    attacks
+        The motion of each law that took out most.
+    evidence
+        Of each law, why its status is what it is, in a sentence.
+    traces
+        Of each law and touch.
+    device, environment
+        What was compared.
+    """
+
+    scores: xr.Dataset
+    attacks: Mapping[str, Attack]
+    evidence: Mapping[str, str]
+    traces: Mapping[str, Mapping[str, xr.Dataset]]
+    device: Device
+    environment: Environment
+
+    @property
+    def advice(self) -> str:
+        """What to do, in a paragraph."""
+        from zwidth.bench.advice import advice
+
+        return advice(self)
+
+    def __repr__(self) -> str:
+        from zwidth.bench.table import as_text
+
+        return as_text(self)
+
+    def _repr_html_(self) -> str:
+        from zwidth.bench.table import as_html
+
+        return as_html(self)
+
+    def plot(self, path: str | Path | None = None) -> Any:
+        """Stability against fidelity, and the touches of each law; saved where a path is given."""
+        from zwidth.plots.laws import laws_figure  # matplotlib takes its time
+
+        figure = laws_figure(self)
+        if path is not None:
+            figure.savefig(path)
+        return figure
+
+
+def compare(
+    device: Device,
+    environment: Wall | Any,
+    laws: Mapping[str, Environment] | None = None,
+    *,
+    seconds: float = 5.0,
+    progress: Callable[[int, int], None] | None = None,
+) -> LawComparison:
+    """Put laws on the bench: three touches, a stroke in free air, and a hand that tries to take energy out.
+
+    Parameters
+    ----------
+    device
+        With a mass, linear, every number certain.
+    environment
+        The wall that is to be rendered.
+    laws
+        Environments by name, such as ``{"mine": zw.render(wall, MyLaw())}``; None: all of `standard_laws`.
+    seconds
+        Time in which the game of the worst hand may look for a proof, for each law that it can play.
+    progress
+        Told (laws done, laws in all).
+
+    Raises
+    ------
+    InputError
+        If the device is rotary or has no mass, or the environment is no wall with a stiffness.
+    """
+    wall = as_environment(environment)
+    if not isinstance(wall, Wall):
+        raise InputError(f"the bench compares how a wall is rendered, got {wall.describe()}")
+    if device.motion != "linear":
+        raise InputError("the touches of the bench are a finger's, in metres: give the device at its handle")
+    if device.mass is None:
+        raise InputError("the touches are simulated and need the device's mass [kg]")
+    chosen = standard_laws(device, wall) if laws is None else dict(laws)
+    if not chosen:
+        raise InputError("laws is empty: there is nothing to compare")
+    touches = standard_touches(device, float(wall.stiffness))  # type: ignore[arg-type]
+    traces: dict[str, dict[str, xr.Dataset]] = {}
+    attacks: dict[str, Attack] = {}
+    status: dict[str, tuple[str, str]] = {}
+    times: dict[str, float] = {}
+    for done, (name, law) in enumerate(chosen.items()):
+        if progress is not None:
+            progress(done, len(chosen))
+        traces[name] = {key: _touched(device, law, touch) for key, touch in touches.items()}
+        attacks[name] = attack(device, law)
+        status[name] = _status(device, law, attacks[name], seconds)
+        times[name] = _step_time(device, law, touches["press"])
+    if progress is not None:
+        progress(len(chosen), len(chosen))
+    return LawComparison(
+        scores=_dataset(traces, attacks, status, times),
+        attacks=attacks,
+        evidence={name: why for name, (_, why) in status.items()},
+        traces=traces,
+        device=device,
+        environment=wall,
+    )
+
+
+def _touched(device: Device, law: Environment, touch: Touch) -> xr.Dataset:
+    return simulate(device, law, touch.hand, touch.duration)
+
+
+def _status(device: Device, law: Environment, found: Attack, seconds: float) -> tuple[str, str]:
+    """What is known of a law, and why."""
+    if found.extracts:
+        return "active", str(found)
+    if law.linear or law.clamped:
+        verdict = check(device, law)
+        return verdict.outcome, verdict.claim
+    return "undecided", f"{found}; no criterion covers this law"
+
+
+def _step_time(device: Device, law: Environment, touch: Touch) -> float:
+    """Time that the simulator takes for a sample with this law [s]."""
+    period = float(device.exact("sample_period"))
+    setup = prepare(device, law, touch.hand, _TIMED * period)
+    best = float("inf")
+    for _ in range(2):
+        commands, record, work = empty_record(setup)
+        start = time.perf_counter()
+        run_setup(setup, setup.state.copy(), setup.memory.copy(), work, commands, record, None)
+        best = min(best, time.perf_counter() - start)
+    return best / _TIMED
+
+
+def _dataset(
+    traces: Mapping[str, Mapping[str, xr.Dataset]],
+    attacks: Mapping[str, Attack],
+    status: Mapping[str, tuple[str, str]],
+    times: Mapping[str, float],
+) -> xr.Dataset:
+    import xarray as xr
+
+    names = list(traces)
+    data = xr.Dataset(coords={"law": names})
+    for key, score in SCORES.items():
+        values = [score.of(traces[name][score.touch]) for name in names]
+        data[key] = ("law", np.array(values, dtype=float))
+        data[key].attrs = {"units": score.unit, "long_name": score.meaning, "touch": score.touch}
+    data["gain"] = ("law", [attacks[name].gain for name in names])
+    data["gain"].attrs = {"units": "J", "long_name": "taken out by a round of the worst motion"}
+    data["step_time"] = ("law", [times[name] for name in names])
+    data["step_time"].attrs = {"units": "s", "long_name": "time of a simulated sample"}
+    data["status"] = ("law", [status[name][0] for name in names])
+    data["status"].attrs = {"long_name": "what is known for every hand"}
+    return data

@@ -1,0 +1,86 @@
+"""The comparison as a table: in a terminal, and in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from math import isfinite, isinf
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from zwidth.bench.bench import LawComparison
+
+
+class Column(NamedTuple):
+    """A heading, what is below it, and in which unit it is shown."""
+
+    heading: str
+    variable: str
+    factor: float
+    unit: str
+
+
+COLUMNS = (
+    Column("felt", "static_stiffness", 1.0, "N/m"),
+    Column("hardness", "rate_hardness", 1.0, "N/m"),
+    Column("depth", "penetration", 1e3, "mm"),
+    Column("chatter", "tap_chatter", 1e3, "mN"),
+    Column("bounces", "bounces", 1.0, ""),
+    Column("settles", "settling_time", 1e3, "ms"),
+    Column("peak", "peak_force", 1.0, "N"),
+    Column("given out", "generated_energy", 1e3, "mJ"),
+    Column("to a dowel", "dowel_energy", 1e3, "mJ"),
+    Column("free air", "free_damping", 1.0, "N·s/m"),
+    Column("worst hand", "gain", 1e3, "mJ/round"),
+    Column("step", "step_time", 1e9, "ns"),
+)
+
+
+def rows(comparison: LawComparison) -> list[list[str]]:
+    """Headings, units, and a row for each law."""
+    scores = comparison.scores
+    table = [
+        ["law", "status", *(c.heading for c in COLUMNS)],
+        ["", "", *(c.unit for c in COLUMNS)],
+    ]
+    for name in scores["law"].values:
+        one = scores.sel(law=name)
+        cells = [_number(float(one[c.variable]) * c.factor) for c in COLUMNS]
+        table.append([str(name), str(one["status"].item()), *cells])
+    return table
+
+
+def as_text(comparison: LawComparison) -> str:
+    """The table in columns, and what to do about it."""
+    table = rows(comparison)
+    widths = [max(len(row[i]) for row in table) for i in range(len(table[0]))]
+    lines = [
+        "  ".join(
+            cell.ljust(width) if i < 2 else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in table
+    ]
+    title = f"{comparison.environment.describe()} on {comparison.device.name or 'the device'}"
+    return "\n".join([title, "", *lines, "", comparison.advice])
+
+
+def as_html(comparison: LawComparison) -> str:
+    """The same for a notebook."""
+    head, units, *body = rows(comparison)
+
+    def row(cells: list[str], tag: str, text: Callable[[str], str] = escape) -> str:
+        return "<tr>" + "".join(f"<{tag}>{text(c)}</{tag}>" for c in cells) + "</tr>"
+
+    inner = row(head, "th") + row(units, "th") + "".join(row(cells, "td") for cells in body)
+    return f"<div><table>{inner}</table><p>{escape(comparison.advice)}</p></div>"
+
+
+def _number(value: float) -> str:
+    if isinf(value):
+        return "never"
+    if not isfinite(value):
+        return "–"
+    if abs(value) < 5e-4:
+        return "0"
+    return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
