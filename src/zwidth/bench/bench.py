@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -22,6 +23,8 @@ from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.passivity.check import check
+from zwidth.passivity.worst_hand.limit import COVERS_CONTACT
+from zwidth.rendering.rendered import Rendered
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -183,7 +186,27 @@ def _status(device: Device, law: Environment, found: Attack, seconds: float) -> 
     if law.linear or law.clamped:
         verdict = check(device, law)
         return verdict.outcome, verdict.claim
+    covering = _covering(law)
+    if covering is not None:
+        verdict = check(device, covering)
+        if verdict.outcome == "passive" and verdict.certificate.kind in COVERS_CONTACT:  # type: ignore[union-attr]
+            return "passive", (
+                f"What the laws add is never more than that of {covering.damping} N·s/m, and every such force "
+                f"is covered, contact made and broken: {verdict.claim}"
+            )
     return "undecided", f"{found}; no criterion covers this law"
+
+
+def _covering(law: Environment) -> Wall | None:
+    """A wall whose proof, for |f − K u| ≤ B |v|, is one of a wall with laws that add no more than that."""
+    if not isinstance(law, Rendered) or not isinstance(law.environment, Wall):
+        return None
+    if law.environment.damping or law.environment.clamped:
+        return None
+    bounds = [stage.most_damping() for stage in law.stages]
+    if any(bound is None for bound in bounds):
+        return None
+    return law.environment.replace(damping=sum((b.fraction for b in bounds if b is not None), Fraction(0)))
 
 
 def _step_time(device: Device, law: Environment, touch: Touch) -> float:

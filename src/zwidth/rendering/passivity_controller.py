@@ -138,6 +138,10 @@ class PassivityController(Stage):
             UNLIMITED if self.ceiling is None else float(self.ceiling),
         ]
 
+    def most_damping(self) -> Exact | None:
+        """The largest damping, if there is a limit."""
+        return self.largest_damping
+
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
         unit, force = ("N·m·s/rad", "N·m") if motion == "rotary" else ("N·s/m", "N")

@@ -62,6 +62,13 @@ class Stage(ABC):
         """What it remembers after the hand has been at a reading for ever."""
         return [reading] + [0.0] * (self.slots - 1)
 
+    def most_damping(self) -> Exact | None:
+        """α where what it adds is never more than α |Δx|/T; None where it is not so bounded.
+
+        A wall with that much virtual damping, of either sign, covers the law then.
+        """
+        return None
+
     @abstractmethod
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""

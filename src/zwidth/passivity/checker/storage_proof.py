@@ -23,7 +23,7 @@ import zlib
 from collections.abc import Mapping
 from fractions import Fraction
 from itertools import product
-from math import lcm, prod
+from math import ceil, lcm, prod
 from typing import Any
 
 from .contact_law import Law, Losses, read_law, read_losses
@@ -48,7 +48,8 @@ def storage(document: Mapping[str, Any]) -> str:
         return storage_of_relaxing(document, losses, law)
     domain = get(document, "domain")
     low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
-    reach, steps = integer(get(domain, "largest_move_counts"), 1), integer(get(domain, "steps_per_count"), 1)
+    fastest, steps = longest_move(domain), integer(get(domain, "steps_per_count"), 1)
+    reach = ceil(fastest)
     unit = number(get(document, "force_unit"))
     memory = law.memory + losses.delay
     width, cells = 2 * reach + 1, high - low + 1
@@ -67,7 +68,7 @@ def storage(document: Mapping[str, Any]) -> str:
     for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):
         if part > 0:
             forces, off = _forces(law, losses, unit, low, high, reach, memory, age)
-            moves.append((forces, costs_of(losses, unit, off, part, reach, steps)))
+            moves.append((forces, costs_of(losses, unit, off, part, fastest, steps)))
     largest = int(value.max())
     for forces, costs in moves:
         largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
@@ -81,18 +82,27 @@ def storage(document: Mapping[str, Any]) -> str:
     at = look(value.astype(np.float64), exists, *tables, reach, steps)
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    side = f"up to {high + 1} counts inside" if law.surface != "none" else f"from {low} to {high + 1} counts"
     return (
-        "no move takes out more than the storage function falls, from any position and memory, "
-        f"for readings up to {high} counts inside and moves up to {reach} counts a sample"
+        "no move takes out more than the storage function falls, "
+        f"at any position {side} and with any memory, for moves of up to {float(fastest):.4g} counts a sample"
         + ("" if losses.part == 1 else ", as fast in each part of a sample with one force")
     )
 
 
-def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, reach: int, steps: int) -> Any:
+def longest_move(domain: Any) -> Fraction:
+    """In one sample, in counts; between two knots it reaches no farther than the next one."""
+    fastest = number(get(domain, "largest_move_counts"))
+    if not 0 < fastest <= MOST_MOVES:
+        raise Invalid("the longest move must be > 0, and no longer than can be checked")
+    return fastest
+
+
+def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, fastest: Fraction, steps: int) -> Any:
     """What a move over 0, 1, … steps in a part of the interval costs."""
     import numpy as np
 
-    far = np.arange(-int(-reach * steps * part // 1) + 1, dtype=object)
+    far = np.arange(ceil(fastest * steps * part) + 1, dtype=object)
     costs = []
     for friction, damping in losses.models:
         drag = damping / (part * losses.period) * (losses.resolution / steps) // unit

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from math import ceil
 from typing import Any
 
 from .contact_law import Law, Losses
 from .reading import Invalid, get, integer, number
-from .storage_proof import MOST_MOVES, MOST_VALUES, costs_of, histories_of, signed, values_of
+from .storage_proof import MOST_MOVES, MOST_VALUES, costs_of, histories_of, longest_move, signed, values_of
 
 PART = 2**16
 _MOST = 2**61
@@ -31,7 +32,8 @@ def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -
         raise Invalid("a force limit together with a law that relaxes is not covered")
     domain = get(document, "domain")
     low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
-    reach, steps = integer(get(domain, "largest_move_counts"), 1), integer(get(domain, "steps_per_count"), 1)
+    fastest, steps = longest_move(domain), integer(get(domain, "steps_per_count"), 1)
+    reach = ceil(fastest)
     per_count = integer(get(domain, "levels_per_count"), 1)
     unit = number(get(document, "force_unit"))
     least = 0 if law.surface == "penetration" else low
@@ -49,7 +51,7 @@ def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -
     spring = int(law.taps[0] * losses.resolution // unit)
     branch = int(law.relaxing[1] * losses.resolution / per_count // unit)
     off = max(abs(low), abs(high)) + 2 + 2 * levels + 2
-    costs = costs_of(losses, unit, off, Fraction(1), reach, steps)
+    costs = costs_of(losses, unit, off, Fraction(1), fastest, steps)
     forces = _forces(law, spring, branch, low, high, least, per_count, levels)
     images = _images(law, low, high, least, per_count, levels)
     rows = _rows(low, high, reach, losses.delay)
@@ -62,8 +64,8 @@ def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     return (
-        "no move takes out more than the storage function falls, from any position and memory, "
-        f"for readings from {low} to {high} counts and moves up to {reach} counts a sample"
+        "no move takes out more than the storage function falls, "
+        f"at any position from {low} to {high + 1} counts and with any memory, for moves of up to {float(fastest):.4g} counts a sample"
     )
 
 

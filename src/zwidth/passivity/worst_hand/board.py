@@ -67,6 +67,11 @@ class Domain:
         return self.highest - self.lowest + 1
 
     @property
+    def speed(self) -> Fraction:
+        """The longest way in one sample, in counts."""
+        return Fraction(self.reach) if self.fastest is None else self.fastest
+
+    @property
     def within(self) -> Domain:
         """Only the cells that lie within the bounds."""
         if self.deepest is None:
@@ -101,10 +106,11 @@ class Board:
         """Where in a cell the hand may stand, in steps."""
         if self.rules == "generous":
             return np.arange(self.steps + 1, dtype=np.int64)
-        near = [0, 1, isqrt(self.steps), self.steps // 4]
-        if self.losses.part < 1:  # the hand turns within the cell, and goes as far as it may in each part
-            far = (self._farthest(part) % self.steps for part in (self.losses.part, 1 - self.losses.part))
-            near += [*far, *range(0, self.steps, max(self.steps // 16, 1))]
+        spans = (self.losses.part, 1 - self.losses.part)
+        far = (self._farthest(span) % self.steps for span in spans)  # from an edge as far as it may go
+        near = [0, 1, isqrt(self.steps), self.steps // 4, *far]
+        if self.losses.part < 1:  # the hand turns within the cell
+            near += range(0, self.steps, max(self.steps // 16, 1))
         return np.unique([*near, self.steps // 2, *(self.steps - k for k in near)]).astype(np.int64)
 
     @property
@@ -182,11 +188,9 @@ class Board:
         return rule(self.losses, far, span, step, self.force_unit, self.rounding)
 
     def _farthest(self, part: Fraction) -> int:
-        """The longest move, in steps."""
-        if self.rules == "strict":
-            fastest = self.domain.reach if self.domain.fastest is None else self.domain.fastest
-            return floor(fastest * part * self.steps)
-        return ceil(self.domain.reach * part * self.steps)
+        """The longest move, in steps; generous: between two knots it reaches no farther than the next one."""
+        longest = self.domain.speed * part * self.steps
+        return floor(longest) if self.rules == "strict" else ceil(longest)
 
     @cached_property
     def forces(self) -> Integers:

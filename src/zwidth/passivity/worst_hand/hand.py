@@ -140,7 +140,8 @@ class Game:
         length, speed = ("rad", "rad/s") if self.motion == "rotary" else ("m", "m/s")
         resolution = self.losses.resolution
         deepest = float((self.domain.highest + 1) * resolution)
-        fastest = float(self.domain.reach * resolution / self.losses.period)
+        counts = float(self.domain.speed)
+        fastest = counts * float(resolution / self.losses.period)
         if self.law.surface == "none":
             outside = "on either side"
         elif self.law.relaxing is not None and self.law.surface == "position":
@@ -149,7 +150,7 @@ class Game:
             outside = "inside and any distance outside"
         over = "one sample" if self.losses.part == 1 else "each part of a sample with one force"
         return (
-            f"hands of up to {fastest:.4g} {speed} over {over} ({self.domain.reach} counts a sample), "
+            f"hands of up to {fastest:.4g} {speed} over {over} ({counts:.4g} counts a sample), "
             f"up to {deepest:.4g} {length} ({self.domain.highest + 1} counts) {outside}"
         )
 

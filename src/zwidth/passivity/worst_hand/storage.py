@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import zlib
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -51,7 +52,7 @@ class Storage:
             "domain": {
                 "lowest_count": board.domain.lowest,
                 "highest_count": board.domain.highest,
-                "largest_move_counts": board.domain.reach,
+                "largest_move_counts": _plainly(board.domain.speed),
                 "steps_per_count": board.steps,
             },
             "force_unit": exact_text(board.force_unit),
@@ -118,6 +119,11 @@ class Storage:
             attrs={"units": "J", "long_name": "available storage, at most"},
             name="available_storage",
         )
+
+
+def _plainly(counts: Fraction) -> int | str:
+    """A whole number as one."""
+    return int(counts) if counts.denominator == 1 else exact_text(counts)
 
 
 def loop_document(losses: Losses, motion: str) -> dict[str, Any]:

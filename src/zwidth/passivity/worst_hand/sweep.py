@@ -164,13 +164,15 @@ def worthwhile(
     per_cell = histories // (2 * reach + 1) if has_memory else 1
     n, newer = group // per_cell, group % per_cell
     far = costs.size - 1  # two steps and more cost φ D + β D² and a constant
-    drag = (costs[far] - 2 * costs[far - 1] + costs[far - 2]) // 2
-    friction = costs[far] - costs[far - 1] - drag * (2 * far - 1)
+    drag = friction = 0
+    if far >= 2:
+        drag = (costs[far] - 2 * costs[far - 1] + costs[far - 2]) // 2
+        friction = costs[far] - costs[far - 1] - drag * (2 * far - 1)
     count = first = 0
     for n2 in range(max(0, n - reach), min(cells - 1, n + reach) + 1):
         h2 = (n - n2 + reach) * per_cell + newer if has_memory else 0
         apart = abs(n2 - n)
-        hulled = apart < reach and (apart - 1) * steps >= 2
+        hulled = (apart + 1) * steps <= far and (apart - 1) * steps >= 2
         rubbing = friction if n2 > n else -friction
         flattest, steepest = least + rubbing - 2 * drag * steps, most + rubbing
         for j2 in range(edges):

@@ -40,7 +40,7 @@ def switch_positions(board: Board, x: list[Fraction], part: Repeat) -> tuple[Fra
 def _allowed(board: Board, start: Fraction, end: Fraction) -> tuple[Fraction, Fraction]:
     """Between which positions the hand keeps to its bounds."""
     losses, domain = board.losses, board.domain
-    fastest = domain.reach if domain.fastest is None else domain.fastest
+    fastest = domain.speed
     early, late = (fastest * losses.resolution * part for part in (losses.part, 1 - losses.part))
     deepest = (domain.highest + 1 if domain.deepest is None else domain.deepest) * losses.resolution
     low, high = max(start - early, end - late), min(start + early, end + late, deepest)

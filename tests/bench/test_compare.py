@@ -1,0 +1,140 @@
+"""The bench: scores from traces whose value is known, its verdicts, its faces."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import zwidth as zw
+from zwidth.bench import scores, standard_laws
+from zwidth.bench.adversary import attack
+from zwidth.cli.main import main
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+
+
+@pytest.fixture(scope="module")
+def stiff():
+    """A wall seven times stiffer than the paddle renders passively."""
+    return zw.compare(PADDLE, zw.Wall(2000))
+
+
+def made(position, force, period=0.001):
+    """A trace with the columns that scores look at."""
+    x, f = np.asarray(position, float), np.asarray(force, float)
+    time = np.arange(x.size) * period
+    velocity = np.gradient(x, period)
+    work = np.concatenate([[0.0], np.cumsum(-f[:-1] * np.diff(x))])
+    names = {"position": x, "velocity": velocity, "actuator_force": f, "actuator_work": work}
+    return xr.Dataset({k: ("time", v) for k, v in names.items()}, coords={"time": time})
+
+
+def test_scores_of_known_traces():
+    """A ramp into a spring, a sine on top of a push, a hand that bounces."""
+    x = np.concatenate([np.full(100, -1e-3), np.full(900, 2e-3)])
+    f = np.where(x > 0, 500 * x, 0)
+    assert scores.static_stiffness(made(x, f)) == pytest.approx(500)
+    assert scores.penetration(made(x, f)) == pytest.approx(2e-3)
+    assert scores.bounces(made(x, f)) == 0
+    assert scores.rms_force(made(x, f)) == pytest.approx(1.0)
+    time = np.arange(1000) * 1e-3
+    buzz = f + 0.3 * np.sin(2 * np.pi * 100 * time) + 0.5 * np.sin(2 * np.pi * 10 * time)
+    assert scores.chatter(made(x, buzz)) == pytest.approx(0.3 / np.sqrt(2), rel=1e-6)
+    assert scores.peak_force(made(x, -2 * f)) == pytest.approx(2.0)
+    jumping = np.where(np.sin(2 * np.pi * 5 * time + 0.1) > 0, 1e-3, -1e-3)
+    assert scores.bounces(made(jumping, 0 * time)) == 5
+    assert scores.settling_time(made(jumping, 0 * time)) == np.inf
+    drag = 0.4 * np.gradient(np.sin(20 * time), 1e-3)
+    assert scores.free_damping(made(np.sin(20 * time) - 2, drag)) == pytest.approx(0.4, rel=0.02)
+    out = made([0, 1, 0, 1, 0], [0, 2, 0, 3, 0])
+    assert scores.generated_energy(out) == pytest.approx(5)
+
+
+def test_the_bench_says_what_check_says(stiff):
+    """A proof is never beside a motion that gains; the wall alone is active, the coupling passive."""
+    status = dict(zip(stiff.scores["law"].values, stiff.scores["status"].values, strict=True))
+    assert status["wall"] == "active"
+    assert status["virtual-coupling"] == "passive"
+    for name, law in standard_laws(PADDLE, zw.Wall(2000)).items():
+        if status[name] == "passive":
+            assert not stiff.attacks[name].extracts
+        if law.linear:
+            assert status[name] in (zw.check(PADDLE, law).outcome, "active")
+
+
+def test_an_attack_is_a_motion_that_takes_energy_out(stiff):
+    """Prescribed again, with an ideal amplifier: the hand is paid."""
+    laws = standard_laws(PADDLE, zw.Wall(2000))
+    for name, found in stiff.attacks.items():
+        if found.extracts:
+            motion = found.motion
+            trace = zw.simulate(PADDLE, laws[name], motion, len(motion.positions) * 0.001 - 0.001)
+            size = len(found.positions)
+            work = trace["hand_work"].values
+            assert work[-1] < work[-1 - size]
+
+
+def test_a_controller_of_limited_damping_is_proved():
+    """Where b ≥ K T/2 + α the damped wall's proof covers it; beyond nothing is claimed."""
+    law = zw.render(zw.Wall(150), zw.rendering.PassivityController(largest_damping="0.07"))
+    more = zw.render(zw.Wall(150), zw.rendering.PassivityController(largest_damping="0.08"))
+    found = zw.compare(PADDLE, zw.Wall(150), {"less": law, "more": more})
+    assert list(found.scores["status"].values) == ["passive", "undecided"]
+    assert "0.07 N·s/m" in found.evidence["less"]
+    assert not any(a.extracts for a in found.attacks.values())
+
+
+def test_a_passive_wall_is_never_attacked_with_success():
+    """At 99 % of the limit of each, springs on ten devices."""
+    rng = np.random.default_rng(1)
+    for _ in range(10):
+        b, f, step = 10 ** rng.uniform(-1.5, 0.5), 10 ** rng.uniform(-2, 0), 10 ** rng.uniform(-5, -3.5)
+        device = zw.Device(mass=0.1, damping=b, coulomb_friction=f, resolution=step, sample_period=0.001)
+        stiffness = 0.99 * min(2 * b / 0.001, 2 * f / step)
+        assert not attack(device, zw.Wall(stiffness)).extracts
+        assert attack(device, zw.Wall(4 * stiffness)).gain > attack(device, zw.Wall(stiffness)).gain
+
+
+def test_its_faces(stiff, tmp_path):
+    """Table, paragraph, notebook, picture, units."""
+    text = repr(stiff)
+    assert "wall, 2000 N/m on haptic-paddle" in text
+    assert "virtual-coupling" in stiff.advice
+    assert "300 N/m passively" in stiff.advice
+    assert "<table>" in stiff._repr_html_()
+    stiff.plot(tmp_path / "laws.svg")
+    assert "virtual-damping" in (tmp_path / "laws.svg").read_text(encoding="utf-8")
+    assert all("units" in v.attrs for k, v in stiff.scores.data_vars.items() if k != "status")
+
+
+def test_the_command(tmp_path, monkeypatch, capsys):
+    """A table; JSON with units in its keys; one line for a law that is not there."""
+    monkeypatch.chdir(tmp_path)
+    wall = ["compare", "haptic-paddle", "--stiffness", "400"]
+    assert main([*wall, "--laws", "wall, virtual-damping", "--plot", "a.png", "-o", "a.json"]) == 0
+    assert "virtual-damping" in capsys.readouterr().out
+    saved = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))
+    assert list(saved["laws"]) == ["wall", "virtual-damping"]
+    assert saved["laws"]["wall"]["static_stiffness_N_per_m"] == pytest.approx(400, rel=0.05)
+    assert main([*wall, "--laws", "magic"]) == 2
+    assert 'no law "magic"' in capsys.readouterr().err
+    assert main([*wall[:2], "--type", "maxwell", "--branch-stiffness", "3", "--branch-damping", "1"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("device", "wall", "options", "said"),
+    [
+        (PADDLE, zw.Maxwell(100, 1), {}, "how a wall is rendered"),
+        (PADDLE.replace(mass=None), zw.Wall(100), {}, "mass"),
+        (PADDLE.replace(damping=(1, 2)), zw.Wall(100), {}, "interval"),
+        (PADDLE, zw.Wall((100, 200)), {}, "interval"),
+        (PADDLE, zw.Wall(100), {"laws": {}}, "nothing to compare"),
+    ],
+)
+def test_what_it_refuses(device, wall, options, said):
+    """One clear line."""
+    with pytest.raises(zw.InputError, match=said):
+        zw.compare(device, wall, **options)

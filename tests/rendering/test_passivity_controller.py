@@ -1,0 +1,191 @@
+"""The passivity observer and controller: by a plain loop, on a published plant, against a bad hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.rendering import PassivityController
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+COURSE = zw.Device(
+    mass="0.04",
+    damping="0.8",
+    coulomb_friction=0,
+    resolution="61.36e-6",
+    sample_period="0.001",
+    force_limit=2,
+)
+"""The plant of a public course laboratory; its hand is a spring of 400 N/m that pulls from −1 mm to 3 mm."""
+
+
+def course(law):
+    """1.5 s of the course's touch: peak depth, peak to peak over the last 0.5 s [mm], energy [mJ]."""
+    hand = zw.operators.Tracking([0.003], mass=0, stiffness=400, damping=0)
+    trace = zw.simulate(COURSE, law, hand, 1.5, initial_position=-0.001)
+    x = trace["position"].values * 1e3
+    return x.max(), np.ptp(x[-500:]), float(trace["actuator_work"].max()) * 1e3
+
+
+def test_the_course_plant():
+    """As published, with Euler steps: 33.53 mm and ≤ 0.01; 1.66 and 17.6 mJ; 0.08 with 0.8 N·s/m at most."""
+    peak, tail, _ = course(zw.Wall(400))
+    assert peak == pytest.approx(3.53, abs=0.02)
+    assert tail <= 0.01
+    _, tail, energy = course(zw.Wall(2500))
+    assert tail == pytest.approx(1.66, rel=0.05)
+    assert energy == pytest.approx(17.6, rel=0.06)
+    _, tail, energy = course(zw.render(zw.Wall(2500), PassivityController(largest_damping="0.8")))
+    assert tail <= 0.1
+    assert energy < 1.5
+
+
+def test_the_published_observer_misses_the_leak_of_the_hold():
+    """It pairs a force with the move before it: of the 18 mJ it sees nothing."""
+    law = zw.render(zw.Wall(2500), PassivityController(observer="published"))
+    assert course(law) == course(zw.Wall(2500))
+
+
+OPTIONS = {
+    "plain": {},
+    "published": {"observer": "published"},
+    "limited": {"largest_damping": "0.3", "largest_force": "0.4"},
+    "slow": {"slowest": "0.02"},
+    "credited": {"credit": True},
+    "spring": {"reference": "spring"},
+    "resets": {"resets": True},
+    "ceiling": {"ceiling": "0.00001"},
+    "all": {"credit": True, "resets": True, "ceiling": 0, "slowest": "0.01", "largest_damping": 1},
+}
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_it_does_what_a_plain_loop_does(name):
+    """Sample by sample, from the readings: the commanded force to rounding."""
+    options = OPTIONS[name]
+    law = zw.render(zw.Wall(1500), PassivityController(**options))
+    hand = zw.operators.MaliciousTouch(speed=0.4)
+    trace = zw.simulate(PADDLE, law, hand, 0.4, amplifier=zw.amplifiers.Ideal())
+    read = trace["measured_position"].values
+    np.testing.assert_allclose(
+        trace["commanded_force"].values, list(plain(read, 1500.0, **options)), rtol=1e-9, atol=1e-12
+    )
+
+
+def plain(
+    readings,
+    stiffness,
+    observer="sampled",
+    largest_damping=1e300,
+    largest_force=1e300,
+    slowest=0,
+    credit=False,
+    reference="zero",
+    resets=False,
+    ceiling=1e300,
+):
+    """The law once more, written down as its docstring has it."""
+    period, b, f_c = 0.001, 0.15, 0.12
+    before, force_before, energy, added_before, moved_before = readings[0], 0.0, 0.0, 0.0, 0.0
+    for x in readings:
+        moved = x - before
+        wall = stiffness * x if x > 0 else 0.0
+        friction = f_c * abs(moved) + b / period * moved**2 if credit else 0.0
+        if observer == "published":
+            energy += wall * moved + added_before * moved_before + friction
+            ahead = energy
+        else:
+            energy += force_before * moved + friction
+            ahead = energy + wall * moved
+        if resets and wall == 0:
+            energy = ahead = 0.0
+        energy, ahead = min(energy, float(ceiling)), min(ahead, float(ceiling))
+        target = stiffness / 2 * max(x, 0) ** 2 if reference == "spring" else 0.0
+        added = 0.0
+        if target > ahead and abs(moved) > float(slowest) * period:
+            most = min(float(largest_damping) * abs(moved) / period, float(largest_force))
+            added = np.sign(moved) * min((target - ahead) / abs(moved), most)
+        before, force_before, added_before, moved_before = x, wall + added, added, moved
+        yield wall + added
+
+
+def test_a_hand_that_turns_back_in_time_takes_energy_out():
+    """The controller pays for a move that does not come; without it the wall is passive and proved so."""
+    assert zw.check(PADDLE, zw.Wall(300)).outcome == "passive"
+    path = np.tile([0.0, 0.7e-3], 300)
+    hand = zw.operators.PrescribedMotion(path)
+    for law, gains in (
+        (zw.Wall(300), False),
+        (zw.render(zw.Wall(300), PassivityController()), True),
+        (zw.render(zw.Wall(300), PassivityController(largest_damping="0.3")), True),
+    ):
+        trace = zw.simulate(PADDLE, law, hand, 0.599, amplifier=zw.amplifiers.Ideal())
+        work = trace["hand_work"].values
+        assert bool(work[-1] < work[-101]) is gains
+
+
+@pytest.mark.parametrize("scale", [(1e-3, 1.0, 1.0), (1.0, 1e-3, 1.0), (10.0, 100.0, 0.1)])
+def test_other_units_change_nothing(scale):
+    """Lengths, forces and times scaled: the same motion, scaled."""
+    length, force, time = scale
+
+    def run(le, fo, ti):
+        device = zw.Device(
+            mass=0.05 * fo * ti**2 / le,
+            damping=0.2 * fo * ti / le,
+            coulomb_friction=0.05 * fo,
+            resolution=2**-14 * le,
+            sample_period=2**-10 * ti,
+        )
+        hand = zw.operators.Tracking([0.002 * le], stiffness=300 * fo / le, damping=0.4 * fo * ti / le)
+        law = zw.render(
+            zw.Wall(2000 * fo / le), PassivityController(largest_damping=2 * fo * ti / le, credit=True)
+        )
+        trace = zw.simulate(device, law, hand, 0.2 * ti, initial_position=-0.001 * le)
+        return trace["position"].values / le, trace["actuator_force"].values / fo
+
+    for own, other in zip(run(1, 1, 1), run(length, force, time), strict=True):
+        np.testing.assert_allclose(other[:100], own[:100], rtol=1e-6, atol=1e-9)
+
+
+def test_a_row_of_laws_is_one_environment():
+    """Laws are added behind; the text says all of them."""
+    one = zw.render(zw.Wall(300), PassivityController())
+    two = zw.render(one, PassivityController(largest_force=1))
+    assert len(two.stages) == 2
+    assert two.environment == zw.Wall(300)
+    assert "at most 1 N" in two.describe()
+    assert two.unilateral
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: PassivityController(observer="other"), "observer is one of"),
+        (lambda: PassivityController(reference=1), "reference is one of"),
+        (lambda: PassivityController(largest_damping=0), "largest_damping must be > 0"),
+        (lambda: PassivityController(largest_force=-1), "largest_force must be > 0"),
+        (lambda: PassivityController(slowest=float("nan")), "slowest"),
+        (lambda: zw.render(zw.Wall(300)), "no law was given"),
+        (lambda: zw.render(zw.Wall(300), zw.Wall(2)), "zwidth.rendering"),
+        (lambda: zw.render("wall", PassivityController()), "environment"),
+        (lambda: zw.check(PADDLE, zw.render(zw.Wall(300), PassivityController())), "no H"),
+        (
+            lambda: zw.simulate(
+                PADDLE,
+                zw.render(zw.Maxwell(300, 1), PassivityController(reference="spring")),
+                zw.operators.Finger(),
+                0.1,
+            ),
+            "",
+        ),
+    ],
+)
+def test_what_it_refuses(make, said):
+    """One clear line."""
+    if not said:
+        make()  # a branch has a stiffness too
+        return
+    with pytest.raises(zw.InputError, match=said):
+        make()
