@@ -63,7 +63,7 @@ def test_a_bounded_hand_stands_beside_every_hand(run: Run) -> None:
     """Slow hands allow stiffer walls; the report says how slow, and what every hand allows."""
     text = words(run(*BOUNDED))
     assert "this hand every hand" in text
-    assert "0.3136 m/s" in text
+    assert "0.3 m/s over one sample (13.39 counts a sample), up to 0.0005152 m (23 counts)" in text
     assert "per cycle" in text
     document = json.loads(run(*BOUNDED, "--json").out)
     assert document["proved_passive_N_per_m"] > 2 * document["every_hand_N_per_m"][1]
@@ -77,7 +77,7 @@ def test_what_is_saved_is_verified_on_both_sides(run: Run) -> None:
     assert result.status == 0
     assert result.out.count(" VALID ") == 2
     assert "No hand within these bounds" in words(result)
-    assert "readings up to 23 counts inside" in words(result)
+    assert "up to 23 counts inside and with any memory, for moves of up to 13.3929 counts" in words(result)
     assert "is passive, proved" not in words(result)
     document = json.loads(Path("limit.json").read_text())
     document["certificate"]["loop"]["damping_N_s_per_m"] = "0.1"
@@ -188,7 +188,7 @@ def test_a_contact(run: Run) -> None:
         (("--speed", "-1"), "speed must be > 0"),
         (("--speed", "3 N"), "speed is in m/s"),
         (("--seconds", "0"), "seconds must be > 0"),
-        (("--tolerance", "2"), "tolerance must be from"),
+        (("--tolerance", "2"), "tolerance must be a number from"),
         (("--resolution", "0", "--velocity-filter", "window 3"), "resolution is 0"),
         (("--damping", "0.1 .. 0.2"), "no single value"),
         (("--plot", "limit.txt"), ".png"),

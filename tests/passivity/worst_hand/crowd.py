@@ -104,7 +104,7 @@ class Crowd:
         there = wished[self.random.integers(0, len(wished), number), np.arange(number)]
         there = np.clip(there, self.domain.lowest, self.domain.highest)
         stop = self.place(number)
-        too_far = abs(there - cells + (stop - places)) > reach
+        too_far = abs(there - cells + (stop - places)) > float(self.domain.speed)
         return np.where(too_far, cells, there), np.where(too_far, places, stop)
 
     def after(self, cells, before):
@@ -125,9 +125,8 @@ class Crowd:
         """Which cycles stay within the domain."""
         moved = abs(np.roll(positions, -1, axis=1) - positions)
         low, high = self.domain.lowest, self.domain.highest + 1
-        return ((positions >= low) & (positions < high)).all(axis=1) & (moved <= self.domain.reach).all(
-            axis=1
-        )
+        allowed = (positions >= low) & (positions < high) & (moved <= float(self.domain.speed))
+        return allowed.all(axis=1)
 
     def climbed(self, samples, climbers, rounds):
         """The best gain of cycles of so many samples, each changed at random for the better."""

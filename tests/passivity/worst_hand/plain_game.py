@@ -58,7 +58,7 @@ class PlainGame:
         self.moves = {s: list(self._moves(s)) for s in self.states}
 
     def _all_costs(self, part):
-        far = self.domain.reach * part * self.steps
+        far = self.domain.speed * part * self.steps
         return [self._cost(d, part) for d in range((ceil(far) if self.generous else floor(far)) + 1)]
 
     def _rounded_force(self, state, age):

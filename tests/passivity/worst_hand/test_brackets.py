@@ -8,6 +8,7 @@ from itertools import pairwise
 import pytest
 
 import zwidth as zw
+from zwidth.passivity import checker
 from zwidth.passivity.worst_hand import passive_limit, worst_hand
 
 BOUNDS = {"penetration": "0.001", "speed": "0.5"}
@@ -246,3 +247,25 @@ def test_a_motion_keeps_to_the_bounds_that_were_given():
     assert found.outcome == "active"
     assert found.witness.depth <= 0.00042
     assert found.witness.peak_speed <= 0.42
+
+
+@pytest.mark.parametrize("name", ["stiffness", "stiffness beside damping", "friction", "virtual damping"])
+@pytest.mark.parametrize("speed", ["0.123", "0.237", "0.4599"])
+def test_a_speed_between_two_counts_is_bounded_as_given(name, speed):
+    """The proof is of this speed, not of the next whole count a sample: both sides meet as closely."""
+    loop, parameter = LIMITS[name][:2]
+    bracket = passive_limit(*loop, parameter, penetration="0.0012", speed=speed)
+    assert bracket.relative_width < 0.01
+    assert f"up to {speed} m/s" in bracket.hand
+    assert bracket.witness.peak_speed <= float(speed)
+
+
+def test_a_proof_of_slow_hands_is_none_of_faster_ones():
+    """The longest move in the certificate is the one that was proved, to the part of a count."""
+    found = worst_hand(device("0.1", "0.04"), zw.Wall(395), penetration="0.0012", speed="0.237")
+    document = found.certificate.documents[0]
+    assert document["domain"]["largest_move_counts"] == "2.37"
+    assert "2.37 counts a sample" in checker.verify(document).reason
+    for counts, valid in (("2.25", True), ("2.5", False), (3, False), (0, False), (-2, False)):
+        domain = {**document["domain"], "largest_move_counts": counts}
+        assert checker.verify({**document, "domain": domain}).valid == valid, counts

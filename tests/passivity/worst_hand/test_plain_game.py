@@ -84,12 +84,12 @@ def drawn(random, name, easier):
 
 
 def domain_of(random, law, delay):
-    """A few cells, reaching as far out as they must."""
+    """A few cells, reaching as far out as they must; the longest move may be no whole count."""
     memory = law.memory + delay
     reach = 1 if memory >= 2 else random.choice([1, 2])
-    if law.surface == "none":
-        return Domain(-2, 2, reach)
-    return Domain(1 - (memory + 1) * reach, 2, reach)
+    fastest = reach - Fraction(random.choice([0, 0, 1, 2]), 5)
+    lowest = -2 if law.surface == "none" else 1 - (memory + 1) * reach
+    return Domain(lowest, 2, reach, fastest=fastest)
 
 
 def column(board, cell, before):
@@ -146,7 +146,7 @@ def test_the_same_value_in_every_state(name, rules, zeros, monkeypatch):
             assert all(0 <= x - n <= 1 for x, n in zip(positions, cells, strict=True))
             assert all(domain.lowest <= n <= domain.highest for n in cells)
             moves = [abs(a - b) for a, b in zip(positions, [*positions[1:], positions[0]], strict=True)]
-            assert max(moves) <= domain.reach
+            assert max(moves) <= domain.speed
             assert exact_gain(law, losses, positions, cells) > 0
     assert set(seen) == {"passive", "active"}
 

@@ -85,7 +85,7 @@ def storage(document: Mapping[str, Any]) -> str:
     side = f"up to {high + 1} counts inside" if law.surface != "none" else f"from {low} to {high + 1} counts"
     return (
         "no move takes out more than the storage function falls, "
-        f"at any position {side} and with any memory, for moves of up to {float(fastest):.4g} counts a sample"
+        f"at any position {side} and with any memory, for moves of up to {float(fastest):.6g} counts a sample"
         + ("" if losses.part == 1 else ", as fast in each part of a sample with one force")
     )
 

@@ -64,8 +64,8 @@ def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     return (
-        "no move takes out more than the storage function falls, "
-        f"at any position from {low} to {high + 1} counts and with any memory, for moves of up to {float(fastest):.4g} counts a sample"
+        f"no move takes out more than the storage function falls, at any position from {low} to {high + 1} "
+        f"counts and with any memory, for moves of up to {float(fastest):.6g} counts a sample"
     )
 
 
