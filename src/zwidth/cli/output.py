@@ -19,8 +19,8 @@ PICTURES = (".png", ".svg", ".pdf")
 _ASCII = {
     "·": "*", "−": "-", "–": "-", "—": "-", "…": "...", "≥": ">=", "≤": "<=", "×": "x", "±": "+-",
     "²": "^2", "³": "^3", "°": "deg", "µ": "u", "μ": "mu", "Δ": "Delta", "Σ": "sum", "α": "alpha", "π": "pi",
-    "β": "beta", "η": "eta", "σ": "sigma", "τ": "tau", "ω": "omega", "∞": "inf", "“": '"', "”": '"', "’": "'",
-    "✓": "+", "✗": "!", "→": "->",
+    "β": "beta", "η": "eta", "λ": "lambda", "σ": "sigma", "τ": "tau", "ω": "omega", "∞": "inf",
+    "“": '"', "”": '"', "’": "'", "✓": "+", "✗": "!", "→": "->",
 }  # fmt: skip
 """How characters of this field are written where the terminal has ASCII only."""
 
