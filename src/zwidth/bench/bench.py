@@ -189,7 +189,8 @@ def _status(device: Device, law: Environment, found: Attack, seconds: float) -> 
     covering = _covering(law)
     if covering is not None:
         verdict = check(device, covering)
-        if verdict.outcome == "passive" and verdict.certificate.kind in COVERS_CONTACT:  # type: ignore[union-attr]
+        proof = verdict.certificate
+        if verdict.outcome == "passive" and proof is not None and proof.kind in COVERS_CONTACT:
             return "passive", (
                 f"What the laws add is never more than that of {covering.damping} N·s/m, and every such force "
                 f"is covered, contact made and broken: {verdict.claim}"
