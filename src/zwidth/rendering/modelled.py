@@ -8,7 +8,8 @@ one with which the model goes from reading to reading under the force that was h
 
     x_k = φ₁₁ x_{k−1} + φ₁₂ v_{k−1} + γ₁ (f_{k−1} − k x_a)        gives v_{k−1}, and so v_k
 
-exact where the model is; with readings rounded to Δ it errs by some Δ/T, as a difference does.
+exact where the model is; with readings rounded to Δ it errs by some Δ/T, as a difference does.  A
+steady push d that the model does not know makes v_k err by −d T/(2M), T/2 later the place by −⅜ d T²/M.
 
 Hypotheses: the finger is a mass on a spring and a damper whose other end stands still at x_a,
 which Gillespie & Cutkosky (1996) take a finger for during some 30 ms; no Coulomb friction, no
@@ -170,15 +171,14 @@ class Modelled(Stage):
         mass, spring, damper = (
             ("kg·m²", "N·m/rad", "N·m·s/rad") if motion == "rotary" else ("kg", "N/m", "N·s/m")
         )
-        given = (
-            ("mass", self.mass, mass),
-            ("damping", self.damping, damper),
-            ("finger", self.finger_mass, mass),
-            ("on", self.finger_stiffness, spring),
-            ("and", self.finger_damping, damper),
-        )
-        parts = [f"{word} {float(value):g} {unit}" for word, value, unit in given if value]
-        return " ".join(parts) or "no finger"
+        device = [
+            f"{word} {float(value):g} {unit}"
+            for word, value, unit in (("mass", self.mass, mass), ("damping", self.damping, damper))
+            if value is not None
+        ]
+        own = ((self.finger_mass, mass), (self.finger_stiffness, spring), (self.finger_damping, damper))
+        finger = [f"{float(value):g} {unit}" for value, unit in own if value != 0]
+        return ", ".join([*device, f"finger {', '.join(finger)}" if finger else "no finger"])
 
 
 def turns_over(matrix: Matrix, period: float) -> bool:
