@@ -78,6 +78,13 @@ def test_half_sample_prediction_sample_by_sample():
     assert_same(zw.render(zw.Wall(1900), HalfSamplePrediction(**FINGER)), law)
 
 
+def test_at_the_first_sample_the_hand_is_taken_to_be_at_rest():
+    """One reading tells no velocity, and which force acted before is not known: none."""
+    f = simulated(zw.render(zw.Wall(1900), HalfSamplePrediction(**FINGER)), start=0.006)[2]
+    phi, gamma = hold(T / 2)
+    assert f[0] == pytest.approx(1900 * (phi @ [0.006, 0] + gamma * SPRING * REST)[0], rel=1e-12)
+
+
 def test_a_push_that_the_model_does_not_know():
     """At rest against d the place T/2 ahead errs by −⅜ d T²/M."""
     law = HalfSamplePrediction(mass="0.37", damping=0)
