@@ -49,7 +49,7 @@ for number, (back, joules) in enumerate(zip(height, np.diff(work), strict=True),
 # Two leaks feed it (Gillespie & Cutkosky's names): the hold, which pushes out
 # longer than it should, and the crossing, seen up to one sample late on entry and
 # on exit.  Half-sample prediction bounds the growth and correcting the crossing removes the
-# rest, as they report.  zwidth check says of the loop itself:
+# rest, as they report: see :doc:`plot_prediction`.  zwidth check says of the loop itself:
 
 verdict = zw.check(ball, wall)
 print(

@@ -21,6 +21,7 @@ NUMBERS = {
     "plot_paddle_experiments": "10 of 11 statements agree; the other is the boundary at 90 N/m",
     "plot_passivity_controller": "published observer: tail 1.6 mm, energy -18.5 mJ",
     "plot_plane": "largest passive stiffness: 26.08 N·m/rad",
+    "plot_prediction": "last over first: original 12.37, prediction 0.03, correction 1.000",
     "plot_soft_tissue": "largest relative difference over 99 points: ",
     "plot_staircase": "energy leaked by the hold: 1.5 mJ, 1.000000000000 of the formula",
     "plot_velocity_filter": "N = 20: b ≥ 0.248 B, tightest at 35 Hz",

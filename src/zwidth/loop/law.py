@@ -1,6 +1,7 @@
 """The environment as the loop runs it, sample by sample.
 
     x_m = Δ floor(x/Δ + φ)              what the encoder reads, φ its phase
+    x_m = law(x_m)                      one after the other, where laws look ahead for the environment
     f   = g x_m + Σ (sections)          H(z), each section a transposed direct form;
     f   = table(x_m)                    or points, linear between them
     f   = K uⁿ (1 + λ v)                or a contact, u = max(x_m, 0), v the backward difference of x_m
@@ -16,7 +17,7 @@ x_m ≤ 0.
 from __future__ import annotations
 
 from zwidth.compiled import Array, compiled
-from zwidth.rendering.chain import after
+from zwidth.rendering.chain import after, before
 
 BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 """At the surface: a law without one; one fed with max(x_m, 0); one fed with x_m.  Both push inside only."""
@@ -100,8 +101,9 @@ def law_force(law: Array, memory: Array, reading: float) -> float:
 @compiled
 def rendered_force(law: Array, memory: Array, reading: float) -> float:
     """The same through the laws that render it, if there are any."""
-    f = law_force(law, memory, reading)
     stages = int(law[STAGES])
-    if stages > 0:
-        f = after(law, int(law[ROW]), stages, memory, int(law[REMEMBERED]), reading, f)
-    return f
+    if stages == 0:
+        return law_force(law, memory, reading)
+    row, slot = int(law[ROW]), int(law[REMEMBERED])
+    f = law_force(law, memory, before(law, row, stages, memory, slot, reading))
+    return after(law, row, stages, memory, slot, reading, f)

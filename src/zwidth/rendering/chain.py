@@ -2,16 +2,41 @@
 
 Packed behind the numbers of the environment, for each law: its code, how many numbers and
 how many slots it has, its numbers.  In the memory: the force that was applied last, then
-the slots of each law.
+the slots of each law.  Codes from 30 and below 35 change the reading that the environment
+is given, the others the force that it gives.
 """
 
 from __future__ import annotations
 
 from zwidth.compiled import Array, compiled
-from zwidth.rendering import passivity_controller
+from zwidth.rendering import crossing, extrapolation, half_sample, passivity_controller, pole_matched
+from zwidth.rendering.crossing import CROSSING
+from zwidth.rendering.extrapolation import EXTRAPOLATION
+from zwidth.rendering.half_sample import HALF_SAMPLE
 from zwidth.rendering.passivity_controller import PASSIVITY_CONTROLLER
+from zwidth.rendering.pole_matched import POLE_MATCHED
 
 _controlled = passivity_controller.step
+_extrapolated = extrapolation.step
+_predicted = half_sample.step
+_corrected = crossing.step
+_matched = pole_matched.step
+
+
+@compiled
+def before(law: Array, at: int, count: int, memory: Array, slot: int, reading: float) -> float:
+    """The reading that the environment is given, through all laws that come before it."""
+    applied = memory[slot]
+    slot += 1
+    for _ in range(count):
+        code, size, slots = law[at], int(law[at + 1]), int(law[at + 2])
+        if code == EXTRAPOLATION:
+            reading = _extrapolated(law, at + 3, memory, slot, reading)
+        elif code == HALF_SAMPLE:
+            reading = _predicted(law, at + 3, memory, slot, reading, applied)
+        at += 3 + size
+        slot += slots
+    return reading
 
 
 @compiled
@@ -23,6 +48,10 @@ def after(law: Array, at: int, count: int, memory: Array, slot: int, reading: fl
         code, size, slots = law[at], int(law[at + 1]), int(law[at + 2])
         if code == PASSIVITY_CONTROLLER:
             force = _controlled(law, at + 3, memory, slot, reading, force, applied)
+        elif code == CROSSING:
+            force = _corrected(law, at + 3, memory, slot, reading, force, applied)
+        elif code == POLE_MATCHED:
+            force = _matched(law, at + 3, memory, slot, reading, force, applied)
         at += 3 + size
         slot += slots
     return force

@@ -1,0 +1,220 @@
+"""The identified device and finger, as the laws know them that look ahead.
+
+    M ẍ = −D ẋ − k (x − x_a) − f,    M = m + m_h,  D = b + c
+    ξ_{k+1} = Φ ξ_k + Γ (f_k − k x_a),    ξ = (x, v)ᵀ, f_k held over the sample
+
+Φ = e^{AT} and Γ = ∫₀ᵀ e^{As} ds (0, −1/M)ᵀ are exact behind a hold.  The velocity is the
+one with which the model goes from reading to reading under the force that was held:
+
+    x_k = φ₁₁ x_{k−1} + φ₁₂ v_{k−1} + γ₁ (f_{k−1} − k x_a)        gives v_{k−1}, and so v_k
+
+exact where the model is; with readings rounded to Δ it errs by some Δ/T, as a difference does.  A
+steady push d that the model does not know makes v_k err by −d T/(2M), T/2 later the place by −⅜ d T²/M.
+
+Hypotheses: the finger is a mass on a spring and a damper whose other end stands still at x_a,
+which Gillespie & Cutkosky (1996) take a finger for during some 30 ms; no Coulomb friction, no
+delay, a regular clock, no amplifier lag.  Matrices after them; the velocity derived for this project.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.linalg import expm
+
+from zwidth.compiled import Array, compiled
+from zwidth.environment.wall import Wall
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.rendering.stage import Stage, Surroundings, positive
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Matrix = NDArray[np.float64]
+
+FF, FV, VF, VV, GX, GV, REST = range(7)
+"""Where a step finds Φ row by row, Γ and k x_a."""
+MODEL = 7
+
+SHORTEST = 1e-6
+"""φ₁₂/T below which positions say nothing about velocities."""
+
+
+class Plant(NamedTuple):
+    """Device and finger moving together: M [kg], D [N·s/m], k [N/m], x_a [m]."""
+
+    mass: float
+    damping: float
+    stiffness: float
+    position: float
+
+    def matrix(self, stiffness: float = 0.0, damping: float = 0.0) -> Matrix:
+        """A of ξ̇ = A ξ, with a wall's spring and damper if any."""
+        k, d = self.stiffness + stiffness, self.damping + damping
+        return np.array([[0.0, 1.0], [-k / self.mass, -d / self.mass]])
+
+    def held(self, time: float) -> tuple[Matrix, Matrix]:
+        """(Φ, Γ) of a force held for a time [s]."""
+        both = np.zeros((3, 3))
+        both[:2, :2] = self.matrix()
+        both[1, 2] = -1 / self.mass
+        step = expm(both * time)
+        return step[:2, :2], step[:2, 2]
+
+    def numbers(self, time: float) -> list[float]:
+        """The same as a step reads them."""
+        phi, gamma = self.held(time)
+        return [*phi.ravel().tolist(), *gamma.tolist(), self.stiffness * self.position]
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class Modelled(Stage):
+    """A law that knows device and finger.
+
+    Parameters
+    ----------
+    mass
+        m > 0, of the device [kg; kg·m²]; None: the device's.
+    damping
+        b ≥ 0, of the device [N·s/m; N·m·s/rad]; None: the device's.
+    finger_mass
+        m_h ≥ 0 [kg; kg·m²].
+    finger_stiffness
+        k ≥ 0 [N/m; N·m/rad].
+    finger_damping
+        c ≥ 0 [N·s/m; N·m·s/rad].
+    finger_position
+        x_a, where the finger's spring is at rest [m; rad].
+
+    Raises
+    ------
+    InputError
+        If a number is outside its bound.
+    """
+
+    mass: Exact | None
+    damping: Exact | None
+    finger_mass: Exact
+    finger_stiffness: Exact
+    finger_damping: Exact
+    finger_position: Exact
+
+    def __init__(
+        self,
+        *,
+        mass: RealLike | None = None,
+        damping: RealLike | None = None,
+        finger_mass: RealLike = 0,
+        finger_stiffness: RealLike = 0,
+        finger_damping: RealLike = 0,
+        finger_position: RealLike = 0,
+    ) -> None:
+        own = {
+            "mass": None if mass is None else positive("mass", mass, "a force moves it; None: the device's"),
+            "damping": None if damping is None else _not_negative("damping", damping),
+            "finger_mass": _not_negative("finger_mass", finger_mass),
+            "finger_stiffness": _not_negative("finger_stiffness", finger_stiffness),
+            "finger_damping": _not_negative("finger_damping", finger_damping),
+            "finger_position": _number("finger_position", finger_position),
+        }
+        for name, value in own.items():
+            object.__setattr__(self, name, value)
+
+    def plant(self, at: Surroundings) -> Plant:
+        """Device and finger, what was left out taken from the device.
+
+        Raises
+        ------
+        InputError
+            If no mass is known, or the model swings half a turn between two readings.
+        """
+        if self.mass is None and at.device.mass is None:
+            raise InputError(
+                f"{type(self).__name__} computes where a mass goes and the device has none: give mass [kg]"
+            )
+        mass = at.device.exact("mass") if self.mass is None else self.mass
+        damping = at.device.exact("damping") if self.damping is None else self.damping
+        plant = Plant(
+            float(mass) + float(self.finger_mass),
+            float(damping) + float(self.finger_damping),
+            float(self.finger_stiffness),
+            float(self.finger_position),
+        )
+        if turns_over(plant.matrix(), at.period) or plant.held(at.period)[0][0, 1] < SHORTEST * at.period:
+            raise InputError(
+                f"device and finger swing, or come to rest, within one sample of {at.period:g} s: two "
+                "readings do not tell a velocity; sample faster, or give less finger_stiffness or damping"
+            )
+        return plant
+
+    def wall(self, at: Surroundings) -> tuple[float, float]:
+        """(K, B) of the wall that is met [N/m, N·s/m].
+
+        Raises
+        ------
+        InputError
+            If it is no wall.
+        """
+        wall = at.environment
+        if not isinstance(wall, Wall):
+            raise InputError(
+                f"{type(self).__name__} computes how a wall K x + B v would move the hand and needs a Wall, "
+                f"got {wall.describe()}"
+            )
+        return float(ends(wall.stiffness)[0]), float(ends(wall.damping)[0])
+
+    def describe_model(self, motion: str = "linear") -> str:
+        """What it knows of the finger, in a few words."""
+        mass, spring, damper = (
+            ("kg·m²", "N·m/rad", "N·m·s/rad") if motion == "rotary" else ("kg", "N/m", "N·s/m")
+        )
+        device = [
+            f"{word} {float(value):g} {unit}"
+            for word, value, unit in (("mass", self.mass, mass), ("damping", self.damping, damper))
+            if value is not None
+        ]
+        own = ((self.finger_mass, mass), (self.finger_stiffness, spring), (self.finger_damping, damper))
+        finger = [f"{float(value):g} {unit}" for value, unit in own if value != 0]
+        return ", ".join([*device, f"finger {', '.join(finger)}" if finger else "no finger"])
+
+
+def turns_over(matrix: Matrix, period: float) -> bool:
+    """True where ξ̇ = A ξ swings half a turn or more in one sample."""
+    return bool(np.max(np.abs(np.linalg.eigvals(matrix).imag)) * period >= np.pi)
+
+
+def _not_negative(name: str, value: RealLike) -> Exact:
+    return positive(name, value, "device and finger are passive", zero=True)
+
+
+def _number(name: str, value: RealLike) -> Exact:
+    try:
+        return Exact(value)
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+
+
+@compiled
+def speed_before(p: Array, i: int, before: float, x: float, applied: float) -> float:
+    """v_{k−1}, with which the model comes from the reading before to this one."""
+    v: float = (x - p[i + FF] * before - p[i + GX] * (applied - p[i + REST])) / p[i + FV]
+    return v
+
+
+@compiled
+def speed(p: Array, i: int, before: float, x: float, applied: float) -> float:
+    """v_k of the same."""
+    first = speed_before(p, i, before, x, applied)
+    v: float = p[i + VF] * before + p[i + VV] * first + p[i + GV] * (applied - p[i + REST])
+    return v
+
+
+@compiled
+def estimated(p: Array, i: int, s: Array, j: int, x: float, applied: float) -> float:
+    """v_k; remembers, from j on, the reading and that there was one; 0 at the first."""
+    v = speed(p, i, s[j], x, applied) if s[j + 1] > 0.0 else 0.0
+    s[j], s[j + 1] = x, 1.0
+    return v
