@@ -31,6 +31,9 @@ KALMAN = 3.0
 _PERIOD, _ALPHA, _BETA = range(3)
 _POSITION, _VELOCITY = range(2)
 
+_WANDERING = 10
+"""Samples in which a hand at rest wanders by a count, if nothing else is said."""
+
 
 @dataclass(frozen=True, init=False, kw_only=True)
 class Kalman(Estimator):
@@ -40,12 +43,13 @@ class Kalman(Estimator):
     ----------
     acceleration
         √q, the density of the hand's acceleration, > 0 [(m/s²)/√Hz; (rad/s²)/√Hz]; None:
-        (F_max/m) √T, the device's largest acceleration anew in each sample.
+        √(3 Δ²/(10 T)³), which moves a hand at rest one count in ten samples, root mean square.
+        The filter then forgets within three samples.
 
     Raises
     ------
     InputError
-        If it is not > 0; later, if it is not given and the device has no force limit or no mass.
+        If it is not > 0.
     """
 
     kind: ClassVar[float] = KALMAN
@@ -65,16 +69,10 @@ class Kalman(Estimator):
     def numbers(self, at: Surroundings) -> list[float]:
         """T, α and β/T."""
         resolution = known(at, "resolution", "the noise of the readings is the resolution's")
-        alpha, beta = gains(self.density(at), resolution, at.period)
+        wanders = sqrt(3 * resolution**2 / (_WANDERING * at.period) ** 3)
+        density = wanders if self.acceleration is None else float(self.acceleration)
+        alpha, beta = gains(density, resolution, at.period)
         return [at.period, alpha, beta / at.period]
-
-    def density(self, at: Surroundings) -> float:
-        """√q [(m/s²)/√Hz; (rad/s²)/√Hz]."""
-        if self.acceleration is not None:
-            return float(self.acceleration)
-        why = "acceleration was not given and is otherwise made of the device's {}"
-        force, mass = (known(at, key, why.format(key)) for key in ("force_limit", "mass"))
-        return force / mass * sqrt(at.period)
 
     def rested(self, reading: float) -> list[float]:
         """At the reading, at rest."""
@@ -83,11 +81,7 @@ class Kalman(Estimator):
     def describe(self, motion: str = "linear") -> str:
         """In a few words."""
         unit = "(rad/s²)/√Hz" if motion == "rotary" else "(m/s²)/√Hz"
-        of = (
-            "the device's largest acceleration"
-            if self.acceleration is None
-            else f"{self.acceleration:g} {unit}"
-        )
+        of = "a count in ten samples" if self.acceleration is None else f"{self.acceleration:g} {unit}"
         return f"Kalman filter for {of}"
 
 

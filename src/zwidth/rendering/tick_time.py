@@ -32,7 +32,10 @@ _FOR_EVER = 1e15
 
 @dataclass(frozen=True, kw_only=True)
 class TickTime(Estimator):
-    """Counts over the time since the last tick, decaying while no tick comes.  No parameters."""
+    """Counts over the time since the last tick, decaying while no tick comes.  No parameters.
+
+    With an ideal sensor, Δ = 0, every sample is a tick: the backward difference.
+    """
 
     kind: ClassVar[float] = TICK_TIME
 
@@ -63,6 +66,8 @@ def step(p: Array, i: int, s: Array, j: int, x: float) -> float:
     if moved == 0.0:
         most = p[i + _COUNT] / time
         velocity = min(max(velocity, -most), most)
+        if most == 0.0:
+            waited = 0.0
     else:
         side = 1.0 if moved > 0.0 else -1.0
         crossed = abs(moved)
