@@ -145,16 +145,3 @@ def test_descriptions():
         "saturation at 3 N·m",
         "saturation at the force limit",
     ]
-
-
-def test_a_batch_runs_them_as_they_run_alone():
-    """The same bits, side by side and on threads."""
-    law = zw.render(
-        zw.Wall(800), zw.rendering.Damper(3), zw.rendering.Hysteresis("0.1"), SlewLimit(900), Dither()
-    )
-    device = DEVICE.replace(resolution=1e-6)
-    hand = zw.operators.Finger()
-    batch = zw.simulate_batch(device, law, hand, 0.2, vary={"device.damping": [0.1, 0.4]})
-    for damping in (0.1, 0.4):
-        alone = zw.simulate(device.replace(damping=damping), law, hand, 0.2)
-        assert float(batch.position.sel(damping=damping, drop=True)) == float(alone.position[-1])
