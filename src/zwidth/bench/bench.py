@@ -192,8 +192,8 @@ def _status(device: Device, law: Environment, found: Attack, seconds: float) -> 
         proof = verdict.certificate
         if verdict.outcome == "passive" and proof is not None and proof.kind in COVERS_CONTACT:
             return "passive", (
-                f"What the laws add is never more than that of {covering.damping} N·s/m, and every such force "
-                f"is covered, contact made and broken: {verdict.claim}"
+                f"What the laws add is never more than that of {covering.damping} N·s/m, and every such "
+                f"force is covered, contact made and broken: {verdict.claim}"
             )
     return "undecided", f"{found}; no criterion covers this law"
 

@@ -6,34 +6,67 @@ from typing import TYPE_CHECKING, Any
 from zwidth.rendering.virtual_coupling import VirtualCoupling
 
 if TYPE_CHECKING:
+    from zwidth.rendering.adaptive_window import AdaptiveWindow
+    from zwidth.rendering.braking_pulse import BrakingPulse
     from zwidth.rendering.crossing import CrossingCorrection
+    from zwidth.rendering.damper import Damper
+    from zwidth.rendering.dither import Dither
+    from zwidth.rendering.estimator import Estimator
+    from zwidth.rendering.event_transient import EventTransient
     from zwidth.rendering.extrapolation import Extrapolation
     from zwidth.rendering.half_sample import HalfSamplePrediction
+    from zwidth.rendering.hysteresis import Hysteresis
+    from zwidth.rendering.kalman import Kalman
     from zwidth.rendering.passivity_controller import PassivityController
     from zwidth.rendering.pole_matched import PoleMatched
     from zwidth.rendering.rendered import Rendered, render
+    from zwidth.rendering.saturation import Saturation
+    from zwidth.rendering.slew_limit import SlewLimit
     from zwidth.rendering.stage import Stage
+    from zwidth.rendering.tick_time import TickTime
 
 __all__ = [
+    "AdaptiveWindow",
+    "BrakingPulse",
     "CrossingCorrection",
+    "Damper",
+    "Dither",
+    "Estimator",
+    "EventTransient",
     "Extrapolation",
     "HalfSamplePrediction",
+    "Hysteresis",
+    "Kalman",
     "PassivityController",
     "PoleMatched",
     "Rendered",
+    "Saturation",
+    "SlewLimit",
     "Stage",
+    "TickTime",
     "VirtualCoupling",
     "render",
 ]
 
 _LATER = {
+    "AdaptiveWindow": "adaptive_window",
+    "BrakingPulse": "braking_pulse",
     "CrossingCorrection": "crossing",
+    "Damper": "damper",
+    "Dither": "dither",
+    "Estimator": "estimator",
+    "EventTransient": "event_transient",
     "Extrapolation": "extrapolation",
     "HalfSamplePrediction": "half_sample",
+    "Hysteresis": "hysteresis",
+    "Kalman": "kalman",
     "PassivityController": "passivity_controller",
     "PoleMatched": "pole_matched",
     "Rendered": "rendered",
+    "Saturation": "saturation",
+    "SlewLimit": "slew_limit",
     "Stage": "stage",
+    "TickTime": "tick_time",
     "render": "rendered",
 }
 """Where they are, until they are first used: the compiler of their steps takes its time to load."""

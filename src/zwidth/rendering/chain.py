@@ -9,18 +9,45 @@ is given, the others the force that it gives.
 from __future__ import annotations
 
 from zwidth.compiled import Array, compiled
-from zwidth.rendering import crossing, extrapolation, half_sample, passivity_controller, pole_matched
+from zwidth.rendering import (
+    braking_pulse,
+    crossing,
+    damper,
+    dither,
+    event_transient,
+    extrapolation,
+    half_sample,
+    hysteresis,
+    passivity_controller,
+    pole_matched,
+    saturation,
+    slew_limit,
+)
+from zwidth.rendering.braking_pulse import BRAKING_PULSE
 from zwidth.rendering.crossing import CROSSING
+from zwidth.rendering.damper import DAMPER
+from zwidth.rendering.dither import DITHER
+from zwidth.rendering.event_transient import EVENT_TRANSIENT
 from zwidth.rendering.extrapolation import EXTRAPOLATION
 from zwidth.rendering.half_sample import HALF_SAMPLE
+from zwidth.rendering.hysteresis import HYSTERESIS
 from zwidth.rendering.passivity_controller import PASSIVITY_CONTROLLER
 from zwidth.rendering.pole_matched import POLE_MATCHED
+from zwidth.rendering.saturation import SATURATION
+from zwidth.rendering.slew_limit import SLEW_LIMIT
 
 _controlled = passivity_controller.step
 _extrapolated = extrapolation.step
 _predicted = half_sample.step
 _corrected = crossing.step
 _matched = pole_matched.step
+_damped = damper.step
+_slipping = hysteresis.step
+_braked = braking_pulse.step
+_tapped = event_transient.step
+_slewed = slew_limit.step
+_dithered = dither.step
+_saturated = saturation.step
 
 
 @compiled
@@ -52,6 +79,20 @@ def after(law: Array, at: int, count: int, memory: Array, slot: int, reading: fl
             force = _corrected(law, at + 3, memory, slot, reading, force, applied)
         elif code == POLE_MATCHED:
             force = _matched(law, at + 3, memory, slot, reading, force, applied)
+        elif code == DAMPER:
+            force = _damped(law, at + 3, memory, slot, reading, force, applied)
+        elif code == HYSTERESIS:
+            force = _slipping(law, at + 3, memory, slot, reading, force, applied)
+        elif code == BRAKING_PULSE:
+            force = _braked(law, at + 3, memory, slot, reading, force, applied)
+        elif code == EVENT_TRANSIENT:
+            force = _tapped(law, at + 3, memory, slot, reading, force, applied)
+        elif code == SLEW_LIMIT:
+            force = _slewed(law, at + 3, memory, slot, reading, force, applied)
+        elif code == DITHER:
+            force = _dithered(law, at + 3, memory, slot, reading, force, applied)
+        elif code == SATURATION:
+            force = _saturated(law, at + 3, memory, slot, reading, force, applied)
         at += 3 + size
         slot += slots
     return force

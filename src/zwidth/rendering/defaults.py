@@ -1,0 +1,97 @@
+"""What a law takes from the device where it was not told."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+from zwidth.environment.hunt_crossley import HuntCrossley
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval
+from zwidth.rendering.stage import Surroundings
+
+T = TypeVar("T")
+
+
+def given_or_known(given: Exact | None, at: Surroundings, key: str, parameter: str) -> float:
+    """A parameter of a law, or the device's `key` in its place.
+
+    Raises
+    ------
+    InputError
+        If neither is known, or the device has an interval.
+    """
+    if given is not None:
+        return float(given)
+    return known(at, key, f"{parameter} was not given and is otherwise the device's {key}")
+
+
+def known(at: Surroundings, key: str, why: str) -> float:
+    """A number of the device.
+
+    Raises
+    ------
+    InputError
+        If it has none; `why` says what it is needed for.
+    """
+    value = getattr(at.device, key)
+    if value is None:
+        raise InputError(f"{why}, which {at.device.name} does not have: give one of the two")
+    if isinstance(value, Interval):
+        raise InputError(f"{why}, which is not certain ({value}): give one of the two")
+    return float(value)
+
+
+def stiffness(at: Surroundings, why: str) -> float:
+    """K of the environment [N/m; N·m/rad].
+
+    Raises
+    ------
+    InputError
+        If its force is not K x at rest; `why` says what K is needed for.
+    """
+    met = at.environment
+    bent = isinstance(met, HuntCrossley) and met.exponent != 1
+    if bent or at.stiffness <= 0:
+        raise InputError(f"{why}, and this environment has no K [N/m; N·m/rad]: {met.describe()}")
+    return at.stiffness
+
+
+def surface(at: Surroundings, law: str) -> None:
+    """Nothing, where the environment can be entered.
+
+    Raises
+    ------
+    InputError
+        If the hand cannot enter it, because it is never outside.
+    """
+    if not at.environment.unilateral:
+        raise InputError(
+            f"{law} acts when the hand enters, and this environment has no surface: "
+            f"{at.environment.describe()}"
+        )
+
+
+def one_of(name: str, value: T, *words: T) -> T:
+    """The value, if it is one of these.
+
+    Raises
+    ------
+    InputError
+        If it is not.
+    """
+    if value not in words:
+        raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
+    return value
+
+
+def true_or_false(name: str, value: object) -> bool:
+    """A bool.
+
+    Raises
+    ------
+    InputError
+        If it is something else.
+    """
+    if not isinstance(value, bool):
+        raise InputError(f"{name} is True or False, got {value!r}")
+    return value

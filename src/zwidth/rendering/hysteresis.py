@@ -1,0 +1,131 @@
+"""Friction inside the wall that depends on the way, not on the speed: a spring that slips.
+
+    s ← clamp(s + k Δu, −h … h),   f ← f + s    inside,   s = 0 outside,   u = max(x, 0)
+
+That rate-independent hysteresis makes a wall stiffer to render is from Goldfarb & Wang
+(1999); this law, the elastic–plastic element of Prandtl, and its size are derived for this
+project.  A cycle of depth D ≫ h/k takes 2 h D out.  The hold leaks ½ K (v T)² a sample,
+½ K v T D on the way in and again on the way out, so that
+
+    h ≥ ½ K v_max T
+
+pays for it up to the speed v_max.  A velocity is not needed: no noise of the encoder is
+amplified, only a step of k Δ is felt.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from zwidth.compiled import Array, compiled
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.defaults import stiffness as stiffness_of
+from zwidth.rendering.defaults import true_or_false
+from zwidth.rendering.stage import Stage, Surroundings, positive
+
+HYSTERESIS = 11.0
+
+_FORCE, _STIFFNESS, _SURFACE, _CLAMPED = range(4)
+_BEFORE, _SPRING = range(2)
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class Hysteresis(Stage):
+    """Rate-independent hysteresis, ``s ← clamp(s + k Δu, ±h)``, ``f ← f + s`` inside.
+
+    Parameters
+    ----------
+    force
+        h > 0, where the spring slips [N; N·m]; None: ½ K v_max T, of the environment's K.
+    stiffness
+        k > 0 [N/m; N·m/rad]; None: K, so that it slips after half the way of a sample at v_max.
+    fastest
+        v_max > 0 [m/s; rad/s]; needed where `force` is not given, and only there.
+    clamped
+        True: the sum never pulls, ``f ← max(0, f + s)``.  Default False: a hand that leaves
+        is held back by h just before the surface.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive, or both or none of force and fastest are given; later, if
+        K is needed and the environment has none.
+    """
+
+    code: ClassVar[float] = HYSTERESIS
+    slots: ClassVar[int] = 2
+
+    force: Exact | None
+    stiffness: Exact | None
+    fastest: Exact | None
+    clamped: bool
+
+    def __init__(
+        self,
+        force: RealLike | None = None,
+        stiffness: RealLike | None = None,
+        *,
+        fastest: RealLike | None = None,
+        clamped: bool = False,
+    ) -> None:
+        if (force is None) == (fastest is None):
+            raise InputError(
+                f"give either force [N] or fastest [m/s], got {'neither' if force is None else 'both'}: "
+                "the width h is ½ K v_max T for a hand that is never faster than v_max"
+            )
+        own = {
+            "force": (force, "it is the force at which the spring slips"),
+            "stiffness": (stiffness, "it is the spring that slips"),
+            "fastest": (fastest, "it is the speed up to which the hysteresis pays for the hold"),
+        }
+        for name, (value, why) in own.items():
+            object.__setattr__(self, name, None if value is None else positive(name, value, why))
+        object.__setattr__(self, "clamped", true_or_false("clamped", clamped))
+
+    def numbers(self, at: Surroundings) -> list[float]:
+        """h, k, whether there is a surface, whether it is clamped."""
+        if self.force is None:
+            assert self.fastest is not None
+            k = stiffness_of(at, "force was not given and is otherwise ½ K v_max T")
+            width = k * float(self.fastest) * at.period / 2
+        else:
+            width = float(self.force)
+        spring = (
+            stiffness_of(at, "stiffness was not given and is otherwise K")
+            if self.stiffness is None
+            else float(self.stiffness)
+        )
+        return [width, spring, float(at.environment.unilateral), float(self.clamped)]
+
+    def rested(self, reading: float) -> list[float]:
+        """Where the hand is; the spring relaxed."""
+        return [reading, 0.0]
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, in a few words."""
+        force, speed = ("N·m", "rad/s") if motion == "rotary" else ("N", "m/s")
+        per = "N·m/rad" if motion == "rotary" else "N/m"
+        width = (
+            f"±{self.force:g} {force}"
+            if self.force is not None
+            else f"the width for {self.fastest:g} {speed}"
+        )
+        spring = "" if self.stiffness is None else f", spring of {self.stiffness:g} {per}"
+        return f"hysteresis of {width}{spring}{', never pulls' if self.clamped else ''}"
+
+
+@compiled
+def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: float) -> float:
+    """One sample; p from i and s from j on are this law's."""
+    outside = p[i + _SURFACE] > 0.0 and x <= 0.0
+    if outside:
+        s[j + _BEFORE], s[j + _SPRING] = 0.0, 0.0
+        return force
+    width = p[i + _FORCE]
+    spring = s[j + _SPRING] + p[i + _STIFFNESS] * (x - s[j + _BEFORE])
+    spring = min(max(spring, -width), width)
+    s[j + _BEFORE], s[j + _SPRING] = x, spring
+    force += spring
+    return max(force, 0.0) if p[i + _CLAMPED] > 0.0 else force

@@ -1,0 +1,63 @@
+"""A force that is never larger than a limit: before laws that remember it, or below the motor's own.
+
+    f ← clamp(f, −F … F)
+
+The amplifier limits the force anyway, after all laws; a law that comes before it and remembers
+what it gave, such as `SlewLimit`, then remembers a force that never was.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from zwidth.compiled import Array, compiled
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.defaults import given_or_known
+from zwidth.rendering.stage import Stage, Surroundings, positive
+
+SATURATION = 16.0
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class Saturation(Stage):
+    """``f ← clamp(f, ±F)``.
+
+    Parameters
+    ----------
+    limit
+        F > 0 [N; N·m]; None: the device's force limit.
+
+    Raises
+    ------
+    InputError
+        If F is not positive; later, if it is not given and the device has no force limit.
+    """
+
+    code: ClassVar[float] = SATURATION
+    slots: ClassVar[int] = 0
+
+    limit: Exact | None
+
+    def __init__(self, limit: RealLike | None = None) -> None:
+        why = "without force nothing is rendered"
+        object.__setattr__(self, "limit", None if limit is None else positive("limit", limit, why))
+
+    def numbers(self, at: Surroundings) -> list[float]:
+        """F."""
+        return [given_or_known(self.limit, at, "force_limit", "limit")]
+
+    def rested(self, reading: float) -> list[float]:
+        """Nothing."""
+        return []
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, in a few words."""
+        unit = "N·m" if motion == "rotary" else "N"
+        return f"saturation at {'the force limit' if self.limit is None else f'{self.limit:g} {unit}'}"
+
+
+@compiled
+def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: float) -> float:
+    """One sample; p from i on is this law's."""
+    return min(max(force, -p[i]), p[i])

@@ -1,0 +1,177 @@
+"""What happens once, when the hand enters: braking pulses and transients."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from prescribed import DEVICE, PERIOD, commands, touched, wandering
+
+import zwidth as zw
+from zwidth.rendering import AdaptiveWindow, BrakingPulse, EventTransient, Kalman
+
+ONE = AdaptiveWindow(longest=1)
+FREE = zw.Device(mass=0.07, damping=0, sample_period=PERIOD)
+NO_HAND = zw.operators.ConstantForce(0.0)
+
+
+def entries(read):
+    """The samples at which the hand is inside for the first time, and the speeds there."""
+    speed = np.diff(read, prepend=read[0]) / PERIOD
+    inside = read > 0
+    at = np.flatnonzero(inside & ~np.append(inside[:1], inside[:-1]))
+    return at, speed[at], inside
+
+
+def transients(read, table):
+    """g_n v after each entry while the hand is inside."""
+    force = np.zeros(len(read))
+    at, speeds, inside = entries(read)
+    for k, v in zip(at, speeds, strict=True):
+        for n, g in enumerate(table):
+            if k + n >= len(read) or not inside[k + n]:
+                break
+            force[k + n] += g * v
+    return force
+
+
+def test_a_braking_pulse_is_one_sample_of_force():
+    """m v/T at most F, at entry only."""
+    read, force = commands(wandering(900), BrakingPulse(0.11, "2.6", ONE))
+    at, speeds, _ = entries(read)
+    expected = np.zeros(len(read))
+    expected[at] = np.minimum(0.11 * speeds / PERIOD, 2.6)
+    assert force == pytest.approx(expected, abs=1e-9)
+    assert len(at) > 2
+    assert {2.6} < set(np.round(expected[at], 9))
+
+
+def test_the_device_says_mass_and_limit():
+    """Where they are not given; without a force limit there is none."""
+    x = np.array([-2e-3, -1e-3, 1e-3, 3e-3])
+    assert commands(x, BrakingPulse(velocity=ONE))[1] == pytest.approx([0, 0, 9, 0])
+    free = DEVICE.replace(force_limit=None)
+    assert commands(x, BrakingPulse(velocity=ONE), device=free)[1] == pytest.approx([0, 0, 140, 0])
+
+
+def test_a_braking_pulse_stops_the_device():
+    """A free mass without friction, its velocity known: at rest after one sample."""
+    law = zw.render(zw.Wall(0), BrakingPulse())
+    trace = zw.simulate(FREE, law, NO_HAND, 0.1, initial_position=-0.0042, initial_velocity=0.13)
+    v = trace.velocity.values
+    first = int(np.argmax(trace.position.values > 0))
+    assert v[:first] == pytest.approx(0.13)
+    assert v[first + 1 :] == pytest.approx(0, abs=1e-12)
+
+
+def test_saturated_it_takes_part_of_the_momentum():
+    """F T of m v."""
+    law = zw.render(zw.Wall(0), BrakingPulse(limit=3))
+    trace = zw.simulate(FREE, law, NO_HAND, 0.1, initial_position=-0.0042, initial_velocity=0.13)
+    assert float(trace.velocity[-1]) == pytest.approx(0.13 - 3 * PERIOD / 0.07)
+
+
+TABLES = {
+    "fixed": (EventTransient("fixed", amplitude=21, duration="0.004", velocity=ONE), [21.0] * 4),
+    "decaying": (
+        EventTransient(amplitude=30, frequency=180, time_constant="0.003", duration="0.009", velocity=ONE),
+        [30 * np.exp(-n / 3) * np.sin(2 * np.pi * 0.18 * n) for n in range(9)],
+    ),
+    "record": (
+        EventTransient("acceleration", record=[10, "70.5", -20], mass="0.3", velocity=ONE),
+        [3, 21.15, -6],
+    ),
+    "half sine": (
+        EventTransient("acceleration", duration="0.005", velocity=ONE),
+        [70 * (np.cos(np.pi * n / 5) - np.cos(np.pi * (n + 1) / 5)) / 2 for n in range(5)],
+    ),
+}
+
+
+@pytest.mark.parametrize("law", TABLES)
+def test_the_transients_are_those_of_the_law(law):
+    """After each entry, until the hand leaves or it is over, scaled by the speed of entry."""
+    stage, table = TABLES[law]
+    read, force = commands(wandering(900), stage, environment=zw.Wall(150))
+    expected = transients(read, table)
+    assert len(entries(read)[0]) > 2
+    assert np.abs(expected).max() > 0.2
+    assert force == pytest.approx(np.where(read > 0, 150 * read, 0) + expected, abs=1e-9)
+
+
+def test_armed_again_only_outside():
+    """Once per contact, also when the speed changes inside; not for a hand that begins inside."""
+    tap = EventTransient("fixed", amplitude=10, duration="0.002", velocity=ONE)
+    x = np.array([1, 3, 5, -2, -1, 1, 2, 3, 5, 8, 9, 0.9, -1, 2, -1]) * 1e-3
+    _, force = commands(x, tap)
+    assert np.flatnonzero(force).tolist() == [5, 6, 13]
+    assert force[[5, 6, 13]] == pytest.approx([20, 20, 30])
+
+
+@pytest.mark.parametrize(
+    "stage",
+    [
+        EventTransient("fixed"),
+        EventTransient("fixed", duration="0.003"),
+        EventTransient("decaying"),
+        EventTransient("decaying", frequency=230, time_constant="0.02"),
+        EventTransient("acceleration"),
+        EventTransient("acceleration", duration="0.0234"),
+    ],
+)
+def test_by_default_they_take_the_momentum(stage):
+    """A free mass without friction that enters a wall of nothing is at rest when the transient is over."""
+    law = zw.render(zw.Wall(0), stage)
+    trace = zw.simulate(FREE, law, NO_HAND, 0.3, initial_position=-0.0042, initial_velocity=0.13)
+    inside = trace.position.values[40:]
+    assert inside.min() > 0
+    assert float(trace.velocity[-1]) == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda: BrakingPulse(0), "mass must be > 0"),
+        (lambda: BrakingPulse(1, -1), "limit must be > 0"),
+        (lambda: BrakingPulse(velocity=3), "velocity is AdaptiveWindow"),
+        (
+            lambda: touched([0, 0], BrakingPulse(), device=zw.Device(damping=1, rate=1000)),
+            "mass was not given",
+        ),
+        (
+            lambda: touched([0, 0], BrakingPulse(), environment=zw.PulseTransferFunction([1], [1])),
+            "no surface",
+        ),
+        (lambda: EventTransient("square"), "kind is one of 'fixed'"),
+        (lambda: EventTransient("fixed", frequency=100), "frequency is not of the fixed transient"),
+        (lambda: EventTransient("acceleration", amplitude=1), "amplitude is not of the acceleration"),
+        (lambda: EventTransient("acceleration", record=[1], duration=1), "either record or duration"),
+        (lambda: EventTransient("acceleration", record=[]), "from 1 to 10000 samples, got 0"),
+        (lambda: EventTransient("acceleration", record=["a"]), "record is one deceleration"),
+        (lambda: EventTransient(time_constant=0), "time_constant must be > 0"),
+        (lambda: touched([0, 0], EventTransient(frequency=500)), "below half the rate, 500 Hz"),
+        (lambda: touched([0, 0], EventTransient(duration=11)), "from 1 to 10000 samples"),
+        (lambda: touched([0, 0], EventTransient(duration=PERIOD)), "no amplitude of this transient"),
+        (
+            lambda: touched([0, 0], EventTransient(), environment=zw.PulseTransferFunction([1], [1])),
+            "no surface",
+        ),
+    ],
+)
+def test_bad_input(wrong, message):
+    """What was given, and what is wanted."""
+    with pytest.raises(zw.InputError, match=message):
+        wrong()
+
+
+def test_descriptions():
+    """What is known of them."""
+    assert BrakingPulse(2, 3, Kalman()).describe() == (
+        "braking pulse that stops 2 kg, at most 3 N on Kalman filter for a count in ten samples"
+    )
+    assert (
+        EventTransient("fixed", amplitude=2)
+        .describe("rotary")
+        .startswith("transient at entry (fixed, 2 N·m·s/rad, for 0.01 s) on ")
+    )
+    assert "(decaying, 100 Hz, 0.01 s)" in EventTransient().describe()
+    assert "(acceleration, record of 2 samples)" in EventTransient("acceleration", record=[1, 2]).describe()

@@ -1,0 +1,147 @@
+"""The last laws before the converter: slew limit, dither, saturation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from prescribed import DEVICE, commands, touched, wandering
+
+import zwidth as zw
+from zwidth.rendering import Dither, Saturation, SlewLimit
+
+WALL = zw.Wall(3000)
+BARE = zw.Device(damping=1, rate=1000)
+
+
+def wall_force(read):
+    """K x inside."""
+    return np.where(read > 0, 3000 * read, 0)
+
+
+def slewed(force, most):
+    """Each value at most so far from the one before."""
+    result = [force[0]]
+    for f in force[1:]:
+        result.append(min(max(f, result[-1] - most), result[-1] + most))
+    return np.array(result)
+
+
+@pytest.mark.parametrize("begin", [-1e-3, 2e-3])
+def test_the_force_changes_by_a_step_at_most(begin):
+    """Sample by sample; a hand that begins inside has its force from the first sample on."""
+    x = begin + wandering() - wandering()[0]
+    read, force = commands(x, SlewLimit(130), environment=WALL)
+    expected = slewed(wall_force(read), 0.13)
+    assert force == pytest.approx(expected, abs=1e-12)
+    assert np.abs(np.diff(force)).max() == pytest.approx(0.13)
+    assert (np.abs(force - wall_force(read)) > 0.05).any()
+
+
+def test_the_motor_says_how_fast():
+    """(F_max/I_max) U/L = 9/3 · 24/0.001 N/s, 72 N a sample."""
+    x = np.array([-1e-3, 0.05, 0.05, 0.05])
+    assert commands(x, SlewLimit(), environment=WALL)[1] == pytest.approx([0, 72, 144, 150], abs=0.1)
+
+
+def test_saturation_goes_before_what_remembers():
+    """Without it the force first comes down from where it never was."""
+    x = np.array([-1e-3, *[0.02] * 9, *[1e-3] * 9])
+    alone, behind = (
+        touched(x, *stages, environment=WALL, amplifier=None).actuator_force.values
+        for stages in ((SlewLimit(9000),), (Saturation(), SlewLimit(9000)))
+    )
+    assert behind[10] == 3
+    assert alone[10] == 9
+    assert alone.max() == behind.max() == 9
+
+
+def test_saturation():
+    """Both ways, at the device's force limit or below."""
+    both = zw.PulseTransferFunction([9000], [1])
+    for stage, limit in ((Saturation(), 9), (Saturation("0.7"), 0.7)):
+        read, force = commands(wandering(), stage, environment=both)
+        assert force == pytest.approx(np.clip(9000 * read, -limit, limit))
+        assert np.abs(force).max() == limit
+        assert force.min() < 0
+
+
+def numbers(seed, count):
+    """Park & Miller's, in whole numbers."""
+    result = []
+    for _ in range(count):
+        seed = seed * 16807 % (2**31 - 1)
+        result.append(seed)
+    return np.array(result)
+
+
+def test_the_generator_is_the_published_one():
+    """From 1, the 10 000th number is 1043618065 (Park & Miller 1988)."""
+    assert numbers(1, 10000)[-1] == 1043618065
+
+
+def test_dither_is_the_documented_sequence():
+    """Running on outside, felt inside only."""
+    x = wandering()
+    read, force = commands(x, Dither("0.4"), environment=WALL)
+    signs = np.where(np.arange(len(x)) % 2, -1, 1)
+    assert force == pytest.approx(np.where(read > 0, wall_force(read) + 0.4 * signs, 0))
+    read, force = commands(x, Dither("0.4", "random", 77), environment=WALL)
+    random = 2 * numbers(77, len(x)) / (2**31 - 1) - 1
+    assert force == pytest.approx(np.where(read > 0, wall_force(read) + 0.4 * random, 0), abs=1e-12)
+    both = zw.PulseTransferFunction([0], [1])
+    assert commands(x, Dither("0.4"), environment=both)[1] == pytest.approx(0.4 * signs)
+
+
+def test_dither_averages_the_steps_of_the_converter_out():
+    """Steps of 0.02 N: the mean is wrong by half of one without, a quarter alternating, nothing random."""
+    wrong = {"none": 0.0, "alternating": 0.0, "random": 0.0}
+    stages = {"none": Saturation(), "alternating": Dither(), "random": Dither(kind="random")}
+    ideal = DEVICE.replace(resolution=0)
+    for force in 1 + 0.02 * np.linspace(0, 1, 21):
+        for name, stage in stages.items():
+            trace = touched(
+                np.full(4001, force / 3000), stage, environment=WALL, device=ideal, amplifier=None
+            )
+            mean = float(trace.commanded_force[:4000].mean())
+            wrong[name] = max(wrong[name], abs(mean - force))
+    assert wrong["none"] == pytest.approx(0.01, rel=1e-6)
+    assert wrong["alternating"] == pytest.approx(0.005, rel=1e-6)
+    assert wrong["random"] < 5e-4
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda: SlewLimit(0), "rate must be > 0"),
+        (lambda: touched([0, 0], SlewLimit(), device=BARE), "rate was not given .* motor_inductance"),
+        (lambda: Saturation(-1), "limit must be > 0"),
+        (lambda: touched([0, 0], Saturation(), device=BARE), "limit was not given .* force_limit"),
+        (lambda: Dither(0), "amplitude must be > 0"),
+        (lambda: Dither(1, "white"), "kind is one of 'alternating', 'random'"),
+        (lambda: Dither(1, "random", 0), "seed must be > 0"),
+        (lambda: Dither(1, "random", 2**31 - 1), "seed is a whole number"),
+        (lambda: Dither(1, "random", 1.5), "seed is a whole number"),
+        (lambda: touched([0, 0], Dither(), device=BARE), "amplitude was not given .* force_resolution"),
+        (
+            lambda: touched([0, 0], Saturation(), device=DEVICE.replace(force_limit=(8, 9))),
+            "force_limit, which is not certain",
+        ),
+    ],
+)
+def test_bad_input(wrong, message):
+    """What was given, and what is wanted."""
+    with pytest.raises(zw.InputError, match=message):
+        wrong()
+
+
+def test_descriptions():
+    """What is known of them."""
+    stages = (SlewLimit(5), SlewLimit(), Dither(2), Dither(kind="random"), Saturation(3), Saturation())
+    assert [s.describe("rotary") for s in stages] == [
+        "slew limit of 5 N·m/s",
+        "slew limit of the motor",
+        "alternating dither of 2 N·m",
+        "random dither of part of a converter step",
+        "saturation at 3 N·m",
+        "saturation at the force limit",
+    ]

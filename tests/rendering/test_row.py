@@ -1,0 +1,101 @@
+"""All laws in one row: simulated alone, side by side, on the card's kernel; every joule accounted for."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from prescribed import DEVICE, commands, wandering
+
+import zwidth as zw
+from zwidth import rendering
+from zwidth.rendering import Damper, Kalman, TickTime
+
+ROW = (
+    rendering.Damper(1.1),
+    rendering.Damper(0.7, TickTime()),
+    rendering.Damper(0.9, Kalman(0.3)),
+    rendering.Hysteresis("0.1"),
+    rendering.BrakingPulse(limit=1),
+    rendering.EventTransient(frequency=200),
+    rendering.Saturation(6),
+    rendering.SlewLimit(2000),
+    rendering.Dither(kind="random"),
+)
+LAW = zw.render(zw.Wall(800), *ROW)
+HAND = zw.operators.Dowel()
+
+
+def test_each_law_changes_the_force_of_the_one_before():
+    """None is left out of the row, and none takes the numbers or the memory of another."""
+    x, wall = 2 * wandering(), zw.Wall(800)
+    forces = [commands(x, *ROW[:n], environment=wall)[1] for n in range(1, len(ROW) + 1)]
+    for before, after in zip(forces, forces[1:], strict=False):
+        assert np.abs(after - before).max() > 1e-3
+    # dampers and hysteresis only add, each whatever stands before it
+    alone = [commands(x, stage, environment=wall)[1] for stage in ROW[:6]]
+    spring = np.where(commands(x, ROW[0], environment=wall)[0] > 0, 1.0, 0.0)
+    wall_force = 800 * commands(x, ROW[0])[0] * spring
+    assert forces[5] - wall_force == pytest.approx(sum(f - wall_force for f in alone), abs=1e-9)
+
+
+def test_every_law_has_its_own_code():
+    """Two with one code would run the same step."""
+    codes = [stage.code for stage in (*ROW[2:], rendering.PassivityController())]
+    assert len(set(codes)) == len(codes)
+    kinds = [e.kind for e in (rendering.AdaptiveWindow(), TickTime(), Kalman())]
+    assert len(set(kinds)) == 3
+
+
+def test_the_ledger_closes():
+    """With a delay and in between samples."""
+    trace = zw.simulate(DEVICE.replace(delay=4e-4), LAW, HAND, 0.4, initial_velocity=0.1, points_per_sample=3)
+    assert trace.zwidth.energy.closes
+    assert trace.attrs["environment"] == LAW.describe()
+    assert (trace.position > 0).any()
+
+
+def test_a_missed_sample_leaves_the_laws_as_they_were():
+    """The same numbers from the samples that are taken."""
+    damper = Damper(2, rendering.AdaptiveWindow(longest=1))
+    law = zw.render(zw.Wall(0), damper)
+    motion = zw.operators.PrescribedMotion(np.array([0, 1e-3, 3e-3, 4e-3, 4e-3]))
+    loop = zw.Device(damping=0.1, sample_period=0.001)
+    trace = zw.simulate(loop, law, motion, 0.004, timing=zw.Timing(missed=[0, 0, 1, 0, 0]))
+    assert trace.commanded_force.values == pytest.approx([0, 2, 2, 6, 0])
+
+
+def test_a_batch_has_the_bits_of_single_loops():
+    """On two threads."""
+    batch = zw.simulate_batch(DEVICE, LAW, HAND, 0.2, vary={"device.damping": [0.1, 0.4]}, threads=2)
+    for damping in (0.1, 0.4):
+        alone = zw.simulate(DEVICE.replace(damping=damping), LAW, HAND, 0.2)
+        assert float(batch.position.sel(damping=damping)) == float(alone.position[-1])
+    assert float(batch.samples_inside.min()) > 20
+
+
+_ON_CARD = """
+import zwidth as zw
+from prescribed import DEVICE
+from test_row import HAND, LAW
+vary = {"device.damping": [0.1, 0.4]}
+card = zw.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary, on="gpu")
+own = zw.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary)
+for name in own.data_vars:
+    assert (card[name] == own[name]).all(), name
+assert float(own.samples_inside.max()) > 0
+"""
+
+
+def test_the_kernel_of_the_card_runs_them():
+    """In numba's simulator of CUDA, which runs the kernel as Python."""
+    environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
+    environment["PYTHONPATH"] = os.pathsep.join(
+        [str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")]
+    )
+    done = subprocess.run([sys.executable, "-c", _ON_CARD], env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
