@@ -4,19 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import pi
+from typing import Any
 
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.velocity import OnePole, Window
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
+from zwidth.operator import TypicalTouch
 from zwidth.quantity.exact import Exact
-from zwidth.rendering import PassivityController, VirtualCoupling, render
+from zwidth.rendering import (
+    AdaptiveWindow,
+    BrakingPulse,
+    CrossingCorrection,
+    Damper,
+    EventTransient,
+    Extrapolation,
+    HalfSamplePrediction,
+    Hysteresis,
+    Kalman,
+    PassivityController,
+    PoleMatched,
+    Rendered,
+    Stage,
+    TickTime,
+    VirtualCoupling,
+    render,
+)
+from zwidth.rendering.stage import Surroundings
 
 Law = Callable[[Device, Wall], Environment]
 
 CUTOFF = 100.0
 """Of the velocity filter [Hz]."""
+
+FAST = 0.2
+"""Speed of a hand whose leak a hysteresis is sized for [m/s]."""
 
 
 def _damped(device: Device, wall: Wall, **how: object) -> Wall:
@@ -31,23 +54,52 @@ def _coupled(device: Device, wall: Wall) -> Environment:
     return VirtualCoupling(stiffness=limit, damping=0, environment=wall)
 
 
+def _through(make: Callable[[Device, Wall], Stage]) -> Law:
+    return lambda device, wall: render(wall, make(device, wall))
+
+
+def _half_sample_damping(device: Device, wall: Wall) -> float:
+    """K T/2."""
+    return float(wall.stiffness) * float(device.exact("sample_period")) / 2  # type: ignore[arg-type]
+
+
+def _model() -> dict[str, Any]:
+    """The finger of the bench, as laws are told that look ahead with a model."""
+    finger = TypicalTouch()
+    return {
+        "finger_mass": finger.mass,
+        "finger_stiffness": finger.stiffness,
+        "finger_damping": finger.damping,
+    }
+
+
 LAWS: Mapping[str, Law] = {
     "wall": lambda device, wall: wall,
     "virtual-damping": _damped,
     "one-pole-damping": lambda d, w: _damped(d, w, velocity_filter=OnePole(1 / (2 * pi * CUTOFF))),
     "window-damping": lambda d, w: _damped(d, w, velocity_filter=Window(8)),
     "virtual-coupling": _coupled,
-    "passivity-controller-published": lambda d, w: render(w, PassivityController(observer="published")),
-    "passivity-controller": lambda d, w: render(w, PassivityController()),
-    "passivity-controller-limited": lambda d, w: render(
-        w, PassivityController(largest_damping=d.exact("damping") or 1, resets=True, ceiling=0)
+    "adaptive-window-damping": _through(lambda d, w: Damper(_half_sample_damping(d, w), AdaptiveWindow())),
+    "tick-time-damping": _through(lambda d, w: Damper(_half_sample_damping(d, w), TickTime())),
+    "kalman-damping": _through(lambda d, w: Damper(_half_sample_damping(d, w), Kalman())),
+    "extrapolation": _through(lambda d, w: Extrapolation()),
+    "half-sample-prediction": _through(lambda d, w: HalfSamplePrediction(**_model())),
+    "crossing-correction": _through(lambda d, w: CrossingCorrection(**_model())),
+    "pole-matched": _through(lambda d, w: PoleMatched(**_model())),
+    "passivity-controller-published": _through(lambda d, w: PassivityController(observer="published")),
+    "passivity-controller": _through(lambda d, w: PassivityController()),
+    "passivity-controller-limited": _through(
+        lambda d, w: PassivityController(largest_damping=d.exact("damping") or 1, resets=True, ceiling=0)
     ),
+    "hysteresis": _through(lambda d, w: Hysteresis(fastest=FAST)),
+    "braking-pulse": _through(lambda d, w: BrakingPulse()),
+    "event-transient": _through(lambda d, w: EventTransient()),
 }
 """By name, in the order in which they are shown."""
 
 
 def standard_laws(device: Device, wall: Environment) -> dict[str, Environment]:
-    """Every law of the bench for a wall on a device.
+    """Every law of the bench for a wall on a device; without those that need a number it does not have.
 
     Parameters
     ----------
@@ -65,4 +117,16 @@ def standard_laws(device: Device, wall: Environment) -> dict[str, Environment]:
         raise InputError(f"the bench compares how a wall is rendered, got {wall.describe()}")
     if not wall.is_certain or any(not isinstance(v, Exact) for v in (device.damping, device.sample_period)):
         raise InputError("the bench simulates one loop: give numbers, no intervals")
-    return {name: law(device, wall) for name, law in LAWS.items()}
+    made = {name: law(device, wall) for name, law in LAWS.items()}
+    return {name: law for name, law in made.items() if _suits(law, device)}
+
+
+def _suits(law: Environment, device: Device) -> bool:
+    """Whether the device has all the numbers that a law is computed from."""
+    if isinstance(law, Rendered):
+        try:
+            for stage in law.stages:
+                stage.numbers(Surroundings(device, law.environment))
+        except InputError:
+            return False
+    return True
