@@ -6,13 +6,37 @@ from typing import TYPE_CHECKING, Any
 from zwidth.rendering.virtual_coupling import VirtualCoupling
 
 if TYPE_CHECKING:
+    from zwidth.rendering.dual_rate import DualRate
+    from zwidth.rendering.energy_bounding import EnergyBounding
+    from zwidth.rendering.energy_tank import EnergyTank
+    from zwidth.rendering.force_bounding import ForceBounding
+    from zwidth.rendering.held import Held
+    from zwidth.rendering.passive_leap import PassiveLeap
     from zwidth.rendering.passivity_controller import PassivityController
     from zwidth.rendering.rendered import Rendered, render
     from zwidth.rendering.stage import Stage
 
-__all__ = ["PassivityController", "Rendered", "Stage", "VirtualCoupling", "render"]
+__all__ = [
+    "DualRate",
+    "EnergyBounding",
+    "EnergyTank",
+    "ForceBounding",
+    "Held",
+    "PassiveLeap",
+    "PassivityController",
+    "Rendered",
+    "Stage",
+    "VirtualCoupling",
+    "render",
+]
 
 _LATER = {
+    "DualRate": "dual_rate",
+    "EnergyBounding": "energy_bounding",
+    "EnergyTank": "energy_tank",
+    "ForceBounding": "force_bounding",
+    "Held": "held",
+    "PassiveLeap": "passive_leap",
     "PassivityController": "passivity_controller",
     "Rendered": "rendered",
     "Stage": "stage",
