@@ -1,4 +1,4 @@
-"""Prescribed hands for the laws: a plain loop in Python that tempts a law, and the simulator's account of it."""
+"""Prescribed hands for the laws: a plain loop that tempts a law, and the simulator's account of it."""
 
 from __future__ import annotations
 

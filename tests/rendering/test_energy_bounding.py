@@ -80,7 +80,7 @@ def climbing(cycles, size, lift):
 
 @pytest.mark.parametrize(("friction", "passive"), [(0.95, False), (1.05, True)])
 def test_counts_break_it_where_friction_is_less_than_half_a_count_of_damping(friction, passive):
-    """Up a count at the lower force, down at the higher: Δ² b/T against 2 f_c Δ, as often as the hand likes."""
+    """Up a count at the lower force, down at the higher: Δ² b/T against 2 f_c Δ, again and again."""
     size = 5e-5
     friction = friction * 150 * size / 2
     paddle = device(friction=repr(friction), resolution="0.00005")

@@ -9,7 +9,7 @@ import pytest
 from prescribed import FORCE, LENGTH, T, device, energy_in, follow, same_in_other_units, tempt, wall
 
 import zwidth as zw
-from zwidth.rendering import DualRate, Held
+from zwidth.rendering import DualRate, EnergyBounding, ForceBounding, Held
 
 
 def held(wish, samples):
@@ -115,6 +115,27 @@ def test_slopes_beyond_the_device_are_not_passive(share, sign):
     positions = np.array([1e-4, *([1e-4, 1e-3] * 50), 1e-4])
     loop = zw.render(zw.Wall(5000), DualRate(samples=1000, slope=share))
     assert np.sign(energy_in(follow(device(), loop, positions))[-1]) == sign
+
+
+def test_a_wall_at_66_7_hz_that_bounces_for_ever_is_passive_behind_a_law():
+    """30 kN/m updated every 15 samples, pushed with 10 N: 200 N and many joules without a law."""
+    heavy = zw.Device(
+        mass="0.5", damping="0.5", coulomb_friction="0.5", sample_period=T, force_limit=200, resolution=0
+    )
+    slow, hand = zw.render(zw.Wall(30_000), Held(samples=15)), zw.operators.ConstantForce(10)
+
+    def touch(loop):
+        trace = zw.simulate(heavy, loop, hand, 2, initial_position=-0.02, initial_velocity=0.2)
+        return trace, energy_in(trace).min()
+
+    trace, least = touch(slow)
+    assert least < -10
+    assert trace.actuator_force.max() == 200
+    for law, quiet in ((EnergyBounding(), True), (ForceBounding(), False)):
+        trace, least = touch(zw.render(slow, law))
+        assert least >= -1e-12
+        assert (float(np.ptp(trace.position[-500:])) < 1e-3) is quiet
+    assert touch(zw.render(zw.Wall(30_000), DualRate(samples=15)))[1] >= -1e-12
 
 
 @pytest.mark.parametrize("updates", ["jump", "continuous"])
