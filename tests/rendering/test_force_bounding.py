@@ -120,6 +120,22 @@ def test_counts_break_the_public_law_as_much_as_the_hand_likes(samples):
     assert counted.min() >= 0
 
 
+@pytest.mark.parametrize("resets", [False, True])
+def test_nor_do_resets_help_against_counts(resets):
+    """Up within a count at the lower force, out of it at the higher, as energy bounding is broken."""
+    paddle = device(friction="0.0001", resolution="0.00005")
+    cycle = [*np.linspace(1, 2 - 1e-6, 40), 2 + 1e-6]
+    positions = 5e-5 * np.array([*np.linspace(-1, 1, 60), *(cycle * 400), 1])
+    public, counted = (
+        energy_in(
+            follow(paddle, zw.render(zw.Wall(5000), ForceBounding(encoder=word, resets=resets)), positions)
+        )
+        for word in ("ideal", "counted")
+    )
+    assert public[-1] < -1e-4
+    assert counted.min() >= 0
+
+
 def test_converter_steps_are_kept_below_the_bound():
     """Rounding to the device's own steps does not take energy out either, nor between samples."""
     paddle = device(force_resolution="0.05")

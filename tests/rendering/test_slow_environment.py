@@ -76,14 +76,26 @@ def test_no_hand_takes_energy_out_of_local_springs(stiffness, samples):
 
 
 def test_nor_where_the_environment_pulls():
-    """A filter without a surface: the local springs may pull, and promise the same."""
+    """A filter without a surface: the local springs may pull, and promise the same; so at the force limit."""
     tissue = zw.PulseTransferFunction([900, -700], [1, "-0.8"])
     loop = zw.render(tissue, DualRate(samples=5))
-    for seed in range(10):
-        positions, _ = tempt(wall(500), device(), 400, seed)
-        trace = follow(device(), loop, positions)
+    for seed in range(20):
+        paddle = device(force_limit=None if seed < 10 else "0.05")
+        positions, _ = tempt(wall(500), paddle, 400, seed % 10)
+        trace = follow(paddle, loop, positions)
         assert trace.commanded_force.to_numpy().min() < 0
         assert energy_in(trace).min() >= -1e-12 * energy_in(trace).max()
+
+
+def test_what_the_amplifier_does_not_give_is_not_counted_as_paid():
+    """Pressed far beyond the force limit, then to and fro at a small step, which that would pay for."""
+    forces = zw.NonlinearSpring([0, "1e-4", "1e-2", "1.01e-2", "1.2e-2", "1.21e-2"], [0, 10, 10, 0, 0, "0.1"])
+    press = np.linspace(0, 1e-2, 1001)
+    cycle = [*np.linspace(1.2e-2, 1.21e-2, 6)[:-1], *np.linspace(1.21e-2, 1.2e-2, 6)[:-1]]
+    positions = np.array([*press[:-1], *np.linspace(1e-2, 1.2e-2, 11)[:-1], *(cycle * 1500)])
+    paddle = device(force_limit="0.05")
+    energy = energy_in(follow(paddle, zw.render(forces, DualRate(samples=5)), positions))
+    assert energy.min() >= 0
 
 
 def test_the_force_rises_without_a_jump_and_the_wall_begins_where_it_was_first_seen():
@@ -134,7 +146,7 @@ def test_a_wall_at_66_7_hz_that_bounces_for_ever_is_passive_behind_a_law():
     for law, quiet in ((EnergyBounding(), True), (ForceBounding(), False)):
         trace, least = touch(zw.render(slow, law))
         assert least >= -1e-12
-        assert (float(np.ptp(trace.position[-500:])) < 1e-3) is quiet
+        assert (float(np.ptp(trace.position.to_numpy()[-500:])) < 1e-3) is quiet
     assert touch(zw.render(zw.Wall(30_000), DualRate(samples=15)))[1] >= -1e-12
 
 

@@ -20,12 +20,13 @@ from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.passivity_controller import UNLIMITED
 from zwidth.rendering.reading import count, damping_per_sample, one_of
 from zwidth.rendering.stage import Stage, Surroundings, positive
 
 DUAL_RATE = 24.0
 
-_SAMPLES, _SLOPE, _PUSHES, _JUMPS = range(4)
+_SAMPLES, _SLOPE, _PUSHES, _JUMPS, _LIMIT = range(5)
 _LEFT, _REFERENCE, _FORCE, _OFF, _SPARE = range(5)
 
 
@@ -36,7 +37,8 @@ class DualRate(Stage):
     Proved, where κ ≤ 2b/T and updates are "continuous": no motion of any hand takes energy out, whatever
     the environment and however large N.  Refuted for "jump".  Hypotheses: the device takes at least b; an
     encoder without counts; no delay, regular samples, no law behind this one, an amplifier without lag or
-    steps.  A force of the environment below 0 is 0 where the environment is unilateral.
+    steps, with no other force limit than the device's.  Where the environment is unilateral, its forces
+    below 0 are 0.
 
     Parameters
     ----------
@@ -83,7 +85,14 @@ class DualRate(Stage):
             If slope is None and the device has no damping.
         """
         slope = _paid_slope(at) if self.slope is None else float(self.slope)
-        return [float(self.samples), slope, float(at.environment.unilateral), float(self.updates == "jump")]
+        limit = at.device.force_limit
+        return [
+            float(self.samples),
+            slope,
+            float(at.environment.unilateral),
+            float(self.updates == "jump"),
+            UNLIMITED if limit is None else float(at.device.exact("force_limit")),
+        ]
 
     def rested(self, reading: float) -> list[float]:
         """No spring yet, and an update is due."""
@@ -112,6 +121,7 @@ def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: fl
     if s[j + _LEFT] <= 0.0:
         new = max(force, 0.0) if pushes else force
         if p[i + _JUMPS] == 0.0:
+            here = min(max(here, -p[i + _LIMIT]), p[i + _LIMIT])  # what was not given was not paid for
             room = sqrt(here * here + 2 * slope * s[j + _SPARE])
             new = min(max(new, -room), room)
             s[j + _SPARE] = max(s[j + _SPARE] + (here - new) * (here + new) / (2 * slope), 0.0)
