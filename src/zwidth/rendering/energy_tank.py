@@ -35,7 +35,7 @@ _BEFORE, _ENERGY = range(2)
 class EnergyTank(Stage):
     """``|f| ≤ H/(|v| T)`` and 0 where the tank H is empty; a damper ``d = α max(0, H_d − H)`` refills it.
 
-    Proved, for d ≤ b: the energy taken out is never more than |f_w| (|Δx'| − |Δx|) of one sample, f_w the
+    Proved, for d ≤ b: the energy taken out is never more than ``|f_w| (|Δx'| − |Δx|)`` of one sample, f_w the
     wall's part, Δx the move before it and Δx' the move under it, towards the outside.  So none comes out
     where no such move is longer than the one before.  Refuted for other hands, and without any limit
     where d may exceed b: docs, "Laws that bound the force".  Hypotheses: an encoder without counts; no
