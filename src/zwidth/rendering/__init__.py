@@ -11,12 +11,18 @@ if TYPE_CHECKING:
     from zwidth.rendering.crossing import CrossingCorrection
     from zwidth.rendering.damper import Damper
     from zwidth.rendering.dither import Dither
+    from zwidth.rendering.dual_rate import DualRate
+    from zwidth.rendering.energy_bounding import EnergyBounding
+    from zwidth.rendering.energy_tank import EnergyTank
     from zwidth.rendering.estimator import Estimator
     from zwidth.rendering.event_transient import EventTransient
     from zwidth.rendering.extrapolation import Extrapolation
+    from zwidth.rendering.force_bounding import ForceBounding
     from zwidth.rendering.half_sample import HalfSamplePrediction
+    from zwidth.rendering.held import Held
     from zwidth.rendering.hysteresis import Hysteresis
     from zwidth.rendering.kalman import Kalman
+    from zwidth.rendering.passive_leap import PassiveLeap
     from zwidth.rendering.passivity_controller import PassivityController
     from zwidth.rendering.pole_matched import PoleMatched
     from zwidth.rendering.rendered import Rendered, render
@@ -31,12 +37,18 @@ __all__ = [
     "CrossingCorrection",
     "Damper",
     "Dither",
+    "DualRate",
+    "EnergyBounding",
+    "EnergyTank",
     "Estimator",
     "EventTransient",
     "Extrapolation",
+    "ForceBounding",
     "HalfSamplePrediction",
+    "Held",
     "Hysteresis",
     "Kalman",
+    "PassiveLeap",
     "PassivityController",
     "PoleMatched",
     "Rendered",
@@ -54,12 +66,18 @@ _LATER = {
     "CrossingCorrection": "crossing",
     "Damper": "damper",
     "Dither": "dither",
+    "DualRate": "dual_rate",
+    "EnergyBounding": "energy_bounding",
+    "EnergyTank": "energy_tank",
     "Estimator": "estimator",
     "EventTransient": "event_transient",
     "Extrapolation": "extrapolation",
+    "ForceBounding": "force_bounding",
     "HalfSamplePrediction": "half_sample",
+    "Held": "held",
     "Hysteresis": "hysteresis",
     "Kalman": "kalman",
+    "PassiveLeap": "passive_leap",
     "PassivityController": "passivity_controller",
     "PoleMatched": "pole_matched",
     "Rendered": "rendered",

@@ -14,10 +14,16 @@ from zwidth.rendering import (
     crossing,
     damper,
     dither,
+    dual_rate,
+    energy_bounding,
+    energy_tank,
     event_transient,
     extrapolation,
+    force_bounding,
     half_sample,
+    held,
     hysteresis,
+    passive_leap,
     passivity_controller,
     pole_matched,
     saturation,
@@ -27,10 +33,16 @@ from zwidth.rendering.braking_pulse import BRAKING_PULSE
 from zwidth.rendering.crossing import CROSSING
 from zwidth.rendering.damper import DAMPER
 from zwidth.rendering.dither import DITHER
+from zwidth.rendering.dual_rate import DUAL_RATE
+from zwidth.rendering.energy_bounding import ENERGY_BOUNDING
+from zwidth.rendering.energy_tank import ENERGY_TANK
 from zwidth.rendering.event_transient import EVENT_TRANSIENT
 from zwidth.rendering.extrapolation import EXTRAPOLATION
+from zwidth.rendering.force_bounding import FORCE_BOUNDING
 from zwidth.rendering.half_sample import HALF_SAMPLE
+from zwidth.rendering.held import HELD
 from zwidth.rendering.hysteresis import HYSTERESIS
+from zwidth.rendering.passive_leap import PASSIVE_LEAP
 from zwidth.rendering.passivity_controller import PASSIVITY_CONTROLLER
 from zwidth.rendering.pole_matched import POLE_MATCHED
 from zwidth.rendering.saturation import SATURATION
@@ -48,6 +60,12 @@ _tapped = event_transient.step
 _slewed = slew_limit.step
 _dithered = dither.step
 _saturated = saturation.step
+_force_bounded = force_bounding.step
+_from_the_tank = energy_tank.step
+_energy_bounded = energy_bounding.step
+_leapt = passive_leap.step
+_local = dual_rate.step
+_held = held.step
 
 
 @compiled
@@ -93,6 +111,18 @@ def after(law: Array, at: int, count: int, memory: Array, slot: int, reading: fl
             force = _dithered(law, at + 3, memory, slot, reading, force, applied)
         elif code == SATURATION:
             force = _saturated(law, at + 3, memory, slot, reading, force, applied)
+        elif code == FORCE_BOUNDING:
+            force = _force_bounded(law, at + 3, memory, slot, reading, force, applied)
+        elif code == ENERGY_TANK:
+            force = _from_the_tank(law, at + 3, memory, slot, reading, force, applied)
+        elif code == ENERGY_BOUNDING:
+            force = _energy_bounded(law, at + 3, memory, slot, reading, force, applied)
+        elif code == PASSIVE_LEAP:
+            force = _leapt(law, at + 3, memory, slot, reading, force, applied)
+        elif code == DUAL_RATE:
+            force = _local(law, at + 3, memory, slot, reading, force, applied)
+        elif code == HELD:
+            force = _held(law, at + 3, memory, slot, reading, force, applied)
         at += 3 + size
         slot += slots
     return force

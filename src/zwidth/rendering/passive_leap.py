@@ -1,0 +1,109 @@
+"""Energy-consistent sampling: the wall's spring holds exactly the energy that came in.
+
+    E ← E + f Δx + (b/T) Δx² + f_c |Δx|           exact behind a hold: f was held
+    |f| ≤ √(2 K E),   0 where E ≤ 0
+
+The first line is that of Stramigioli, Secchi, van der Schaft & Fantuzzi (2005); the second
+is derived for this project.  The spring of the wall is put into the state that stores E,
+f = √(2 K E), wherever K x would store more; where it stores less the wall is as it was, and
+the rest is kept.  Friction of the device is counted: a spring that holds nothing pushes with
+nothing, takes nothing in, and without it would never begin.
+
+What can come out: for K ≤ 2b/T the wall is never changed, and passive.  A stiffer one can
+give out, in one move of f T/(2b), at most f² (T/(4b) − 1/(2K)) more than came in.  That is
+booked, E < 0, and the hand feels the wall gone until friction has paid for it.  With 2b/T
+for K nothing can: that is force bounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import ClassVar
+
+from zwidth.compiled import Array, compiled
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.reading import damping_per_sample, truth
+from zwidth.rendering.stage import Stage, Surroundings, positive
+
+PASSIVE_LEAP = 23.0
+
+_STIFFNESS, _PAID, _FRICTION, _RESETS = range(4)
+_BEFORE, _ENERGY = range(2)
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class PassiveLeap(Stage):
+    """``|f| ≤ √(2 K E)``: the force of a spring that stores what the hand has put in, to the joule.
+
+    Proved: no hand takes out more than f² (T/(4b) − 1/(2K)), f the largest force, at any time; nothing
+    where K ≤ 2b/T.  Refuted for stiffer walls: one leap out takes just that (where f_c = 0).  Hypotheses:
+    the device takes at least b and f_c; an encoder without counts; no delay, regular samples, no law
+    behind this one, an amplifier without lag or steps.
+
+    Parameters
+    ----------
+    stiffness
+        K of the spring that the energy is kept in [N/m; N·m/rad]; None: the environment's.
+    resets
+        True to forget credit, not debt, where the force was 0: the hand then begins each contact without
+        credit for what its free motion dissipated.
+
+    Raises
+    ------
+    InputError
+        If stiffness is not > 0, or resets not True or False; when it is simulated, if there is no
+        stiffness or the device has no damping.
+    """
+
+    code: ClassVar[float] = PASSIVE_LEAP
+    slots: ClassVar[int] = 2
+
+    stiffness: Exact | None
+    resets: bool
+
+    def __init__(self, *, stiffness: RealLike | None = None, resets: bool = False) -> None:
+        spring = (
+            None if stiffness is None else positive("stiffness", stiffness, "the spring keeps the energy")
+        )
+        object.__setattr__(self, "stiffness", spring)
+        object.__setattr__(self, "resets", truth("resets", resets, "to forget credit without force"))
+
+    def numbers(self, at: Surroundings) -> list[float]:
+        """As the step reads them.
+
+        Raises
+        ------
+        InputError
+            If there is no stiffness, or the device has no damping.
+        """
+        stiffness = at.stiffness if self.stiffness is None else float(self.stiffness)
+        if stiffness <= 0.0:
+            raise InputError(
+                "stiffness has no default here, the environment has none: give the K of the spring that "
+                f"the energy is kept in; the environment is {at.environment.describe()}"
+            )
+        friction = float(at.device.exact("coulomb_friction"))
+        return [stiffness, damping_per_sample(at, "a passive leap"), friction, float(self.resets)]
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, in a few words."""
+        unit = "N·m/rad" if motion == "rotary" else "N/m"
+        parts = [] if self.stiffness is None else [f"a spring of {float(self.stiffness):g} {unit}"]
+        parts += ["resets"] if self.resets else []
+        return f"passive leap ({', '.join(parts)})" if parts else "passive leap"
+
+
+@compiled
+def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: float) -> float:
+    """One sample; p from i and s from j on are this law's, `applied` is the force that was held."""
+    moved = x - s[j + _BEFORE]
+    energy = s[j + _ENERGY]
+    if p[i + _RESETS] > 0.0 and applied == 0.0:
+        energy = min(energy, 0.0)
+    energy += applied * moved + p[i + _PAID] * moved * moved + p[i + _FRICTION] * abs(moved)
+    s[j + _BEFORE], s[j + _ENERGY] = x, energy
+    room = sqrt(2 * p[i + _STIFFNESS] * max(energy, 0.0))
+    bounded: float = min(max(force, -room), room)
+    return bounded

@@ -1,0 +1,69 @@
+"""How the arguments of a law are read, and what the device pays a law with."""
+
+from __future__ import annotations
+
+from zwidth.errors import InputError
+from zwidth.rendering.stage import Surroundings
+
+
+def one_of(name: str, value: object, *words: str) -> str:
+    """One of some words.
+
+    Raises
+    ------
+    InputError
+        If it is none of them.
+    """
+    for word in words:
+        if value == word:
+            return word
+    raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
+
+
+def truth(name: str, value: object, meaning: str) -> bool:
+    """True or False.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    if not isinstance(value, bool):
+        raise InputError(f"{name} is True {meaning}, or False; got {value!r}")
+    return value
+
+
+def count(name: str, value: object, why: str) -> int:
+    """A whole number of samples, at least 1.
+
+    Raises
+    ------
+    InputError
+        If it is not.
+    """
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise InputError(f"{name} is a whole number of samples, at least 1, got {value!r}: {why}")
+    return value
+
+
+def damping_per_sample(at: Surroundings, law: str) -> float:
+    """b/T, the energy that the device takes per squared move of one sample [N/m; N·m/rad].
+
+    Raises
+    ------
+    InputError
+        If the device has no damping.
+    """
+    damping = float(at.device.exact("damping"))
+    if damping <= 0.0:
+        raise InputError(
+            f"{law} pays for the force with the device's damping, and {at.device.name} has none: "
+            "give the damping that was measured, or another law"
+        )
+    return damping / at.period
+
+
+def half_step(at: Surroundings) -> float:
+    """What the device's converter can add to a force at most, ΔF/2; 0 where its step is unknown [N; N·m]."""
+    step = at.device.force_resolution
+    return 0.0 if step is None else float(at.device.exact("force_resolution")) / 2
