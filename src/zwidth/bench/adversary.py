@@ -11,7 +11,7 @@ witness, replayed in the simulator by its very making; no gain is no proof.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, pi
+from math import ceil, cos, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,10 @@ from zwidth.loop.simulate import simulate
 from zwidth.operator import PrescribedMotion
 
 ROUNDS = 150
-"""Rounds of each motion."""
+"""Rounds of each motion at first; more where it gains but has not yet earned what its beginning cost."""
+
+LONGEST = 400_000
+"""Samples of the longest motion."""
 
 COUNTS = (1, 2, 4, 8, 16, 32, 64)
 """Amplitudes tried, in encoder counts, or in tenths of a millimetre behind an ideal encoder."""
@@ -32,9 +35,6 @@ IDEAL_COUNT = 1e-4
 
 FASTEST = 1.0
 """Speed that is not exceeded [m/s]: about what a hand reaches."""
-
-_SURE = 1e-6
-"""Part of what friction takes in a round that a gain must exceed."""
 
 Floats = NDArray[np.float64]
 
@@ -50,9 +50,12 @@ class Attack:
     positions
         One round, at the samples [m].
     gain
-        Taken out of the loop by the last round, after all friction [J]; < 0: it cost energy.
+        Taken out by a round, after all friction, the mean over the last half of all rounds [J]; < 0: it
+        cost energy.
     total
-        Taken out by all rounds from the beginning [J].
+        Taken out by all rounds from rest [J]: only if this is > 0 has energy come out of the loop.
+    rounds
+        How many that were.
     tried
         How many motions were tried.
     """
@@ -61,23 +64,25 @@ class Attack:
     positions: tuple[float, ...]
     gain: float
     total: float
+    rounds: int
     tried: int
 
     @property
     def extracts(self) -> bool:
-        """True if it gains with every round."""
-        return self.gain > 0
+        """True if more came out than ever went in, and each round brings more."""
+        return self.gain > 0 and self.total > 0
 
     @property
     def motion(self) -> PrescribedMotion:
         """All rounds, as a hand for the simulator."""
-        return PrescribedMotion(_rounds(np.array(self.positions)))
+        return PrescribedMotion(_listed(np.array(self.positions), self.rounds))
 
     def __str__(self) -> str:
         return (
             f"{self.name}: a round of {len(self.positions)} samples takes {self.gain:.3g} J out"
             if self.extracts
-            else f"the best of {self.tried} motions, {self.name}, costs the hand {-self.gain:.3g} J a round"
+            else f"none of {self.tried} motions takes energy out; the best, {self.name}, "
+            f"{'costs' if self.gain <= 0 else 'gets back from what it paid'} {abs(self.gain):.3g} J a round"
         )
 
 
@@ -91,30 +96,38 @@ def attack(device: Device, environment: Environment) -> Attack:
     environment
         Any that can be simulated, laws in a row included.
     """
-    best: Attack | None = None
     motions = _motions(device)
-    for name, positions in motions.items():
-        gain, total = _played(device, environment, positions)
-        if best is None or gain > best.gain:
-            best = Attack(name, tuple(map(float, positions)), gain, total, len(motions))
-    assert best is not None
-    return best
+    found = [
+        Attack(name, tuple(map(float, positions)), *_played(device, environment, positions), len(motions))
+        for name, positions in motions.items()
+    ]
+    return max(found, key=lambda a: (a.extracts, a.gain))
 
 
-def _played(device: Device, environment: Environment, positions: Floats) -> tuple[float, float]:
-    path = _rounds(positions)
+def _played(device: Device, environment: Environment, positions: Floats) -> tuple[float, float, int]:
+    """Gain of a round, taken out in all, rounds."""
+    rounds = ROUNDS
+    gain, total = _taken(device, environment, positions, rounds)
+    if gain > 0 >= total:
+        rounds += ceil(-1.5 * total / gain)
+        if rounds * len(positions) > LONGEST:
+            return gain, total, ROUNDS
+        gain, total = _taken(device, environment, positions, rounds)
+    return gain, total, rounds
+
+
+def _taken(device: Device, environment: Environment, positions: Floats, rounds: int) -> tuple[float, float]:
+    path = _listed(positions, rounds)
     period = device.exact("sample_period")
     trace = simulate(device, environment, PrescribedMotion(path), (len(path) - 1) * period)
-    work = trace["hand_work"].values
-    size = len(positions)
-    friction = trace["coulomb_loss"].values + trace["viscous_loss"].values
-    gain = float(work[-1 - size] - work[-1])
-    lost = float(friction[-1] - friction[-1 - size])
-    return (gain if abs(gain) > _SURE * lost else min(gain, 0.0)), -float(work[-1])
+    taken = trace["kinetic_energy"].values - trace["hand_work"].values  # what moves at the end is not lost
+    half = rounds // 2
+    gain = (taken[-1] - taken[-1 - half * len(positions)]) / half
+    return float(gain), float(taken[-1])
 
 
-def _rounds(positions: Floats) -> Floats:
-    return np.concatenate([np.tile(positions, ROUNDS), positions[:1]])
+def _listed(positions: Floats, rounds: int) -> Floats:
+    return np.concatenate([np.tile(positions, rounds), positions[:1]])
 
 
 def _motions(device: Device) -> dict[str, Floats]:

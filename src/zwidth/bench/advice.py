@@ -26,7 +26,7 @@ def advice(comparison: LawComparison) -> str:
         else f"The device alone renders {limit:.4g} N/m passively, so that {wanted:g} N/m needs a law or "
         "other hardware."
     ]
-    proved = scores.where(scores["status"] == "passive", drop=True)
+    proved = scores.where(scores["status"].isin(["passive", "theorem"]), drop=True)
     if proved.sizes["law"]:
         best = _stiffest(proved)
         felt = float(proved["static_stiffness"].sel(law=best))
@@ -45,7 +45,7 @@ def advice(comparison: LawComparison) -> str:
             f"Quiet under a fast finger and closest to what is wanted is {best!r} with {felt:.4g} N/m"
             + (
                 ""
-                if status == "passive"
+                if status in ("passive", "theorem")
                 else f"; it is {status}: a skilled hand takes energy out, an ordinary one did not"
                 if status == "active"
                 else "; for every hand it is undecided"

@@ -25,6 +25,7 @@ from zwidth.loop.simulate import run_setup, simulate
 from zwidth.passivity.check import check
 from zwidth.passivity.worst_hand.limit import COVERS_CONTACT
 from zwidth.rendering.rendered import Rendered
+from zwidth.rendering.stage import Surroundings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -68,7 +69,8 @@ class LawComparison:
     scores
         Dimension `law`; the variables of `SCORES`, units and meanings in the attributes, and
         `gain`, energy that the worst motion takes out in a round [J], `step_time` [s],
-        `status`, "passive", "active" or "undecided".
+        `status`: "passive" with a certificate, "theorem" by a proof on paper alone, "active" with a
+        motion, or "undecided".
     attacks
         The motion of each law that took out most.
     evidence
@@ -195,6 +197,10 @@ def _status(device: Device, law: Environment, found: Attack, seconds: float) -> 
                 f"What the laws add is never more than that of {covering.damping} N·s/m, and every such "
                 f"force is covered, contact made and broken: {verdict.claim}"
             )
+    if isinstance(law, Rendered):
+        reason = law.stages[-1].theorem(Surroundings(device, law.environment))
+        if reason is not None:
+            return "theorem", f"By a proof on paper, without a certificate: {reason}."
     return "undecided", f"{found}; no criterion covers this law"
 
 

@@ -18,11 +18,17 @@ from zwidth.rendering import (
     BrakingPulse,
     CrossingCorrection,
     Damper,
+    DualRate,
+    EnergyBounding,
+    EnergyTank,
     EventTransient,
     Extrapolation,
+    ForceBounding,
     HalfSamplePrediction,
+    Held,
     Hysteresis,
     Kalman,
+    PassiveLeap,
     PassivityController,
     PoleMatched,
     Rendered,
@@ -37,6 +43,9 @@ Law = Callable[[Device, Wall], Environment]
 
 CUTOFF = 100.0
 """Of the velocity filter [Hz]."""
+
+SLOW = 10
+"""Samples between two updates of an environment that is computed slowly."""
 
 FAST = 0.2
 """Speed of a hand whose leak a hysteresis is sized for [m/s]."""
@@ -91,6 +100,13 @@ LAWS: Mapping[str, Law] = {
     "passivity-controller-limited": _through(
         lambda d, w: PassivityController(largest_damping=d.exact("damping") or 1, resets=True, ceiling=0)
     ),
+    "force-bounding": _through(lambda d, w: ForceBounding()),
+    "force-bounding-ideal": _through(lambda d, w: ForceBounding(encoder="ideal")),
+    "energy-bounding": _through(lambda d, w: EnergyBounding()),
+    "energy-tank": _through(lambda d, w: EnergyTank()),
+    "passive-leap": _through(lambda d, w: PassiveLeap()),
+    "local-spring": _through(lambda d, w: DualRate(samples=SLOW)),
+    "held": _through(lambda d, w: Held(samples=SLOW)),
     "hysteresis": _through(lambda d, w: Hysteresis(fastest=FAST)),
     "braking-pulse": _through(lambda d, w: BrakingPulse()),
     "event-transient": _through(lambda d, w: EventTransient()),

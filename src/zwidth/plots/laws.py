@@ -9,12 +9,13 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, new_figure
+from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, OUTCOME, new_figure
 
 _SHOWN = 0.12
 """Time of a tap that is drawn [s]."""
 
-_MARKS = {"passive": "o", "active": "X", "undecided": "D"}
+_MARKS = {"passive": "o", "theorem": "s", "active": "X", "undecided": "D"}
+_COLOURS = {**OUTCOME, "theorem": BLUE}
 
 
 @rc_context(LOOK)
@@ -42,7 +43,7 @@ def _trade_off(axes: Axes, comparison: Any, names: list[str]) -> None:
     floor = 1e-3
     for number, (name, x, y) in enumerate(zip(names, felt, np.maximum(given, floor), strict=True), 1):
         status = str(scores["status"].sel(law=name).item())
-        axes.plot(x, y, _MARKS[status], color=OUTCOME[status], ms=8, alpha=0.8, clip_on=False)
+        axes.plot(x, y, _MARKS[status], color=_COLOURS[status], ms=8, alpha=0.8, clip_on=False)
         axes.annotate(str(number), (x, y), (6, 4 + 7 * (number % 2)), textcoords="offset points", fontsize=8)
     axes.axvline(wanted, color=GREY, lw=0.8, ls=":")
     axes.set_yscale("log")
@@ -52,7 +53,7 @@ def _trade_off(axes: Axes, comparison: Any, names: list[str]) -> None:
     axes.set_ylabel(f"most energy given out in a touch [mJ], {floor:g} or less at the foot")
     axes.set_title("what is felt, and what it costs")
     handles = [
-        axes.plot([], [], mark, color=OUTCOME[status], label=status)[0] for status, mark in _MARKS.items()
+        axes.plot([], [], mark, color=_COLOURS[status], label=status)[0] for status, mark in _MARKS.items()
     ]
     axes.legend(handles=handles, loc="upper left")
 
@@ -66,7 +67,7 @@ def _taps(axes: Axes, comparison: Any, names: list[str]) -> None:
         shown = (time >= start - 0.005) & (time <= start + _SHOWN)
         status = str(comparison.scores["status"].sel(law=name).item())
         force = trace["actuator_force"].values[shown] / peak * 0.85
-        axes.plot((time[shown] - start) * 1e3, force - number, color=OUTCOME[status], lw=1.1)
+        axes.plot((time[shown] - start) * 1e3, force - number, color=_COLOURS[status], lw=1.1)
         axes.axhline(-number, color=GREY, lw=0.4)
     axes.set_yticks(
         [-n for n in range(1, len(names) + 1)], [f"{n}  {name}" for n, name in enumerate(names, 1)]

@@ -98,6 +98,16 @@ class DualRate(Stage):
         """No spring yet, and an update is due."""
         return [0.0, reading, 0.0, 1.0, 0.0]
 
+    def theorem(self, at: Surroundings) -> str | None:
+        """Where nothing is late, the encoder has no counts, and the device can pay for the local spring."""
+        device = at.device
+        ideal = device.exact("resolution") == 0 and device.exact("delay") == 0
+        slope = 0 if self.slope is None else self.slope.fraction
+        paid = slope <= 2 * device.exact("damping") / device.exact("sample_period")
+        if not (ideal and paid and self.updates == "continuous"):
+            return None
+        return "a local spring of at most 2b/T whose force is paid for at every update"
+
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
         unit = "N·m/rad" if motion == "rotary" else "N/m"

@@ -56,6 +56,12 @@ class EnergyBounding(Stage):
         """
         return [2 * damping_per_sample(at, "energy bounding"), half_step(at)]
 
+    def theorem(self, at: Surroundings) -> str | None:
+        """Where nothing is late and the encoder has no counts."""
+        if at.device.exact("resolution") != 0 or at.device.exact("delay") != 0:
+            return None
+        return "energy bounding: what the next move can take out grows by no more than what came in"
+
     def describe(self, motion: str = "linear") -> str:
         """The law in a few words."""
         return "energy bounding"

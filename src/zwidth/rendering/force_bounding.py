@@ -86,6 +86,13 @@ class ForceBounding(Stage):
         )
         return [damping_per_sample(at, "force bounding"), friction, size, half_step(at), float(self.resets)]
 
+    def theorem(self, at: Surroundings) -> str | None:
+        """Where nothing is late, and the law knows of the counts or there are none."""
+        counted = self.encoder == "counted" or at.device.exact("resolution") == 0
+        if not counted or at.device.exact("delay") != 0:
+            return None
+        return "force bounding: the force is never more than what the hand has put in can pay for"
+
     def describe(self, motion: str = "linear") -> str:
         """The law in a few words."""
         return f"force bounding ({self.encoder} encoder{', resets' if self.resets else ''})"

@@ -87,6 +87,13 @@ class PassiveLeap(Stage):
         friction = float(at.device.exact("coulomb_friction"))
         return [stiffness, damping_per_sample(at, "a passive leap"), friction, float(self.resets)]
 
+    def theorem(self, at: Surroundings) -> str | None:
+        """Where nothing is late, the encoder has no counts, and the device renders the spring anyway."""
+        limit = 2 * at.device.exact("damping") / at.device.exact("sample_period")
+        stiffness = at.stiffness if self.stiffness is None else float(self.stiffness)
+        ideal = at.device.exact("resolution") == 0 and at.device.exact("delay") == 0
+        return "K ≤ 2b/T: the wall is passive and unchanged" if ideal and stiffness <= limit else None
+
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
         unit = "N·m/rad" if motion == "rotary" else "N/m"

@@ -69,6 +69,13 @@ class Stage(ABC):
         """
         return None
 
+    def theorem(self, at: Surroundings) -> str | None:
+        """Why no hand takes energy out with this law last in the row, by a proof on paper; None without one.
+
+        No certificate comes with it: what can be checked by a machine says `check`.
+        """
+        return None
+
     @abstractmethod
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
