@@ -110,6 +110,18 @@ def plain(
         yield wall + added
 
 
+@pytest.mark.parametrize("stiffness", [300, 800, 2000, 5000])
+@pytest.mark.parametrize(
+    "hand", [zw.operators.TypicalTouch(), zw.operators.MaliciousTouch(), zw.operators.Dowel()]
+)
+def test_against_hands_of_some_mass_it_owes_one_sample_at_most(hand, stiffness):
+    """Where the next move is about the last one: never less than minus the work of one sample."""
+    trace = zw.simulate(PADDLE, zw.render(zw.Wall(stiffness), PassivityController()), hand, 1.0)
+    moves = np.diff(trace["position"].values)
+    sample = np.abs(trace["actuator_force"].values[:-1] * moves).max()
+    assert float(trace["actuator_work"].max()) <= sample
+
+
 def test_a_hand_that_turns_back_in_time_takes_energy_out():
     """The controller pays for a move that does not come; without it the wall is passive and proved so."""
     assert zw.check(PADDLE, zw.Wall(300)).outcome == "passive"
