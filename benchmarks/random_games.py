@@ -199,11 +199,8 @@ def simulated(loop: Loop, motion: Any) -> tuple[float, float]:
 
 def tracked(loop: Loop, motion: Any) -> bool:
     """True when a hand that is stiff enough, moving the device's mass, takes energy out of every round."""
-    for off_the_edge in (
-        2.0**-10,
-        2.0**-14,
-        2.0**-20,
-    ):  # counts by which a hand that is not rigid stays off an edge
+    for halvings in (10, 14, 16, 18, 20):
+        off_the_edge = 2.0**-halvings  # counts by which a hand that is not rigid stays off an edge
         few, many = (_got_by_tracking(loop, motion, rounds, off_the_edge) for rounds in (30, 60))
         if any(later > sooner for sooner, later in zip(few, many, strict=True)):
             return True
