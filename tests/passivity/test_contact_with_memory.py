@@ -1,0 +1,129 @@
+"""Laws with memory, touched and left: the inequalities of the proofs, and both sides by the game."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from fractions import Fraction
+from random import Random
+
+import pytest
+
+import zwidth as zw
+from zwidth.passivity.worst_hand.domain import domain_for, losses_of
+from zwidth.passivity.worst_hand.hand import Game
+from zwidth.passivity.worst_hand.law import finite_law
+
+ZERO = Fraction(0)
+
+
+def moved(random, x, size):
+    """The next position: anywhere, near an edge of the encoder, or near the surface; Δ = 1."""
+    tiny = Fraction(1, 1000)
+    return random.choice(
+        (
+            x + Fraction(random.randint(-1000 * size, 1000 * size), 1000),
+            random.randint(-size, size) + random.choice((ZERO, tiny, -tiny, 1 - tiny)),
+            random.choice((ZERO, Fraction(1), 1 - tiny, 1 + tiny, Fraction(1, 2), Fraction(-size))),
+            x + Fraction(random.randint(-2000, 2000), 1000),
+        )
+    )
+
+
+@pytest.mark.parametrize("anew", [False, True])
+@pytest.mark.parametrize("seed", range(200))
+def test_a_law_that_relaxes_gives_no_more_than_in_contact(seed, anew):
+    """Fed with the penetration: in each interval the hand pays at least what the motion y pays, T = 1."""
+    random = Random(seed)
+    rest = [Fraction(-random.randint(0, 6), 4) for _ in range(random.randint(1, 5))]
+    static = Fraction(random.choice((0, 0, 1, 3, 8)), 4)
+    h = [static - sum(rest), *rest]
+    b, friction, m = h[0] / 2, (h[0] - sum(rest)) / 2, static / 2
+    size, x = random.choice((1, 2, 5, 20)), -Fraction(random.randint(0, 30), 10)
+    u, y = [], []
+    for _ in range(60):
+        x2 = moved(random, x, size)
+        reading = Fraction(x // 1)
+        u, y = [max(reading, ZERO), *u], [max(x - 1, ZERO), *y]
+        force = sum(c * v for c, v in zip(h, u, strict=False)) if reading > 0 else ZERO
+        linear = sum(c * v for c, v in zip(h, y, strict=False))
+        d, e = x2 - x, max(x2 - 1, ZERO) - y[0]
+        paid = force * d + b * d * d + friction * abs(d)
+        assert paid >= linear * e + b * e * e + m * (max(x2, ZERO) - max(x, ZERO))
+        if anew and reading <= 0:
+            u, y = [], []
+        x = x2
+
+
+@pytest.mark.parametrize("anew", [False, True])
+@pytest.mark.parametrize("seed", range(200))
+def test_a_solid_that_never_pulls_has_this_storage(seed, anew):
+    """Exactly at the two conditions, with encoder, the storage of the proof rises by no more than is paid."""
+    random = Random(seed)
+    k, g = Fraction(random.randint(0, 8), 4), Fraction(random.randint(1, 8), 4)
+    p = Fraction(random.randint(0, 19), 20)
+    b, friction = k / 2 + g / (1 + p), (k + 2 * g) / 2
+    size, x, a, average = random.choice((1, 2, 5, 20)), -Fraction(random.randint(0, 30), 10), ZERO, ZERO
+
+    def stored(x, average):
+        w = max(x - 1, ZERO, g * average / (k + g))
+        return (k * w**2 + g * (w - average) ** 2 + k * max(x, ZERO)) / 2
+
+    for _ in range(60):
+        x2 = moved(random, x, size)
+        reading = Fraction(x // 1)
+        u, y, d = max(reading, ZERO), max(x - 1, ZERO), x2 - x
+        force = max(k * u + g * (u - a), ZERO) if reading > 0 else ZERO
+        forgets = anew and reading <= 0
+        after = ZERO if forgets else p * average + (1 - p) * y
+        assert force * d + b * d * d + friction * abs(d) >= stored(x2, after) - stored(x, average)
+        a = ZERO if forgets else p * a + (1 - p) * u
+        x, average = x2, after
+
+
+def test_the_linear_criterion_asks_for_half_the_first_force():
+    """b ≥ h₀ T/2 for every law, as the mean of the criterion over all frequencies."""
+    ideal = zw.Device(damping=9, coulomb_friction=0, resolution=0, sample_period=1, delay=0, mass=1)
+    for law, first in (
+        (zw.Wall(3, damping=2), 5),
+        (zw.Wall(3, damping=2, velocity_filter=zw.Window(4)), Fraction(7, 2)),
+        (zw.Wall(3, damping=2, velocity_filter=zw.OnePole(7)), Fraction(13, 4)),
+        (zw.StandardLinearSolid(3, 5, 4), 3 + Fraction(20, 9)),
+    ):
+        assert zw.check(ideal, law).required_damping >= first / 2
+
+
+def played(surface, damping, friction, time_constant, counts=12, clamped=False):
+    """A wall of K = 1, B = 10 behind one pole, T = Δ = 1, with parts of what sustained contact asks for."""
+    wall = zw.Wall(1, damping=10, velocity_filter=zw.OnePole(time_constant))
+    branch = Fraction(10, 1 + time_constant)
+    need = Fraction(1, 2) + Fraction(10, 1 + 2 * time_constant), Fraction(1, 2) + branch
+    device = zw.Device(
+        damping=need[0] * Fraction(damping),
+        coulomb_friction=need[1] * Fraction(friction),
+        resolution=1,
+        sample_period=1,
+        delay=0,
+        mass=1,
+    )
+    law, losses = replace(finite_law(device, wall), surface=surface, clamped=clamped), losses_of(device)
+    return Game(law, losses, domain_for(law, losses, counts, counts), "linear")
+
+
+def test_a_slow_filter_fed_with_the_position_breaks_the_criterion():
+    """Just enough for sustained contact: proved if fed with the penetration, a motion gains if not."""
+    storage = played("penetration", "1.02", "1.02", 9).prove(32, time.monotonic() + 60)
+    assert storage is not None
+    assert storage.certificate().verify()
+    game = played("position", "1.02", "1.02", 9)
+    found = (game.refute(steps, time.monotonic() + 20) for steps in (64, 256, 16))
+    motion = next((m for m in found if m is not None), None)
+    assert motion is not None
+    assert motion.verify()
+
+
+def test_a_fast_filter_fed_with_the_position_keeps_it():
+    """With τ = T the game proves these hands."""
+    storage = played("position", "1.02", "1.02", 1).prove(32, time.monotonic() + 60)
+    assert storage is not None
+    assert storage.certificate().verify()
