@@ -25,7 +25,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import cos, pi, sqrt
+from math import sqrt
 from typing import Any
 
 from zwidth.device import Device
@@ -100,7 +100,10 @@ class CouplingCondition:
         return [
             ("coupling stiffness K_c", f"{float(self.stiffness):.6g} {unit['stiffness']}"),
             ("coupling damping B_c", f"{float(self.damping):.6g} {unit['damping']}"),
-            ("required device damping", "none is enough" if need is None else f"{need:.6g} {unit['damping']}"),
+            (
+                "required device damping",
+                "none is enough" if need is None else f"{need:.6g} {unit['damping']}",
+            ),
             ("device damping", f"{float(self.device.exact('damping')):.6g} {unit['damping']}"),
         ]
 
@@ -147,6 +150,7 @@ def coupling_condition(device: Device, stiffness: RealLike, damping: RealLike = 
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
     k = nonnegative("stiffness", stiffness, NEGATIVE_SPRING)
     b = number("damping", damping)
+    device.exact("damping")  # an interval of it has no single answer to rows() and the counterexample
     need = needed_damping(k, b, device.exact("sample_period"), device.exact("delay"))
     verdict = None
     if need is not None:
@@ -173,9 +177,7 @@ def needed_damping(
     mean, swing = (s + kappa**2 / s) / 4, (s - kappa**2 / s) / 4
     sides = [Fraction(0), *fejer, Fraction(0), Fraction(0)]  # of index −1 … n, which is even about 0
     sides[0] = fejer[1] if len(fejer) > 1 else Fraction(0)
-    even = [
-        mean * sides[j + 1] - swing / 2 * (sides[j] + sides[j + 2]) for j in range(len(fejer) + 1)
-    ]
+    even = [mean * sides[j + 1] - swing / 2 * (sides[j] + sides[j + 2]) for j in range(len(fejer) + 1)]
     return [even[0], *(2 * a for a in even[1:])]
 
 
@@ -210,9 +212,9 @@ def _tuned(
     """
     t = float(period)
     z = complex(cosine, sqrt(1 - cosine * cosine))
-    whole, alpha = divmod(float(device.delay) / t, 1)
+    whole, alpha = divmod(float(device.exact("delay")) / t, 1)
     c = z ** -(int(whole) + 1) * (1 - alpha + alpha / z)
-    b = float(device.damping) or (stiffness * t + abs(damping)) * 1e-3
+    b = float(device.exact("damping")) or (stiffness * t + abs(damping)) * 1e-3
     own = (1 - 1 / z) / (stiffness * t + damping * (1 - 1 / z))
     loss = max(0.0, -c.real / (2 * b) - own.real)
     reactance = -c.imag / (2 * b) - own.imag
@@ -223,8 +225,8 @@ def _tuned(
 
 def _element(loss: Fraction, part: Fraction, spring: bool, period: Fraction) -> PulseTransferFunction:
     """E(z) of the mobility loss + part (z − 1)/(z + 1), a spring, or loss + part (z + 1)/(z − 1), a mass."""
+    if spring and not loss:
+        return PulseTransferFunction([1, 1], [period * part, 0])
     if spring:  # E = (z − 1)(z + 1)/(T z [loss (z + 1) + part (z − 1)])
-        return PulseTransferFunction(
-            [1, 0, -1], [period * (loss + part), period * (loss - part), 0]
-        ) if loss else PulseTransferFunction([1, 1], [period * part, 0])
+        return PulseTransferFunction([1, 0, -1], [period * (loss + part), period * (loss - part), 0])
     return PulseTransferFunction([1, -2, 1], [period * (loss + part), period * (part - loss), 0])

@@ -18,10 +18,11 @@ Other delays are optimised numerically over κ/s.  Derived for this project.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -29,7 +30,7 @@ from scipy.optimize import minimize_scalar
 
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
-from zwidth.environment.environment import certain
+from zwidth.environment.environment import Environment, certain
 from zwidth.errors import InputError
 from zwidth.passivity.check import check
 from zwidth.passivity.coupling import CouplingCondition, coupling_condition, needed_damping
@@ -40,6 +41,9 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.rendering import VirtualCoupling
 
 Goal = Literal["stiffest"] | Wall
+
+Edge = Callable[[float], tuple[float, float]]
+"""κ/s → (κ, s) on the edge of what the device can render [N·s/m]."""
 
 _RATIOS = 400
 """Values of κ/s among which the nearest coupling is looked for, before it is refined."""
@@ -87,14 +91,15 @@ class CouplingDesign:
     @property
     def margin(self) -> float:
         """The part of the device damping that is left, (b − need)/b."""
-        b = self.device.exact("damping")
-        return float((b - Fraction(repr(self.condition.required_damping))) / b)
+        b, need = self.device.exact("damping"), self.condition.required_damping
+        assert need is not None, "a design has a need"
+        return float((b - Fraction(repr(need))) / b)
 
     @property
     def _period(self) -> Fraction:
         return self.device.exact("sample_period")
 
-    def before(self, environment: object) -> VirtualCoupling:
+    def before(self, environment: Environment | Any) -> VirtualCoupling:
         """The coupling with an environment behind it."""
         return self.condition.before(environment)
 
@@ -155,7 +160,7 @@ def design_coupling(device: Device, goal: Goal = "stiffest", margin: RealLike = 
 def _wanted(goal: object) -> tuple[Fraction, Fraction]:
     if not isinstance(goal, Wall) or goal.clamped or not isinstance(goal.velocity_filter, BackwardDifference):
         raise InputError(
-            f'goal is "stiffest" or a wanted Wall(stiffness, damping) on the backward difference, got {goal!r}'
+            f'goal is "stiffest" or a plain Wall(stiffness, damping), not clamped or filtered; got {goal!r}'
         )
     k, b = certain(goal.stiffness, "stiffness"), certain(goal.damping, "damping")
     if b < 0:
@@ -163,7 +168,9 @@ def _wanted(goal: object) -> tuple[Fraction, Fraction]:
     return k, b
 
 
-def _undelayed(b: Fraction, t: Fraction, wanted: tuple[Fraction, Fraction] | None) -> tuple[Fraction, Fraction]:
+def _undelayed(
+    b: Fraction, t: Fraction, wanted: tuple[Fraction, Fraction] | None
+) -> tuple[Fraction, Fraction]:
     if wanted is None:
         return 2 * b / t, Fraction(0)
     k = min(wanted[0], 2 * b / t)
@@ -203,13 +210,13 @@ def _need(ratio: float, delay: Fraction) -> float:
     return float(np.max(chebyshev.chebval(at, series)))
 
 
-def _stiffest(edge: object) -> float:
+def _stiffest(edge: Edge) -> float:
     """κ along the edge of a convex region has one maximum."""
     found = minimize_scalar(lambda r: -edge(r)[0], bounds=(0, 1), method="bounded", options={"xatol": 1e-12})
     return float(max((found.x, 1.0), key=lambda r: edge(r)[0]))
 
 
-def _nearest(edge: object, wanted: tuple[Fraction, Fraction], t: float) -> float:
+def _nearest(edge: Edge, wanted: tuple[Fraction, Fraction], t: float) -> float:
     """The mean square of Z_c − Z over the frequencies is (δK + δB/T)² + (δB/T)²."""
     k, d = (float(part) for part in wanted)
 
