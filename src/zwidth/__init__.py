@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring
     from zwidth.loop.timing import Timing
+    from zwidth.passivity import two_port
+    from zwidth.passivity.coupling import CouplingCondition, coupling_condition
+    from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
     from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.passivity.worst_hand import Bracket, WorstHand
     from zwidth.rendering.rendered import render
@@ -45,6 +48,8 @@ __all__ = [
     "Bracket",
     "Certificate",
     "ContinuousTransferFunction",
+    "CouplingCondition",
+    "CouplingDesign",
     "Device",
     "Exact",
     "FrictionCurve",
@@ -74,6 +79,8 @@ __all__ = [
     "closed_forms",
     "compare",
     "compare_traces",
+    "coupling_condition",
+    "design_coupling",
     "load_trace",
     "operators",
     "passive_limit",
@@ -84,11 +91,14 @@ __all__ = [
     "rotary",
     "simulate",
     "simulate_batch",
+    "two_port",
     "worst_hand",
 ]
 
 _LATER = {
     "Bracket": "zwidth.passivity.worst_hand",
+    "CouplingCondition": "zwidth.passivity.coupling",
+    "CouplingDesign": "zwidth.passivity.coupling_design",
     "LawComparison": "zwidth.bench",
     "compare": "zwidth.traces",
     "HuntCrossley": "zwidth.environment",
@@ -102,10 +112,13 @@ _LATER = {
     "rendering": "zwidth.rendering",
     "replay": "zwidth.passivity.real_hand",
     "compare_traces": "zwidth.traces",
+    "coupling_condition": "zwidth.passivity.coupling",
+    "design_coupling": "zwidth.passivity.coupling_design",
     "load_trace": "zwidth.traces",
     "passive_limit": "zwidth.traces",
     "simulate": "zwidth.traces",
     "simulate_batch": "zwidth.traces",
+    "two_port": "zwidth.passivity.two_port",
     "worst_hand": "zwidth.traces",
 }
 """Where a name is found when it is first used: the simulator's libraries take their time to load."""

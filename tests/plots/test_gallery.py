@@ -15,6 +15,7 @@ NUMBERS = {
     "plot_bouncing_ball": "after 3 strikes the ball comes back 12.37 times as far as it started",
     "plot_buzz_or_bounce": "active tactile: largest passive stiffness 107.1 N/m",
     "plot_contact_with_memory": "fed with the position: active at 1.84 of the linear criterion's damping",
+    "plot_coupling": "one sample late: 115.5 N/m, a spring alone 75.0 N/m",
     "plot_damped_wall_map": "friction: 8 of 8 brackets lie within 1 % of σ = ½ + β_v",
     "plot_delay": "with 0.3 ms: 174.2 N/m; rounded up to 1 ms: 100 N/m",
     "plot_how_stiff": "largest passive stiffness at 1 kHz: 300 N/m",

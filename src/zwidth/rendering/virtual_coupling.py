@@ -3,9 +3,10 @@
     Z_c(z) = K_c + B_c (z − 1)/(T z)        H = Z_c E/(Z_c + E)
 
 The handle pulls at one end of the coupling, the environment E(z) holds the
-other (Colgate, Stanley & Brown 1995).  A device that renders a wall of K_c and
-B_c passively renders it before every E that is passive in discrete time, and
-no less will do for all of them: the coupling bounds what the hand can meet.
+other (Colgate, Stanley & Brown 1995).  A device without delay that renders a wall
+of K_c and B_c ≥ 0 passively renders it before every E that is passive in discrete
+time, and no less will do for all of them: the coupling bounds what the hand can
+meet.  With a delay or B_c < 0 more is needed: see `zwidth.passivity.coupling`.
 """
 
 from __future__ import annotations
