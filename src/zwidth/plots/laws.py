@@ -18,6 +18,9 @@ _SHOWN = 0.12
 _FOOT = 1e-3
 """Energy that is drawn at the foot of its axis, with all below it [mJ]."""
 
+_MOST = 1e5
+"""The same at the other end: a loop that diverges would leave no room to the others [mJ]."""
+
 _ROW = 0.62
 """Part of a row that the median of the largest forces fills."""
 
@@ -66,14 +69,19 @@ def _stiffness(axes: Axes, scores: Any, wanted: float) -> None:
 
 
 def _energy(axes: Axes, scores: Any, joules: NDArray[np.float64], label: str) -> None:
-    energy = np.maximum(1e3 * joules, _FOOT)
+    energy = np.clip(1e3 * joules, _FOOT, _MOST)
     axes.set_xscale("log")
     _dots(axes, scores, energy, _FOOT)
     axes.set_xlim(_FOOT / 2, 3 * max(float(energy.max()), 1.0))
     axes.minorticks_off()
     ticks = 10.0 ** np.arange(-3, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1, 2)
-    axes.set_xticks(ticks, [f"≤{_FOOT:g}" if tick <= _FOOT * 1.1 else f"{tick:g}" for tick in ticks])
+    axes.set_xticks(ticks, [_tick(tick) for tick in ticks])
     axes.set_xlabel(label)
+
+
+def _tick(energy: float) -> str:
+    sign = "≤" if energy < 1.1 * _FOOT else "≥" if energy > 0.9 * _MOST else ""
+    return f"{sign}{energy:g}"
 
 
 def _dots(axes: Axes, scores: Any, values: NDArray[np.float64], start: float) -> None:
