@@ -18,7 +18,7 @@ _SHOWN = 0.12
 _FOOT = 1e-3
 """Energy that is drawn at the foot of its axis, with all below it [mJ]."""
 
-_MOST = 1e5
+_MOST = 1e3
 """The same at the other end: a loop that diverges would leave no room to the others [mJ]."""
 
 _ROW = 0.62
