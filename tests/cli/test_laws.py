@@ -8,12 +8,16 @@ import re
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from strategies import toml_values
 
 import zwidth as zw
 from zwidth import rendering
-from zwidth.cli.laws import ESTIMATORS, LAWS, with_laws
+from zwidth.cli.laws import ESTIMATORS, LAWS, build_law, with_laws
 from zwidth.cli.main import main
 from zwidth.cli.specification import TABLES, read_tables
+from zwidth.cli.table import Table
 
 LOOP = '[device]\ncatalogue = "haptic-paddle"\n\n[environment]\ntype = "wall"\nstiffness = 400\n'
 WALL = zw.Wall(400)
@@ -191,3 +195,27 @@ def test_a_slip_on_the_command_line(names, said, capsys):
     """It ends with status 2 and one line."""
     assert main(["simulate", "haptic-paddle", "--stiffness", "400", *TOUCH, "--law", names]) == 2
     assert capsys.readouterr().err.startswith(f"zwidth: command line: --law: {said}")
+
+
+VALUES = toml_values() | st.sampled_from(
+    [1, "1 ms", "2 N", [1, 2], True, "kalman", {"type": "adaptive-window"}]
+)
+
+
+def described(table: Table, motion: str) -> str:
+    """The law that a table makes, or the message why it makes none."""
+    try:
+        return build_law(table, motion).describe(motion)
+    except zw.InputError as error:
+        return str(error)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.sampled_from(sorted(LAWS)), st.data(), st.sampled_from(["linear", "rotary"]))
+def test_any_values_make_a_law_or_one_line(name, data, motion):
+    """Whatever stands in a file: no other exception, and a message that can be printed."""
+    keys = st.sampled_from([*LAWS[name].keys, "damping"])
+    values = data.draw(st.dictionaries(keys, VALUES, max_size=4))
+    text = described(Table("[[law]]", {"type": name, **values}), motion)
+    assert text.isprintable()
+    assert len(text) < 900
