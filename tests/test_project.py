@@ -196,10 +196,11 @@ def test_the_quickstart_example_says_what_comes_out(tmp_path: Path, monkeypatch:
     assert Path("wall.json").exists()
 
 
-@pytest.mark.parametrize("page", ["docs/quickstart.md", "docs/specification.md"])
+@pytest.mark.parametrize("page", ["docs/quickstart.md", "docs/specification.md", "docs/laws.md"])
 def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> None:
     """Every TOML block with tables in the docs is a valid specification; one without is a velocity filter."""
-    from zwidth.cli.specification import LOOP_TABLES, TABLES, read_tables, specified
+    from zwidth.cli.laws import with_laws
+    from zwidth.cli.specification import TABLES, read_tables, specified
     from zwidth.cli.touch import build_touch
 
     blocks = _blocks(page, "toml")
@@ -216,7 +217,8 @@ def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> 
             given |= {"motion": "rotary"} if given and "rad" in text else {}
             given |= {} if "[environment]" in text else {"stiffness": "1"}
             read = read_tables([path], TABLES)
-            loop = specified({k: t for k, t in read.items() if k in LOOP_TABLES}, given)
+            loop = specified(read, given)
+            with_laws(loop.environment, read.get("law"), None, loop.device.motion)
             if "operator" in read:
                 build_touch(read["operator"], read.get("simulation"), {}, loop.device.motion)
 
@@ -243,16 +245,17 @@ def _help(*command: str) -> str:
 def test_every_parameter_is_on_the_command_line_page() -> None:
     """Every parameter that `zwidth check` takes stands on its page, and every type of environment."""
     from zwidth.cli.environments import TYPES, option_keys
+    from zwidth.cli.laws import LAWS
     from zwidth.cli.specification import DEVICE_KEYS
 
     page = _command_line_page()
     keys = {*DEVICE_KEYS, *option_keys(), "type"}
     missing = [key for key in keys if f"`--{key.replace('_', '-')}" not in page]
-    missing += [name for name in TYPES if f"`{name}`" not in page]
+    missing += [name for name in (*TYPES, *LAWS) if f"`{name}`" not in page]
     assert not missing
 
 
-@pytest.mark.parametrize("command", ["check", "limit", "simulate", "traces", "devices", "verify"])
+@pytest.mark.parametrize("command", ["check", "limit", "simulate", "compare", "traces", "devices", "verify"])
 def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:
     """What `--help` offers, the page explains."""
     page = _command_line_page()

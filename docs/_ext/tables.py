@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from zwidth import catalogue
 from zwidth.cli.environments import TYPES, Key, all_keys
+from zwidth.cli.laws import ESTIMATORS, LAWS, LawType
 from zwidth.cli.options import Parameter, device_parameters, environment_parameters
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -77,6 +78,36 @@ def environment_keys() -> str:
     return markdown(("key", "unit", "meaning"), rows)
 
 
+def law_types() -> str:
+    """Every law in a row, and what it does."""
+    rows = [
+        (f"`{name}`", f"{{class}}`zwidth.rendering.{law.class_name}`", law.meaning)
+        for name, law in LAWS.items()
+    ]
+    return markdown(("name", "class", "what it is"), rows).replace("{class}", "{py:class}")
+
+
+def law_keys() -> str:
+    """Every key of every law, with its unit."""
+    return _law_keys("law", LAWS)
+
+
+def velocity_keys() -> str:
+    """Every key of the velocities of laws."""
+    return _law_keys("velocity", ESTIMATORS)
+
+
+def _law_keys(what: str, laws: Mapping[str, LawType]) -> str:
+    rows = []
+    for name, law in laws.items():
+        for key, kind in law.keys.items():
+            needed = "; needed" if kind.required else ""
+            rows.append((f"`{name}`", f"`{key}`", _unit(kind.unit), kind.meaning + needed))
+        if not law.keys:
+            rows.append((f"`{name}`", "", "", "no keys"))
+    return markdown((what, "key", "unit", "meaning"), rows)
+
+
 def devices() -> str:
     """The catalogue: every device, every value, every source."""
     return "\n".join(_device(name) for name in catalogue.names())
@@ -120,10 +151,13 @@ TABLES: dict[str, Callable[[], str]] = {
     "devices": devices,
     "environment_keys": environment_keys,
     "environment_options": environment_options,
+    "law_keys": law_keys,
+    "law_types": law_types,
     "operator_options": operator_options,
     "simulation_options": simulation_options,
     "environment_types": environment_types,
     "glossary": glossary,
+    "velocity_keys": velocity_keys,
 }
 
 

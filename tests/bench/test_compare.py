@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import xarray as xr
 import zwidth as zw
 from zwidth.bench import scores, standard_laws
 from zwidth.bench.adversary import attack
+from zwidth.cli.comparison import _json
 from zwidth.cli.main import main
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -63,6 +65,41 @@ def test_the_bench_says_what_check_says(stiff):
             assert not stiff.attacks[name].extracts
         if law.linear:
             assert status[name] in (zw.check(PADDLE, law).outcome, "active")
+
+
+def test_the_table_of_the_docs_is_what_the_bench_says(stiff):
+    """Status and numbers of the page, to the digits that it shows."""
+    page = (Path(__file__).parents[2] / "docs" / "laws.md").read_text(encoding="utf-8")
+    table = page[page.index("| law | status | felt") :].split("\n\n")[0].splitlines()[2:]
+    variables = {
+        "static_stiffness": 1,
+        "tap_chatter": 1e3,
+        "bounces": 1,
+        "settling_time": 1e3,
+        "peak_force": 1,
+        "generated_energy": 1e3,
+        "dowel_energy": 1e3,
+        "gain": 1e3,
+    }
+    assert len(table) >= 18
+    for line in table:
+        name, status, *cells = (cell.strip(" `") for cell in line.strip("|").split("|"))
+        one = stiff.scores.sel(law=name)
+        assert one["status"].item() == status
+        for cell, (variable, factor) in zip(cells, variables.items(), strict=True):
+            value = float(one[variable]) * factor
+            if cell == "none":
+                assert value <= 0
+            else:
+                assert float(cell) == pytest.approx(value, rel=0.006, abs=6e-4), (name, variable)
+
+
+def test_every_key_of_the_json_is_on_its_page(stiff):
+    """Whoever reads scores by program finds each of them explained."""
+    page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
+    document = json.loads(_json(stiff))
+    keys = {*document, *document["laws"]["wall"]}
+    assert not [key for key in keys if f"`{key}`" not in page]
 
 
 def test_an_attack_is_a_motion_that_takes_energy_out(stiff):

@@ -83,4 +83,4 @@ def _number(value: float) -> str:
         return "–"
     if abs(value) < 5e-4:
         return "0"
-    return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
+    return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.3g}"

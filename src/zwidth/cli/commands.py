@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from zwidth.cli.options import Once, add_parameters, overrides
+from zwidth.cli.options import Once, add_parameters, overrides, refuse_laws
 from zwidth.cli.output import print_json, targets, writing
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ def _configure_check(parser: argparse.ArgumentParser) -> None:
         help="save verdict and evidence as JSON, for zwidth verify",
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
+    refuse_laws(parser)
     add_parameters(parser)
 
 
@@ -228,6 +229,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "examples:\n"
             "  zwidth simulate haptic-paddle --stiffness 770 --operator dowel --duration 2 --plot touch.png\n"
             "  zwidth simulate haptic-paddle --stiffness 300 --operator malicious --duration 1 -o touch.nc\n"
+            "  zwidth simulate haptic-paddle --stiffness 770 --law passivity-controller --operator dowel "
+            "--duration 2\n"
             "  zwidth simulate my-wheel.toml my-touch.toml --sound buzz.wav",
             _configure_simulate,
             _simulate,
@@ -247,7 +250,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "examples:\n"
             "  zwidth compare haptic-paddle --stiffness 2000\n"
             "  zwidth compare haptic-paddle --stiffness 2000 --laws virtual-damping,passivity-controller "
-            "--plot laws.png",
+            "--plot laws.png\n"
+            "  zwidth compare my-paddle.toml my-laws.toml --laws wall,virtual-damping",
             _configure_compare,
             _compare,
         ),

@@ -4,35 +4,42 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import Once, add_parameters, overrides
-from zwidth.cli.output import print_json, targets, writing
+from zwidth.cli.laws import with_laws
+from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
+from zwidth.cli.output import print_json, quiet_pipe, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
     from zwidth.bench import LawComparison
+    from zwidth.environment import Environment
+
+YOURS = "yours"
+"""What the row of laws of a specification is called on the bench."""
 
 
 def configure_compare(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth compare`."""
     parser.usage = (
-        "%(prog)s [SOURCE ...] [--laws NAMES] [--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] "
-        "[--force]"
+        "%(prog)s [SOURCE ...] [--laws NAMES] [--law NAMES] [--PARAMETER VALUE ...] [--json] [--plot FILE] "
+        "[-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
         metavar="SOURCE",
         nargs="*",
-        help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both",
+        help="device of the catalogue, or TOML file with tables [device], [environment], [[law]]",
     )
     parser.add_argument(
         "--laws",
         metavar="NAMES",
         action=Once,
-        help="names of laws, with commas between them, or all (default: all)",
+        help="laws of the bench, with commas between them, or all (default: all)",
     )
+    add_law_option(parser)
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the scores as JSON, units in the keys")
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the plot: .png, .svg or .pdf")
@@ -43,16 +50,19 @@ def configure_compare(parser: argparse.ArgumentParser) -> None:
 
 def run_compare(arguments: argparse.Namespace) -> int:
     """`zwidth compare`: 0."""
-    from zwidth.cli.specification import load
+    from zwidth.cli.specification import WITH_LAWS, read_tables, specified
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    loop = load(arguments.sources, overrides(arguments))
+    tables = read_tables(arguments.sources, WITH_LAWS)
+    loop = specified(tables, overrides(arguments))
+    own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     from zwidth.bench.laws import standard_laws
     from zwidth.cli.patience import warn_of_compiling
     from zwidth.traces import compare
 
     warn_of_compiling()
-    laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment))
+    yours = {} if own is loop.environment else {YOURS: own}
+    laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
     found = compare(loop.device, loop.environment, laws)
     if save is not None:
         with writing(save):
@@ -60,20 +70,26 @@ def run_compare(arguments: argparse.Namespace) -> int:
     if plot is not None:
         with writing(plot):
             found.plot(plot)
-    print_json(_json(found)) if arguments.json else print(found)
+    if arguments.json:
+        print_json(_json(found))
+    else:
+        with quiet_pipe():
+            print(found)
     return 0
 
 
-def _chosen(typed: str | None, laws: dict[str, Any]) -> dict[str, Any] | None:
-    """The laws that were named, in the order in which they were."""
+def _chosen(
+    typed: str | None, laws: Mapping[str, Environment], yours: Mapping[str, Environment]
+) -> dict[str, Environment]:
+    """The laws that were named, in the order in which they were; those of the specification last."""
     if typed is None or typed.strip() == "all":
-        return None
-    chosen = {}
+        return {**laws, **yours}
+    chosen: dict[str, Environment] = {}
     for name in (part.strip() for part in typed.split(",")):
         if name not in laws:
             raise InputError(f"there is no law {quoted(name)}; {suggestion(name, list(laws))}")
         chosen[name] = laws[name]
-    return chosen
+    return {**chosen, **yours}
 
 
 def _json(found: LawComparison) -> str:

@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.environments import option_keys
-from zwidth.cli.options import Once, add_parameters, overrides
+from zwidth.cli.options import Once, add_parameters, overrides, refuse_laws
 from zwidth.cli.output import print_json, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.device.catalogue import PROPERTIES
@@ -54,6 +54,7 @@ def configure_limit(parser: argparse.ArgumentParser) -> None:
         "-o", "--save", metavar="FILE", action=Once, help="save bracket and evidence, for zwidth verify"
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
+    refuse_laws(parser)
     add_parameters(parser)
 
 

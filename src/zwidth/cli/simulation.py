@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import Once, add_all, add_parameters, given, overrides
+from zwidth.cli.laws import with_laws
+from zwidth.cli.options import Once, add_all, add_law_option, add_parameters, given, overrides
 from zwidth.cli.output import check_new, print_json, writing
 from zwidth.cli.specification import TABLES, read_tables, specified
 from zwidth.errors import InputError
@@ -27,16 +28,17 @@ def configure_simulate(parser: argparse.ArgumentParser) -> None:
     from zwidth.cli.touch import operator_parameters, simulation_parameters
 
     parser.usage = (
-        "%(prog)s [SOURCE ...] --operator TYPE --duration TIME [--PARAMETER VALUE ...] [--json] "
-        "[--plot FILE] [--sound FILE] [-o FILE] [--force]"
+        "%(prog)s [SOURCE ...] --operator TYPE --duration TIME [--law NAMES] [--PARAMETER VALUE ...] "
+        "[--json] [--plot FILE] [--sound FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
         metavar="SOURCE",
         nargs="*",
-        help="device of the catalogue, or TOML file with tables [device], [environment], [operator], "
-        "[simulation]",
+        help="device of the catalogue, or TOML file with tables [device], [environment], [[law]], "
+        "[operator], [simulation]",
     )
+    add_law_option(parser)
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the summary as JSON, units in the keys")
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the plot: .png, .svg or .pdf")
@@ -57,9 +59,8 @@ def run_simulate(arguments: argparse.Namespace) -> int:
 
     plot, sound, save = _targets(arguments)
     tables = read_tables(arguments.sources, TABLES)
-    loop = specified(
-        {k: t for k, t in tables.items() if k in ("device", "environment")}, overrides(arguments)
-    )
+    loop = specified(tables, overrides(arguments))
+    environment = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     keys = [p.key for p in (*operator_parameters(), *simulation_parameters())]
     words = given(arguments, keys)
     touch = build_touch(tables.get("operator"), tables.get("simulation"), words, loop.device.motion)
@@ -70,7 +71,7 @@ def run_simulate(arguments: argparse.Namespace) -> int:
     from zwidth.traces import save_sound, save_trace, simulate
 
     warn_of_compiling()
-    trace = simulate(loop.device, loop.environment, touch.operator, duration, **touch.options)
+    trace = simulate(loop.device, environment, touch.operator, duration, **touch.options)
     if save is not None:
         save_trace(trace, save, force=True)
     if sound is not None:

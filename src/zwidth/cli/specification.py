@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.cli.environments import build_environment, option_keys
+from zwidth.cli.laws import NOT_PROVED, ROW
 from zwidth.cli.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
 from zwidth.device import Device, catalogue
 from zwidth.device.rotary import rotary
@@ -37,8 +38,9 @@ DEVICE_KEYS = (*catalogue.PROPERTIES, *ROTARY_KEYS, "motion", "name", "catalogue
 """The keys of a [device] table."""
 
 LOOP_TABLES = ("device", "environment")
-TABLES = (*LOOP_TABLES, "operator", "simulation")
-"""The tables of a specification: of a loop, and of a touch to simulate."""
+WITH_LAWS = (*LOOP_TABLES, "law")
+TABLES = (*WITH_LAWS, "operator", "simulation")
+"""The tables of a specification: of a loop, with laws behind its environment, and of a touch to simulate."""
 
 _ONE_OF = (("rate", "sample_period"), ("resolution", "counts_per_turn"))
 """Two ways to say the same: overriding one puts the other aside."""
@@ -162,16 +164,29 @@ def _read(source: Path | str, kinds: Sequence[str]) -> dict[str, Table]:
     name = _shown(source)
     content = _parse(_text(source), name)
     for key, value in content.items():
+        if key == "law" and key not in kinds:
+            raise InputError(f"{name}: [[law]]: {NOT_PROVED}")
         if key not in kinds:
             hint = "it is for zwidth simulate" if key in TABLES else suggestion(key, kinds)
             raise InputError(f"{name}: there is no table or key {quoted(key)} in a specification; {hint}")
-        if not isinstance(value, dict):
+        if key == "law":
+            content[key] = _row_of_laws(value, name)
+        elif not isinstance(value, dict):
             raise InputError(f"{name}: {key} is a table, written [{key}] above its keys")
     if not content:
         raise InputError(f"{name}: the file has none of the tables {', '.join(f'[{k}]' for k in kinds)}")
     if "device" in content and "name" not in content["device"] and "catalogue" not in content["device"]:
         content["device"]["name"] = Path(source).stem
-    return {key: Table(f"{name}: [{key}]", value) for key, value in content.items()}
+    return {
+        key: Table(f"{name}: [[law]]" if key == "law" else f"{name}: [{key}]", value)
+        for key, value in content.items()
+    }
+
+
+def _row_of_laws(value: object, name: str) -> dict[str, object]:
+    if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):
+        raise InputError(f"{name}: laws are tables in a row, each with [[law]] above its keys")
+    return {ROW: value}
 
 
 def _parse(text: str, name: str) -> dict[str, Any]:

@@ -7,6 +7,7 @@ those just after it.
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -187,13 +188,18 @@ def _needed_force(setup: Setup, values: dict[str, Array]) -> Array:
     return values["actuator_force"] + p.coulomb * np.sign(speed) + p.damping * speed
 
 
+@cache  # it is read from a file
+def _version() -> str:
+    return version("zwidth")
+
+
 def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
     device, plant = setup.device, setup.frame.plant
     length = UNITS[device.motion][0]
     turn = device.motion == "rotary"
     result: dict[str, Any] = {
         "format": FORMAT,
-        "zwidth_version": version("zwidth"),
+        "zwidth_version": _version(),
         "device": device.name,
         "environment": setup.environment.describe(device.motion),
         "operator": setup.operator.describe(device.motion),

@@ -1,4 +1,4 @@
-"""Laws on the bench: what they keep against what they give, and what happens when they are touched."""
+"""Laws on the bench, a row each: what is felt, what is given out, and what happens in a touch."""
 
 from __future__ import annotations
 
@@ -8,72 +8,111 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, OUTCOME, new_figure
 
 _SHOWN = 0.12
 """Time of a tap that is drawn [s]."""
 
+_FOOT = 1e-3
+"""Energy that is drawn at the foot of its axis, with all below it [mJ]."""
+
+_MOST = 1e3
+"""The same at the other end: a loop that diverges would leave no room to the others [mJ]."""
+
+_ROW = 0.62
+"""Part of a row that the median of the largest forces fills."""
+
 _MARKS = {"passive": "o", "theorem": "s", "active": "X", "undecided": "D"}
 _COLOURS = {**OUTCOME, "theorem": BLUE}
+_GUIDE = "#dddddd"
 
 
 @rc_context(LOOK)
 def laws_figure(comparison: Any) -> Figure:
-    """Stability against fidelity, and the force of each law under a fast finger.
+    """Fidelity, stability against three hands, and the force of each law under a fast finger.
 
     Parameters
     ----------
     comparison
         A `zwidth.LawComparison`, what `zwidth.compare` gives.
     """
-    names = [str(name) for name in comparison.scores["law"].values]
-    figure = new_figure(9.0, max(4.2, 0.55 * len(names) + 1.2))
-    left, right = figure.subplots(1, 2, width_ratios=(1.1, 1.0))
-    _trade_off(left, comparison, names)
-    _taps(right, comparison, names)
+    scores = comparison.scores
+    names = [str(name) for name in scores["law"].values]
+    figure = new_figure(10.5, 0.29 * len(names) + 1.7)
+    columns = figure.subplots(1, 4, sharey=True, width_ratios=(1.0, 1.0, 1.0, 1.7))
+    felt, given, worst, taps = columns
+    _stiffness(felt, scores, float(comparison.environment.stiffness))
+    touched = np.maximum(scores["generated_energy"].values, scores["dowel_energy"].values)
+    _energy(given, scores, touched, "most energy given out\nin a touch [mJ]")
+    _energy(worst, scores, scores["gain"].values, "taken out by the worst\nhand in a round [mJ]")
+    _taps(taps, comparison, names)
+    for axes in columns:
+        axes.tick_params(axis="y", length=0, labelcolor=BLACK)
+        axes.spines["left"].set_visible(False)
+    felt.set_yticks(range(len(names)), names)
+    felt.set_ylim(len(names) - 0.4, -0.9)
+    handles = [
+        felt.plot([], [], mark, color=_COLOURS[status], label=status)[0] for status, mark in _MARKS.items()
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 
 
-def _trade_off(axes: Axes, comparison: Any, names: list[str]) -> None:
-    scores = comparison.scores
-    wanted = float(comparison.environment.stiffness)
+def _stiffness(axes: Axes, scores: Any, wanted: float) -> None:
     felt = scores["static_stiffness"].values
-    given = np.maximum(scores["generated_energy"].values, scores["dowel_energy"].values) * 1e3
-    floor = 1e-3
-    for number, (name, x, y) in enumerate(zip(names, felt, np.maximum(given, floor), strict=True), 1):
-        status = str(scores["status"].sel(law=name).item())
-        axes.plot(x, y, _MARKS[status], color=_COLOURS[status], ms=8, alpha=0.8, clip_on=False)
-        axes.annotate(str(number), (x, y), (6, 4 + 7 * (number % 2)), textcoords="offset points", fontsize=8)
     axes.axvline(wanted, color=GREY, lw=0.8, ls=":")
-    axes.set_yscale("log")
-    axes.set_ylim(bottom=floor / 2)
+    axes.annotate("wanted", (wanted, 1.0), xycoords=("data", "axes fraction"), ha="center", fontsize=7.5)
+    _dots(axes, scores, felt, 0.0)
     axes.set_xlim(0, 1.15 * max(wanted, np.nanmax(felt)))
-    axes.set_xlabel("stiffness felt at rest [N/m]")
-    axes.set_ylabel(f"most energy given out in a touch [mJ], {floor:g} or less at the foot")
-    axes.set_title("what is felt, and what it costs")
-    handles = [
-        axes.plot([], [], mark, color=_COLOURS[status], label=status)[0] for status, mark in _MARKS.items()
-    ]
-    axes.legend(handles=handles, loc="upper left")
+    axes.set_xlabel("stiffness felt\nat rest [N/m]")
+
+
+def _energy(axes: Axes, scores: Any, joules: NDArray[np.float64], label: str) -> None:
+    energy = np.clip(1e3 * joules, _FOOT, _MOST)
+    axes.set_xscale("log")
+    _dots(axes, scores, energy, _FOOT)
+    axes.set_xlim(_FOOT / 2, 3 * max(float(energy.max()), 1.0))
+    axes.minorticks_off()
+    ticks = 10.0 ** np.arange(-3, int(np.floor(np.log10(axes.get_xlim()[1]))) + 1, 2)
+    axes.set_xticks(ticks, [_tick(tick) for tick in ticks])
+    axes.set_xlabel(label)
+
+
+def _tick(energy: float) -> str:
+    sign = "≤" if energy < 1.1 * _FOOT else "≥" if energy > 0.9 * _MOST else ""
+    return f"{sign}{energy:g}"
+
+
+def _dots(axes: Axes, scores: Any, values: NDArray[np.float64], start: float) -> None:
+    """A dot in each row, by what is known of the law, on a line that leads there."""
+    for row, (value, status) in enumerate(zip(values, scores["status"].values, strict=True)):
+        axes.plot([start, value], [row, row], color=_GUIDE, lw=1.0, zorder=1)
+        axes.plot(value, row, _MARKS[str(status)], color=_COLOURS[str(status)], ms=7, mew=0, clip_on=False)
 
 
 def _taps(axes: Axes, comparison: Any, names: list[str]) -> None:
-    peak = float(comparison.scores["peak_force"].max()) or 1.0
-    for number, name in enumerate(names, 1):
+    """Forces one below the other; what leaves its row is cut off, and its largest value written."""
+    peaks = comparison.scores["peak_force"].values
+    newton = float(np.median(peaks)) / _ROW or 1.0
+    for row, name in enumerate(names):
         trace = comparison.traces[name]["tap"]
         time, inside = trace["time"].values, np.flatnonzero(trace["position"].values > 0)
         start = time[inside[0]] if inside.size else 0.0
         shown = (time >= start - 0.005) & (time <= start + _SHOWN)
         status = str(comparison.scores["status"].sel(law=name).item())
-        force = trace["actuator_force"].values[shown] / peak * 0.85
-        axes.plot((time[shown] - start) * 1e3, force - number, color=_COLOURS[status], lw=1.1)
-        axes.axhline(-number, color=GREY, lw=0.4)
-    axes.set_yticks(
-        [-n for n in range(1, len(names) + 1)], [f"{n}  {name}" for n, name in enumerate(names, 1)]
-    )
-    axes.tick_params(axis="y", length=0, labelcolor=BLACK)
-    axes.yaxis.tick_right()
-    axes.spines["left"].set_visible(False)
-    axes.set_xlabel("time after contact [ms]")
-    axes.set_title(f"force under a fast finger, up to {peak:.3g} N")
+        force = trace["actuator_force"].values[shown] / newton
+        axes.axhline(row + 0.3, color=_GUIDE, lw=0.6)
+        drawn = row + 0.3 - np.clip(force, -0.3, 0.95)
+        axes.plot((time[shown] - start) * 1e3, drawn, color=_COLOURS[status], lw=1.0)
+        if force.size and force.max() > 0.95:
+            axes.annotate(
+                f"{force.max() * newton:.3g} N",
+                (_SHOWN * 1e3, row - 0.1),
+                ha="right",
+                fontsize=7.5,
+                color=GREY,
+            )
+    axes.set_xlabel(f"time after contact [ms];\nforces, {_ROW * newton:.3g} N the median of peaks")
+    axes.annotate("under a fast finger", (0, 1.0), xycoords="axes fraction", fontsize=7.5)

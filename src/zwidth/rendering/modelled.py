@@ -19,6 +19,7 @@ delay, a regular clock, no amplifier lag.  Matrices after them; the velocity der
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -58,11 +59,7 @@ class Plant(NamedTuple):
 
     def held(self, time: float) -> tuple[Matrix, Matrix]:
         """(Φ, Γ) of a force held for a time [s]."""
-        both = np.zeros((3, 3))
-        both[:2, :2] = self.matrix()
-        both[1, 2] = -1 / self.mass
-        step = expm(both * time)
-        return step[:2, :2], step[:2, 2]
+        return _held(self, time)
 
     def numbers(self, time: float) -> list[float]:
         """The same as a step reads them."""
@@ -179,6 +176,16 @@ class Modelled(Stage):
         own = ((self.finger_mass, mass), (self.finger_stiffness, spring), (self.finger_damping, damper))
         finger = [f"{float(value):g} {unit}" for value, unit in own if value != 0]
         return ", ".join([*device, f"finger {', '.join(finger)}" if finger else "no finger"])
+
+
+@lru_cache(maxsize=64)  # a law asks for the same at every touch
+def _held(plant: Plant, time: float) -> tuple[Matrix, Matrix]:
+    both = np.zeros((3, 3))
+    both[:2, :2] = plant.matrix()
+    both[1, 2] = -1 / plant.mass
+    step = expm(both * time)
+    step.setflags(write=False)
+    return step[:2, :2], step[:2, 2]
 
 
 def turns_over(matrix: Matrix, period: float) -> bool:

@@ -1,0 +1,221 @@
+"""Laws in a row in a specification and on the command line."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from strategies import toml_values
+
+import zwidth as zw
+from zwidth import rendering
+from zwidth.cli.laws import ESTIMATORS, LAWS, build_law, with_laws
+from zwidth.cli.main import main
+from zwidth.cli.specification import TABLES, read_tables
+from zwidth.cli.table import Table
+
+LOOP = '[device]\ncatalogue = "haptic-paddle"\n\n[environment]\ntype = "wall"\nstiffness = 400\n'
+WALL = zw.Wall(400)
+TOUCH = ("--operator", "dowel", "--duration", "0.1")
+
+
+def read(text: str, folder: Path, *typed: str, motion: str = "linear") -> zw.Environment:
+    """The wall behind the laws of a file with these tables, or of the command line."""
+    (folder / "laws.toml").write_text(text, encoding="utf-8")
+    table = read_tables([folder / "laws.toml"], TABLES).get("law")
+    return with_laws(WALL, table, typed or None, motion)
+
+
+@pytest.mark.parametrize(("kinds", "base"), [(LAWS, rendering.Stage), (ESTIMATORS, rendering.Estimator)])
+def test_every_law_can_be_named(kinds, base):
+    """Under its class's name in small letters, with all of its arguments."""
+    public = [getattr(rendering, name) for name in rendering.__all__]
+    classes = {c.__name__: c for c in public if inspect.isclass(c) and issubclass(c, base) and c is not base}
+    assert {row.class_name for row in kinds.values()} == set(classes)
+    for name, row in kinds.items():
+        assert name == re.sub(r"(?<!^)([A-Z])", r"-\1", row.class_name).lower()
+        signature = inspect.signature(classes[row.class_name]).parameters
+        arguments = {k: v for k, v in signature.items() if v.kind is not v.VAR_KEYWORD}
+        if len(arguments) < len(signature):  # those of a model are its base's
+            arguments |= inspect.signature(rendering.HalfSamplePrediction).parameters
+        assert set(row.keys) == set(arguments)
+        required = {k for k, v in arguments.items() if v.default is v.empty}
+        assert {k for k, v in row.keys.items() if v.required} == required
+
+
+def test_laws_are_read_with_their_units_and_in_their_order(tmp_path):
+    """As Python would have made them."""
+    text = (
+        '[[law]]\ntype = "crossing-correction"\nthroughout = true\nfinger_mass = "20 g"\n'
+        'finger_position = "4 mm"\n'
+        '[[law]]\ntype = "damper"\ndamping = "0.2 N*s/m"\nclamped = true\n'
+        'velocity = { type = "adaptive-window", longest = 20, noise = "22.4 um", fit = "best" }\n'
+        '[[law]]\ntype = "hysteresis"\nfastest = "20 cm/s"\nstiffness = "0.3 N/mm"\n'
+        '[[law]]\ntype = "passivity-controller"\nobserver = "published"\nlargest_damping = "800 mN*s/m"\n'
+        'slowest = "1 mm/s"\ncredit = true\nceiling = "5 uJ"\n'
+        '[[law]]\ntype = "event-transient"\nfrequency = "0.15 kHz"\nvelocity = "tick-time"\n'
+        '[[law]]\ntype = "event-transient"\nkind = "acceleration"\nrecord = [10, 5]\n'
+        '[[law]]\ntype = "braking-pulse"\n[law.velocity]\ntype = "kalman"\nacceleration = 30\n'
+        '[[law]]\ntype = "slew-limit"\nrate = "3 kN/s"\n'
+        '[[law]]\ntype = "dither"\nkind = "random"\nseed = 7\namplitude = "1 mN"\n'
+    )
+    assert read(text, tmp_path) == zw.render(
+        WALL,
+        rendering.CrossingCorrection(throughout=True, finger_mass="0.02", finger_position="0.004"),
+        rendering.Damper("0.2", rendering.AdaptiveWindow("22.4e-6", 20, "best"), clamped=True),
+        rendering.Hysteresis(fastest="0.2", stiffness=300),
+        rendering.PassivityController(
+            observer="published", largest_damping="0.8", slowest="0.001", credit=True, ceiling="5e-6"
+        ),
+        rendering.EventTransient(frequency=150, velocity=rendering.TickTime()),
+        rendering.EventTransient("acceleration", record=[10, 5]),
+        rendering.BrakingPulse(velocity=rendering.Kalman(30)),
+        rendering.SlewLimit(3000),
+        rendering.Dither("0.001", "random", 7),
+    )
+
+
+def test_laws_of_a_rotary_device_have_its_units(tmp_path):
+    """N·m for N, and a linear unit is refused."""
+    saturated = '[[law]]\ntype = "saturation"\nlimit = "20 mN*m"\n'
+    law = read(saturated, tmp_path, motion="rotary")
+    assert law == zw.render(WALL, rendering.Saturation("0.02"))
+    with pytest.raises(zw.InputError, match=r"limit is in N; got"):
+        read(saturated, tmp_path)
+
+
+def test_laws_of_the_command_line_have_their_defaults_and_replace_those_of_a_file(tmp_path):
+    """Repeated, or with commas between them."""
+    text = '[[law]]\ntype = "saturation"\n'
+    two = zw.render(WALL, rendering.Extrapolation(), rendering.PassivityController())
+    assert read(text, tmp_path, "extrapolation, passivity-controller") == two
+    assert read(text, tmp_path, "extrapolation", "passivity-controller") == two
+    assert read(text, tmp_path) == zw.render(WALL, rendering.Saturation())
+    assert with_laws(WALL, None, None, "linear") is WALL
+
+
+def test_simulate_takes_laws(tmp_path, monkeypatch, capsys):
+    """The trace is Python's."""
+    monkeypatch.chdir(tmp_path)
+    Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "hysteresis"\nfastest = 0.2\n', encoding="utf-8")
+    assert main(["simulate", "loop.toml", *TOUCH, "-o", "file.nc"]) == 0
+    assert "with hysteresis of the width for 0.2 m/s" in capsys.readouterr().out
+    assert main(["simulate", "loop.toml", "--law", "extrapolation", *TOUCH, "-o", "typed.nc"]) == 0
+    paddle, dowel = zw.catalogue.device("haptic-paddle"), zw.operators.Dowel()
+    for name, law in {
+        "file": rendering.Hysteresis(fastest="0.2"),
+        "typed": rendering.Extrapolation(),
+    }.items():
+        again = zw.simulate(paddle, zw.render(WALL, law), dowel, 0.1)
+        assert zw.load_trace(tmp_path / f"{name}.nc").identical(again)
+
+
+def test_compare_puts_the_row_on_the_bench(tmp_path, monkeypatch, capsys):
+    """Under the name "yours", beside the laws that were named."""
+    monkeypatch.chdir(tmp_path)
+    laws = '[[law]]\ntype = "extrapolation"\n[[law]]\ntype = "passivity-controller"\n'
+    Path("loop.toml").write_text(LOOP + laws, encoding="utf-8")
+    assert main(["compare", "loop.toml", "--laws", "wall", "--json"]) == 0
+    scores = json.loads(capsys.readouterr().out)["laws"]
+    assert list(scores) == ["wall", "yours"]
+    own = zw.render(WALL, rendering.Extrapolation(), rendering.PassivityController())
+    again = zw.compare(zw.catalogue.device("haptic-paddle"), WALL, {"yours": own}).scores
+    assert scores["yours"]["generated_energy_J"] == float(again["generated_energy"][0])
+    assert main(["compare", "haptic-paddle", "--stiffness", "400", "--laws", "wall", "--law", "damer"]) == 2
+    assert 'did you mean "damper"?' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["check", "limit"])
+def test_what_proves_says_that_laws_in_a_row_are_not_proved(command, tmp_path, monkeypatch, capsys):
+    """One line that names the commands that take them."""
+    monkeypatch.chdir(tmp_path)
+    Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "saturation"\n', encoding="utf-8")
+    said = "laws in a row are not proved: zwidth compare judges them, zwidth simulate shows a touch\n"
+    assert main([command, "loop.toml"]) == 2
+    assert capsys.readouterr().err == f"zwidth: loop.toml: [[law]]: {said}"
+    assert main([command, "haptic-paddle", "--stiffness", "400", "--law", "saturation"]) == 2
+    assert capsys.readouterr().err == f"zwidth: --law: {said}"
+
+
+BAD = [
+    ("[law]\n", "laws are tables in a row, each with [[law]] above its keys"),
+    ("law = 3\n", "laws are tables in a row"),
+    ("[[law]]\n", "[[law]]: type is missing; it may be: extrapolation"),
+    ("[[law]]\ntype = 3\n", "type is a text in quotes"),
+    ('[[law]]\ntype = "dampr"\n', 'there is no law "dampr"; did you mean "damper"?'),
+    ('[[law]]\ntype = "damper"\n', 'the law "damper" needs damping [N*s/m]'),
+    ('[[law]]\ntype = "damper"\ndampin = 1\n', 'a law of type "damper" has no "dampin"; did you'),
+    ('[[law]]\ntype = "damper"\ndamping = -1\n', "damping must be ≥ 0, got -1"),
+    ('[[law]]\ntype = "damper"\ndamping = "1 N"\n', 'damping is in N*s/m; got "1 N"'),
+    ('[[law]]\ntype = "damper"\ndamping = [1, 2]\n', "damping is in N*s/m; got a list"),
+    ('[[law]]\ntype = "damper"\ndamping = 1\nclamped = 1\n', "clamped is true or false"),
+    ('[[law]]\ntype = "damper"\ndamping = 1\nvelocity = 1\n', "velocity is { type = "),
+    ('[[law]]\ntype = "damper"\ndamping = 1\nvelocity = "kalmann"\n', 'did you mean "kalman"?'),
+    ('[[law]]\ntype = "damper"\ndamping = 1\nvelocity = {}\n', "velocity: type is missing"),
+    ('[[law]]\ntype = "damper"\ndamping = 1\nvelocity = {type = "kalman", q = 1}\n', '"kalman" has no "q"'),
+    (
+        '[[law]]\ntype = "damper"\ndamping = 1\nvelocity = {type = "adaptive-window", longest = 2.5}\n',
+        "[[law]]: velocity: longest is a whole number",
+    ),
+    ('[[law]]\ntype = "hysteresis"\n', "give either force [N] or fastest [m/s], got neither"),
+    ('[[law]]\ntype = "passivity-controller"\nobserver = "publishd"\n', 'did you mean "published"?'),
+    ('[[law]]\ntype = "passivity-controller"\nobserver = 1\n', 'such as observer = "sampled"'),
+    ('[[law]]\ntype = "event-transient"\nrecord = 3\n', "record is a list of numbers"),
+    ('[[law]]\ntype = "event-transient"\nrecord = [1, "2 N"]\n', "record[1] is in 1/s"),
+    ('[[law]]\ntype = "saturation"\n' * 17, "[[law]] 17: more than 16 laws in a row"),
+    ('[[law]]\ntype = "saturation"\n[[law]]\ntype = "x"\n', '[[law]] 2: there is no law "x"'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "said"), BAD, ids=[said for _, said in BAD])
+def test_a_slip_is_one_clear_message(text, said, tmp_path):
+    """It says where it stands and what is allowed."""
+    with pytest.raises(zw.InputError) as caught:
+        read(text, tmp_path)
+    message = str(caught.value)
+    assert "laws.toml" in message
+    assert said in message
+    assert message.isprintable()
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        ("dampr", 'there is no law "dampr"; did you mean "damper"?'),
+        ("saturation,,", 'there is no law ""'),
+        ("damper", 'the law "damper" needs damping [N*s/m], in a [[law]] table of a file'),
+    ],
+)
+def test_a_slip_on_the_command_line(names, said, capsys):
+    """It ends with status 2 and one line."""
+    assert main(["simulate", "haptic-paddle", "--stiffness", "400", *TOUCH, "--law", names]) == 2
+    assert capsys.readouterr().err.startswith(f"zwidth: command line: --law: {said}")
+
+
+VALUES = toml_values() | st.sampled_from(
+    [1, "1 ms", "2 N", [1, 2], True, "kalman", {"type": "adaptive-window"}]
+)
+
+
+def described(table: Table, motion: str) -> str:
+    """The law that a table makes, or the message why it makes none."""
+    try:
+        return build_law(table, motion).describe(motion)
+    except zw.InputError as error:
+        return str(error)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.sampled_from(sorted(LAWS)), st.data(), st.sampled_from(["linear", "rotary"]))
+def test_any_values_make_a_law_or_one_line(name, data, motion):
+    """Whatever stands in a file: no other exception, and a message that can be printed."""
+    keys = st.sampled_from([*LAWS[name].keys, "damping"])
+    values = data.draw(st.dictionaries(keys, VALUES, max_size=4))
+    text = described(Table("[[law]]", {"type": name, **values}), motion)
+    assert text.isprintable()
+    assert len(text) < 900
