@@ -105,10 +105,10 @@ def decided(environment, damping, friction, **implementation):
     played = game(environment, damping, friction, **implementation)
     enough, outside = min(damping, friction) > 1, implementation["surface"] == "position"
     steps = (32, 4) if enough else (32,) if implementation["clamped"] else (4,)
-    steps, seconds = (8, 16) if played.law.relaxing is None else steps, 6 if enough else 1.5
+    steps, seconds = (8, 16) if played.law.relaxing is None else steps, 6 if enough else 2.5
     attempts = {
         "proved": lambda: proved(played, steps, seconds),
-        "refuted": lambda: refuted(played, 1, (64, 256, 16) if enough and outside else (64,)),
+        "refuted": lambda: refuted(played, *((1, (64, 256, 16)) if enough and outside else (0.6, (64,)))),
     }
     for outcome in ("refuted", "proved") if damping < 1 or outside else ("proved", "refuted"):
         if attempts[outcome]():

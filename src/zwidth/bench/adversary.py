@@ -24,6 +24,9 @@ from zwidth.operator import PrescribedMotion
 ROUNDS = 150
 """Rounds of each motion at first; more where it gains but has not yet earned what its beginning cost."""
 
+ROUNDING = 1e-9
+"""Part of what friction took that counts as nothing: sums of so many samples are no better."""
+
 LONGEST = 400_000
 """Samples of the longest motion."""
 
@@ -121,9 +124,11 @@ def _taken(device: Device, environment: Environment, positions: Floats, rounds: 
     period = device.exact("sample_period")
     trace = simulate(device, environment, PrescribedMotion(path), (len(path) - 1) * period)
     taken = trace["kinetic_energy"].values - trace["hand_work"].values  # what moves at the end is not lost
-    half = rounds // 2
-    gain = (taken[-1] - taken[-1 - half * len(positions)]) / half
-    return float(gain), float(taken[-1])
+    half = max((len(taken) - 1) // len(positions) // 2, 1)  # a motion that diverges ends early
+    gain = (taken[-1] - taken[max(len(taken) - 1 - half * len(positions), 0)]) / half
+    lost = float(trace["coulomb_loss"][-1] + trace["viscous_loss"][-1])
+    total = float(taken[-1])
+    return float(gain), total if abs(total) > ROUNDING * lost else 0.0
 
 
 def _listed(positions: Floats, rounds: int) -> Floats:

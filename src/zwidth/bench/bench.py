@@ -243,7 +243,8 @@ def _dataset(
         values = [score.of(traces[name][score.touch]) for name in names]
         data[key] = ("law", np.array(values, dtype=float))
         data[key].attrs = {"units": score.unit, "long_name": score.meaning, "touch": score.touch}
-    data["gain"] = ("law", [attacks[name].gain for name in names])
+    gains = [a.gain if a.extracts else min(a.gain, 0.0) for a in (attacks[name] for name in names)]
+    data["gain"] = ("law", gains)
     data["gain"].attrs = {"units": "J", "long_name": "taken out by a round of the worst motion"}
     data["step_time"] = ("law", [times[name] for name in names])
     data["step_time"].attrs = {"units": "s", "long_name": "time of a simulated sample"}

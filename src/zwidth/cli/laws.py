@@ -151,6 +151,48 @@ LAWS: Mapping[str, LawType] = MappingProxyType(
                 "ceiling": _quantity("energy above which no credit is kept", "J"),
             },
         ),
+        "force-bounding": LawType(
+            "ForceBounding",
+            "no more force than what the hand has put in can pay for",
+            {
+                "encoder": _word("counted", "ideal"),
+                "resets": Key("flag", "true to forget the energy where there was no force"),
+            },
+        ),
+        "energy-bounding": LawType(
+            "EnergyBounding", "a force that changes with no more than 2b/T per move", {}
+        ),
+        "energy-tank": LawType(
+            "EnergyTank",
+            "the wall pushes with what is in a tank, which a damper fills",
+            {
+                "level": _quantity("H_d, to which the tank is filled", "J"),
+                "refill": _quantity("α, damping per lacking energy", "s/m^2", "N*m*s/(rad*J)"),
+                "largest_damping": _damping("d, by default the device's"),
+            },
+        ),
+        "passive-leap": LawType(
+            "PassiveLeap",
+            "the wall's spring holds just the energy that came in",
+            {
+                "stiffness": _stiffness("K of that spring, by default the environment's"),
+                "resets": Key("flag", "true to forget credit where there was no force"),
+            },
+        ),
+        "dual-rate": LawType(
+            "DualRate",
+            "a local spring between slow updates",
+            {
+                "samples": _quantity("N, samples between two updates", required=True),
+                "slope": _stiffness("κ, by default what b pays for"),
+                "updates": _word("continuous", "jump"),
+            },
+        ),
+        "held": LawType(
+            "Held",
+            "the force of every N-th sample, held",
+            {"samples": _quantity("N, samples between two updates", required=True)},
+        ),
         "braking-pulse": LawType(
             "BrakingPulse",
             "one sample of force that stops the mass at entry",
