@@ -39,7 +39,7 @@ from zwidth.passivity.worst_hand.law import finite_law
 from zwidth.passivity.worst_hand.solve import Played
 
 plt.rcParams.update(plots.LOOK)
-BLUE, RED, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#777777"
+RED, GREEN, GREY = "#D55E00", "#009E73", "#777777"
 COLOURS = {"proved": GREEN, "refuted": RED, "undecided": "#CCCCCC"}
 STIFFNESS, DAMPING, COUNTS, REACH = 1, 10, 12, 8
 verified = []
