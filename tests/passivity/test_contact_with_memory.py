@@ -127,3 +127,31 @@ def test_a_fast_filter_fed_with_the_position_keeps_it():
     storage = played("position", "1.02", "1.02", 1).prove(32, time.monotonic() + 60)
     assert storage is not None
     assert storage.certificate().verify()
+
+
+def test_the_claim_of_a_filtered_wall_says_that_contact_is_kept():
+    """What is proved of sustained contact alone is claimed of it alone; a motion beyond it gains."""
+    device = zw.Device(damping="1.183", coulomb_friction="1.02", resolution=1, sample_period=1)
+    filtered = zw.check(device, zw.Wall(1, damping=10, velocity_filter=zw.OnePole(19)))
+    assert filtered.outcome == "passive"
+    assert "that keeps contact" in filtered.claim
+    spring = zw.check(device, zw.Wall("0.5"))
+    assert spring.outcome == "passive"
+    assert "keeps contact" not in spring.claim
+
+
+@pytest.mark.parametrize(
+    ("solid", "delay", "covered"),
+    [
+        (zw.StandardLinearSolid(100, 200, 1), 0, True),
+        (zw.StandardLinearSolid(100, 200, 1), "0.001", False),
+        (zw.StandardLinearSolid(100, 200, 1, discretization="tustin"), 0, False),
+        (zw.GeneralizedMaxwell(100, [(200, 1), (50, 3)]), 0, True),
+    ],
+)
+def test_solids_that_are_touched_and_left_are_covered_on_paper(solid, delay, covered):
+    """The first assumption says whether, and that there is no certificate of it."""
+    device = zw.Device(damping=2, coulomb_friction=1, resolution="0.0001", sample_period="0.001", delay=delay)
+    verdict = zw.check(device, solid)
+    assert verdict.outcome == "passive"
+    assert ("proof on paper" in " ".join(verdict.assumptions[:2])) is covered

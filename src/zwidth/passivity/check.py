@@ -120,7 +120,9 @@ def _passive(
         claim = "A proof was found, but the independent checker did not confirm it within its bounds."
         assumed = assumptions("undecided", device, law, decision)
         return Verdict("undecided", claim, assumed, *at, decision, None, None)
-    claim = "No motion of the hand, however fast or skilled, can take energy out of this loop"
+    everywhere = certificate.covers_contact or not law.unilateral
+    kept = "" if everywhere else " that keeps contact"
+    claim = f"No motion of the hand{kept}, however fast or skilled, can take energy out of this loop"
     if any(_at_limit(d) for d in decisions):
         claim += "; it is exactly at its limit, equality included"
     assumed = assumptions("passive", device, law, decision, certificate)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
+from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear import LinearRefutation
@@ -76,7 +77,7 @@ def assumptions(
     unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
     loop = decision.loop
     lines = [
-        _surface(outcome, decision, certificate),
+        _surface(outcome, device, law, decision, certificate),
         f"the device takes out at least b = {float(loop.damping):.6g} {unit['b']} of viscous and "
         f"f_c = {float(decision.setting.coulomb_friction):.6g} {unit['N']} of Coulomb friction",
         "a hand without limits on speed and force; the mass of the device plays no part",
@@ -98,18 +99,33 @@ def assumptions(
     return tuple(lines)
 
 
-def _surface(outcome: Outcome, decision: Decision, certificate: Certificate | None) -> str:
+def _surface(
+    outcome: Outcome,
+    device: Device,
+    law: Environment,
+    decision: Decision,
+    certificate: Certificate | None,
+) -> str:
     """Whether the hand may leave the law and come back."""
     anywhere = "contact made and broken at any instant"
     covered = decision.is_spring if certificate is None else certificate.covers_contact
     if not covered and decision.is_clamped:
         return f"{anywhere}; the law never pulls: a force below 0 is given as 0"
     if not covered:
-        return f"sustained contact: the law is linear while the hand stays inside{NOT_COVERED}"
+        inside = "sustained contact: the law is linear while the hand stays inside"
+        if outcome == "passive" and _only_relaxes(law) and ends(device.delay)[1] == 0:
+            return f"{inside}; contact made and broken is covered by a proof on paper, without a certificate"
+        return f"{inside}{NOT_COVERED}"
     if certificate is not None and not certificate.is_of_springs:
         return f"{anywhere}; also for a wall that is clamped so that it never pulls"
     more = "; the same holds for every spring law of slope 0 to K" if outcome == "passive" else ""
     return f"{anywhere}{more}"
+
+
+def _only_relaxes(law: Environment) -> bool:
+    """True for solids that are fed with the penetration and have h_j ≤ 0 for all j ≥ 1 (theory/contact)."""
+    solids = (Maxwell, StandardLinearSolid, GeneralizedMaxwell)
+    return isinstance(law, solids) and law.discretization == "backward" and not law.clamped
 
 
 def beyond_the_actuator(device: Device, witness: Witness | Gain | None) -> tuple[str, ...]:
