@@ -223,15 +223,15 @@ BRACKETS = {  # refuted at and proved at, in parts of what the linear criterion 
 for (surface, at), ends in BRACKETS.items():
     filtered = wall(zw.OnePole(at))
     low, high = (game(filtered, end, "1.02", COUNTS, COUNTS, surface=surface) for end in ends)
-    assert refuted(low, 10, (64, 256, 16)), (surface, at)
-    assert proved(high, (32, 64), 20), (surface, at)
+    assert refuted(low, 40, (64, 256, 16)), (surface, at)
+    assert proved(high, (32, 64), 60), (surface, at)
     b = float(needs(filtered)[0])
     place, colour = (at * 0.94, GREEN) if surface == "penetration" else (at * 1.06, RED)
     needed.plot([place, place], [float(end) * b for end in ends], color=colour, lw=1.2)
     needed.plot(place, b * sum(map(float, ends)) / 2, "o", color=colour, mfc="white", ms=5.5, zorder=5)
 few, many = (game(wall(zw.OnePole(9)), "1.02", f, COUNTS, COUNTS, surface="position") for f in ("1.2", "2.1"))
-assert refuted(few, 10, (64, 256, 16))
-assert proved(many, (32, 64), 20)
+assert refuted(few, 40, (64, 256, 16))
+assert proved(many, (32, 64), 60)
 
 active = {}
 for at in (9, 19, 39):
