@@ -27,7 +27,7 @@ for name, rest in chosen.items():
     wall = zw.Wall(round(4 * float(device.damping) / float(device.sample_period)))
     laws = standard_laws(device, wall)
     del laws["held"]  # an environment that is computed slowly, which diverges here
-    benches[name] = zw.compare(device, wall, laws, seconds=1)
+    benches[name] = zw.compare(device, wall, laws)
 
 names = list(dict.fromkeys(str(law) for bench in benches.values() for law in bench.scores.law.values))
 number = {law: n for n, law in enumerate(names, 1)}

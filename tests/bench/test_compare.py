@@ -191,3 +191,20 @@ def test_what_it_refuses(device, wall, options, said):
     """One clear line."""
     with pytest.raises(zw.InputError, match=said):
         zw.compare(device, wall, **options)
+
+
+def test_a_proof_of_sustained_contact_alone_is_not_called_passive():
+    """The touches make and break contact: what covers only a hand that stays is undecided here."""
+    law = zw.Wall(20, damping="0.2", velocity_filter=zw.OnePole("0.01"))
+    assert "keeps contact" in zw.check(PADDLE, law).claim
+    found = zw.compare(PADDLE, zw.Wall(20), {"slow": law})
+    assert found.scores["status"].item() == "undecided"
+    assert "not covered" in found.evidence["slow"]
+
+
+def test_advice_counts_the_delay():
+    """A wall that is passive without a delay and not with it: no advice to do without a law."""
+    late = PADDLE.replace(delay="0.001")
+    assert zw.check(PADDLE, zw.Wall(250)).outcome == "passive"
+    advice = zw.compare(late, zw.Wall(250), {"wall": zw.Wall(250)}).advice
+    assert "The device alone renders 100 N/m passively" in advice

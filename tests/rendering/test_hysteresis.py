@@ -84,7 +84,7 @@ def test_the_width_pays_for_the_hold_up_to_its_speed():
         (lambda: Hysteresis(-1), "force must be > 0"),
         (lambda: Hysteresis(1, 0), "stiffness must be > 0"),
         (lambda: Hysteresis(fastest=0), "fastest must be > 0"),
-        (lambda: Hysteresis(1, clamped="yes"), "clamped is True or False"),
+        (lambda: Hysteresis(1, clamped="yes"), "clamped is True for a sum"),
         (lambda: touched([0, 0], Hysteresis(fastest=1)), "has no K"),
         (lambda: touched([0, 0], Hysteresis(1), environment=zw.HuntCrossley(100)), "has no K"),
     ],

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from zwidth.quantity.exact import Exact
+from zwidth.environment.wall import Wall
+from zwidth.passivity.check import check
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,20 +18,24 @@ QUIET = 0.02
 
 def advice(comparison: LawComparison) -> str:
     """What the wall needs, which law is safest, which feels stiffest, and what none of them can do."""
-    scores, device = comparison.scores, comparison.device
+    scores = comparison.scores
     wanted = float(comparison.environment.stiffness)  # type: ignore[attr-defined]
-    limit = _limit(device)
+    alone = check(comparison.device, Wall(comparison.environment.stiffness))  # type: ignore[attr-defined]
+    limit = alone.max_stiffness
     words = [
-        f"Alone, a wall of {wanted:g} N/m needs no law on this device, which renders up to {limit:.4g} N/m."
-        if wanted <= limit
+        f"Alone, a wall of {wanted:g} N/m is passive on this device and needs no law."
+        if alone.outcome == "passive"
         else f"The device alone renders {limit:.4g} N/m passively, so that {wanted:g} N/m needs a law or "
         "other hardware."
+        if limit
+        else "The device alone renders no wall passively."
     ]
     proved = scores.where(scores["status"].isin(["passive", "theorem"]), drop=True)
     if proved.sizes["law"]:
         best = _stiffest(proved)
         felt = float(proved["static_stiffness"].sel(law=best))
-        words.append(f"Proved for every hand, the stiffest here is {best!r}: {felt:.4g} N/m are felt.")
+        paper = " on paper" if str(proved["status"].sel(law=best).item()) == "theorem" else ""
+        words.append(f"Proved{paper} for every hand, the stiffest here is {best!r}: {felt:.4g} N/m are felt.")
     else:
         words.append("None of these laws is proved for every hand.")
     quiet = scores.where(scores["tap_chatter"] <= QUIET * scores["peak_force"], drop=True)
@@ -60,20 +65,8 @@ def advice(comparison: LawComparison) -> str:
         if "controller" in str(name) and str(scores["status"].sel(law=name).item()) == "active"
     ]
     if broken:
-        words.append(f"A hand that turns back in time breaks the promise of {_listed(broken)}.")
+        words.append(f"The promise of {_listed(broken)} does not hold: a motion takes energy out.")
     return " ".join(words)
-
-
-def _limit(device: object) -> float:
-    """min(2b/T, 2f_c/Δ) (Abbott & Okamura 2005)."""
-    values: dict[str, Exact] = {
-        key: device.exact(key)  # type: ignore[attr-defined]
-        for key in ("damping", "coulomb_friction", "resolution", "sample_period")
-    }
-    limits = [2 * float(values["damping"]) / float(values["sample_period"])]
-    if values["resolution"]:
-        limits.append(2 * float(values["coulomb_friction"]) / float(values["resolution"]))
-    return min(limits)
 
 
 def _stiffest(scores: xr.Dataset) -> str:

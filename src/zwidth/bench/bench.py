@@ -23,7 +23,6 @@ from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.passivity.check import check
-from zwidth.passivity.worst_hand.limit import COVERS_CONTACT
 from zwidth.rendering.rendered import Rendered
 from zwidth.rendering.stage import Surroundings
 
@@ -120,7 +119,6 @@ def compare(
     environment: Wall | Any,
     laws: Mapping[str, Environment] | None = None,
     *,
-    seconds: float = 5.0,
     progress: Callable[[int, int], None] | None = None,
 ) -> LawComparison:
     """Put laws on the bench: three touches, a stroke in free air, and a hand that tries to take energy out.
@@ -133,8 +131,6 @@ def compare(
         The wall that is to be rendered.
     laws
         Environments by name, such as ``{"mine": zw.render(wall, MyLaw())}``; None: all of `standard_laws`.
-    seconds
-        Time in which the game of the worst hand may look for a proof, for each law that it can play.
     progress
         Told (laws done, laws in all).
 
@@ -163,7 +159,7 @@ def compare(
             progress(done, len(chosen))
         traces[name] = {key: _touched(device, law, touch) for key, touch in touches.items()}
         attacks[name] = attack(device, law)
-        status[name] = _status(device, law, attacks[name], seconds)
+        status[name] = _status(device, law, attacks[name])
         times[name] = _step_time(device, law, touches["press"])
     if progress is not None:
         progress(len(chosen), len(chosen))
@@ -181,32 +177,34 @@ def _touched(device: Device, law: Environment, touch: Touch) -> xr.Dataset:
     return simulate(device, law, touch.hand, touch.duration)
 
 
-def _status(device: Device, law: Environment, found: Attack, seconds: float) -> tuple[str, str]:
-    """What is known of a law, and why."""
+def _status(device: Device, law: Environment, found: Attack) -> tuple[str, str]:
+    """What is known of a law for every hand, contact made and broken, and why."""
     if found.extracts:
         return "active", str(found)
-    if law.linear or law.clamped:
+    if not isinstance(law, Rendered):
         verdict = check(device, law)
+        proof = verdict.certificate
+        if verdict.outcome == "passive" and not (proof is not None and proof.covers_contact):
+            return "undecided", f"{verdict.claim} Making and breaking contact is not covered."
         return verdict.outcome, verdict.claim
     covering = _covering(law)
     if covering is not None:
         verdict = check(device, covering)
         proof = verdict.certificate
-        if verdict.outcome == "passive" and proof is not None and proof.kind in COVERS_CONTACT:
+        if verdict.outcome == "passive" and proof is not None and proof.covers_contact:
             return "passive", (
                 f"What the laws add is never more than that of {covering.damping} N·s/m, and every such "
                 f"force is covered, contact made and broken: {verdict.claim}"
             )
-    if isinstance(law, Rendered):
-        reason = law.stages[-1].theorem(Surroundings(device, law.environment))
-        if reason is not None:
-            return "theorem", f"By a proof on paper, without a certificate: {reason}."
+    reason = law.stages[-1].theorem(Surroundings(device, law.environment))
+    if reason is not None:
+        return "theorem", f"By a proof on paper, without a certificate: {reason}."
     return "undecided", f"{found}; no criterion covers this law"
 
 
-def _covering(law: Environment) -> Wall | None:
+def _covering(law: Rendered) -> Wall | None:
     """A wall whose proof, for |f − K u| ≤ B |v|, is one of a wall with laws that add no more than that."""
-    if not isinstance(law, Rendered) or not isinstance(law.environment, Wall):
+    if not isinstance(law.environment, Wall):
         return None
     if law.environment.damping or law.environment.clamped:
         return None

@@ -19,8 +19,9 @@ from typing import ClassVar, Literal
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.defaults import given_or_known, one_of
+from zwidth.rendering.defaults import given_or_known
 from zwidth.rendering.estimator import Estimator
+from zwidth.rendering.reading import one_of
 from zwidth.rendering.stage import Surroundings, positive
 
 ADAPTIVE_WINDOW = 1.0

@@ -13,9 +13,9 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.defaults import true_or_false
 from zwidth.rendering.estimate import as_estimator, estimate, packed
 from zwidth.rendering.estimator import Estimator
+from zwidth.rendering.reading import truth
 from zwidth.rendering.stage import Stage, Surroundings, positive
 
 DAMPER = 10.0
@@ -52,7 +52,7 @@ class Damper(Stage):
         why = "a negative damper drives the hand"
         object.__setattr__(self, "damping", positive("damping", damping, why, zero=True))
         object.__setattr__(self, "velocity", as_estimator(velocity))
-        object.__setattr__(self, "clamped", true_or_false("clamped", clamped))
+        object.__setattr__(self, "clamped", truth("clamped", clamped, "for a sum that never pulls"))
 
     @property
     def slots(self) -> int:  # type: ignore[override]  # it is the estimator's, known once it is chosen

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
-
 from zwidth.environment.hunt_crossley import HuntCrossley
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.rendering.stage import Surroundings
-
-T = TypeVar("T")
 
 
 def given_or_known(given: Exact | None, at: Surroundings, key: str, parameter: str) -> float:
@@ -69,29 +65,3 @@ def surface(at: Surroundings, law: str) -> None:
             f"{law} acts when the hand enters, and this environment has no surface: "
             f"{at.environment.describe()}"
         )
-
-
-def one_of(name: str, value: T, *words: T) -> T:
-    """The value, if it is one of these.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-    """
-    if value not in words:
-        raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
-    return value
-
-
-def true_or_false(name: str, value: object) -> bool:
-    """A bool.
-
-    Raises
-    ------
-    InputError
-        If it is something else.
-    """
-    if not isinstance(value, bool):
-        raise InputError(f"{name} is True or False, got {value!r}")
-    return value

@@ -17,7 +17,8 @@ from typing import ClassVar, Literal
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.defaults import given_or_known, one_of
+from zwidth.rendering.defaults import given_or_known
+from zwidth.rendering.reading import one_of
 from zwidth.rendering.stage import Stage, Surroundings, positive
 
 DITHER = 15.0

@@ -22,9 +22,10 @@ from typing import ClassVar, Literal
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.defaults import given_or_known, one_of, surface
+from zwidth.rendering.defaults import given_or_known, surface
 from zwidth.rendering.estimate import as_estimator, estimate, packed
 from zwidth.rendering.estimator import Estimator
+from zwidth.rendering.reading import one_of
 from zwidth.rendering.stage import Stage, Surroundings, positive
 
 EVENT_TRANSIENT = 13.0

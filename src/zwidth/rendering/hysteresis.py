@@ -22,7 +22,7 @@ from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.rendering.defaults import stiffness as stiffness_of
-from zwidth.rendering.defaults import true_or_false
+from zwidth.rendering.reading import truth
 from zwidth.rendering.stage import Stage, Surroundings, positive
 
 HYSTERESIS = 11.0
@@ -82,7 +82,7 @@ class Hysteresis(Stage):
         }
         for name, (value, why) in own.items():
             object.__setattr__(self, name, None if value is None else positive(name, value, why))
-        object.__setattr__(self, "clamped", true_or_false("clamped", clamped))
+        object.__setattr__(self, "clamped", truth("clamped", clamped, "for a sum that never pulls"))
 
     def numbers(self, at: Surroundings) -> list[float]:
         """h, k, whether there is a surface, whether it is clamped."""

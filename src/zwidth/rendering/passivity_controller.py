@@ -22,6 +22,7 @@ from typing import ClassVar, Literal
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.reading import one_of, truth
 from zwidth.rendering.stage import Stage, Surroundings, positive
 
 PASSIVITY_CONTROLLER = 1.0
@@ -91,16 +92,14 @@ class PassivityController(Stage):
         resets: bool = False,
         ceiling: RealLike | None = None,
     ) -> None:
-        _one_of("observer", observer, "sampled", "published")
-        _one_of("reference", reference, "zero", "spring")
         own = {
-            "observer": observer,
+            "observer": one_of("observer", observer, "sampled", "published"),
             "largest_damping": _limit("largest_damping", largest_damping),
             "largest_force": _limit("largest_force", largest_force),
             "slowest": positive("slowest", slowest, "it is a speed below which nothing is added", zero=True),
-            "credit": bool(credit),
-            "reference": reference,
-            "resets": bool(resets),
+            "credit": truth("credit", credit, "to count in what the device dissipates"),
+            "reference": one_of("reference", reference, "zero", "spring"),
+            "resets": truth("resets", resets, "to count anew in each contact"),
             "ceiling": None
             if ceiling is None
             else positive("ceiling", ceiling, "it is the energy that is kept at most", zero=True),
@@ -154,11 +153,6 @@ class PassivityController(Stage):
         if self.reference == "spring":
             parts.append("the spring's energy as reference")
         return f"passivity controller ({', '.join(parts)})"
-
-
-def _one_of(name: str, value: object, *words: str) -> None:
-    if value not in words:
-        raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
 
 
 def _limit(name: str, value: RealLike | None) -> Exact | None:

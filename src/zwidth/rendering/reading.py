@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike
 from zwidth.rendering.stage import Surroundings
 
+T = TypeVar("T")
 
-def one_of(name: str, value: object, *words: str) -> str:
-    """One of some words.
+
+def one_of(name: str, value: T, *words: T) -> T:
+    """The value, if it is one of these words.
 
     Raises
     ------
     InputError
         If it is none of them.
     """
-    for word in words:
-        if value == word:
-            return word
-    raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
+    if value not in words:
+        raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
+    return value
 
 
 def truth(name: str, value: object, meaning: str) -> bool:
@@ -33,7 +37,7 @@ def truth(name: str, value: object, meaning: str) -> bool:
     return value
 
 
-def count(name: str, value: object, why: str) -> int:
+def count(name: str, value: RealLike, why: str) -> int:
     """A whole number of samples, at least 1.
 
     Raises
@@ -41,9 +45,10 @@ def count(name: str, value: object, why: str) -> int:
     InputError
         If it is not.
     """
-    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-        raise InputError(f"{name} is a whole number of samples, at least 1, got {value!r}: {why}")
-    return value
+    whole = isinstance(value, int | Exact) and not isinstance(value, bool) and value == int(value)
+    if not whole or value < 1:  # type: ignore[operator]
+        raise InputError(f"{name} is a whole number of samples, at least 1, got {value}: {why}")
+    return int(value)
 
 
 def damping_per_sample(at: Surroundings, law: str) -> float:

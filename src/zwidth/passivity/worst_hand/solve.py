@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.worst_hand.board import Board, Integers
 from zwidth.passivity.worst_hand.gpu import OnCard
 from zwidth.passivity.worst_hand.parts import sweep_parts
-from zwidth.passivity.worst_hand.sweep import cycle, sweep, sweep_any
+from zwidth.passivity.worst_hand.sweep import cycle, sweep
 
 THREADS = min(os.cpu_count() or 1, 8)
 
@@ -106,7 +107,7 @@ def _round(pool: ThreadPoolExecutor, board: Board, value: Integers, choice: Inte
     groups = len(value) * (board.histories // board.width if board.memory else 1)
     parts = np.linspace(0, groups, THREADS * 4 + 1).astype(int)
     tables: tuple[Integers, ...] = board.forces, board.costs, board.knots
-    improve: Callable[..., int] = sweep if board.losses.curve is None else sweep_any
+    improve: Callable[..., int] = partial(sweep, squares=board.losses.curve is None)
     if board.losses.part < 1:
         tables, improve = (*tables, board.later_forces, board.later_costs), sweep_parts
     jobs = [

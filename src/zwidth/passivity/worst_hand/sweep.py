@@ -37,10 +37,12 @@ def sweep(
     first: int,
     last: int,
     reach: int,
+    squares: bool = True,
 ) -> int:
     """Improve the states of the groups first … last − 1; returns how many knots improved.
 
     value and choice are (cells, histories, knots); choice holds the flat index of the best move.
+    With costs that are not φ d + β d², squares is False and no point is left out beforehand.
     """
     values, choices = value.reshape(-1), choice.reshape(-1)
     most_points = (2 * reach + 1) * knots.size
@@ -52,38 +54,10 @@ def sweep(
         least, most = extremes(forces, group, reach)
         if least > most:
             continue
-        points = worthwhile(values, forces, costs, knots, group, reach, least, most, gain, place, there)
-        for knot in range(knots.size):
-            improved += improve(
-                values, choices, forces, costs, knots, group, reach, least, most, points, values, there,
-                place, there, knot, gain, move, goal,
-            )  # fmt: skip
-    return improved
-
-
-@compiled
-def sweep_any(
-    value: Integers,
-    choice: Integers,
-    forces: Integers,
-    costs: Integers,
-    knots: Integers,
-    first: int,
-    last: int,
-    reach: int,
-) -> int:
-    """The same for costs of any kind, nothing left out before the hull of each knot."""
-    values, choices = value.reshape(-1), choice.reshape(-1)
-    most_points = (2 * reach + 1) * knots.size
-    worth, place = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
-    there, gain = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
-    move, goal = np.empty(most_points, np.int64), np.empty(most_points, np.int64)
-    improved = 0
-    for group in range(first, last):
-        least, most = extremes(forces, group, reach)
-        if least > most:
-            continue
-        points = targets(values, forces, knots, group, reach, worth, place, there)
+        if squares:
+            points = worthwhile(values, forces, costs, knots, group, reach, least, most, gain, place, there)
+        else:
+            points = targets(values, forces, knots, group, reach, gain, place, there)
         for knot in range(knots.size):
             improved += improve(
                 values, choices, forces, costs, knots, group, reach, least, most, points, values, there,
