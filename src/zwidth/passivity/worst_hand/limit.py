@@ -22,7 +22,7 @@ from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import to_json, unit_suffix
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.worst_hand.gain import Gain
-from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of, patience
+from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, RowGame, Tell, assumptions, game_of, patience
 from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
@@ -208,7 +208,7 @@ def passive_limit(
         return bracket
     known = (None, None) if bracket is None else (bracket.passive, bracket.active)
 
-    def game(value: Exact) -> Game:
+    def game(value: Exact) -> Game | RowGame:
         loop = search.parameter.change(value)
         return game_of(*loop, penetration, speed, force_limit, force_resolution, friction)
 
@@ -261,7 +261,7 @@ class _Search:
     def by_games(
         self,
         device: Device,
-        game: Callable[[Exact], Game],
+        game: Callable[[Exact], Game | RowGame],
         every_hand: tuple[float | None, float | None],
     ) -> Bracket:
         """A bracket from games on finer and finer boards."""
