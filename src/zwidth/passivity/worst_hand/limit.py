@@ -22,10 +22,12 @@ from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import to_json, unit_suffix
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.worst_hand.gain import Gain
-from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, RowGame, Tell, assumptions, game_of, patience
+from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of, patience
+from zwidth.passivity.worst_hand.row_game import RowGame
 from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.rendering.rendered import Rendered
 
 MORE_IS_SAFER = frozenset({"device.damping", "device.coulomb_friction", "device.rate"})
 """Parameters of which a loop needs enough; of all others it may have too much."""
@@ -168,7 +170,7 @@ def passive_limit(
         A parameter of the environment ("stiffness", "damping") or of the device
         ("coulomb_friction", "device.damping", "sample_period", "resolution", …);
         of a `NonlinearSpring` "gain", a factor on its forces; of a `HuntCrossley` contact
-        "stiffness" or "dissipation".
+        "stiffness" or "dissipation".  Of laws in a row one of the environment that they render.
     penetration, speed
         Bounds on the hand [m; rad], [m/s; rad/s], as for `worst_hand`.
     force_limit, force_resolution
@@ -420,6 +422,15 @@ def _decimal(value: float) -> Exact:
 
 
 def _parameter(device: Device, environment: Environment, name: str) -> _Parameter:
+    if isinstance(environment, Rendered):  # one of the environment that is rendered; laws follow it
+        row = environment
+        inner = _parameter(device, row.environment, name)
+
+        def rendered(value: Exact) -> tuple[Device, Environment]:
+            changed, environment = inner.change(value)
+            return changed, Rendered(environment, row.stages)
+
+        return inner._replace(change=rendered)
     owner, _, key = name.rpartition(".")
     in_environment = {f.name for f in fields(environment)} - {"exponent"}  # it changes the unit of K
     in_device = {f.name for f in fields(device)} | {"rate"}

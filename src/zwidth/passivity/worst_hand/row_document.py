@@ -100,7 +100,9 @@ def same_law(document: Mapping[str, Any], device: Device, environment: Environme
     """
     kind = document.get("kind")
     if kind not in (STORAGE, MOTION):
-        raise InputError(f"a document of laws in a row is of kind {STORAGE} or {MOTION}, got {str(kind)[:40]!r}")
+        raise InputError(
+            f"a document of laws in a row is of kind {STORAGE} or {MOTION}, got {str(kind)[:40]!r}"
+        )
     counted = document["law"]
     limited, stepped = (bool(counted[f"counts_force_{k}"]) for k in ("limit", "resolution"))
     if kind == STORAGE:

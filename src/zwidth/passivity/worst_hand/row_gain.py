@@ -94,7 +94,7 @@ def _document(
 
 
 def _place(board: RowBoard, knot: int, cell: int, halvings: int) -> Fraction:
-    """Where the hand stands: at an edge of its cell a little inside, so that no rounding moves the reading."""
+    """Where the hand stands: near an edge a little inside its cell, where no rounding moves the reading."""
     near = Fraction(1, 2**halvings)
     x = Fraction(knot, board.steps)
     return min(max(x, cell + near / 2**8), cell + 1 - near) * board.losses.resolution

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from math import ceil
 from typing import Any
@@ -63,7 +64,9 @@ class RowGame:
     def contact(self) -> str:
         """What is covered of contact, in words."""
         begun = "outside" if self.law.unilateral else "at the first count"
-        return f"contact made and broken at any instant within the board, by a hand that begins at rest {begun}"
+        return (
+            f"contact made and broken at any instant within the board, by a hand that begins at rest {begun}"
+        )
 
     @property
     def actuator(self) -> tuple[bool, bool]:
@@ -131,7 +134,7 @@ def row_game(
     fastest = counts_of("speed", speed, losses.resolution / losses.period)
     tried = COUNTS if not (deepest and fastest) else COUNTS[:1]
     for far, reach in tried:
-        depth = deepest or far
+        depth = deepest or Fraction(far)
         highest = max(1, ceil(depth) - 1)
         most = ceil(fastest) if fastest else min(reach, 2 * highest + 1)
         domain = Domain(-highest - 1, highest, most, depth, fastest or None)

@@ -33,7 +33,8 @@ class RowStorage(Storage):
     def certificate(self) -> Certificate:
         """The proof as data: the table of the law, the losses, the board, V."""
         board = self.played.board
-        assert isinstance(board, RowBoard) and self.played.value is not None
+        assert isinstance(board, RowBoard)
+        assert self.played.value is not None
         return Certificate(
             (
                 {
@@ -58,7 +59,8 @@ class RowStorage(Storage):
         import xarray as xr
 
         board = self.played.board
-        assert isinstance(board, RowBoard) and self.played.value is not None
+        assert isinstance(board, RowBoard)
+        assert self.played.value is not None
         energy = self.played.value * float(board.energy_unit)
         cells = np.arange(board.domain.lowest, board.domain.highest + 1)
         x = (cells[:, None] + board.knots[None, :] / board.steps) * float(board.losses.resolution)

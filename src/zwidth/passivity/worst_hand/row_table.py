@@ -109,8 +109,7 @@ def tabulate(law: RowLaw, domain: Domain, most: int = MOST_STATES) -> Table:
         if len(found.rows) > most:
             raise InputError(
                 f"the law does not close within {most:,} states on {domain.cells} counts with moves of up to "
-                f"{domain.reach}: it remembers too much for the game; give a smaller penetration or speed, or "
-                "let zwidth compare judge it"
+                f"{domain.reach}: it remembers too much for the game; give a smaller penetration or speed"
             )
     forces = np.array(found.rows)[:, -law.waiting]
     if not np.isfinite(forces).all():
