@@ -212,12 +212,17 @@ def _by_the_game(device: Device, law: Rendered, found: Attack) -> tuple[str, str
     try:
         played = worst_hand(device, law, seconds=_PATIENCE)
     except InputError as error:
-        return "undecided", f"{no_proof}; the game of the worst hand was not played: {error}"
+        return "undecided", f"{no_proof}; the game of the worst hand was not played: {_cause(error)}"
     if played.outcome == "active":
         return "active", f"{found}; but the game of the worst hand finds more. {played.claim}"
     if played.outcome == "undecided":
         return "undecided", f"{no_proof}; nor does the game of the worst hand decide it"
     return "undecided", f"{no_proof}; {played.hand} take no energy out, proved; others may"
+
+
+def _cause(error: InputError) -> str:
+    """What is wrong, without what to try."""
+    return str(error).partition(";")[0]
 
 
 def _covering(law: Rendered) -> Wall | None:

@@ -113,5 +113,5 @@ def _simulated(path: Motion, law: RowLaw, device: Device, environment: Environme
     setup = replace(setup, law=law.packed)
     run_setup(setup, setup.state.copy(), setup.memory.copy(), work, commands, record, None)
     taken = -record[R_HAND_WORK]
-    begun = 0 if rounds == part.times else len(x) - 2 - samples
-    return bool(taken[-1] - taken[begun] > 0)
+    last, begun = (-1, 0) if rounds == part.times else (len(x) - 2, len(x) - 2 - samples)
+    return bool(taken[last] > taken[begun])

@@ -77,8 +77,8 @@ class RowGame:
     def further(self) -> tuple[str, ...]:
         """What else a proof takes for granted."""
         return (
-            f"the law is its table: {self.table.states} states and their forces, as the simulator's compiled "
-            "law gives them in doubles; the checker takes the table as it stands, same_law compares the two",
+            "the law is a table of its states and forces, as the simulator's compiled law gives them in doubles; "
+            "the checker takes the table as it stands, same_law compares it with the law",
         )
 
     @cached_property
