@@ -62,10 +62,12 @@ def draw_storage(axes: Axes, found: Storage) -> None:
     metres, length_unit = scale([float(np.abs(position).max())], str(energy["position"].attrs["units"]))
     x = metres * position
     axes.fill_between(x, joules * low, joules * high, color=SKY, alpha=0.35, lw=0, label="after any move")
-    if before.dtype.kind in "if":  # else of laws in a row, of which only the extremes are known
+    if before.dtype.kind in "if":
         waits = np.abs(before[:, None] - cells[None, :]).argmin(axis=0)
         waiting = energy.values[waits, np.arange(len(position))]
         axes.plot(x, joules * waiting, color=BLUE, label="the hand waits", gid="waiting")
+    else:  # of laws in a row only the extremes are known
+        axes.plot(x, joules * high, color=BLUE, label="at most", gid="most")
     edges = np.arange(cells[0], cells[-1] + 2)
     if len(edges) <= _EDGES:
         axes.xaxis.set_minor_locator(FixedLocator((metres * resolution * edges).tolist()))

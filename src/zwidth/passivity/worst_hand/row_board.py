@@ -41,7 +41,7 @@ class RowBoard(Board):
     @property
     def rounding(self) -> int:
         """Units by which a force may be off: it is rounded down once."""
-        return 2
+        return 1
 
     @cached_property
     def forces(self) -> Integers:
