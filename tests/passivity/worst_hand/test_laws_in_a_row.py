@@ -111,7 +111,7 @@ def test_looking_ahead_is_a_filter_of_two_readings(stiffness):
 
 @pytest.mark.parametrize(("part", "outcome"), [("0.98", "passive"), ("1.02", "active")])
 def test_hysteresis_needs_its_width_in_friction(part, outcome):
-    """To and fro over one edge is paid h + KΔ/2 each way: f_c must be as much, and with K ≤ 2b/T it is enough."""
+    """To and fro over one edge is paid h + KΔ/2 each way: f_c must be as much; with K ≤ 2b/T it may."""
     at = device("0.5", "0.05")  # 2b/T = 1000 N/m; KΔ/2 = 0.01 N
     width = (Fraction("0.05") - Fraction("0.01")) * Fraction(part)
     found = played(zw.Wall(200), rendering.Hysteresis(width, 2000), at=at)
@@ -170,7 +170,7 @@ def test_no_move_of_random_hands_takes_out_more_than_the_storage_falls():
 
 def test_a_law_that_remembers_too_much_is_refused():
     """The energy that a controller has counted takes as many values as there are motions."""
-    with pytest.raises(zw.InputError, match="does not close within 100,000 states .* remembers too much"):
+    with pytest.raises(zw.InputError, match=r"does not close within 100,000 states .* remembers too much"):
         played(zw.Wall(200), rendering.PassivityController())
 
 
@@ -211,7 +211,8 @@ def test_a_motion_is_replayed_by_the_simulator():
     found = refuted()
     assert found.witness.verify()
     hand = zw.operators.WitnessMotion(found.witness, rounds=3000)
-    trace = zw.simulate(DEVICE, found.environment, hand, duration=hand.intervals * DEVICE.exact("sample_period"))
+    duration = hand.intervals * DEVICE.exact("sample_period")
+    trace = zw.simulate(DEVICE, found.environment, hand, duration=duration)
     assert trace.zwidth.energy.extracted > 0.01
     taken = -trace["hand_work"].values
     samples = len(found.witness.cycle) - 1
@@ -269,7 +270,7 @@ def rejected(document):
 
 def test_every_value_of_a_least_storage_function_binds():
     """The search begins at nothing, so that a move attains each value: less of any is too little."""
-    found, document = proved()
+    _, document = proved()
     value = numbers(document["storage"])
     for i in Random(1).sample(list(np.flatnonzero(value > 0)), 25):
         value[i] -= 1
@@ -349,7 +350,8 @@ def test_the_storage_is_shown_over_all_that_the_law_may_remember():
     least, most = energy.sel(remembered="least"), energy.sel(remembered="most")
     assert (most >= least).all()
     assert float((most - least).max()) > 0
-    assert float(most.max()) == float(found.storage.played.value.max() * found.storage.played.board.energy_unit)
+    game = found.storage.played
+    assert float(most.max()) == float(game.value.max() * game.board.energy_unit)
     lines = storage_figure(found).axes[0].lines
     assert [line.get_gid() for line in lines] == ["most"]
 

@@ -77,8 +77,8 @@ class RowGame:
     def further(self) -> tuple[str, ...]:
         """What else a proof takes for granted."""
         return (
-            "the law is a table of its states and forces, as the simulator's compiled law gives them in doubles; "
-            "the checker takes the table as it stands, same_law compares it with the law",
+            "the law is a table of its states and forces, as the simulator's compiled law gives them in "
+            "doubles; the checker takes the table as it stands, same_law compares it with the law",
         )
 
     @cached_property
