@@ -364,3 +364,31 @@ def test_a_reading_off_the_board_leaves_its_row_alone():
     after_every_reading(game.law.packed, row[None, :], np.array([0.0]), 1, -1, 1, scratch(), out)
     assert (out[0, [0, 4]] == 7).all()
     assert (out[0, 1:4, -1] == [0, 0, 200 * 1e-4]).all()
+
+
+def test_a_limit_is_sought_on_one_board():
+    """Where no bounds are given, those on which the law closes as it is hold for every value."""
+    law = zw.render(zw.Wall(200), rendering.DualRate(samples=2))
+    bracket = zw.passive_limit(DEVICE, law)
+    board = bracket.storage.played.board
+    assert (board.domain.highest + 1, board.domain.reach) == game_of(DEVICE, law).board
+    assert f"({board.domain.highest + 1} counts) on either side" in bracket.hand
+    assert bracket.passive > 10**12  # its slope is never more than 2b/T
+    assert bracket.active is None
+
+
+def test_a_limit_of_the_device_behind_laws():
+    """The friction that h + KΔ/2 asks for, found from both sides."""
+    law = zw.render(zw.Wall(200), rendering.Hysteresis("0.04", 2000))
+    bracket = zw.passive_limit(device("0.5", "0.05"), law, "coulomb_friction", **BOUNDS)
+    assert bracket.active < 0.05 < bracket.passive
+    assert bracket.relative_width <= 0.01
+    with pytest.raises(zw.InputError, match="no parameter 'force'"):
+        zw.passive_limit(DEVICE, law, "force")
+
+
+def test_a_very_long_memory_is_refused_before_it_fills_the_machine():
+    """A thousand readings in each state: few states are enough to say no."""
+    law = rendering.Damper("0.05", rendering.AdaptiveWindow(longest=1000))
+    with pytest.raises(zw.InputError, match=r"within 19,\d+ states"):
+        played(zw.Wall(100), law)

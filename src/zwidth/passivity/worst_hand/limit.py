@@ -23,7 +23,8 @@ from zwidth.passivity.document import to_json, unit_suffix
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.worst_hand.gain import Gain
 from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of, patience
-from zwidth.passivity.worst_hand.row_game import RowGame
+from zwidth.passivity.worst_hand.row_game import RowGame, row_game
+from zwidth.passivity.worst_hand.row_table import DoesNotClose
 from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
@@ -210,11 +211,21 @@ def passive_limit(
         return bracket
     known = (None, None) if bracket is None else (bracket.passive, bracket.active)
 
+    counted = penetration, speed, force_limit, force_resolution, friction
+    boards = _one_board(device, law, *counted) if isinstance(law, Rendered) else ()
+
     def game(value: Exact) -> Game | RowGame:
-        loop = search.parameter.change(value)
-        return game_of(*loop, penetration, speed, force_limit, force_resolution, friction)
+        changed, environment = search.parameter.change(value)
+        if isinstance(environment, Rendered):
+            return row_game(changed, environment, *counted, boards)
+        return game_of(changed, environment, *counted)
 
     return search.by_games(device, game, known)
+
+
+def _one_board(device: Device, law: Rendered, *counted: Any) -> tuple[tuple[int, int]]:
+    """The board on which laws in a row close as they are given, for all values of a parameter."""
+    return (row_game(device, law, *counted).board,)
 
 
 class _Search:
@@ -276,7 +287,10 @@ class _Search:
 
             def proved(value: Exact, steps: int = steps, tell: Tell = tell) -> bool:
                 self._count()
-                storage = game(value).prove(steps, self.deadline, tell)
+                try:
+                    storage = game(value).prove(steps, self.deadline, tell)
+                except DoesNotClose:
+                    return False
                 if storage is not None:
                     proofs.clear()
                     proofs[value] = storage
@@ -284,7 +298,10 @@ class _Search:
 
             def refuted(value: Exact, fine: int = fine, tell: Tell = tell) -> bool:
                 self._count()
-                motion = game(value).refute(fine, self.deadline, tell)
+                try:
+                    motion = game(value).refute(fine, self.deadline, tell)
+                except DoesNotClose:
+                    return False
                 if motion is not None:
                     motions[value] = motion
                 return motion is not None
@@ -356,7 +373,7 @@ class _Search:
             if good is None or bad is None:
                 value = _decimal(value * (factor if (towards > 0) == forward else 1 / factor))
                 factor = min(factor**2, 4.0)
-            if abs(log2(value / start)) > _FARTHEST:
+            if max(abs(log2(value / origin)) for origin in (start, self._first())) > _FARTHEST:
                 break
         while good is not None and bad is not None and abs(bad - good) > fine * max(bad, good):
             if self._late():

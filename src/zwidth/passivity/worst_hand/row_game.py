@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -20,7 +21,7 @@ from zwidth.passivity.worst_hand.row_gain import row_gain
 from zwidth.passivity.worst_hand.row_law import RowLaw, row_law
 from zwidth.passivity.worst_hand.row_play import play_row
 from zwidth.passivity.worst_hand.row_storage import RowStorage
-from zwidth.passivity.worst_hand.row_table import MOST_STATES, Table, tabulate
+from zwidth.passivity.worst_hand.row_table import MOST_STATES, DoesNotClose, Table, tabulate
 from zwidth.passivity.worst_hand.solve import Played
 from zwidth.quantity.exact import RealLike
 from zwidth.rendering.rendered import Rendered
@@ -41,7 +42,8 @@ class RowGame:
     law: RowLaw
     losses: Losses
     domain: Domain
-    most: int = MOST_STATES
+    board: tuple[int, int]
+    most: int
 
     @property
     def motion(self) -> str:
@@ -121,18 +123,23 @@ def row_game(
     force_limit: bool = False,
     force_resolution: bool = False,
     friction: FrictionCurve | None = None,
+    boards: Sequence[tuple[int, int]] = COUNTS,
 ) -> RowGame:
     """The game of laws in a row; arguments as for `worst_hand`.
 
+    `boards` are tried for what is not given: counts on either side, and counts a sample.
+
     Raises
     ------
+    DoesNotClose
+        If the law does not close on any of them.
     InputError
-        If the law cannot be played, or does not close on any board that is tried.
+        If it cannot be played.
     """
     losses = losses_of(device, friction)
     deepest = counts_of("penetration", penetration, losses.resolution)
     fastest = counts_of("speed", speed, losses.resolution / losses.period)
-    tried = COUNTS if not (deepest and fastest) else COUNTS[:1]
+    tried = boards if not (deepest and fastest) else boards[:1]
     for far, reach in tried:
         depth = deepest or Fraction(far)
         highest = max(1, ceil(depth) - 1)
@@ -142,10 +149,11 @@ def row_game(
             device, environment, domain.lowest, force_limit=force_limit, force_resolution=force_resolution
         )
         last = (far, reach) == tried[-1]
-        game = RowGame(device, environment, law, losses, domain, MOST_STATES if last else USUAL_STATES)
+        most_states = MOST_STATES if last else USUAL_STATES
+        game = RowGame(device, environment, law, losses, domain, (far, reach), most_states)
         try:
             _ = game.table
-        except InputError:
+        except DoesNotClose:
             if last:
                 raise
             continue

@@ -26,6 +26,16 @@ if TYPE_CHECKING:
 MOST_STATES = 100_000
 """States that a law in a row may have on its board."""
 
+_MOST_NUMBERS = 20_000_000
+"""Numbers that all states together may remember."""
+
+_AT_ONCE = 4_000_000
+"""Numbers that are stepped at once."""
+
+
+class DoesNotClose(InputError):
+    """The law has more states on the board than are looked at: it remembers too much."""
+
 
 @dataclass(frozen=True, eq=False)
 class Table:
@@ -82,8 +92,10 @@ def tabulate(law: RowLaw, domain: Domain, most: int = MOST_STATES) -> Table:
 
     Raises
     ------
+    DoesNotClose
+        If there are more than `most`, or fewer where each remembers very much.
     InputError
-        If there are more than `most`, or a force is no number.
+        If a force is no number.
     """
     known: dict[bytes, int] = {}
     found = _Found([], [])
@@ -94,9 +106,12 @@ def tabulate(law: RowLaw, domain: Domain, most: int = MOST_STATES) -> Table:
     successors: list[Integers] = []
     done = 0
     moves = np.arange(-domain.reach, domain.reach + 1)
+    size = len(found.rows[0])
+    most = min(most, _MOST_NUMBERS // size)
     while done < len(found.rows):
-        rows, counts = np.array(found.rows[done:]), np.array(found.counts[done:])
-        done = len(found.rows)
+        last = done + max(1, _AT_ONCE // (size * len(moves)))
+        rows, counts = np.array(found.rows[done:last]), np.array(found.counts[done:last])
+        done += len(rows)
         onward = np.zeros((len(rows), len(moves), rows.shape[1]))
         after_every_reading(
             law.packed, rows, counts, law.waiting, domain.lowest, domain.highest, scratch(), onward
@@ -107,7 +122,7 @@ def tabulate(law: RowLaw, domain: Domain, most: int = MOST_STATES) -> Table:
         reached[on_board] = found.numbered(known, then[on_board], onward[on_board])
         successors.append(reached)
         if len(found.rows) > most:
-            raise InputError(
+            raise DoesNotClose(
                 f"the law does not close within {most:,} states on {domain.cells} counts with moves of up to "
                 f"{domain.reach}: it remembers too much for the game; give a smaller penetration or speed"
             )
@@ -139,7 +154,7 @@ class _Found:
             key = keys[at].tobytes()
             if key not in known:
                 known[key] = len(self.rows)
-                self.rows.append(rows[at])
+                self.rows.append(rows[at].copy())
                 self.counts.append(int(counts[at]))
             numbers[i] = known[key]
         out: Integers = numbers[inverse.ravel()]
