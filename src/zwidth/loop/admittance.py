@@ -25,9 +25,10 @@ from zwidth.errors import InputError
 from zwidth.loop.setup import check_signals, whole_samples
 from zwidth.loop.trace import LARGEST, UNITS, VARIABLES
 from zwidth.operator.operator import LinearHand, Operator
-from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering import parallel_controller
-from zwidth.rendering.parallel_controller import ENERGY, SLOTS, ParallelController
+from zwidth.quantity.exact import RealLike
+from zwidth.rendering.parallel_controller import ENERGY, SLOTS, ParallelController, observer_only, step
+from zwidth.rendering.reading import one_of
+from zwidth.rendering.stage import positive
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -111,61 +112,39 @@ def simulate_admittance(
     InputError
         If the hand has mass or prescribes the motion, or an argument is out of its bounds.
     """
-    period = _period(sample_period)
-    hand = _hand(operator)
+    period = positive("sample_period", sample_period, "the display works by a clock")
     if not isinstance(body, VirtualBody):
         raise InputError(f"body is a zwidth.VirtualBody, got {type(body).__name__}")
-    if sensor not in ("point", "mean"):
-        raise InputError(f'sensor is "point" or "mean", got {sensor!r}')
     if controller is not None and not isinstance(controller, ParallelController):
         raise InputError(
             f"controller is a zwidth.rendering.ParallelController, got {type(controller).__name__}"
         )
-    samples = whole_samples(duration, period.fraction)
+    mean = one_of("sensor", sensor, "mean", "point") == "mean"
+    hand = _hand(operator)
+    start, samples = operator.initial_position, whole_samples(duration, period.fraction)
     times = np.arange(samples + 1) * np.float64(period)
     signals = operator.signals(times)
     check_signals(signals, samples)
-    still = np.full(samples + 1, operator.initial_position)
     loop = _Loop(
         body=np.array([body.mass, body.damping, body.stiffness, body.integration == "explicit"], dtype=float),
-        controller=np.array(
-            parallel_controller.observer_only(period) if controller is None else controller.numbers(period)
-        ),
+        controller=np.array(observer_only(period) if controller is None else controller.numbers(period)),
         hand=np.array([hand.stiffness, hand.damping]),
         force=np.zeros(samples) if signals.force is None else signals.force,
-        anchor=still if signals.anchor is None else signals.anchor,
+        anchor=np.full(samples + 1, start) if signals.anchor is None else signals.anchor,
     )
-    record = np.zeros((10, samples + 1))
-    done = _run(
-        samples,
-        float(period),
-        float(sensor == "mean"),
-        operator.initial_position,
-        *loop,
-        np.zeros(SLOTS),
-        record,
-    )
+    record = np.zeros((R_OBSERVED + 1, samples + 1))
+    done = _run(samples, float(period), float(mean), start, *loop, np.zeros(SLOTS), record)
     attributes: dict[str, Any] = {
         "body": body.describe(),
         "operator": operator.describe(),
         "controller": "none" if controller is None else controller.describe(),
         "sensor": sensor,
         "sample_period_s": float(period),
-        "stored_at_start_J": 0.5 * float(body.stiffness) * operator.initial_position**2,
+        "stored_at_start_J": 0.5 * float(body.stiffness) * start**2,
     }
     if done <= samples:
         attributes["diverged_at_s"] = float(times[done - 1])
     return _dataset(times[:done], record[:, :done], loop, attributes)
-
-
-def _period(given: RealLike) -> Exact:
-    try:
-        period = Exact(given)
-    except InputError as error:
-        raise InputError(f"sample_period: {error}") from None
-    if period <= 0:
-        raise InputError(f"sample_period must be > 0 s, got {period:g}: the display works by a clock")
-    return period
 
 
 def _hand(operator: Operator) -> LinearHand:
@@ -217,7 +196,7 @@ def _run(
             pushed = reading - damping * own - stiffness * y
         else:
             own = (mass * own + period * (reading - stiffness * y)) / inertia
-        held = parallel_controller.step(controller, memory, reading, own)
+        held = step(controller, memory, reading, own)
         drag = hand[1] * (slope - held)
         first = hand[0] * (anchor[k] - x) + drag
         record[R_POSITION, k], record[R_VELOCITY, k] = x, held
