@@ -88,7 +88,7 @@ def test_a_heavier_body_may_be_worse():
         (high * 0.999, True),
         (high * 1.001, False),
     ):
-        assert (growth(mass, 8000, 0.5, 0.001, 9, 0, "explicit", "mean") < 1) is stable
+        assert bool(growth(mass, 8000, 0.5, 0.001, 9, 0, "explicit", "mean") < 1) is stable
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from strategies import zero_or
 
 import zwidth as zw
 from zwidth.rendering import ParallelController
@@ -47,15 +48,15 @@ def test_it_owes_one_sample_at_most(body, newtons):
     np.testing.assert_allclose(trace.observed_energy, work, rtol=1e-10, atol=1e-12 * np.abs(work).max())
     bound = T * u[:-1] * (newtons - reading[:-1])
     bound[0] = 0.0  # nothing was read before the first sample
-    rounding = 1e-9 * np.abs(T * u[:-1] * newtons).max()
+    rounding = 1e-12 * np.maximum.accumulate(np.abs(work[1:]) + np.abs(T * u[:-1] * newtons))
     assert (work[1:] >= np.minimum(bound, 0) - rounding).all()
 
 
 @settings(max_examples=80, deadline=None)
 @given(
-    st.lists(st.floats(-0.02, 0.02), min_size=3, max_size=50),
+    st.lists(st.integers(-200, 200).map(lambda n: n / 1e4), min_size=3, max_size=50),
     st.floats(1, 3000),
-    st.floats(0, 3),
+    zero_or(0.001, 3),
     st.floats(0.001, 3),
 )
 def test_it_owes_one_sample_at_most_to_spring_hands(path, stiffness, damping, mass):
@@ -71,8 +72,8 @@ def test_it_owes_one_sample_at_most_to_spring_hands(path, stiffness, damping, ma
     assume((reading[1:] != 0).all())
     means = np.append(reading[1:], reading[-1])  # of the interval that follows
     bound = T * u * (means - reading)
-    rounding = 1e-9 * np.abs(T * u * means).max()
-    assert (work[2:] >= np.minimum(bound[1:-1], 0) - rounding).all()
+    rounding = 1e-12 * np.maximum.accumulate(np.abs(work) + np.abs(T * u * means))
+    assert (work[2:] >= np.minimum(bound[1:-1], 0) - rounding[2:]).all()
 
 
 def test_a_hand_that_turns_doubles_its_gain_in_every_sample():
@@ -87,7 +88,7 @@ def test_a_hand_that_turns_doubles_its_gain_in_every_sample():
 
 
 @settings(max_examples=60, deadline=None)
-@given(forces, st.floats(0.001, 3), st.floats(0, 1), st.floats(0, 500), st.sampled_from(["mean", "point"]))
+@given(forces, st.floats(0.001, 3), zero_or(0.001, 1), zero_or(0.01, 500), st.sampled_from(["mean", "point"]))
 def test_the_published_pairing_never_sees_an_implicit_body(newtons, mass, damping, stiffness, sensor):
     """Σ T φ_k v_k is what the body stores and loses: the controller never acts, whatever the hand."""
     body = zw.VirtualBody(mass, damping, stiffness)
@@ -111,7 +112,7 @@ def test_what_the_published_pairing_does_not_see_grows():
 
 @pytest.mark.parametrize("stiffness", [500, 2000])
 def test_what_the_pairings_miss_in_a_still_hand(stiffness):
-    """Point sensor: published ½ k T² u_k² + c T u_k (u_k − u_{k−1}) too much, sampled ½ k T² u_k² too little."""
+    """Point sensor: published ½ k T² u² + c T u_k (u_k − u_{k−1}) too much, sampled ½ k T² u² too little."""
     counted = {}
     for observer in ("published", "sampled"):
         trace = zw.simulate_admittance(
@@ -154,7 +155,7 @@ def test_where_it_changes_within_a_sample_it_does_harm():
 
 
 @settings(max_examples=60, deadline=None)
-@given(forces, st.floats(0.002, 1), st.floats(0.0001, 0.5), st.floats(0, 1), st.floats(0, 500))
+@given(forces, st.floats(0.002, 1), st.floats(0.0001, 0.5), zero_or(0.001, 1), zero_or(0.01, 500))
 def test_capped_before_a_soft_damper_no_hand_gains(newtons, mass, mobility, damping, stiffness):
     """1/b_s = T/2M + β_max in series with the source: W_h + Σ T f²/b_s ≥ 0 at every sample."""
     trace = pushed(
