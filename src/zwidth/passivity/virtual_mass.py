@@ -19,14 +19,15 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import inf
-from typing import Literal, get_args
+from typing import TYPE_CHECKING
 
-from zwidth.errors import InputError
+from zwidth.environment.virtual_body import INTEGRATIONS, Integration
 from zwidth.passivity.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, positive
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.reading import one_of
 
-Integration = Literal["implicit", "explicit"]
-Sensor = Literal["mean", "point"]
+if TYPE_CHECKING:
+    from zwidth.loop.admittance import Sensor
 
 _NO_SOURCE = "a damper that drives is no damper"
 
@@ -74,11 +75,9 @@ def stable_virtual_masses(
     gamma = nonnegative("damping", damping, _NO_SOURCE) * t
     delta = nonnegative("body_damping", body_damping, _NO_SOURCE) * t
     kappa = nonnegative("body_stiffness", body_stiffness, NEGATIVE_SPRING) * t * t
-    _word("integration", integration, get_args(Integration))
-    _word("sensor", sensor, get_args(Sensor))
-    if sensor == "mean":
+    if one_of("sensor", sensor, "mean", "point") == "mean":
         gamma -= eta / 2
-    if integration == "explicit":
+    if one_of("integration", integration, *INTEGRATIONS) == "explicit":
         return _explicit(gamma, delta, kappa + eta)
     if gamma + delta + kappa < 0:
         return None
@@ -94,8 +93,3 @@ def _explicit(gamma: Fraction, delta: Fraction, spring: Fraction) -> tuple[Exact
         return None if need >= 0 else (Exact(low), inf)
     high = need / rest
     return (Exact(low), Exact(high)) if low < high else None
-
-
-def _word(name: str, given: str, words: tuple[str, ...]) -> None:
-    if given not in words:
-        raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {given!r}")
