@@ -1,0 +1,6 @@
+"""Recorded data: a file or arrays become runs of samples in SI units, without gaps, and what was odd is said."""
+
+from zwidth.identification.logs.arrays import log_of
+from zwidth.identification.logs.log import BLOCK_SIZE, Block, Finding, Log
+
+__all__ = ["BLOCK_SIZE", "Block", "Finding", "Log", "log_of"]
