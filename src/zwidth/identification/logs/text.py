@@ -1,0 +1,218 @@
+"""Text: comma, semicolon, tab, white space; with or without a header; read a few megabytes at a time."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv as pc
+
+from zwidth.errors import InputError
+from zwidth.identification.logs.layout import SNIFFED, Layout, layout_of
+from zwidth.identification.logs.log import Finding
+from zwidth.identification.logs.table import Table, Values
+
+_PIECE = 2**23
+_NULLS = ["", "NaN", "nan", "NAN", "-nan", "null", "NULL", "None", "none", "NA", "N/A", "#N/A", "-"]
+_MOST_BROKEN = 0.01
+"""Share of rows of another length beyond which the file is not what it seems."""
+
+
+def text_table(path: Path) -> Table:
+    """The table in a text file.
+
+    Raises
+    ------
+    InputError
+        If it is no text, or holds no table of numbers.
+    """
+    with _opened(path) as file:
+        start = file.read(SNIFFED)
+        whole = not file.read(1)
+    layout = layout_of(start, str(path), whole)
+    _refuse_one_column(layout, path)
+    attributes = _attributes(layout)
+    columns = [name for name in layout.names if layout.kind(name) != "text"]
+    table = Table(
+        source=str(path),
+        units={name: layout.units.get(name) for name in columns},
+        read=lambda names: _read(path, layout, names, table.notes),
+        attributes=attributes,
+    )
+    return table
+
+
+def _opened(path: Path) -> IO[bytes]:
+    if path.suffix.lower() in (".gz", ".bz2", ".zst"):
+        return pa.input_stream(str(path), compression="detect")  # type: ignore[no-any-return]
+    return open(path, "rb")
+
+
+def _refuse_one_column(layout: Layout, path: Path) -> None:
+    if len(layout.names) == 1 and layout.header:
+        for sign, name in ((",", "comma"), (";", "semicolon"), ("\t", "tab"), ("|", "|")):
+            fields = layout.header.count(sign) + 1
+            if fields > 1:
+                raise InputError(
+                    f"{path}: the header splits into {fields} names at each {name}, but the rows do not; "
+                    "use one delimiter throughout"
+                )
+
+
+def _attributes(layout: Layout) -> dict[str, Any]:
+    for line in layout.comments:
+        if line.startswith("# {"):
+            try:
+                found = json.loads(line[2:])
+            except ValueError:
+                return {}
+            return found if isinstance(found, dict) else {}
+    return {}
+
+
+def _read(
+    path: Path, layout: Layout, names: tuple[str, ...], notes: dict[str, Finding]
+) -> Iterator[tuple[Values, ...]]:
+    parser = _Parser(path, layout, names)
+    with _opened(path) as file:
+        for _ in range(layout.skipped):
+            file.readline()
+        rest = b""
+        while piece := file.read(_PIECE):
+            end = piece.rfind(b"\n") + 1
+            if end == 0 and len(rest) + len(piece) > 2 * _PIECE:
+                if not piece.strip(b"\0"):
+                    break
+                raise InputError(f"{path} has a line of more than {_PIECE >> 20} MB; it is no table")
+            lines, rest = rest + piece[:end], piece[end:] if end else rest + piece
+            if b"\0" in lines:
+                rest = lines[lines.index(b"\0") :]
+                lines = lines[: len(lines) - len(rest)]
+                lines = lines[: lines.rfind(b"\n") + 1]
+                yield from parser.parse(lines)
+                break
+            yield from parser.parse(lines)
+    if rest.strip(b"\0 \r\n"):
+        parser.unfinished = True
+    if b"\0" in rest or (not rest.strip(b"\0") and rest):
+        notes["zeros"] = Finding(kind="zeros", text="the file ends in zero bytes: its end was never written")
+    parser.report(notes)
+
+
+class _Parser:
+    """Parses whole lines, and counts what it had to leave out."""
+
+    def __init__(self, path: Path, layout: Layout, names: tuple[str, ...]) -> None:
+        self.path, self.layout, self.names = path, layout, names
+        self.rows = self.broken = self.headers = 0
+        self.line = layout.skipped
+        self.unfinished = False
+        kinds = {"float": pa.float64(), "int": pa.int64(), "date": pa.timestamp("ns")}
+        for name in names:
+            if layout.kind(name) == "text":
+                raise InputError(f'{path}: column "{name}" holds text, such as "{self._example(name)}"')
+        self.types = {name: kinds[layout.kind(name)] for name in names}
+
+    def parse(self, lines: bytes) -> Iterator[tuple[Values, ...]]:
+        """The columns of these lines."""
+        if not lines:
+            return
+        cleaned = self._cleaned(lines)
+        if cleaned.strip():
+            try:
+                batch = self._parsed(cleaned)
+            except pa.ArrowInvalid as error:
+                raise self._culprit(cleaned, error) from None
+            self.rows += batch.num_rows
+            if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
+                raise InputError(
+                    f"{self.path}: {self.broken} of {self.rows + self.broken} rows have another number of columns "
+                    f"than {len(self.layout.names)}; it is no table"
+                )
+            yield tuple(_numbers(batch[name]) for name in self.names)
+        self.line += lines.count(b"\n")
+
+    def report(self, notes: dict[str, Finding]) -> None:
+        """Write down what was left out."""
+        if self.unfinished:
+            text = "the last line has no end, it may be cut off; it is left out"
+            notes["unfinished"] = Finding(kind="unfinished", text=text, samples=1)
+        if self.broken:
+            text = f"{self.broken} rows have another number of columns than {len(self.layout.names)}; they are left out"
+            notes["broken"] = Finding(kind="broken rows", text=text, samples=self.broken)
+        if self.headers:
+            text = f"the header comes again {self.headers} times: files were put one after the other"
+            notes["headers"] = Finding(kind="headers", text=text)
+
+    def _parsed(self, lines: bytes) -> pa.Table:
+        layout = self.layout
+        return pc.read_csv(
+            pa.BufferReader(lines),
+            read_options=pc.ReadOptions(column_names=list(layout.names)),
+            parse_options=pc.ParseOptions(delimiter=layout.delimiter, invalid_row_handler=self._skip),
+            convert_options=pc.ConvertOptions(
+                include_columns=list(dict.fromkeys(self.names)),
+                column_types=self.types,
+                decimal_point="," if layout.comma else ".",
+                null_values=_NULLS,
+                strings_can_be_null=True,
+            ),
+        )
+
+    def _skip(self, row: Any) -> str:
+        self.broken += 1
+        return "skip"
+
+    def _cleaned(self, lines: bytes) -> bytes:
+        """Without comments, repeated headers and, where white space separates, more than one of it."""
+        for sign in (b"#", b"%", b"//"):
+            if lines.startswith(sign) or b"\n" + sign in lines:
+                lines = re.sub(rb"(?m)^" + sign + rb"[^\n]*\n?", b"", lines)
+        header = self.layout.header.encode()
+        if header and header in lines:
+            pattern = rb"(?m)^" + re.escape(header) + rb"\r?\n"
+            lines, count = re.subn(pattern, b"", lines)
+            self.headers += count
+        if self.layout.delimiter == " ":
+            lines = re.sub(rb"[ \t]+", b" ", lines)
+            lines = re.sub(rb"(?m)^ | ?\r?$", b"", lines)
+        return lines
+
+    def _culprit(self, lines: bytes, error: Exception) -> InputError:
+        """The field that is no number, and where it stands."""
+        for k, line in enumerate(lines.decode("utf-8", "replace").splitlines()):
+            fields = [f.strip() for f in line.split(self.layout.delimiter)]
+            if len(fields) != len(self.layout.names):
+                continue
+            for name, value in zip(self.layout.names, fields, strict=True):
+                if name in self.names and value not in _NULLS and not _converts(value, self.layout.comma):
+                    return InputError(
+                        f'{self.path}: column "{name}" holds text near line {self.line + k + 1}: "{value[:40]}"'
+                    )
+        return InputError(
+            f"{self.path} cannot be read near line {self.line + 1}: {str(error).splitlines()[0][:200]}"
+        )
+
+    def _example(self, name: str) -> str:
+        index = self.layout.names.index(name)
+        return next((row[index] for row in self.layout.sample if not _converts(row[index], True)), "")[:40]
+
+
+def _converts(value: str, comma: bool) -> bool:
+    try:
+        float(value.replace(",", ".") if comma else value)
+    except ValueError:
+        return False
+    return True
+
+
+def _numbers(column: pa.ChunkedArray) -> Values:
+    values: Values = column.to_numpy()
+    if values.dtype == np.object_:
+        return values.astype(np.float64)
+    return values
