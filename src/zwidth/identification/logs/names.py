@@ -73,7 +73,7 @@ def recognise(columns: Mapping[str, Any], chosen: Mapping[str, str] | None, sour
             f'{source}: no column is known to be the position; say which with columns={{"position": …}}; '
             f"there are {listed(columns) or 'no columns of numbers'}"
         )
-    return found
+    return {quantity: found[quantity] for quantity in QUANTITIES if quantity in found}
 
 
 def name_and_unit(column: str, quantity: str) -> tuple[str, str | None]:
