@@ -18,7 +18,7 @@ from zwidth.identification.logs.scales import Meaning
 from zwidth.identification.logs.stamps import Clock, clock_of
 from zwidth.identification.logs.steps import Grid
 from zwidth.identification.logs.survey import Survey
-from zwidth.identification.logs.table import Table
+from zwidth.identification.logs.table import Table, listed
 from zwidth.identification.logs.wraps import Unwrapper
 from zwidth.quantity.units import parse_number
 
@@ -69,7 +69,8 @@ def log_from(table: Table, meaning: Meaning, stated: float | None) -> Log:
     timed = "time" in meaning.columns
     if not timed and stated is None:
         raise InputError(
-            f"{table.source}: there is no time; name its column in columns, or state sample_rate or sample_period"
+            f"{table.source}: no column is known to be the time; say which with columns={{\"time\": …}}, or state "
+            f"sample_rate or sample_period; there are {listed(table.units)}"
         )
     recording = Recording(table, meaning, None if timed else stated)
     tally: Counter[str] = Counter()

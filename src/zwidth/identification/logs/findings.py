@@ -101,7 +101,7 @@ def clock(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Findi
         )
         yield Finding(kind="gap", text=text, samples=tally["lost"])
     if tally["restarts"]:
-        text = f"time starts again {tally['restarts']} times: recordings one after the other, a run each"
+        text = f"time starts again, {tally['restarts']} ×: recordings one after the other, a run each"
         yield Finding(kind="restart", text=text)
     if tally["repeated"]:
         text = f"{tally['repeated']} stamps come twice while the clock goes on; the second row is left out"

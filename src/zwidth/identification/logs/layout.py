@@ -201,6 +201,9 @@ def _header(
         return fitting[-2], _split(fitting[-1], delimiter)
     if fitting and fitting[-1] == plain[-1]:
         return fitting[-1], []
+    for other in _DELIMITERS[:-1]:
+        if plain and len(_split(plain[-1], other)) == columns > 1:
+            return plain[-1].replace(other, delimiter), []
     for line in reversed(comments):
         if len(_split(line.lstrip("#%/ "), delimiter)) == columns and not line.startswith("# {"):
             return line, []

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
     Indices = NDArray[np.intp]
 
-_SIDE = 7
-"""Samples on each side of a jump that say where r was and is."""
+_SIDE, _NOISY_SIDE = 7, 31
+"""Samples on each side of a jump that say where r was and is; and where stamps vary by a tenth of T or more."""
 
 _WIDEST = 4096
 """Samples over which stamps in groups are averaged."""
@@ -45,15 +45,20 @@ class Clock:
         [s] roughly T.
     group
         Most samples between two stamps that differ; 1 where every sample has its own.
+    noisy
+        Intervals vary by a tenth of T or more.
     """
 
     period: float
     group: int
+    noisy: bool = False
 
     @property
     def reach(self) -> int:
         """How many samples on each side a decision needs."""
-        return _SIDE if self.group == 1 else 8 * self.group
+        if self.group > 1:
+            return 8 * self.group
+        return _NOISY_SIDE if self.noisy else _SIDE
 
 
 def clock_of(time: Array, source: str) -> Clock:
@@ -73,7 +78,8 @@ def clock_of(time: Array, source: str) -> Clock:
     width = max(1, min(steps.size // 2, _WIDEST))
     period = float(np.median(time[width:] - time[:-width])) / width
     if usual > 0 and period < 2.5 * usual and np.mean(np.abs(steps - usual) < 0.25 * usual) > 0.5:
-        return Clock(period=usual, group=1)
+        low, high = np.quantile(steps, (0.25, 0.75))
+        return Clock(period=usual, group=1, noisy=bool(high - low > 0.1 * usual))
     group = _longest_group(steps, period)
     if period <= 0 or group > width // 4 or _wanders(time, period, width):
         raise InputError(
@@ -119,7 +125,7 @@ def jumps(time: Array, first: int, clock: Clock) -> tuple[Indices, Indices]:
         kind[(steps[where] < 0.5 * period) & (shift < -0.5)] = REPEATED
     kind[(steps[where] < -0.5 * period) & (shift < -least)] = BACK
     real = kind > 0
-    if clock.group > 1:
+    if clock.group > 1 or clock.noisy:
         real = _widest_of_each(where, real, steps, clock.reach)
     return where[real], kind[real]
 
@@ -135,7 +141,8 @@ def _shift(residual: Array, where: Indices, clock: Clock) -> Array:
     low, high = np.maximum(where + 1 - reach, 0), np.minimum(where + 1 + reach, residual.size)
     left = (total[where + 1] - total[low]) / (where + 1 - low)
     right = (total[high] - total[where + 1]) / (high - where - 1)
-    return np.asarray(right - left)
+    known = np.minimum(where + 1 - low, high - where - 1) >= 2 * clock.group
+    return np.where(known, right - left, 0.0)
 
 
 def _widest_of_each(where: Indices, real: NDArray[np.bool_], steps: Array, reach: int) -> NDArray[np.bool_]:

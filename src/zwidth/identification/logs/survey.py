@@ -93,13 +93,14 @@ class Survey:
         self.intervals += steps.size
         self.elapsed += float(time[-1] - start)
         self.shortest, self.longest = min(self.shortest, steps.min()), max(self.longest, steps.max())
-        mean = float(time[-1] - start) / steps.size
         steps -= self.period
         self.squares += float(steps @ steps)
-        if steps.size >= _LONG and abs(mean - self.period) > 0.01 * self.period:
+        means = np.diff(time[::_LONG]) / _LONG
+        other = np.flatnonzero(np.abs(means - self.period) > 0.01 * self.period)
+        if other.size:
             raise InputError(
-                f"{self.source}: the sample period changes: {self.period:.6g} s at the start, {mean:.6g} s around "
-                f"t = {time[0]:.6g} s; cut the file where the rate changes"
+                f"{self.source}: the sample period changes: roughly {self.period:.6g} s, but "
+                f"{means[other[0]]:.6g} s after t = {time[other[0] * _LONG]:.6g} s; cut the file where it changes"
             )
 
     def _position(self, position: Array) -> None:
@@ -121,7 +122,7 @@ class Survey:
         coarser = self.found is not None and self.found.step > 1.5 * self.stated
         if fits and not coarser:
             self.grid = stated
-        elif self._levels.size < FEWEST:
+        elif self._levels.size < FEWEST or (self.found is not None and self.found.step < 0.3 * self.stated):
             self.grid = stated if fits else None
 
     def _force(self, name: str, force: Array | None) -> None:

@@ -147,7 +147,7 @@ class _Parser:
             text = f"{self.broken} rows have another number of columns than {len(self.layout.names)}; they are left out"
             notes["broken"] = Finding(kind="broken rows", text=text, samples=self.broken)
         if self.headers:
-            text = f"the header comes again {self.headers} times: files were put one after the other"
+            text = f"the header stands in the rows again, {self.headers} ×: files were put one after the other"
             notes["headers"] = Finding(kind="headers", text=text)
 
     def _parsed(self, lines: bytes) -> pa.Table:
