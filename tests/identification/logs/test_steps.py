@@ -79,7 +79,9 @@ def test_filtered_positions_stay_as_they_are() -> None:
 def test_a_counter_that_overflows_is_continued(bits: int, signed: bool) -> None:
     """The jumps of nearly the full range are no motion, over borders of blocks too."""
     size = 2**bits
-    counts = np.rint(0.9 * size * np.sin(np.linspace(0, 40, 600_000)) + np.linspace(0, 3 * size, 600_000)).astype(int)
+    counts = np.rint(
+        0.9 * size * np.sin(np.linspace(0, 40, 600_000)) + np.linspace(0, 3 * size, 600_000)
+    ).astype(int)
     read = (counts + size // 2) % size - size // 2 if signed else counts % size
     log = zw.log_of(position=read * 1e-5, sample_rate=1000)
     assert "overflow" in kinds(log)

@@ -171,6 +171,8 @@ class _Parser:
 
     def _cleaned(self, lines: bytes) -> bytes:
         """Without comments, repeated headers and, where white space separates, more than one of it."""
+        if not lines.isascii():
+            lines = lines.decode("utf-8", "replace").encode()
         for sign in (b"#", b"%", b"//"):
             if sign[:1] in lines:  # one byte is searched for far quicker than two
                 lines = re.sub(rb"(?m)^" + sign + rb"[^\n]*\n?", b"", lines)
