@@ -37,7 +37,7 @@ RANDOM = np.random.default_rng(1).bytes(20000)
         (GOOD.replace("force_N", "force [N*m]").encode(), "not a force"),
         (GOOD.replace("0.5,", "0.5,oops ", 1).encode(), "near line 502.*oops|oops.*near line 502"),
         (GOOD.replace(",", ",\t").replace("0.7,\t", "0.7;").encode()[:9000], "."),
-        ((GOOD + "1,2\n" * 3000).encode(), "another number of columns"),
+        ((GOOD * 9 + "1,2\n" * 3000).encode(), "another number of columns"),
         (b"time_s,position_mm\n0,1\n", "fewer than two rows"),
         (b"time_s,position_mm\n" + b"0.001,1\n" * 50, "time stands still"),
         (b"time_s,position_mm\n" + b"".join(b"%f,1\n" % (k / 1000) for k in range(50)), "never changes"),

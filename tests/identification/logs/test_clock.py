@@ -184,7 +184,7 @@ def test_dates_are_counted_from_the_first(dtype: str, recording) -> None:
     elif dtype == "int64":
         log = zw.log_of(time=nanoseconds, position=recording.position, scale={"time": 1e-9})
     else:
-        log = zw.log_of(time=nanoseconds.astype(dtype), position=recording.position, scale={"time": 1})
+        log = zw.log_of(time=nanoseconds.astype(dtype), position=recording.position)
     (block,) = log.blocks()
     assert log.sample_period == pytest.approx(5e-4, rel=1e-9)
     assert np.abs(block.time - recording.time).max() < (1e-6 if dtype == "float64" else 1e-12)

@@ -259,9 +259,7 @@ def test_traces_of_zwidth_are_logs(suffix: str, rotary: bool, tmp_path: Path) ->
     """The encoder's reading at the samples alone, with period, step and motion as the trace says."""
     if rotary:
         device = zw.rotary(inertia=2e-5, damping=2e-4, coulomb_friction=2e-3, resolution=1e-4, rate=2000)
-        trace = zw.simulate(
-            device, zw.Wall(0.5), zw.operators.Finger(), 0.3, initial_position=-0.05
-        )
+        trace = zw.simulate(device, zw.Wall(0.5), zw.operators.Finger(), 0.3, initial_position=-0.05)
     else:
         paddle = zw.catalogue.device("haptic-paddle")
         trace = zw.simulate(paddle, zw.Wall(300.0), zw.operators.Finger(), 0.3, points_per_sample=3)

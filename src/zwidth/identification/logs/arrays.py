@@ -135,6 +135,6 @@ def _of_dataset(data: xr.Dataset) -> Table:
     }
     if not variables:
         raise InputError("the Dataset has no variable of numbers along one dimension")
-    units = {name: variable.attrs.get("units") for name, variable in variables.items()}
+    units = {n: "ns" if v.dtype.kind == "M" else v.attrs.get("units") for n, v in variables.items()}
     arrays = {name: np.asarray(variable.values) for name, variable in variables.items()}
     return _table(arrays, units, dict(data.attrs))

@@ -95,7 +95,9 @@ def _read(
         columns[name] = values[name]
         if topics[name] != main:
             columns[name] = _nearest(stamps[main], stamps[topics[name]], values[name])
-            text = f'"{name}" is of another topic than the position; each sample has the value nearest in time'
+            text = (
+                f'"{name}" is of another topic than the position; each sample has the value nearest in time'
+            )
             notes[name] = Finding(kind="two topics", text=text)
     for k in range(0, stamps[main].size, PIECE):
         yield tuple(columns[name][k : k + PIECE] for name in names)

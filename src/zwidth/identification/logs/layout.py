@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from zwidth.errors import InputError
+from zwidth.identification.logs.scales import is_unit
 
 SNIFFED = 2**16
 """[bytes] at the start of a file that its layout is read from."""
@@ -197,8 +198,13 @@ def _header(
 ) -> tuple[str, list[str]]:
     """The line with the names, and the fields of the line of units below it."""
     fitting = [line for line in plain if len(_split(line, delimiter)) == columns]
-    if len(fitting) >= 2 and plain[-2:] == fitting[-2:]:
-        return fitting[-2], _split(fitting[-1], delimiter)
+    below = _split(fitting[-1], delimiter) if fitting else []
+    if (
+        len(fitting) >= 2
+        and plain[-2:] == fitting[-2:]
+        and all(is_unit(field.strip("[]() -")) for field in below)
+    ):
+        return fitting[-2], below
     if fitting and fitting[-1] == plain[-1]:
         return fitting[-1], []
     for other in _DELIMITERS[:-1]:

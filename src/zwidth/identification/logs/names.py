@@ -45,6 +45,9 @@ _SUFFIXES = {
 }
 
 _BRACKETS = re.compile(r"^(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\)|\s/\s*(\S+))\s*$")
+_VECTOR = re.compile(r"(force|torque|velocity|linear|angular|acceleration|orientation)[./][xyzw]$")
+"""Components of what is no position, in a message."""
+
 _INDEX = re.compile(r"\[\d+\]$")
 
 
@@ -101,7 +104,7 @@ def _word(text: str) -> str:
 
 
 def _candidates(quantity: str, columns: list[str]) -> list[str]:
-    words = {column: name_and_unit(column, quantity)[0] for column in columns}
+    words = {c: name_and_unit(c, quantity)[0] for c in columns if not _VECTOR.search(c.lower())}
     for tier in _WORDS[quantity]:
         found = [column for column, word in words.items() if word in tier.split()]
         if found == [c for c in found if words[c] == "x"] and "y" in words.values():

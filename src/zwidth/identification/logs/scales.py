@@ -101,6 +101,16 @@ def meaning_of(
     )
 
 
+def is_unit(text: str) -> bool:
+    """True where a text spells a unit, a count, or nothing."""
+    plain = text.translate(_SPELLING)
+    try:
+        unit_of(_ALIASES.get(plain, plain))
+    except InputError:
+        return _is_counts(plain)
+    return True
+
+
 def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[str, str]) -> None:
     for key in given or {}:
         if key not in QUANTITIES:

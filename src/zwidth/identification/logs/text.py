@@ -40,7 +40,7 @@ def text_table(path: Path) -> Table:
     columns = [name for name in layout.names if layout.kind(name) != "text"]
     table = Table(
         source=str(path),
-        units={name: layout.units.get(name) for name in columns},
+        units={name: "ns" if layout.kind(name) == "date" else layout.units.get(name) for name in columns},
         read=lambda names: _read(path, layout, names, table.notes),
         attributes=attributes,
     )
@@ -80,10 +80,10 @@ def _read(
 ) -> Iterator[tuple[Values, ...]]:
     parser = _Parser(path, layout, names)
     with _opened(path) as file:
-        for _ in range(layout.skipped):
-            file.readline()
-        rest = b""
+        rest, above = b"", layout.skipped
         while piece := file.read(_PIECE):
+            if above:
+                piece, above = _without_lines(piece, above), 0
             end = piece.rfind(b"\n") + 1
             if end == 0 and len(rest) + len(piece) > 2 * _PIECE:
                 if not piece.strip(b"\0"):
@@ -102,6 +102,13 @@ def _read(
     if b"\0" in rest or (not rest.strip(b"\0") and rest):
         notes["zeros"] = Finding(kind="zeros", text="the file ends in zero bytes: its end was never written")
     parser.report(notes)
+
+
+def _without_lines(piece: bytes, count: int) -> bytes:
+    start = 0
+    for _ in range(count):
+        start = piece.index(b"\n", start) + 1
+    return piece[start:]
 
 
 class _Parser:
@@ -147,7 +154,9 @@ class _Parser:
             text = f"{self.broken} rows have another number of columns than {len(self.layout.names)}; they are left out"
             notes["broken"] = Finding(kind="broken rows", text=text, samples=self.broken)
         if self.headers:
-            text = f"the header stands in the rows again, {self.headers} ×: files were put one after the other"
+            text = (
+                f"the header stands in the rows again, {self.headers} ×: files were put one after the other"
+            )
             notes["headers"] = Finding(kind="headers", text=text)
 
     def _parsed(self, lines: bytes) -> pa.Table:
