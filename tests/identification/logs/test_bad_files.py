@@ -69,6 +69,15 @@ def test_missing_files_and_directories(tmp_path: Path) -> None:
         zw.read_log(tmp_path)
 
 
+def outcome(path: Path) -> tuple[str, int]:
+    """The message or the source, and how many samples were read."""
+    try:
+        log = zw.read_log(path)
+        return log.source, sum(b.time.size for b in log.blocks())
+    except zw.InputError as error:
+        return str(error), 0
+
+
 @pytest.mark.parametrize("keep", [0.2, 0.6, 0.95, 0.999])
 @pytest.mark.parametrize("kind", ["parquet", "h5", "mat", "csv", "gz"])
 def test_truncated_files(kind: str, keep: float, tmp_path: Path) -> None:
@@ -91,13 +100,10 @@ def test_truncated_files(kind: str, keep: float, tmp_path: Path) -> None:
         path.write_bytes(GOOD.encode() if kind == "csv" else gzip.compress(GOOD.encode()))
     content = path.read_bytes()
     path.write_bytes(content[: int(keep * len(content))])
-    try:
-        log = zw.read_log(path)
-    except zw.InputError as error:
-        assert str(path) in str(error)
-    else:
-        assert kind in ("csv", "gz", "mat")
-        assert log.samples < 2000
+    said, samples = outcome(path)
+    assert str(path) in said
+    assert samples < 2000
+    assert samples == 0 or kind in ("csv", "mat")
 
 
 def test_any_damage_is_a_message_or_a_log(tmp_path: Path) -> None:
@@ -109,10 +115,9 @@ def test_any_damage_is_a_message_or_a_log(tmp_path: Path) -> None:
         for place in random.integers(0, len(content), random.integers(1, 30)):
             content[place] = random.choice(list(b"0123456789,;\n\t .-eE#\0\xff\"'x"))
         path.write_bytes(content)
-        try:
-            assert sum(b.time.size for b in zw.read_log(path).blocks()) > 0
-        except zw.InputError as error:
-            assert str(path) in str(error)
+        said, samples = outcome(path)
+        assert str(path) in said
+        assert samples <= 2100
 
 
 def test_columns_of_different_lengths(tmp_path: Path) -> None:

@@ -70,7 +70,7 @@ def log_from(table: Table, meaning: Meaning, stated: float | None) -> Log:
     if not timed and stated is None:
         raise InputError(
             f'{table.source}: no column is known to be the time; say which with columns={{"time": …}}, or state '
-            f"sample_rate or sample_period; there are {listed(table.units)}"
+            f"or state sample_rate or sample_period; there are {listed(table.units)}"
         )
     recording = Recording(table, meaning, None if timed else stated)
     tally: Counter[str] = Counter()
@@ -160,7 +160,7 @@ def _blocks(
             if varying:
                 stamps = rows.time[:_START]
                 start = float(np.median(stamps - period * np.arange(stamps.size)))
-        time = start + period * np.arange(done, done + rows.time.size)
+        time = start + period * np.arange(done, done + rows.time.size, dtype=np.float64)
         done += rows.time.size
         position = unwrapper.take(_on(grid, rows.position))
         yield Block(run, time, position, rows.hand_force, rows.actuator_force)

@@ -40,13 +40,14 @@ def refuse(survey: Survey, tally: Counter[str], source: str) -> None:
         )
     if survey.jumps.low == survey.jumps.high:
         raise InputError(
-            f"{source}: the position never changes, it is {survey.jumps.low:g} throughout; is it the right column?"
+            f"{source}: the position never changes, it is {survey.jumps.low:g} throughout; is it the right "
+            "column?"
         )
     low, high = survey.ranges.get("hand_force", (0.0, 1.0))
     if low == high:
         raise InputError(
-            f"{source}: the hand force never changes, it is {low:g} throughout; is the sensor connected, and is it "
-            "the right column? To go without, leave its column out"
+            f"{source}: the hand force never changes, it is {low:g} throughout; is the sensor connected, and "
+            "is it the right column? To go without, leave its column out"
         )
 
 
@@ -70,8 +71,8 @@ def period(survey: Survey, stated: float | None, timed: bool, source: str) -> tu
     off = mean / stated - 1
     if abs(off) > _LOT:
         raise InputError(
-            f"{source}: the stamps are {mean:.6g} s apart, stated are {stated:.6g} s; check the rate and the unit of "
-            "the time column"
+            f"{source}: the stamps are {mean:.6g} s apart, stated are {stated:.6g} s; check the rate and the "
+            "unit of the time column"
         )
     if abs(off) > _LITTLE + uncertainty / stated:
         text = (
@@ -96,7 +97,7 @@ def clock(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Findi
         yield Finding(kind="infinite", text=text, samples=tally["infinite"])
     if tally["gaps"]:
         text = (
-            f"{tally['gaps']} gaps with about {tally['lost']} samples, the longest {cutter.longest_gap:.4g} s; "
+            f"{tally['gaps']} gaps, about {tally['lost']} samples, the longest {cutter.longest_gap:.4g} s; "
             "a new run begins after each"
         )
         yield Finding(kind="gap", text=text, samples=tally["lost"])
@@ -110,7 +111,10 @@ def clock(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Findi
         "supposed: the samples were taken evenly and only the stamps vary, so the row's number is the clock"
     )
     if cutter.clock.group > 1:
-        text = f"the stamps come in groups of up to {cutter.clock.group} samples, or vary as much (a coarse clock, packets); {supposed}"
+        text = (
+            f"the stamps come in groups of up to {cutter.clock.group} samples, or vary as much (a coarse "
+            f"clock, packets); {supposed}"
+        )
         yield Finding(kind="grouped stamps", text=text)
     elif survey.deviation > 1e-3 * survey.period:
         text = (
@@ -125,19 +129,16 @@ def position(survey: Survey, wrap: float, unit: str) -> Iterator[Finding]:
     grid, found, stated = survey.grid, survey.found, survey.stated
     if stated is not None and grid is None:
         text = (
-            f"the positions do not lie on the stated step of {stated:.6g} {unit}: filtered or interpolated before "
-            "they were logged; they are left as they are"
+            f"the positions do not lie on the stated step of {stated:.6g} {unit}: filtered or interpolated "
+            "before they were logged; they are left as they are"
         )
         yield Finding(kind="no step", text=text)
     elif grid is None:
         yield Finding(kind="no step", text="the positions show no step; the resolution is taken as 0")
     elif stated is not None and grid.step != stated:
         times = grid.step / stated
-        whole = (
-            f", {round(times)} times that: the steps between are never seen"
-            if abs(times - round(times)) < 1e-3
-            else ""
-        )
+        multiple = times > 1.5 and abs(times - round(times)) < 1e-3
+        whole = f", {round(times)} times that: the steps between are never seen" if multiple else ""
         text = f"resolution {grid.step:.6g} {unit} by the positions; stated is {stated:.6g} {unit}{whole}"
         yield Finding(kind="stated resolution", text=text)
     else:

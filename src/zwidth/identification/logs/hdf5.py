@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,12 +16,12 @@ _MOST_COLUMNS = 64
 
 
 class _Column(NamedTuple):
-    """A column: its dataset, how many rows, and how a slice of rows is read from it."""
+    """A column: its dataset, rows and unit; its field, or whether it is upright in a matrix and which."""
 
     dataset: str
     rows: int
     unit: str | None
-    part: Callable[[Any, int, int], Any]
+    where: str | tuple[bool, int] | None
     packing: tuple[float, float, float | None]
 
 
@@ -52,30 +52,30 @@ def _columns(name: str, data: h5py.Dataset) -> dict[str, _Column]:
     about = (1.0 if packing[0] is None else packing[0], packing[1] or 0.0, packing[2])
     if data.dtype.names and len(data.shape) == 1:
         fields = [f for f in data.dtype.names if data.dtype[f].kind in "fiu"]
-        return {
-            f"{name}.{f}": _Column(name, data.shape[0], None, lambda d, a, b, f=f: d.fields(f)[a:b], about)
-            for f in fields
-        }
+        return {f"{name}.{f}": _Column(name, data.shape[0], None, f, about) for f in fields}
     if data.dtype.kind not in "fiu" or len(data.shape) not in (1, 2) or 0 in data.shape:
         return {}
     if len(data.shape) == 1:
-        return {name: _Column(name, data.shape[0], unit, lambda d, a, b: d[a:b], about)}
+        return {name: _Column(name, data.shape[0], unit, None, about)}
     rows, width = data.shape
-    if width == 1:
-        return {name: _Column(name, rows, unit, lambda d, a, b: d[a:b, 0], about)}
-    if rows == 1:
-        return {name: _Column(name, width, unit, lambda d, a, b: d[0, a:b], about)}
-    if width <= min(rows, _MOST_COLUMNS):
-        return {
-            f"{name}[{k}]": _Column(name, rows, unit, lambda d, a, b, k=k: d[a:b, k], about)
-            for k in range(width)
-        }
-    if rows <= _MOST_COLUMNS:
-        return {
-            f"{name}[{k}]": _Column(name, width, unit, lambda d, a, b, k=k: d[k, a:b], about)
-            for k in range(rows)
-        }
-    return {}
+    upright = width <= min(rows, _MOST_COLUMNS)
+    count, length = (width, rows) if upright else (rows, width)
+    if count > _MOST_COLUMNS:
+        return {}
+    return {
+        name if count == 1 else f"{name}[{k}]": _Column(name, length, unit, (upright, k), about)
+        for k in range(count)
+    }
+
+
+def _part(data: Any, column: _Column, start: int, end: int) -> Values:
+    """Rows of a column from its dataset."""
+    if column.where is None:
+        return np.asarray(data[start:end])
+    if isinstance(column.where, str):
+        return np.asarray(data.fields(column.where)[start:end])
+    upright, k = column.where
+    return np.asarray(data[start:end, k] if upright else data[k, start:end])
 
 
 def _read(path: Path, columns: list[_Column], names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
@@ -83,15 +83,15 @@ def _read(path: Path, columns: list[_Column], names: tuple[str, ...]) -> Iterato
     for name, column in zip(names, columns, strict=True):
         if column.rows != rows:
             raise InputError(
-                f'{path}: "{names[0]}" has {rows} samples, "{name}" has {column.rows}; choose columns of one length'
+                f'{path}: "{names[0]}" has {rows} samples, "{name}" has {column.rows}; '
+                "choose columns of one length"
             )
     with h5py.File(path, "r") as file:
         data = [file[column.dataset] for column in columns]
         step = max(PIECE, *((d.chunks or (1,))[0] if len(d.shape) == 1 else 1 for d in data))
         for k in range(0, rows, step):
             yield tuple(
-                _unpacked(np.asarray(c.part(d, k, min(rows, k + step))), c)
-                for c, d in zip(columns, data, strict=True)
+                _unpacked(_part(d, c, k, min(rows, k + step)), c) for c, d in zip(columns, data, strict=True)
             )
 
 

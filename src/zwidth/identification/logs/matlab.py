@@ -30,7 +30,7 @@ def matlab_table(path: Path) -> Table:
     size = path.stat().st_size
     if size > LARGEST:
         raise InputError(
-            f"{path} has {size >> 20} MiB; MATLAB files before 7.3 are read whole, up to {LARGEST >> 20} MiB; "
+            f"{path} has {size >> 20} MiB; MATLAB files before 7.3 are read whole, up to {LARGEST >> 20}; "
             'save it with "-v7.3"'
         )
     columns: dict[str, Values] = {}

@@ -21,8 +21,8 @@ _WORDS: dict[str, tuple[str, ...]] = {
     "time": ("time t timestamp timestamps stamp elapsed elapsed_time time_stamp datetime seconds sec clock",),
     "position": (
         "measured_position",
-        "position pos x displacement encoder enc encoder_position enc_pos encoder_pos encoder_counts enc_counts "
-        "counts ticks angle theta joint_position stroke",
+        "position pos x displacement encoder enc encoder_position enc_pos encoder_pos encoder_counts "
+        "enc_counts counts ticks angle theta joint_position stroke",
     ),
     "hand_force": (
         "hand_force f_h fh f_hand hand_torque tau_h",
@@ -31,8 +31,8 @@ _WORDS: dict[str, tuple[str, ...]] = {
     ),
     "actuator_force": (
         "actuator_force actuator_torque f_a fa motor_force motor_torque tau_m",
-        "commanded_force commanded_torque command_force force_command force_commanded f_cmd force_cmd cmd_force "
-        "torque_cmd torque_command tau_cmd desired_force",
+        "commanded_force commanded_torque command_force force_command force_commanded f_cmd force_cmd "
+        "cmd_force torque_cmd torque_command tau_cmd desired_force",
     ),
 }
 """Words for each quantity, the better ones first: the encoder's reading before any other position."""

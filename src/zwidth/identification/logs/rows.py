@@ -124,8 +124,10 @@ def _times(values: NDArray[Any], factor: float) -> Array:
     if factor == 1.0:
         return values.astype(np.float64, copy=False)
     if 0 < abs(factor) < 1 and (1 / factor).is_integer():
-        return values / (1 / factor)  # a decimal in mm divided by 1000 is the decimal in m, rounded once
-    return values * np.float64(factor)
+        return np.asarray(
+            values / (1 / factor)
+        )  # a decimal in mm divided by 1000 is the decimal in m, rounded once
+    return np.asarray(values * np.float64(factor))
 
 
 def _origin(time: NDArray[Any], factor: float) -> Any:
@@ -140,7 +142,7 @@ def _origin(time: NDArray[Any], factor: float) -> Any:
 def _seconds(time: NDArray[Any], origin: Any, factor: float) -> Array:
     if time.dtype.kind == "M":
         steps = (time - origin).astype("timedelta64[ns]")
-        seconds = steps.astype(np.float64) / 1e9
+        seconds: Array = steps.astype(np.float64) / 1e9
         seconds[np.isnat(steps)] = np.nan
         return seconds
     if time.dtype.kind in "iu":

@@ -1,4 +1,4 @@
-"""Rows cut into runs: a new run after lost samples and where time starts again; rows written twice left out."""
+"""Rows cut into runs: a new one after lost samples and where time starts again; no row twice."""
 
 from __future__ import annotations
 
@@ -49,6 +49,7 @@ class Cutter:
         self._run, self._begins = 0, True
         self._start = self._last = np.nan  # stamps at which the run began, and of its newest sample
         self._context = np.empty(0)
+        self._waiting: Rows | None = None
         self._length = self._scraps = 0
 
     def segments(self, rows: Iterable[Rows]) -> Iterator[Segment]:
@@ -56,26 +57,26 @@ class Cutter:
         waiting: Rows | None = None
         for new in rows:
             piece = new if waiting is None else joined(waiting, new)
-            waiting = yield from self._cut(piece, last=False)
+            yield from self._cut(piece, last=False)
+            waiting = self._waiting
         if waiting is not None:
             yield from self._cut(waiting, last=True)
 
     def _cut(self, rows: Rows, last: bool) -> Iterator[Segment]:
-        """Cut what can be decided; returns rows that wait for those after them."""
+        """Cut what can be decided; the rest waits for the rows after it."""
         done, reach = self._context.size, self.clock.reach
         time = np.concatenate((self._context, rows.time)) if done else rows.time
         where, kinds = jumps(time, max(0, done - 1), self.clock)
-        waiting = None
+        self._waiting = None
         if not last and where.size and where[-1] >= time.size - 1 - reach:
             near = where[where >= time.size - 1 - reach][0]
             cut = int(near) + 1 - done
             if rows.time.size - cut <= 4 * reach:
-                waiting = rows.part(slice(cut, None))
+                self._waiting = rows.part(slice(cut, None))
                 rows, time = rows.part(slice(0, cut)), time[: near + 1]
                 where, kinds = where[where < near], kinds[where < near]
         self._context = time[-reach:].copy()
         yield from self._pieces(rows, where + 1 - done, kinds)
-        return waiting
 
     def _pieces(self, rows: Rows, where: NDArray[np.intp], kinds: NDArray[np.intp]) -> Iterator[Segment]:
         repeated = where[kinds == REPEATED]
@@ -111,8 +112,8 @@ class Cutter:
         self._length = 0
         if self._scraps > MOST_SCRAPS:
             raise InputError(
-                f"{self.source}: the sample period is no longer {self.clock.period:.6g} s around t = {stamp:.6g} s; "
-                "a log needs samples at a fixed rate; cut the file where the rate changes"
+                f"{self.source}: the sample period is no longer {self.clock.period:.6g} s around t = "
+                f"{stamp:.6g} s; a log needs samples at a fixed rate; cut the file where the rate changes"
             )
         if kind == GAP:
             gap = stamp - self._last
@@ -122,8 +123,8 @@ class Cutter:
         elif kind == BACK:
             if self._last - stamp < 0.5 * (self._last - self._start):
                 raise InputError(
-                    f"{self.source}: time goes back from {self._last:.9g} s to {stamp:.9g} s, and not to the start of "
-                    "another recording; sort the rows or cut the file there"
+                    f"{self.source}: time goes back from {self._last:.9g} s to {stamp:.9g} s, and not to the "
+                    "start of another recording; sort the rows or cut the file there"
                 )
             self.tally["restarts"] += 1
         self._run += 1

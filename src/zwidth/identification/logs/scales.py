@@ -1,4 +1,4 @@
-"""From the numbers in a column to SI: its unit, or a factor such as "2 N/V" or a step such as "22.4 um" per count.
+"""From the numbers in a column to SI: by its unit, a factor such as "2 N/V", or a step such as "22.4 um".
 
 No unit, no number: a column whose unit nobody states is refused.
 """
@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
-from typing import cast
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.log import Motion
@@ -89,7 +87,8 @@ def meaning_of(
         if quantity == "position" and _is_counts(stated[quantity]) and "position" not in (scale or {}):
             if step is None:
                 raise InputError(
-                    f'{table.source}: "{column}" is in counts; say what a count is with resolution="22.4 um", '
+                    f'{table.source}: "{column}" is in counts; say what a count is with '
+                    'resolution="22.4 um" '
                     "or counts_per_turn=4096"
                 )
             factors[quantity] = step
@@ -222,7 +221,7 @@ def _known(text: str, where: str) -> Unit:
 
 
 def _si(unit: Unit) -> float:
-    return float(Exact(unit.scale) if unit.turns == 0 else cast(Fraction, unit.scale * PI**unit.turns))
+    return float(Exact(unit.scale) if unit.turns == 0 else unit.scale * PI**unit.turns)
 
 
 def _scale(text: str, what: str) -> tuple[float, Unit, Unit | None]:

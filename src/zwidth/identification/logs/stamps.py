@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.intp]
 
 _SIDE, _NOISY_SIDE = 7, 31
-"""Samples on each side of a jump that say where r was and is; and where stamps vary by a tenth of T or more."""
+"""Samples on each side of a jump that say where r was and is; more where stamps vary by a tenth of T."""
 
 _WIDEST = 4096
 """Samples over which stamps in groups are averaged."""

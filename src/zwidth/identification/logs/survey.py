@@ -100,7 +100,8 @@ class Survey:
         if other.size:
             raise InputError(
                 f"{self.source}: the sample period changes: roughly {self.period:.6g} s, but "
-                f"{means[other[0]]:.6g} s after t = {time[other[0] * _LONG]:.6g} s; cut the file where it changes"
+                f"{means[other[0]]:.6g} s after t = {time[other[0] * _LONG]:.6g} s; cut the file where "
+                "it changes"
             )
 
     def _position(self, position: Array) -> None:

@@ -139,8 +139,8 @@ class _Parser:
             self.rows += batch.num_rows
             if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
                 raise InputError(
-                    f"{self.path}: {self.broken} of {self.rows + self.broken} rows have another number of columns "
-                    f"than {len(self.layout.names)}; it is no table"
+                    f"{self.path}: {self.broken} of {self.rows + self.broken} rows have another number of "
+                    f"columns than {len(self.layout.names)}; it is no table"
                 )
             for part in batch.to_batches():
                 yield tuple(_numbers(part.column(name)) for name in self.names)
@@ -151,7 +151,8 @@ class _Parser:
             text = "the last line has no end, it may be cut off; it is left out"
             notes["unfinished"] = Finding(kind="unfinished", text=text, samples=1)
         if self.broken:
-            text = f"{self.broken} rows have another number of columns than {len(self.layout.names)}; they are left out"
+            columns = len(self.layout.names)
+            text = f"{self.broken} rows have another number of columns than {columns}; they are left out"
             notes["broken"] = Finding(kind="broken rows", text=text, samples=self.broken)
         if self.headers:
             text = (
@@ -203,7 +204,8 @@ class _Parser:
             for name, value in zip(self.layout.names, fields, strict=True):
                 if name in self.names and value not in _NULLS and not _converts(value, self.layout.comma):
                     return InputError(
-                        f'{self.path}: column "{name}" holds text near line {self._line + k + 1}: "{value[:40]}"'
+                        f'{self.path}: column "{name}" holds text near line {self._line + k + 1}: '
+                        f'"{value[:40]}"'
                     )
         return InputError(
             f"{self.path} cannot be read near line {self._line + 1}: {str(error).splitlines()[0][:200]}"
