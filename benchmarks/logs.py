@@ -85,7 +85,8 @@ def main() -> None:
             wall, used = ([median(r[who][what] for r in rounds) for who in (0, 1)] for what in (0, 1))
             ratio = median(theirs[1] / bare_[1] for bare_, theirs in rounds)
             print(
-                f"{name:<8} {path.stat().st_size >> 20:>4} MiB  pyarrow {wall[0]:.2f} s (processors {used[0]:.2f} s)  "
+                f"{name:<8} {path.stat().st_size >> 20:>4} MiB  "
+                f"pyarrow {wall[0]:.2f} s (processors {used[0]:.2f} s)  "
                 f"zwidth {wall[1]:.2f} s (processors {used[1]:.2f} s)  {ratio:.1f} x  peak {peak(path)} MiB"
             )
 

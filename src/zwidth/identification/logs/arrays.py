@@ -27,7 +27,7 @@ def log_of(
     position: ArrayLike | None = None,
     hand_force: ArrayLike | None = None,
     actuator_force: ArrayLike | None = None,
-    columns: Mapping[str, str] | None = None,
+    columns: Mapping[str, str | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, object] | None = None,
     sample_rate: object = None,

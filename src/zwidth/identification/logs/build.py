@@ -69,7 +69,7 @@ def log_from(table: Table, meaning: Meaning, stated: float | None) -> Log:
     timed = "time" in meaning.columns
     if not timed and stated is None:
         raise InputError(
-            f'{table.source}: no column is known to be the time; say which with columns={{"time": …}}, or state '
+            f'{table.source}: no column is known to be the time; say which with columns={{"time": …}}, '
             f"or state sample_rate or sample_period; there are {listed(table.units)}"
         )
     recording = Recording(table, meaning, None if timed else stated)

@@ -47,7 +47,7 @@ def refuse(survey: Survey, tally: Counter[str], source: str) -> None:
     if low == high:
         raise InputError(
             f"{source}: the hand force never changes, it is {low:g} throughout; is the sensor connected, and "
-            "is it the right column? To go without, leave its column out"
+            "is it the right column? To go without: columns={'hand_force': None}"
         )
 
 

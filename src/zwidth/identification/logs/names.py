@@ -51,8 +51,10 @@ _VECTOR = re.compile(r"(force|torque|velocity|linear|angular|acceleration|orient
 _INDEX = re.compile(r"\[\d+\]$")
 
 
-def recognise(columns: Mapping[str, Any], chosen: Mapping[str, str] | None, source: str) -> dict[str, str]:
-    """The column of each quantity that there is; what the user chose comes first.
+def recognise(
+    columns: Mapping[str, Any], chosen: Mapping[str, str | None] | None, source: str
+) -> dict[str, str]:
+    """The column of each quantity that there is; what the user chose comes first, None means to go without.
 
     Raises
     ------
@@ -61,7 +63,7 @@ def recognise(columns: Mapping[str, Any], chosen: Mapping[str, str] | None, sour
     """
     found = _checked(columns, chosen or {}, source)
     for quantity in QUANTITIES:
-        if quantity in found:
+        if quantity in found or quantity in (chosen or {}):
             continue
         candidates = _candidates(quantity, [c for c in columns if c not in found.values()])
         if len(candidates) > 1:
@@ -114,12 +116,12 @@ def _candidates(quantity: str, columns: list[str]) -> list[str]:
     return []
 
 
-def _checked(columns: Mapping[str, Any], chosen: Mapping[str, str], source: str) -> dict[str, str]:
+def _checked(columns: Mapping[str, Any], chosen: Mapping[str, str | None], source: str) -> dict[str, str]:
     for quantity, column in chosen.items():
         if quantity not in QUANTITIES:
             raise InputError(f'columns: there is no quantity "{quantity}"; there are {", ".join(QUANTITIES)}')
-        if column not in columns:
+        if column is not None and column not in columns:
             near = get_close_matches(column, list(columns), n=1)
             hint = f'; did you mean "{near[0]}"?' if near else ""
             raise InputError(f'{source} has no column "{column}"{hint}; there are {listed(columns)}')
-    return dict(chosen)
+    return {quantity: column for quantity, column in chosen.items() if column is not None}

@@ -18,7 +18,7 @@ from zwidth.identification.logs.table import Table, readable
 def read_log(
     path: str | PathLike[str],
     *,
-    columns: Mapping[str, str] | None = None,
+    columns: Mapping[str, str | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, object] | None = None,
     sample_rate: object = None,
@@ -35,7 +35,7 @@ def read_log(
         The file, or the directory of a rosbag2.
     columns
         The column of each of time, position, hand_force and actuator_force, where its name is not recognised:
-        {"position": "enc_left"}.
+        {"position": "enc_left"}; None leaves one out: {"hand_force": None}.
     units
         The unit of each, where neither the file nor the name states it: {"position": "mm"}.
     scale

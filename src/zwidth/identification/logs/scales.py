@@ -78,7 +78,7 @@ def meaning_of(
     _check_keys("units", units, columns)
     _check_keys("scale", scale, columns)
     stated = {q: _unit_text(table, q, c, units) for q, c in columns.items()}
-    if motion is None and isinstance(table.attributes.get("motion"), str):
+    if motion is None and table.attributes.get("motion") in ("linear", "rotary"):
         motion = table.attributes["motion"]
     turning = _turning(motion, stated["position"], (scale or {}).get("position"), resolution, counts_per_turn)
     step = _step(resolution, counts_per_turn, turning)

@@ -37,10 +37,11 @@ def text_table(path: Path) -> Table:
     layout = layout_of(start, str(path), whole)
     _refuse_one_column(layout, path)
     attributes = _attributes(layout)
-    columns = [name for name in layout.names if layout.kind(name) != "text"]
     table = Table(
         source=str(path),
-        units={name: "ns" if layout.kind(name) == "date" else layout.units.get(name) for name in columns},
+        units={
+            name: "ns" if layout.kind(name) == "date" else layout.units.get(name) for name in layout.names
+        },
         read=lambda names: _read(path, layout, names, table.notes),
         attributes=attributes,
     )
