@@ -201,3 +201,20 @@ def test_rows_without_a_number_cut_the_run(recording) -> None:
     mostly = np.where(np.arange(4000) % 3 == 0, recording.force, np.nan)
     with pytest.raises(zw.InputError, match="different rates"):
         zw.log_of(time=recording.time, position=x, hand_force=mostly)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_every_gap_is_found_behind_jitter(seed: int) -> None:
+    """Gaps of any length, as near to each other as they fall, stamps off by up to T/5: runs and times as they were."""
+    random = np.random.default_rng(seed)
+    count, period = int(random.integers(1000, 20000)), 10 ** random.uniform(-4, -2)
+    kept = np.ones(count, dtype=bool)
+    for start in random.integers(10, count - 60, random.integers(0, 12)):
+        kept[start : start + random.integers(1, 40)] = False
+    spread = random.choice([0.0, 0.02, 0.1, 0.2])
+    (rows,) = np.nonzero(kept)
+    stamps = (rows + spread * random.uniform(-1, 1, rows.size)) * period
+    log = zw.log_of(time=stamps, position=random.normal(size=rows.size))
+    assert log.runs == 1 + np.count_nonzero(np.diff(rows) > 1)
+    time = np.concatenate([b.time for b in log.blocks()])
+    assert np.abs(time - rows * period).max() < 0.5 * period

@@ -64,7 +64,7 @@ def period(survey: Survey, stated: float | None, timed: bool, source: str) -> tu
         text = f"sample period {stated:.9g} s as stated; there are no stamps to compare with"
         return stated, Finding(kind="sample period", text=text)
     mean, count = survey.mean_interval, max(1, survey.intervals)
-    uncertainty = (4 * survey.deviation * survey.runs**0.5 + 4e-16 * survey.latest) / count + 1e-12 * mean
+    uncertainty = (2 * survey.deviation * survey.runs**0.5 + 4e-16 * survey.latest) / count + 1e-12 * mean
     inferred = settled(mean, uncertainty)
     if stated is None:
         return inferred, Finding(kind="sample period", text=f"sample period {inferred:.9g} s from the stamps")
