@@ -91,6 +91,14 @@ def test_gaps_on_the_border_of_a_piece_are_found() -> None:
         assert sum(b.time.size for b in log.blocks()) == count - 5
 
 
+@pytest.mark.parametrize("rate", [1003, 1010, 1050, 1500, 2200])
+def test_a_clock_of_milliseconds_drops_no_sample_of_a_faster_loop(rate: int) -> None:
+    """Between 1 and 2 kHz stamps in whole ms come once or twice: every row is a sample."""
+    log = zw.log_of(time=np.round(np.arange(20000) / rate, 3), position=drift(20000))
+    assert (log.samples, log.runs) == (20000, 1)
+    assert log.sample_period == pytest.approx(1 / rate, rel=1e-3)
+
+
 @pytest.mark.parametrize("unit", [1e-3, 1.1e-3, 5e-3])
 def test_a_coarse_clock_repeats_stamps_and_no_sample_is_left_out(unit: float) -> None:
     """3 kHz stamped by a clock that ticks every few ms: the rows are the clock, the period their mean."""
@@ -205,7 +213,7 @@ def test_rows_without_a_number_cut_the_run(recording) -> None:
 
 @pytest.mark.parametrize("seed", range(40))
 def test_every_gap_is_found_behind_jitter(seed: int) -> None:
-    """Gaps of any length, as near to each other as they fall, stamps off by up to T/5: runs and times as they were."""
+    """Gaps of any length, wherever they fall, and stamps off by up to T/5: runs and times as they were."""
     random = np.random.default_rng(seed)
     count, period = int(random.integers(1000, 20000)), 10 ** random.uniform(-4, -2)
     kept = np.ones(count, dtype=bool)

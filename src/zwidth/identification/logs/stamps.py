@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 _SIDE, _NOISY_SIDE = 7, 31
 """Samples on each side of a jump that say where r was and is; more where stamps vary by a tenth of T."""
 
+_REPEATS = 0.005
+"""Share of stamps that come twice beyond which the clock is a coarse one."""
+
 _WIDEST = 4096
 """Samples over which stamps in groups are averaged."""
 
@@ -78,7 +81,8 @@ def clock_of(time: Array, source: str) -> Clock:
     usual = float(np.median(steps))
     width = max(1, min(steps.size // 2, _WIDEST))
     period = float(np.median(time[width:] - time[:-width])) / width
-    if usual > 0 and period < 2.5 * usual and np.mean(np.abs(steps - usual) < 0.25 * usual) > 0.5:
+    single = period < 2.5 * usual and np.mean(np.abs(steps) < 0.25 * usual) <= _REPEATS
+    if usual > 0 and single and np.mean(np.abs(steps - usual) < 0.25 * usual) > 0.5:
         low, high = np.quantile(steps, (0.25, 0.75))
         return Clock(period=usual, group=1, noisy=bool(high - low > 0.1 * usual))
     group = _longest_group(steps, period)
@@ -101,8 +105,8 @@ def _wanders(time: Array, period: float, width: int) -> bool:
 
 
 def _longest_group(steps: Array, period: float) -> int:
-    """Of the stretches between steps longer than 1.5 T, the length below which nearly all lie."""
-    ends = np.flatnonzero(steps > 1.5 * period)
+    """Of the stretches between steps longer than T/2, the length below which nearly all lie."""
+    ends = np.flatnonzero(steps > 0.5 * period)
     if ends.size < 2:
         return max(2, steps.size)
     return max(2, int(np.quantile(np.diff(ends), 0.99)))
