@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
     from zwidth.loop.admittance import simulate_admittance
+    from zwidth.environment import HuntCrossley, NonlinearSpring
+    from zwidth.identification.logs import Log, log_of, read_log
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
@@ -61,6 +63,7 @@ __all__ = [
     "InputError",
     "Interval",
     "LawComparison",
+    "Log",
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
@@ -85,9 +88,11 @@ __all__ = [
     "coupling_condition",
     "design_coupling",
     "load_trace",
+    "log_of",
     "operators",
     "passive_limit",
     "quantization",
+    "read_log",
     "render",
     "rendering",
     "replay",
@@ -105,6 +110,7 @@ _LATER = {
     "CouplingCondition": "zwidth.passivity.coupling",
     "CouplingDesign": "zwidth.passivity.coupling_design",
     "LawComparison": "zwidth.bench",
+    "Log": "zwidth.identification.logs",
     "compare": "zwidth.traces",
     "HuntCrossley": "zwidth.environment",
     "NonlinearSpring": "zwidth.environment",
@@ -114,6 +120,7 @@ _LATER = {
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
+    "read_log": "zwidth.identification.logs",
     "render": "zwidth.rendering.rendered",
     "rendering": "zwidth.rendering",
     "replay": "zwidth.passivity.real_hand",
@@ -121,6 +128,7 @@ _LATER = {
     "coupling_condition": "zwidth.passivity.coupling",
     "design_coupling": "zwidth.passivity.coupling_design",
     "load_trace": "zwidth.traces",
+    "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",
     "simulate": "zwidth.traces",
     "simulate_admittance": "zwidth.loop.admittance",

@@ -1,0 +1,1 @@
+"""Device, hand and tissue, identified from what was recorded."""
