@@ -87,7 +87,7 @@ def regress(moments: Moments, names: tuple[str, ...], mass: float | None = None)
     size = np.sqrt(np.abs(np.diag(matrix)))
     if not (size > 0).all() or np.linalg.cond(matrix / np.outer(size, size)) > 1e10:
         return None
-    values: Array = np.linalg.solve(matrix, right)
+    values: Array = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     residual = known.copy()  # the combination of columns that is left: f − m a − Σ θ A
     residual[chosen] -= values
     selection = np.zeros((len(chosen), COLUMNS**2))
