@@ -1,0 +1,111 @@
+"""Mass, damping and Coulomb friction of a device from a log of its motion.
+
+    m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a
+
+in means over smooth pulses inside strokes (`pulses`), by least squares with the two halves of
+the samples as each other's instruments (`moments`), with the scatter of the strokes as the
+measure of uncertainty (`regression`).  Abbott & Okamura (2005, section IV-B) fit the same
+equation to smoothed and differentiated positions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import Literal
+
+import numpy as np
+
+from zwidth.errors import InputError
+from zwidth.identification.device.choice import Zero, choose, too_little
+from zwidth.identification.device.findings import findings
+from zwidth.identification.device.fit import gather
+from zwidth.identification.device.identified import Identified
+from zwidth.identification.device.pulses import PIECES
+from zwidth.identification.logs import Log
+
+Model = Literal["Coulomb and viscous", "viscous"]
+
+
+def identify(
+    log: Log,
+    *,
+    mass: float | None = None,
+    delay: float = 0.0,
+    zero: Zero | None = None,
+    model: Model = "Coulomb and viscous",
+    progress: Callable[[int, int], None] | None = None,
+) -> Identified:
+    """Identify a device: ``m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a``.
+
+    Parameters
+    ----------
+    log
+        What was recorded, see `read_log`: the position, and the force of the hand, of the actuator, or both.
+        Without any force mass must be given: a free motion shows b/m and f_c/m only.
+    mass
+        m > 0 where it is known [kg; kg·m²].
+    delay
+        From a sample to the actuator force computed from it, ≥ 0 [s].
+    zero
+        Of the force: "drifts" along straight lines of some seconds (a load cell; the default where there is
+        a hand force), "constant" (gravity; the default otherwise), or "exact".
+    model
+        "viscous" fits a mass and a damper; where Coulomb friction is seen, it says so.
+    progress
+        Told (samples done, samples in all).
+
+    Raises
+    ------
+    InputError
+        If the log shows too little: too few strokes, or no force and no mass.
+    """
+    zero = _checked(log, mass, delay, zero)
+    if model not in ("Coulomb and viscous", "viscous"):
+        raise InputError(f'model is "Coulomb and viscous" or "viscous", got {model!r}')
+    own = (*(() if mass is not None else ("mass",)), "damping", "coulomb_friction")
+    samples = delay / log.sample_period
+    choice = choose(log, own, mass, samples, zero)
+    found = gather(log, choice, mass=mass, delay=samples, zero=zero, progress=progress)
+    friction = own if model == "Coulomb and viscous" else own[:-1]
+    spring = ("spring",) if found.sees(own, "spring") else ()
+    names = (*friction, *spring, *(("force_lag",) if choice.late else ()))
+    estimates, fit = found.estimates(names), found.regression(names)
+    viscous = found.regression(tuple(n for n in names if n != "coulomb_friction"))
+    if estimates is None or fit is None or viscous is None:
+        raise InputError(too_little(log))
+    weights = found.shape.value / found.shape.piece
+    return Identified(
+        estimates=estimates,
+        mass=mass,
+        sample_period=log.sample_period,
+        resolution=log.resolution,
+        motion=log.motion,
+        source=log.source,
+        explained=fit.explained,
+        force_noise=float(np.sqrt(fit.residual / np.sum(weights**2))),
+        offset=found.moments.offset(fit, mass),
+        viscous_alone=viscous.value("damping"),
+        pulse_length=PIECES * choice.piece * log.sample_period,
+        strokes=found.moments.strokes,
+        pulses=found.moments.pulses,
+        findings=(*log.findings, *findings(found, names, estimates, log.sample_period)),
+        points=found.points.dataset(fit, mass, log.motion),
+    )
+
+
+def _checked(log: Log, mass: float | None, delay: float, zero: Zero | None) -> Zero:
+    if not log.channels and mass is None:
+        raise InputError(
+            f"{log.source} has no force: a free motion shows b/m and f_c/m only; give the mass "
+            "(a kitchen scale will do), or log the force of the hand or of the actuator"
+        )
+    if mass is not None and not 0 < mass < inf:
+        raise InputError(f"mass must be > 0 and finite, got {mass!r}: it is what the force accelerates")
+    if not 0 <= delay < inf:
+        raise InputError(f"delay must be ≥ 0 s, got {delay!r}: the force follows the sample it came from")
+    if zero is None:
+        return "drifts" if "hand_force" in log.channels else "constant"
+    if zero not in ("drifts", "constant", "exact"):
+        raise InputError(f'zero is "drifts", "constant" or "exact", got {zero!r}')
+    return zero
