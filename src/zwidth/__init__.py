@@ -27,9 +27,8 @@ if TYPE_CHECKING:
     from zwidth.bench import LawComparison
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
-    from zwidth.loop.admittance import simulate_admittance
-    from zwidth.environment import HuntCrossley, NonlinearSpring
     from zwidth.identification.logs import Log, log_of, read_log
+    from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
