@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from zwidth.bench import LawComparison
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring
+    from zwidth.identification import tissue
+    from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
@@ -66,6 +68,7 @@ __all__ = [
     "RealHand",
     "StandardLinearSolid",
     "Timing",
+    "TissueFit",
     "VelocityFilter",
     "Verdict",
     "VirtualCoupling",
@@ -78,9 +81,11 @@ __all__ = [
     "check",
     "closed_forms",
     "compare",
+    "compare_tissues",
     "compare_traces",
     "coupling_condition",
     "design_coupling",
+    "fit_tissue",
     "load_trace",
     "operators",
     "passive_limit",
@@ -91,6 +96,7 @@ __all__ = [
     "rotary",
     "simulate",
     "simulate_batch",
+    "tissue",
     "two_port",
     "worst_hand",
 ]
@@ -104,6 +110,7 @@ _LATER = {
     "HuntCrossley": "zwidth.environment",
     "NonlinearSpring": "zwidth.environment",
     "Timing": "zwidth.loop.timing",
+    "TissueFit": "zwidth.identification.tissue",
     "amplifiers": "zwidth.device.amplifier",
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
@@ -111,13 +118,16 @@ _LATER = {
     "render": "zwidth.rendering.rendered",
     "rendering": "zwidth.rendering",
     "replay": "zwidth.passivity.real_hand",
+    "compare_tissues": "zwidth.identification.tissue",
     "compare_traces": "zwidth.traces",
     "coupling_condition": "zwidth.passivity.coupling",
     "design_coupling": "zwidth.passivity.coupling_design",
+    "fit_tissue": "zwidth.identification.tissue",
     "load_trace": "zwidth.traces",
     "passive_limit": "zwidth.traces",
     "simulate": "zwidth.traces",
     "simulate_batch": "zwidth.traces",
+    "tissue": "zwidth.identification.tissue",
     "two_port": "zwidth.passivity.two_port",
     "worst_hand": "zwidth.traces",
 }
