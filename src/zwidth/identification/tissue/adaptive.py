@@ -39,6 +39,10 @@ _SHADE = 1.0 - 1e-12
 """Of the damping, so that rounding does not ask for more than there is."""
 
 
+_LEAST = 1e-40
+"""As everywhere: no haptic quantity is smaller.  A branch with less is none."""
+
+
 class Rendered(NamedTuple):
     """After each sample: the force, the solid that gives it, and the account E [J]."""
 
@@ -188,18 +192,18 @@ def required_damping(solid: Solid, period: float) -> float:
         T [s].
     """
     mu0, mu1, eta = solid
-    branch = mu1 * eta * period / (2 * eta + mu1 * period) if mu1 and eta else 0.0
+    branch = 1.0 / (2.0 / (mu1 * period) + 1.0 / eta) if mu1 > _LEAST and eta > _LEAST else 0.0
     return mu0 * period / 2 + branch
 
 
 def _target(wanted: Solid, damping: float, period: float) -> tuple[float, float, float, float]:
     """(μ0, μ1, μ1/a, a) of a solid, scaled down to what is passive; its relaxation time is kept."""
-    if not min(wanted) >= 0.0 or not max(wanted) < inf:
+    if not all(0.0 <= value < inf for value in wanted):
         raise InputError(f"a solid has μ0, μ1 and η1 ≥ 0 and finite, got {tuple(wanted)}")
     need = required_damping(wanted, period)
     scale = 1.0 if need <= damping * _SHADE else damping * _SHADE / need
     mu0, mu1, eta = (scale * v for v in wanted)
-    if not (mu1 and eta):
+    if not (mu1 > _LEAST and eta > _LEAST):
         return mu0, 0.0, 0.0, 0.5
     decay = eta / (eta + mu1 * period)
     return mu0, mu1, mu1 / decay, decay

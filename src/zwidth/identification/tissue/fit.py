@@ -199,5 +199,6 @@ def _fitted(model: Model, record: Record, offset: bool, noise: str, motion: str)
         response=record.response,
         condition=condition,
         noise_order=memory.order,
+        independent_samples=memory.samples,
         motion=motion,
     )

@@ -4,9 +4,10 @@
 
 by recursive least squares with forgetting, in one of three forms.  Where F is noisy, plain least squares is
 biased: F_{t−1} carries the noise of the last sample into what F_t is regressed on, and the slower the tissue
-relaxes beside the sample period, the worse.  "instrumental" puts a model's F̂_{t−1}, free of that noise, beside
-it as instrument and has no such bias, where the noise of one sample says nothing of the next motion.
-"output-error" puts it in its place as regressor: without that bias too where it converges, but slower.
+relaxes beside the sample period, the worse.  "instrumental" puts the F̂_{t−1} of the solid it started from, free of
+that noise, beside it as instrument and has no such bias, where the noise of one sample says nothing of the next
+motion; the nearer the relaxation time at the start, the less it scatters.  "output-error" puts the F̂_{t−1} of its own
+estimate in the place of the measured one: without that bias too where it converges, but slower.
 """
 
 from __future__ import annotations
@@ -52,7 +53,8 @@ class RecursiveSolid:
     sample_period
         T > 0 [s].
     initial
-        The solid that it starts from: (μ0, μ1, η1), all > 0 [N/m, N/m, N·s/m; N·m/rad, N·m/rad, N·m·s/rad].
+        The solid that it starts from: (μ0, μ1, η1), all > 0 [N/m, N/m, N·s/m; N·m/rad, N·m/rad, N·m·s/rad].  The
+        relaxation time η1/μ1 should be of the right decade.
     method
         "instrumental" (default), "output-error" or "least-squares".
     rule
@@ -67,6 +69,7 @@ class RecursiveSolid:
         Errors of prediction up to this teach nothing [N; N·m]. Default 0.
     largest_trace
         Of P as a multiple of that at the start, > 0: P grows no further where the motion says nothing. Default 1.
+        "instrumental" needs no such bound.
     stiffest
         Bound of μ0 and of μ1 [N/m; N·m/rad]; None: no bound.
     relaxation_times
@@ -81,7 +84,9 @@ class RecursiveSolid:
     -----
     What is returned is admissible: μ0, μ1 ≥ 0, η1/μ1 > 0 and within the bounds.  The regression itself runs
     without bounds, so that nothing measured is lost; what it finds is moved to the nearest bound, number by number.
-    P is that of (p, b0/S, b1/S), S = μ0 + μ1 at the start, and begins as the identity over noise².
+    P is that of ((1 + p)/g, (b0 + b1)/(g S), −b1/S), g = T μ1/η1 and S = μ0 + μ1 at the start, all of the size of 1;
+    it begins as the identity over noise²; times noise² it is the covariance of these three.  "instrumental" has no P: `Track.trace` is what stands for it, and is
+    bounded by what the noise leaves to know.
     """
 
     sample_period: Exact
@@ -158,6 +163,7 @@ class RecursiveSolid:
         """As the compiled step reads them."""
         low, high = (float(t) for t in self.relaxation_times)
         method = float(get_args(Method).index(self.method))
+        period = float(self.sample_period)
         return np.array(
             [
                 float(self.forgetting),
@@ -165,11 +171,14 @@ class RecursiveSolid:
                 float(self.largest_trace) * 3.0 / float(self.noise) ** 2,
                 method,
                 float(RULES.index(self.rule)),
-                float(self.sample_period),
+                period,
                 self.initial.stiffness + self.initial.branch_stiffness,
+                period * self.initial.branch_stiffness / self.initial.branch_damping,
                 inf if self.stiffest is None else float(self.stiffest),
                 low,
                 high,
+                float(self.noise) ** 2,
+                *coefficients(*self.initial, period, self.rule),
             ]
         )
 
@@ -187,9 +196,9 @@ class Tracker:
         self.settings = settings
         self._numbers = settings.numbers()
         self._memory = np.zeros(recursion.MEMORY)
-        at, scale = recursion.THETA, self._numbers[recursion.SCALE]
-        p, b0, b1 = coefficients(*settings.initial, float(settings.sample_period), settings.rule)
-        self._memory[at : at + 3] = p, b0 / scale, b1 / scale
+        at, scale, share = recursion.THETA, self._numbers[recursion.SCALE], self._numbers[recursion.SHARE]
+        p, b0, b1 = self._numbers[recursion.START :]
+        self._memory[at : at + 3] = (1 + p) / share, (b0 + b1) / (share * scale), -b1 / scale
         recursion.admit(self._numbers, self._memory)
         self.forget()
 
@@ -227,9 +236,12 @@ class Tracker:
         return Solid(*(float(v) for v in self._memory[recursion.SOLID : recursion.SOLID + 3]))
 
     def forget(self) -> None:
-        """Set P back to its start: another tissue is touched, and what was learnt is only a guess."""
-        at = recursion.COVARIANCE
-        self._memory[at : at + 9] = (np.eye(3) / float(self.settings.noise) ** 2).ravel()
+        """Forget all that was measured: another tissue is touched, and what was learnt is only a guess."""
+        at, start = recursion.COVARIANCE, 1.0 / float(self.settings.noise) ** 2
+        instruments = self.settings.method == "instrumental"
+        self._memory[at : recursion.TRACE] = 0.0
+        self._memory[at : at + 9] = 0.0 if instruments else start * np.eye(3).ravel()
+        self._memory[recursion.TRACE] = 3.0 * start
 
 
 def track_five_parameters(
@@ -279,7 +291,7 @@ def track_five_parameters(
         raise InputError("position and force are two arrays of one length")
     out = np.full((6, x.size), np.nan)
     p = (initial_covariance * np.eye(5)).ravel()
-    recursion.run_five(np.zeros(5), p, np.zeros(20), x, f, keep, out)
+    recursion.run_five(np.zeros(5), p, np.zeros(10), x, f, keep, out)
     a1, b1, b3 = out[0], out[2], out[4]
     viscous = a1 * b1 - b1 - b3
     with np.errstate(divide="ignore", invalid="ignore"):

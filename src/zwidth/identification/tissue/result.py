@@ -55,6 +55,8 @@ class TissueFit:
         Of the Jacobian with respect to relative changes of the parameters.
     noise_order
         Of the autoregressive process that the residuals were taken for; 0 for white noise.
+    independent_samples
+        How many samples without memory would say as much.
     motion
         "linear" or "rotary".
     """
@@ -67,6 +69,7 @@ class TissueFit:
     response: str
     condition: float
     noise_order: int
+    independent_samples: float
     motion: str
 
     @cached_property
@@ -119,9 +122,9 @@ class TissueFit:
         return _exp(middle - reach), _exp(middle + reach)
 
     @property
-    def degrees_of_freedom(self) -> int:
-        """Samples less parameters."""
-        return self.residuals.size - self.estimates.size
+    def degrees_of_freedom(self) -> float:
+        """Independent samples less parameters, 1 at the least."""
+        return max(self.independent_samples - self.estimates.size, 1.0)
 
     @property
     def r_squared(self) -> float:

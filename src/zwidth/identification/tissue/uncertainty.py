@@ -5,7 +5,9 @@ prefers; 0 is white noise.  The estimate is that of ordinary least squares, whos
 
     (JᵀJ)⁻¹ Jᵀ Ω J (JᵀJ)⁻¹,     Ω = σ² A⁻¹ A⁻ᵀ
 
-J the derivatives of the prediction by the logarithms of the parameters.  White noise gives the usual σ² (JᵀJ)⁻¹.
+J the derivatives of the prediction by the logarithms of the parameters.  White noise gives the usual σ² (JᵀJ)⁻¹.  A
+memory leaves fewer independent samples than there are, N_e = N γ0 A(1)²/σ² ≤ N with γ0 the variance of e: the fit has
+taken k of them, so that Ω is multiplied by N_e/(N_e − k) and Student's t has N_e − k degrees of freedom.
 Assumed: the model is right, the noise of zero mean, stationary and as likely in every sample, small enough
 for the linear J, and the input free of it.
 """
@@ -27,10 +29,11 @@ _SMALLEST = 1e-12
 
 
 class Noise(NamedTuple):
-    """A e = ε: 1, a1 … ap; and the variance of ε."""
+    """A e = ε: 1, a1 … ap; the variance of ε; and how many samples would say as much without memory, N_e."""
 
     coefficients: Array
     variance: float
+    samples: float
 
     @property
     def order(self) -> int:
@@ -45,13 +48,14 @@ def noise_of(residuals: Array, largest_order: int = LARGEST_ORDER) -> Noise:
     covariances = [float(residuals[k:] @ residuals[: n - k]) / n for k in range(largest + 1)]
     floor = np.finfo(float).tiny
     a, variance = np.ones(1), max(covariances[0], floor)
-    best, score = Noise(a, variance), n * log(variance)
+    best, score = Noise(a, variance, n), n * log(variance)
     for p in range(1, largest + 1):
         reflection = -sum(a[i] * covariances[p - i] for i in range(p)) / variance
         a = np.append(a, 0.0) + reflection * np.append(a, 0.0)[::-1]
         variance = max(variance * (1.0 - reflection**2), floor)
         if n * log(variance) + p * log(n) < score:
-            best, score = Noise(a, variance), n * log(variance) + p * log(n)
+            fewer = n * min(covariances[0] * float(a.sum()) ** 2 / variance, 1.0)
+            best, score = Noise(a, variance, fewer), n * log(variance) + p * log(n)
     return best
 
 
@@ -63,7 +67,7 @@ def covariance(jacobian: Array, noise: Noise) -> tuple[Array, float]:
     largest = s[0] if s.size and s[0] > 0.0 else 1.0
     kept = np.maximum(s, _SMALLEST * largest)
     coloured = lfilter([1.0], noise.coefficients, u[::-1], axis=0)
-    n, k = jacobian.shape
-    scale = noise.variance * n / max(n - k - noise.order, 1)
+    k = jacobian.shape[1]
+    scale = noise.variance * noise.samples / max(noise.samples - k, 1.0)
     half = coloured / kept @ vt
     return scale * half.T @ half, float(largest / s[-1]) if s[-1] > 0.0 else float("inf")
