@@ -86,7 +86,7 @@ def motion(seed=5, samples=80):
 @pytest.mark.parametrize("solid", SOLIDS[1:], ids=lambda s: s.describe()[:12])
 @pytest.mark.parametrize("rest", [None, 0.0])
 def test_force_under_straight_lines_is_that_of_an_integrator(solid, rest):
-    """Each branch ẋ − q/τ integrated from sample to sample, with a step at the first where it was not at rest."""
+    """Each branch integrated from sample to sample, with a step at the first where it was not at rest."""
     t, x = motion()
     k, _, branches = elements(solid)
     start = 0.0 if rest is None else x[0] - rest
@@ -95,7 +95,12 @@ def test_force_under_straight_lines_is_that_of_an_integrator(solid, rest):
     for i in range(1, t.size):
         slope = (x[i] - x[i - 1]) / (t[i] - t[i - 1])
         run = solve_ivp(
-            lambda _, q, v=slope: mu * v - q * mu / eta, (t[i - 1], t[i]), q, rtol=1e-11, atol=1e-14, method="LSODA"
+            lambda _, q, v=slope: mu * v - q * mu / eta,
+            (t[i - 1], t[i]),
+            q,
+            rtol=1e-11,
+            atol=1e-14,
+            method="LSODA",
         )
         q = run.y[:, -1]
         expected.append(k * x[i] + q.sum())

@@ -60,7 +60,8 @@ def elements(solid: Environment) -> Elements:
     spring, dashpot, branches = _parts(solid)
     numbers = float(certain(spring, "stiffness")), float(certain(dashpot, "damping"))
     pairs = [
-        (float(certain(mu, "branch stiffness")), float(certain(eta, "branch damping"))) for mu, eta in branches
+        (float(certain(mu, "branch stiffness")), float(certain(eta, "branch damping")))
+        for mu, eta in branches
     ]
     if min(*numbers, *(eta for _, eta in pairs)) < 0:
         raise InputError(

@@ -94,7 +94,7 @@ def test_no_motion_and_no_change_takes_energy_out(contact):
 
 
 def test_a_hand_that_knows_the_law():
-    """Pushes, waits for the tissue to stiffen, then the leap that takes most out of the force: nothing, 60 times."""
+    """Pushes, waits for the tissue to stiffen, then the leap that takes most out: nothing, 60 times."""
     for seed in range(60):
         random = np.random.default_rng(seed)
         wall = AdaptiveSolid(PHANTOM, (100, 50, 1))
@@ -129,7 +129,7 @@ def test_the_account_is_what_was_put_in_and_is_not_stored():
 
 
 def test_the_frozen_bound_is_reached():
-    """At b = b_req one motion at the Nyquist frequency costs nothing: the storage function is the tightest."""
+    """At b = b_req one motion at the Nyquist frequency costs nothing: less damping would not do."""
     solid = Solid(200.0, 300.0, 0.05)
     need = required_damping(solid, T)
     decay = 0.05 / (0.05 + 0.3)
@@ -177,7 +177,9 @@ def test_an_observed_tissue_is_what_is_rendered():
     force = force_response(zw.StandardLinearSolid(120, 60, 6), t, probe)
     force += np.random.default_rng(1).normal(0, 0.005, t.size)
     hand = 2e-3 * np.sin(9 * t)
-    wall = AdaptiveSolid(PHANTOM, (10, 5, 0.5), tracking=RecursiveSolid(T, (10, 5, 0.5), forgetting="0.9998", noise="0.005"))
+    wall = AdaptiveSolid(
+        PHANTOM, (10, 5, 0.5), tracking=RecursiveSolid(T, (10, 5, 0.5), forgetting="0.9998", noise="0.005")
+    )
     felt = []
     for x, *sample in zip(hand, probe, force, strict=True):
         wall.observe(*sample)
@@ -198,7 +200,8 @@ def test_what_is_met_inside_begins_as_nothing():
 def test_largest_energy():
     """With no credit kept, a rise is bought from the last move alone, or waits for the contact to end."""
     free, strict = (
-        AdaptiveSolid(PHANTOM, (100, 50, 5), largest_energy=most).render(STROKE, STIFFER) for most in (None, 0)
+        AdaptiveSolid(PHANTOM, (100, 50, 5), largest_energy=most).render(STROKE, STIFFER)
+        for most in (None, 0)
     )
     assert strict.energy.max() <= 0
     assert 100 < strict.stiffness[400] < 101 < free.stiffness[400]

@@ -1,4 +1,4 @@
-"""Tracking a tissue: who finds the truth under noise, what bounds and dead zone do, what five parameters do."""
+"""Tracking a tissue: who finds the truth under noise, what bounds and a dead zone do, and five parameters."""
 
 from __future__ import annotations
 
@@ -72,7 +72,9 @@ def test_each_rule_finds_what_its_controller_renders(rule, law):
     """Forces of the recursion itself, without noise: to the weight that the start has."""
     _, x = motion(3000)
     solid = zw.StandardLinearSolid(300, 150, 3, law)
-    num, den = ([float(c) for c in part] for part in solid.pulse_transfer_function(zw.Exact("0.001").fraction))
+    num, den = (
+        [float(c) for c in part] for part in solid.pulse_transfer_function(zw.Exact("0.001").fraction)
+    )
     settings = RecursiveSolid(T, START, method="least-squares", rule=rule, noise="0.0001")
     track = settings.track(x, lfilter(num, den, x))
     assert [float(part[-1]) for part in track[:3]] == pytest.approx([300, 150, 3], rel=1e-5)
@@ -80,7 +82,7 @@ def test_each_rule_finds_what_its_controller_renders(rule, law):
 
 @pytest.mark.parametrize("relaxation", [0.02, 0.1, 0.5])
 def test_least_squares_is_biased_and_instruments_are_not(relaxation):
-    """Noise of 10 mN on forces of some 2 N: the instrumental variable stays within 1 %, least squares does not."""
+    """Noise of 10 mN on forces of some 2 N: instruments stay within 1 %, least squares does not."""
     true = 300.0, 150.0, 150.0 * relaxation
     x, f = tissue(60_000, *true, noise=0.01)
     found = {
@@ -92,7 +94,7 @@ def test_least_squares_is_biased_and_instruments_are_not(relaxation):
 
 
 def test_output_error_arrives_too_but_later():
-    """Without bias at 20 ms; a tissue of 0.5 s it has not found after 20 s, which instruments have after 2 s."""
+    """Without bias at 20 ms; of 0.5 s it has not found after 20 s what instruments have after 2 s."""
     quick, slow = (300.0, 150.0, 3.0), (300.0, 150.0, 75.0)
     x, f = tissue(40_000, *quick, noise=0.01)
     pole = RecursiveSolid(T, START, method="output-error", forgetting="0.9998").track(x, f)
@@ -107,11 +109,9 @@ def test_output_error_arrives_too_but_later():
 
 
 def test_a_tissue_that_changes_is_followed():
-    """The stiffness doubles at 20 s; with λ = 0.9995, 2 s of memory, it is found anew; with λ = 1 it is not."""
+    """The stiffness doubles at 20 s; with a memory of 2 s it is found anew, with λ = 1 it is not."""
     t, x = motion(40_000)
-    soft, stiff = (
-        force_response(zw.StandardLinearSolid(mu0, 150, 15), t, x) for mu0 in (300, 600)
-    )
+    soft, stiff = (force_response(zw.StandardLinearSolid(mu0, 150, 15), t, x) for mu0 in (300, 600))
     f = np.where(t < 20, soft, stiff) + np.random.default_rng(3).normal(0, 0.01, t.size)
     follows, remembers = (RecursiveSolid(T, START, forgetting=keep).track(x, f) for keep in ("0.9995", 1))
     assert follows.stiffness[19_999] == pytest.approx(300, rel=0.02)
@@ -199,7 +199,7 @@ def test_sample_by_sample_is_the_same():
 
 
 def test_five_parameters_are_not_identifiable():
-    """Along the line of (1 + c z⁻¹) P grows as 1/λ per sample; the solid that equation (32) makes is anything."""
+    """Along the line of (1 + c z⁻¹) P grows as 1/λ per sample; the solid of equation (32) is anything."""
     solid = 300.0, 150.0, 15.0
     _, x = motion(30_000)
     p, b0, b1 = coefficients(*solid, T, "bilinear")

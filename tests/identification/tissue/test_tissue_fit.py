@@ -185,7 +185,7 @@ def test_a_trace_is_read_as_it_is():
 
 
 def test_what_becomes_of_a_fit():
-    """An environment of the estimates; one of joint intervals, wider than the single ones; a verdict of it."""
+    """An environment of the estimates; one of joint intervals, wider than single ones; a verdict."""
     t, x, f = noisy("white", np.random.default_rng(6))
     fit = fit_tissue(t, x, f)
     law = fit.environment("tustin")

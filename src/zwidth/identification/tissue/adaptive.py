@@ -2,17 +2,19 @@
 
     f = μ0 u + μ1 e  inside, 0 outside,    u = max(x, 0),    e ← a (e + Δu),    a = τ/(τ + T), τ = η1/μ1
 
-is the standard linear solid by backward Euler.  It holds V = ½ μ0 u² + ½ (μ1/a) e², and while its parameters stay,
-with b ≥ b_req = μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T), what hand and damping put in is never less than what V rises by.
-Parameters that change under the hand are another matter: a stiffer spring at the same depth holds more than was put
-in, ½ Δμ0 u² of it, and gives it out on the way back, each frozen wall being passive.  So
+is the standard linear solid by backward Euler.  It holds V = ½ μ0 u² + ½ (μ1/a) e², and while its
+parameters stay, with b ≥ b_req = μ0 T/2 + μ1 η1 T/(2 η1 + μ1 T), what hand and damping put in is never less
+than what V rises by. Parameters that change under the hand are another matter: a stiffer spring at the same
+depth holds more than was put in, ½ Δμ0 u² of it, and gives it out on the way back, each frozen wall being
+passive.  So
 
     E ← E + f Δx + (b/T) Δx² − ΔV                      what was put in and is not stored: never falls
     μ ← μ + s (μ* − μ),  s ≤ 1 the largest with V(μ) ≤ V + E     a rise is paid for from E
     μ* ← μ*  min(1, b/b_req(μ*)),  τ as it is          and the target is passive
 
-in (μ0, μ1, μ1/a), in which V is linear and b_req convex.  Softer is free, so is everything outside when the branch has
-relaxed.  The energy taken out is never more than 0.  The proof: docs, "A tissue that changes under the hand".
+in (μ0, μ1, μ1/a), in which V is linear and b_req convex.  Softer is free, so is everything outside when the
+branch has relaxed.  The energy taken out is never more than 0.  The proof: docs, "A tissue that changes
+under the hand".
 """
 
 from __future__ import annotations
@@ -56,8 +58,9 @@ class Rendered(NamedTuple):
 class AdaptiveSolid:
     """Renders a standard linear solid whose parameters follow a target, and stays passive.
 
-    Proved: no motion of any hand takes energy out, whatever the targets.  Hypotheses: the device takes at least
-    its b; an encoder without counts; no delay, regular samples, no force limit reached, an amplifier without lag.
+    Proved: no motion of any hand takes energy out, whatever the targets.  Hypotheses: the device takes at
+    least its b; an encoder without counts; no delay, regular samples, no force limit reached, an amplifier
+    without lag.
 
     Parameters
     ----------

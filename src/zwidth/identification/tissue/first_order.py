@@ -15,8 +15,9 @@ Back, with h = μ0 + μ1 the stiffness at once:
     "backward"   h = b1/p,                τ = −T p/(1 + p)
     "ramp"       μ1 = (b0 − μ0)/φ,        τ = −T/ln(−p)
 
-"A passivity criterion for real-time haptic simulation of viscoelastic soft tissues", appendix 2, prints the bilinear
-recursion times (1 + z⁻¹): five parameters for three.  `five_parameters` is that form, with its slip corrected.
+"A passivity criterion for real-time haptic simulation of viscoelastic soft tissues", appendix 2, prints the
+bilinear recursion times (1 + z⁻¹): five parameters for three.  `five_parameters` is that form, with its
+slip corrected.
 """
 
 from __future__ import annotations
@@ -79,7 +80,7 @@ def coefficients(
         return -eta1 / d, (mu0 * mu1 * period + viscous) / d, -viscous / d
     x = float(period * mu1 / eta1)
     e, share = exp(-x), -expm1(-x) / x
-    return -e, mu0 + mu1 * share, -(mu0 * e + mu1 * share)  # type: ignore[return-value, operator]
+    return -e, mu0 + mu1 * share, -(mu0 * e + mu1 * share)  # type: ignore[return-value]
 
 
 def solid_of(
@@ -115,8 +116,8 @@ def solid_of(
         mu1 = b1 / p - mu0
         return mu0, mu1, -mu1 * period * p / (1 + p)
     x = -log(-p)
-    mu1 = (b0 - mu0) * x / -expm1(-x)  # type: ignore[operator, assignment]
-    return mu0, mu1, mu1 * period / x  # type: ignore[operator, return-value]
+    mu1 = (b0 - mu0) * x / -expm1(-x)  # type: ignore[assignment]
+    return mu0, mu1, mu1 * period / x  # type: ignore[return-value]
 
 
 def five_parameters(
@@ -137,9 +138,7 @@ def five_parameters(
     return p + extra, p * extra, b0, b1 + extra * b0, extra * b1
 
 
-def solid_of_five(
-    a1: Number, b1: Number, b3: Number, period: Number
-) -> tuple[Number, Number, Number]:
+def solid_of_five(a1: Number, b1: Number, b3: Number, period: Number) -> tuple[Number, Number, Number]:
     """(μ0, μ1, η1) by equation (32) of the paper, right where the common factor is (1 + z⁻¹) and only there.
 
     Parameters

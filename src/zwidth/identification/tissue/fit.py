@@ -4,7 +4,8 @@
 
 ŷ is the force of the continuous-time model under the measured position, linear between its samples, or the
 position under the force (creep): simulated without error, so that no sample period and no discretization
-enters the parameters.  The search runs over their logarithms: they stay positive, and their scales do not matter.
+enters the parameters.  The search runs over their logarithms: they stay positive, and their scales do not
+matter.
 """
 
 from __future__ import annotations
@@ -55,7 +56,8 @@ def fit_tissue(
     force
         With which the tissue resists [N; N·m]; or a name, by default "force", then "actuator_force".
     model
-        "kelvin-voigt", "maxwell", "standard-linear-solid" (default), "generalized-maxwell" or "hunt-crossley".
+        "kelvin-voigt", "maxwell", "standard-linear-solid" (default), "generalized-maxwell" or
+        "hunt-crossley".
     branches
         Of "generalized-maxwell": 1 to 6, 2 by default.
     response
@@ -74,7 +76,8 @@ def fit_tissue(
     Raises
     ------
     InputError
-        If the samples, the model or an option is not one of these, or there are fewer samples than parameters.
+        If the samples, the model or an option is not one of these, or there are fewer samples than
+        parameters.
 
     Notes
     -----
@@ -147,7 +150,7 @@ def _record(time: Any, position: Any, force: Any, response: object, rest: float 
             "the position never changes, so it says nothing: give a record of motion, or for a relaxation "
             "test the position before its step as rest=0"
         )
-    return Record(t, x, f, response, None if rest is None else float(rest))  # type: ignore[arg-type]
+    return Record(t, x, f, response, None if rest is None else float(rest))
 
 
 def _from_dataset(data: Any, position: Any, force: Any) -> tuple[Any, Any, Any]:
@@ -155,7 +158,9 @@ def _from_dataset(data: Any, position: Any, force: Any) -> tuple[Any, Any, Any]:
     names = "position" if position is None else position, first if force is None else force
     for name in ("time", *names):
         if not isinstance(name, str) or name not in data:
-            raise InputError(f"the Dataset has no variable {name!r}; it has {', '.join(map(str, data.data_vars))}")
+            raise InputError(
+                f"the Dataset has no variable {name!r}; it has {', '.join(map(str, data.data_vars))}"
+            )
     return data["time"].values, data[names[0]].values, data[names[1]].values
 
 

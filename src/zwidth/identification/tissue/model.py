@@ -1,10 +1,10 @@
 """The models that are fitted to tissue: their parameters, all > 0, and what each predicts.
 
-    kelvin-voigt            f = K x + B ẋ
-    maxwell                 H(s) = μ η s/(μ + η s)
-    standard-linear-solid   H(s) = μ0 + μ1 η1 s/(μ1 + η1 s)
-    generalized-maxwell     H(s) = μ0 + Σ μᵢ ηᵢ s/(μᵢ + ηᵢ s)
-    hunt-crossley           f = K uⁿ (1 + λ u̇),   u = max(x, 0)
+kelvin-voigt            f = K x + B ẋ
+maxwell                 H(s) = μ η s/(μ + η s)
+standard-linear-solid   H(s) = μ0 + μ1 η1 s/(μ1 + η1 s)
+generalized-maxwell     H(s) = μ0 + Σ μᵢ ηᵢ s/(μᵢ + ηᵢ s)
+hunt-crossley           f = K uⁿ (1 + λ u̇),   u = max(x, 0)
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.relaxing import Elements, force_response
 from zwidth.environment.wall import Parameter
 from zwidth.errors import InputError
+from zwidth.quantity.exact import Interval
 
 Response = Literal["force", "position"]
 
@@ -101,11 +102,12 @@ class Model:
         if self.name == "kelvin-voigt":
             return Wall(values[0], values[1], clamped=clamped)
         if self.name == "hunt-crossley":
-            return HuntCrossley(*values, clamped=clamped)  # type: ignore[arg-type]
+            k, n, d = (value for value in values if not isinstance(value, Interval | tuple))
+            return HuntCrossley(k, n, d, clamped)
         if self.name == "maxwell":
             return Maxwell(values[0], values[1], discretization, clamped)
         if self.name == "standard-linear-solid":
-            return StandardLinearSolid(*values[:3], discretization, clamped)
+            return StandardLinearSolid(values[0], values[1], values[2], discretization, clamped)
         pairs = list(zip(values[1::2], values[2::2], strict=True))
         return GeneralizedMaxwell(values[0], pairs, discretization, clamped)
 

@@ -3,21 +3,21 @@
     y = F − F₋₁ = φᵀθ,   φ = (−g F₋₁, g S u, S Δu),   θ = ((1 + p)/g, (b0 + b1)/(g S), −b1/S)
     ε = y − φᵀθ,   L = P φ/(λ + φᵀ P φ),   θ ← θ + L ε,   P ← (P − L φᵀ P)/λ
 
-is F = −p F₋₁ + b0 u + b1 u₋₁ written with differences.  S = μ0 + μ1 and g = T/τ are of the solid at the start: all
-numbers are near 1 then, where 1 + p and b0 + b1 would be lost among p, b0 and b1.  F₋₁ in φ is the measured one
-(least squares) or the F̂₋₁ of a model run beside
-(output error).  With instruments ζ = (−g F̂₋₁, g S u, S Δu) that recursion runs away where ζφᵀ has been nearly singular;
-so the sums themselves are kept, and θ takes a damped step to where they want it:
+is F = −p F₋₁ + b0 u + b1 u₋₁ written with differences.  S = μ0 + μ1 and g = T/τ are of the solid at the
+start: all numbers are near 1 then, where 1 + p and b0 + b1 would be lost among p, b0 and b1.  F₋₁ in φ is
+the measured one (least squares) or the F̂₋₁ of a model run beside (output error).  With instruments ζ = (−g
+F̂₋₁, g S u, S Δu) that recursion runs away where ζφᵀ has been nearly singular; so the sums themselves are
+kept, and θ takes a damped step to where they want it:
 
     R ← λ R + ζ φᵀ,   r ← λ r + ζ y,   z ← λ² z + ζᵀζ
     θ ← θ + (RᵀR + κ² I)⁻¹ Rᵀ (r − R θ),    κ² = σ² z
 
 σ the noise of the force: κ is what noise makes of r, and a direction that R knows no better is hardly moved.
 
-The model run beside is F̂ = −p F̂₋₁ + b0 u + b1 u₋₁: for output error with the admissible parameters of the moment,
-for the instruments with those of the start, for ever.  Instruments need not be right, only free of the noise and
-like the force; ones that follow the estimate can lead it astray.  u = max(x, 0); only where this sample and the last
-are inside is anything learnt.
+The model run beside is F̂ = −p F̂₋₁ + b0 u + b1 u₋₁: for output error with the admissible parameters of the
+moment, for the instruments with those of the start, for ever.  Instruments need not be right, only free of
+the noise and like the force; ones that follow the estimate can lead it astray.  u = max(x, 0); only where
+this sample and the last are inside is anything learnt.
 """
 
 from __future__ import annotations
@@ -30,10 +30,24 @@ LEAST_SQUARES, INSTRUMENTAL, OUTPUT_ERROR = 0.0, 1.0, 2.0
 RAMP, BILINEAR, BACKWARD = 0.0, 1.0, 2.0
 
 # the numbers of a tracker
-FORGETTING, DEAD_ZONE, LARGEST_TRACE, METHOD, RULE, PERIOD, SCALE, SHARE, STIFFEST, SHORTEST, LONGEST, VARIANCE, START = range(13)
+(
+    FORGETTING,
+    DEAD_ZONE,
+    LARGEST_TRACE,
+    METHOD,
+    RULE,
+    PERIOD,
+    SCALE,
+    SHARE,
+    STIFFEST,
+    SHORTEST,
+    LONGEST,
+    VARIANCE,
+    START,
+) = range(13)
 
-# its memory: whether a sample was before, its u, F and F̂; the admissible p, b0, b1; μ0, μ1, η1 of these; the last ε;
-# θ and P of it, or R, by rows; r; z; the trace of P; then room to reckon
+# its memory: whether a sample was before, its u, F and F̂; the admissible p, b0, b1; their μ0, μ1, η1; the
+# last ε; θ and P of it, or R, by rows; r; z; the trace of P; then room to reckon
 STARTED, DEPTH, FORCE, MODEL, ADMISSIBLE, SOLID, ERROR, THETA, COVARIANCE = 0, 1, 2, 3, 4, 7, 10, 11, 14
 WANTED, SQUARES, TRACE, ROOM = 23, 26, 27, 28
 MEMORY = ROOM + 15
@@ -41,7 +55,7 @@ MEMORY = ROOM + 15
 
 @compiled
 def learn(theta: Array, p: Array, phi: Array, gain: Array, error: float, forgetting: float) -> float:
-    """One step of θ and P in place; the trace of P after it, or −1 for a step not to be trusted, and not taken."""
+    """One step of θ and P in place; the trace of P after it, or −1 for a step not to be trusted nor taken."""
     n = theta.size
     scale = forgetting
     for i in range(n):
@@ -63,7 +77,11 @@ def learn(theta: Array, p: Array, phi: Array, gain: Array, error: float, forgett
 @compiled
 def instruct(q: Array, memory: Array, phi: Array, zeta: Array, wants: Array, y: float) -> None:
     """One step by instruments: R, r and z take the sample in, θ its damped step."""
-    r, right, theta = memory[COVARIANCE : COVARIANCE + 9], memory[WANTED : WANTED + 3], memory[THETA : THETA + 3]
+    r, right, theta = (
+        memory[COVARIANCE : COVARIANCE + 9],
+        memory[WANTED : WANTED + 3],
+        memory[THETA : THETA + 3],
+    )
     keep = q[FORGETTING]
     squares = keep * keep * memory[SQUARES]
     for i in range(3):

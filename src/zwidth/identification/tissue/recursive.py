@@ -3,11 +3,12 @@
     F_t = −p F_{t−1} + b0 u_t + b1 u_{t−1},   u = max(x, 0)
 
 by recursive least squares with forgetting, in one of three forms.  Where F is noisy, plain least squares is
-biased: F_{t−1} carries the noise of the last sample into what F_t is regressed on, and the slower the tissue
-relaxes beside the sample period, the worse.  "instrumental" puts the F̂_{t−1} of the solid it started from, free of
-that noise, beside it as instrument and has no such bias, where the noise of one sample says nothing of the next
-motion; the nearer the relaxation time at the start, the less it scatters.  "output-error" puts the F̂_{t−1} of its own
-estimate in the place of the measured one: without that bias too where it converges, but slower.
+biased: F_{t−1} carries the noise of the last sample into what F_t is regressed on, and the slower the
+tissue relaxes beside the sample period, the worse.  "instrumental" puts the F̂_{t−1} of the solid it
+started from, free of that noise, beside it as instrument and has no such bias, where the noise of one
+sample says nothing of the next motion; the nearer the relaxation time at the start, the less it scatters.
+"output-error" puts the F̂_{t−1} of its own estimate in the place of the measured one: without that bias too
+where it converges, but slower.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ _SLOWEST = 1e5
 
 
 class Track(NamedTuple):
-    """The solid after each sample, ε the error of prediction, and the trace of P (scaled, see `RecursiveSolid`)."""
+    """The solid after each sample, ε the error of prediction, and the trace of P (see `RecursiveSolid`)."""
 
     stiffness: Array
     branch_stiffness: Array
@@ -53,23 +54,23 @@ class RecursiveSolid:
     sample_period
         T > 0 [s].
     initial
-        The solid that it starts from: (μ0, μ1, η1), all > 0 [N/m, N/m, N·s/m; N·m/rad, N·m/rad, N·m·s/rad].  The
-        relaxation time η1/μ1 should be of the right decade.
+        The solid that it starts from: (μ0, μ1, η1), all > 0 [N/m, N/m, N·s/m; N·m/rad, N·m/rad,
+        N·m·s/rad].  The relaxation time η1/μ1 should be of the right decade.
     method
         "instrumental" (default), "output-error" or "least-squares".
     rule
-        "ramp" (default) for a material measured while it moves; "bilinear" or "backward" for what a controller
-        renders by Tustin's rule or backward Euler.
+        "ramp" (default) for a material measured while it moves; "bilinear" or "backward" for what a
+        controller renders by Tustin's rule or backward Euler.
     forgetting
         λ, > 0 and ≤ 1: a sample counts for 1/(1 − λ) samples. Default 0.999.
     noise
-        Standard deviation of the force's noise, > 0 [N; N·m]; with the initial solid it sets how fast the first
-        samples are believed. Default 0.01.
+        Standard deviation of the force's noise, > 0 [N; N·m]; with the initial solid it sets how fast the
+        first samples are believed. Default 0.01.
     dead_zone
         Errors of prediction up to this teach nothing [N; N·m]. Default 0.
     largest_trace
-        Of P as a multiple of that at the start, > 0: P grows no further where the motion says nothing. Default 1.
-        "instrumental" needs no such bound.
+        Of P as a multiple of that at the start, > 0: P grows no further where the motion says nothing.
+        Default 1. "instrumental" needs no such bound.
     stiffest
         Bound of μ0 and of μ1 [N/m; N·m/rad]; None: no bound.
     relaxation_times
@@ -80,13 +81,12 @@ class RecursiveSolid:
     InputError
         If an argument is not of these.
 
-    Notes
-    -----
-    What is returned is admissible: μ0, μ1 ≥ 0, η1/μ1 > 0 and within the bounds.  The regression itself runs
-    without bounds, so that nothing measured is lost; what it finds is moved to the nearest bound, number by number.
-    P is that of ((1 + p)/g, (b0 + b1)/(g S), −b1/S), g = T μ1/η1 and S = μ0 + μ1 at the start, all of the size of 1;
-    it begins as the identity over noise²; times noise² it is the covariance of these three.  "instrumental" has no P: `Track.trace` is what stands for it, and is
-    bounded by what the noise leaves to know.
+    Notes ----- What is returned is admissible: μ0, μ1 ≥ 0, η1/μ1 > 0 and within the bounds.  The regression
+    itself runs without bounds, so that nothing measured is lost; what it finds is moved to the nearest
+    bound, number by number. P is that of ((1 + p)/g, (b0 + b1)/(g S), −b1/S), g = T μ1/η1 and S = μ0 + μ1
+    at the start, all of the size of 1; it begins as the identity over noise²; times noise² it is the
+    covariance of these three.  "instrumental" has no P: `Track.trace` is what stands for it, and is bounded
+    by what the noise leaves to know.
     """
 
     sample_period: Exact
@@ -254,9 +254,9 @@ def track_five_parameters(
 ) -> Mapping[str, Array]:
     """The published regression on five parameters, beside which there is a line of others as good.
 
-    F_t = −a1 F_{t−1} − a2 F_{t−2} + b1 u_t + b2 u_{t−1} + b3 u_{t−2} is three parameters times (1 + z⁻¹).  With
-    (1 + c z⁻¹) for any c the same motion fits as well, so that P grows along that line as λ⁻ᵏ and the estimates
-    drift.  Use `RecursiveSolid`; this is here to show it.
+    F_t = −a1 F_{t−1} − a2 F_{t−2} + b1 u_t + b2 u_{t−1} + b3 u_{t−2} is three parameters times (1 + z⁻¹).
+    With (1 + c z⁻¹) for any c the same motion fits as well, so that P grows along that line as λ⁻ᵏ and the
+    estimates drift.  Use `RecursiveSolid`; this is here to show it.
 
     Parameters
     ----------
@@ -272,8 +272,8 @@ def track_five_parameters(
     Returns
     -------
     Mapping
-        "a1", "a2", "b1", "b2", "b3", "stiffness", "branch_stiffness", "branch_damping" by equation (32) of the
-        paper, and "trace" of P, each an array.
+        "a1", "a2", "b1", "b2", "b3", "stiffness", "branch_stiffness", "branch_damping" by equation (32) of
+        the paper, and "trace" of P, each an array.
 
     Raises
     ------

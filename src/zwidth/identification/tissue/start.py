@@ -74,8 +74,8 @@ def _nonnegative(columns: list[Array], target: Array) -> tuple[Array, float]:
     matrix = np.stack(columns, axis=1)
     size = np.linalg.norm(matrix, axis=0)
     size[size == 0.0] = 1.0
-    reduced = np.linalg.qr(np.column_stack([matrix / size, target]), mode="r")
-    solution, left = nnls(reduced[:, :-1], reduced[:, -1])
+    square: Array = np.linalg.qr(np.column_stack([matrix / size, target]), mode="r")  # type: ignore[assignment]
+    solution, left = nnls(square[:, :-1], square[:, -1])
     return solution / size, float(left)
 
 

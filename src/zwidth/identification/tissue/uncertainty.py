@@ -1,15 +1,16 @@
 """How well the parameters are known: their covariance where the noise has a memory.
 
-The residuals e are taken as an autoregressive process, A e = ε with ε white of variance σ², of the order that BIC
-prefers; 0 is white noise.  The estimate is that of ordinary least squares, whose covariance then is
+The residuals e are taken as an autoregressive process, A e = ε with ε white of variance σ², of the order
+that BIC prefers; 0 is white noise.  The estimate is that of ordinary least squares, whose covariance then
+is
 
     (JᵀJ)⁻¹ Jᵀ Ω J (JᵀJ)⁻¹,     Ω = σ² A⁻¹ A⁻ᵀ
 
-J the derivatives of the prediction by the logarithms of the parameters.  White noise gives the usual σ² (JᵀJ)⁻¹.  A
-memory leaves fewer independent samples than there are, N_e = N γ0 A(1)²/σ² ≤ N with γ0 the variance of e: the fit has
-taken k of them, so that Ω is multiplied by N_e/(N_e − k) and Student's t has N_e − k degrees of freedom.
-Assumed: the model is right, the noise of zero mean, stationary and as likely in every sample, small enough
-for the linear J, and the input free of it.
+J the derivatives of the prediction by the logarithms of the parameters.  White noise gives the usual σ²
+(JᵀJ)⁻¹.  A memory leaves fewer independent samples than there are, N_e = N γ0 A(1)²/σ² ≤ N with γ0 the
+variance of e: the fit has taken k of them, so that Ω is multiplied by N_e/(N_e − k) and Student's t has N_e
+− k degrees of freedom. Assumed: the model is right, the noise of zero mean, stationary and as likely in
+every sample, small enough for the linear J, and the input free of it.
 """
 
 from __future__ import annotations
