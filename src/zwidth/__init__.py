@@ -26,14 +26,16 @@ if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.bench import LawComparison
     from zwidth.device import amplifier as amplifiers
-    from zwidth.environment import HuntCrossley, NonlinearSpring
+    from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
     from zwidth.identification import tissue
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
+    from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
     from zwidth.passivity.real_hand import RealHand, replay
+    from zwidth.passivity.virtual_mass import stable_virtual_masses
     from zwidth.passivity.worst_hand import Bracket, WorstHand
     from zwidth.rendering.rendered import render
     from zwidth.traces import (
@@ -71,6 +73,7 @@ __all__ = [
     "TissueFit",
     "VelocityFilter",
     "Verdict",
+    "VirtualBody",
     "VirtualCoupling",
     "Wall",
     "Window",
@@ -95,7 +98,9 @@ __all__ = [
     "replay",
     "rotary",
     "simulate",
+    "simulate_admittance",
     "simulate_batch",
+    "stable_virtual_masses",
     "tissue",
     "two_port",
     "worst_hand",
@@ -110,6 +115,7 @@ _LATER = {
     "HuntCrossley": "zwidth.environment",
     "NonlinearSpring": "zwidth.environment",
     "Timing": "zwidth.loop.timing",
+    "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
     "amplifiers": "zwidth.device.amplifier",
     "RealHand": "zwidth.passivity.real_hand",
@@ -126,7 +132,9 @@ _LATER = {
     "load_trace": "zwidth.traces",
     "passive_limit": "zwidth.traces",
     "simulate": "zwidth.traces",
+    "simulate_admittance": "zwidth.loop.admittance",
     "simulate_batch": "zwidth.traces",
+    "stable_virtual_masses": "zwidth.passivity.virtual_mass",
     "tissue": "zwidth.identification.tissue",
     "two_port": "zwidth.passivity.two_port",
     "worst_hand": "zwidth.traces",
