@@ -108,6 +108,21 @@ def test_output_error_arrives_too_but_later():
     assert early.branch_damping[2000:] == pytest.approx(75, rel=0.1)
 
 
+def test_maxwell_and_kelvin_voigt_are_solids_too():
+    """One has μ0 = 0; the other a branch so stiff that only its dashpot is seen."""
+    t, x = motion(20_000)
+    noise = np.random.default_rng(1).normal(0, 0.01, t.size)
+    fluid = force_response(zw.Maxwell(150, 15), t, x) + noise
+    mu0, mu1, eta1 = mean_of_the_end(RecursiveSolid(T, START, forgetting="0.9998").track(x, fluid))
+    assert mu0 < 0.5
+    assert (mu1, eta1) == pytest.approx((150, 15), rel=0.02)
+    damped = force_response(zw.Wall(300, 2), t, x) + noise
+    quick = RecursiveSolid(T, (200, 2000, 2), forgetting="0.9998")  # 1 ms at the start
+    mu0, mu1, eta1 = mean_of_the_end(quick.track(x, damped))
+    assert (mu0, eta1) == pytest.approx((300, 2), rel=0.02)
+    assert mu1 > 1000
+
+
 def test_a_tissue_that_changes_is_followed():
     """The stiffness doubles at 20 s; with a memory of 2 s it is found anew, with λ = 1 it is not."""
     t, x = motion(40_000)
