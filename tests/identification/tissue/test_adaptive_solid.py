@@ -221,6 +221,8 @@ def test_bad_input():
         wall.retune((1, -1, 1))
     with pytest.raises(zw.InputError, match="≥ 0 and finite"):
         wall.retune((1, float("nan"), 1))
+    with pytest.raises(zw.InputError, match="must be finite, got nan"):
+        wall.force(float("nan"))
     with pytest.raises(zw.InputError, match="give tracking="):
         wall.observe(0.0, 0.0)
     with pytest.raises(zw.InputError, match="give as many rows"):

@@ -213,6 +213,17 @@ def test_sample_by_sample_is_the_same():
     assert settled < 1.1e4 < 1.9e4 < tracker.track(x[1:2], f[1:2]).trace[0]
 
 
+def test_a_sample_that_was_not_measured_is_passed_over():
+    """NaN and inf leave the solid as it is, and what comes after them finds the tissue all the same."""
+    x, f = tissue(10_000, 300, 150, 15, noise=0.01)
+    tracker = RecursiveSolid(T, START).start()
+    tracker.track(x[:5000], f[:5000])
+    before = tracker.solid
+    assert tracker.update(x[5000], np.nan) == tracker.update(np.inf, f[5001]) == before
+    track = tracker.track(x[5002:], f[5002:])
+    assert [float(part[-1]) for part in track[:3]] == pytest.approx([300, 150, 15], rel=0.1)
+
+
 def test_five_parameters_are_not_identifiable():
     """Along the line of (1 + c z⁻¹) P grows as 1/λ per sample; the solid of equation (32) is anything."""
     solid = 300.0, 150.0, 15.0

@@ -3,6 +3,7 @@
 from zwidth.environment.creeping import creep, position_response
 from zwidth.environment.relaxing import force_response, relaxation
 from zwidth.identification.tissue.adaptive import AdaptiveSolid, Rendered, required_damping
+from zwidth.identification.tissue.comparison import TissueComparison
 from zwidth.identification.tissue.first_order import (
     Solid,
     coefficients,
@@ -11,8 +12,9 @@ from zwidth.identification.tissue.first_order import (
     solid_of_five,
 )
 from zwidth.identification.tissue.fit import compare_tissues, fit_tissue
-from zwidth.identification.tissue.recursive import RecursiveSolid, Track, Tracker, track_five_parameters
-from zwidth.identification.tissue.result import TissueComparison, TissueFit
+from zwidth.identification.tissue.published import track_five_parameters
+from zwidth.identification.tissue.recursive import RecursiveSolid, Track, Tracker
+from zwidth.identification.tissue.result import TissueFit
 
 __all__ = [
     "AdaptiveSolid",

@@ -137,7 +137,14 @@ class AdaptiveSolid:
         ----------
         position
             x of the hand, positive inside [m; rad].
+
+        Raises
+        ------
+        InputError
+            If it is not finite.
         """
+        if not abs(position) < inf:
+            raise InputError(f"the position of the hand must be finite, got {position}")
         return float(_step(self._numbers, self._memory, float(position), *self._target))
 
     def render(self, position: ArrayLike, solids: ArrayLike) -> Rendered:

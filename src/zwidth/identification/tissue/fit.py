@@ -17,8 +17,9 @@ import numpy as np
 from zwidth.compiled import Array
 from zwidth.environment.modes import samples
 from zwidth.errors import InputError
+from zwidth.identification.tissue.comparison import TissueComparison
 from zwidth.identification.tissue.model import Model, Record, Response, as_model
-from zwidth.identification.tissue.result import TissueComparison, TissueFit
+from zwidth.identification.tissue.result import TissueFit
 from zwidth.identification.tissue.start import starting_points
 from zwidth.identification.tissue.uncertainty import LARGEST_ORDER, covariance, noise_of
 

@@ -22,7 +22,7 @@ this sample and the last are inside is anything learnt.
 
 from __future__ import annotations
 
-from math import expm1, log1p
+from math import expm1, inf, log1p
 
 from zwidth.compiled import Array, compiled
 
@@ -163,6 +163,9 @@ def admit(q: Array, memory: Array) -> None:
 @compiled
 def step(q: Array, memory: Array, position: float, force: float) -> None:
     """One sample of a tracker: q its numbers, its memory in place."""
+    if not (abs(position) < inf and abs(force) < inf):
+        memory[STARTED] = 0.0
+        return
     u = max(position, 0.0)
     before, measured = memory[DEPTH], memory[FORCE]
     beside = memory[MODEL]

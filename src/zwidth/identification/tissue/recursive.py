@@ -13,7 +13,6 @@ where it converges, but slower.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
@@ -114,10 +113,10 @@ class RecursiveSolid:
         stiffest: RealLike | None = None,
         relaxation_times: tuple[RealLike, RealLike] | None = None,
     ) -> None:
-        period = _positive("sample_period", sample_period)
+        period = positive("sample_period", sample_period)
         if method not in get_args(Method):
             raise InputError(f'method is "least-squares", "instrumental" or "output-error", got {method!r}')
-        keep = _positive("forgetting", forgetting)
+        keep = positive("forgetting", forgetting)
         if keep > 1:
             raise InputError(f"forgetting is at most 1, got {keep:g}: with 1 nothing is forgotten")
         zone = Exact(dead_zone)
@@ -129,10 +128,10 @@ class RecursiveSolid:
             "method": method,
             "rule": as_rule(rule),
             "forgetting": keep,
-            "noise": _positive("noise", noise),
+            "noise": positive("noise", noise),
             "dead_zone": zone,
-            "largest_trace": _positive("largest_trace", largest_trace),
-            "stiffest": None if stiffest is None else _positive("stiffest", stiffest),
+            "largest_trace": positive("largest_trace", largest_trace),
+            "stiffest": None if stiffest is None else positive("stiffest", stiffest),
             "relaxation_times": _times(relaxation_times, period),
         }
         for name, value in values.items():
@@ -210,7 +209,8 @@ class Tracker:
         position
             x, positive inside [m; rad].
         force
-            With which the tissue resists [N; N·m].
+            With which the tissue resists [N; N·m].  A sample that is not finite is passed over, and the next
+            one begins anew.
         """
         recursion.step(self._numbers, self._memory, float(position), float(force))
         return self.solid
@@ -244,63 +244,14 @@ class Tracker:
         self._memory[recursion.TRACE] = 3.0 * start
 
 
-def track_five_parameters(
-    position: ArrayLike,
-    force: ArrayLike,
-    sample_period: RealLike,
-    *,
-    forgetting: RealLike = "0.999",
-    initial_covariance: float = 1e6,
-) -> Mapping[str, Array]:
-    """The published regression on five parameters, beside which there is a line of others as good.
-
-    F_t = −a1 F_{t−1} − a2 F_{t−2} + b1 u_t + b2 u_{t−1} + b3 u_{t−2} is three parameters times (1 + z⁻¹).
-    With (1 + c z⁻¹) for any c the same motion fits as well, so that P grows along that line as λ⁻ᵏ and the
-    estimates drift.  Use `RecursiveSolid`; this is here to show it.
-
-    Parameters
-    ----------
-    position, force
-        As for `RecursiveSolid.track`; samples in contact only.
-    sample_period
-        T > 0 [s].
-    forgetting
-        λ. Default 0.999.
-    initial_covariance
-        P at the start, times the identity.
-
-    Returns
-    -------
-    Mapping
-        "a1", "a2", "b1", "b2", "b3", "stiffness", "branch_stiffness", "branch_damping" by equation (32) of
-        the paper, and "trace" of P, each an array.
+def positive(name: str, value: RealLike) -> Exact:
+    """A number > 0; `name` is said where it is not.
 
     Raises
     ------
     InputError
-        If the samples are not two arrays of one length.
-
-    References
-    ----------
-    "A passivity criterion for real-time haptic simulation of viscoelastic soft tissues", appendix 2.
+        If it is not.
     """
-    period = float(_positive("sample_period", sample_period))
-    keep = float(_positive("forgetting", forgetting))
-    x, f = (np.ascontiguousarray(part, dtype=float) for part in (position, force))
-    if x.ndim != 1 or x.shape != f.shape:
-        raise InputError("position and force are two arrays of one length")
-    out = np.full((6, x.size), np.nan)
-    p = (initial_covariance * np.eye(5)).ravel()
-    recursion.run_five(np.zeros(5), p, np.zeros(10), x, f, keep, out)
-    a1, b1, b3 = out[0], out[2], out[4]
-    viscous = a1 * b1 - b1 - b3
-    with np.errstate(divide="ignore", invalid="ignore"):
-        solid = (b1 + b3) / a1, 2 * viscous / (a1 * (2 - a1)), viscous * period / a1**2
-    names = ("a1", "a2", "b1", "b2", "b3", "trace", "stiffness", "branch_stiffness", "branch_damping")
-    return dict(zip(names, (*out, *solid), strict=True))
-
-
-def _positive(name: str, value: RealLike) -> Exact:
     try:
         number = Exact(value)
     except InputError as error:
@@ -314,13 +265,13 @@ def _solid(initial: tuple[RealLike, RealLike, RealLike]) -> Solid:
     if isinstance(initial, str) or not hasattr(initial, "__len__") or len(initial) != 3:
         raise InputError(f"initial is (μ0, μ1, η1), three numbers > 0; got {initial!r}")
     names = ("stiffness", "branch_stiffness", "branch_damping")
-    return Solid(*(float(_positive(f"initial {n}", v)) for n, v in zip(names, initial, strict=True)))
+    return Solid(*(float(positive(f"initial {n}", v)) for n, v in zip(names, initial, strict=True)))
 
 
 def _times(given: tuple[RealLike, RealLike] | None, period: Exact) -> tuple[Exact, Exact]:
     if given is None:
         return Exact(period.fraction / 10), Exact(period.fraction * int(_SLOWEST))
-    low, high = (_positive("relaxation_times", value) for value in given)
+    low, high = (positive("relaxation_times", value) for value in given)
     if low >= high:
         raise InputError(f"relaxation_times are (shortest, longest), got {low:g} and {high:g} s")
     return low, high

@@ -16,6 +16,7 @@ from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.identification.tissue.model import Model, unit_of
+from zwidth.identification.tissue.table import html_of, lines_of
 from zwidth.quantity.exact import Interval
 
 if TYPE_CHECKING:
@@ -271,60 +272,12 @@ class TissueFit:
         )
 
     def __repr__(self) -> str:
-        return "\n".join([self._summary(), *_lines(self.table()), *(f"! {r}" for r in self.remarks)])
+        return "\n".join([self._summary(), *lines_of(self.table()), *(f"! {r}" for r in self.remarks)])
 
     def _repr_html_(self) -> str:
         remarks = "".join(f"<p><b>{escape(remark)}</b></p>" for remark in self.remarks)
-        return f"<div><p>{escape(self._summary())}</p>{_html(self.table())}{remarks}</div>"
-
-
-@dataclass(frozen=True, eq=False)
-class TissueComparison:
-    """Several models fitted to one record, that of the smallest BIC first.
-
-    Parameters
-    ----------
-    fits
-        In the order of their BIC.
-    """
-
-    fits: tuple[TissueFit, ...]
-
-    @property
-    def best(self) -> TissueFit:
-        """The fit of the smallest BIC."""
-        return self.fits[0]
-
-    def __getitem__(self, name: str) -> TissueFit:
-        return {fit.model.name: fit for fit in self.fits}[name]
-
-    def table(self) -> list[list[str]]:
-        """Headings, then one line of text per model; AIC and BIC above the smallest."""
-        aic, bic = (min(getattr(fit, key) for fit in self.fits) for key in ("aic", "bic"))
-        lines = [["model", "parameters", "r²", "RMS", "AIC above", "BIC above", "identifiable"]]
-        for fit in self.fits:
-            numbers = f"{fit.r_squared:.6f}", f"{fit.rms:.3g}", f"{fit.aic - aic:.1f}", f"{fit.bic - bic:.1f}"
-            known = "yes" if fit.identifiable else "no"
-            lines.append([fit.model.name, str(fit.estimates.size), *numbers, known])
-        return lines
-
-    def __repr__(self) -> str:
-        return "\n".join(_lines(self.table()))
-
-    def _repr_html_(self) -> str:
-        return _html(self.table())
+        return f"<div><p>{escape(self._summary())}</p>{html_of(self.table())}{remarks}</div>"
 
 
 def _exp(value: float) -> float:
     return inf if value > _LARGEST_LOG else exp(value)
-
-
-def _lines(table: list[list[str]]) -> list[str]:
-    widths = [max(len(row[i]) for row in table) for i in range(len(table[0]))]
-    return ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in table]
-
-
-def _html(table: list[list[str]]) -> str:
-    head, *lines = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table]
-    body = "".join(f"<tr>{line}</tr>" for line in lines)
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
