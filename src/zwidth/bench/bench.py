@@ -22,6 +22,7 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
+from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check
 from zwidth.rendering.rendered import Rendered
 from zwidth.rendering.stage import Surroundings
@@ -196,6 +197,10 @@ def _status(device: Device, law: Environment, found: Attack) -> tuple[str, str]:
                 f"What the laws add is never more than that of {covering.damping} N·s/m, and every such "
                 f"force is covered, contact made and broken: {verdict.claim}"
             )
+    if is_bounded(law):
+        bounding = check_bounding(device, law)
+        if bounding.outcome == "passive":
+            return "passive", bounding.claim
     reason = law.stages[-1].theorem(Surroundings(device, law.environment))
     if reason is not None:
         return "theorem", f"By a proof on paper, without a certificate: {reason}."

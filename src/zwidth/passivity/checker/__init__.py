@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from .contact_motion import contact_motion_energy
 from .contact_proof import contact
+from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
 from .proofs import PROOFS
 from .reading import Invalid, get, number
@@ -24,7 +25,7 @@ from .storage_proof import storage
 
 __all__ = ["Verification", "verify"]
 
-_KINDS = {**PROOFS, "contact": contact, "storage": storage}
+_KINDS = {**PROOFS, "contact": contact, "force bounding": force_bounding, "storage": storage}
 
 
 class Verification(NamedTuple):
