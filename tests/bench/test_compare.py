@@ -182,6 +182,12 @@ def test_the_command(tmp_path, monkeypatch, capsys):
     saved = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))
     assert list(saved["laws"]) == ["wall", "virtual-damping"]
     assert saved["laws"]["wall"]["static_stiffness_N_per_m"] == pytest.approx(400, rel=0.05)
+    assert main([*wall, "--laws", "wall", "--fastest", "fast"]) == 2
+    assert "fastest" in capsys.readouterr().err
+    assert main([*wall, "--laws", "passivity-controller-published", "--fastest", "1 m/s", "--json"]) == 0
+    assert (
+        json.loads(capsys.readouterr().out)["laws"]["passivity-controller-published"]["status"] == "undecided"
+    )
     assert main([*wall, "--laws", "magic"]) == 2
     assert 'no law "magic"' in capsys.readouterr().err
     assert main([*wall[:2], "--type", "maxwell", "--branch-stiffness", "3", "--branch-damping", "1"]) == 2
