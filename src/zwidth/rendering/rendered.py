@@ -65,7 +65,10 @@ class Rendered(Environment):
 
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
         """None: raises InputError."""
-        raise InputError(f"there is no H(z) of this, its laws are not linear: {self.describe()}")
+        raise InputError(
+            f"there is no H(z) of this, its laws are not linear: {self.describe()}; a row that ends in "
+            "ForceBounding() is proved by zwidth.check_bounding, others are compared by zwidth.compare"
+        )
 
     def describe(self, motion: str = "linear") -> str:
         """Environment and laws, on one line."""
