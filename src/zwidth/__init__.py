@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
+    from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
     from zwidth.passivity.real_hand import RealHand, replay
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BackwardDifference",
+    "Bounding",
     "Bracket",
     "Certificate",
     "ContinuousTransferFunction",
@@ -84,6 +86,7 @@ __all__ = [
     "amplifiers",
     "catalogue",
     "check",
+    "check_bounding",
     "closed_forms",
     "compare",
     "compare_tissues",
@@ -111,6 +114,8 @@ __all__ = [
 ]
 
 _LATER = {
+    "Bounding": "zwidth.passivity.bounding",
+    "check_bounding": "zwidth.passivity.bounding",
     "Bracket": "zwidth.passivity.worst_hand",
     "CouplingCondition": "zwidth.passivity.coupling",
     "CouplingDesign": "zwidth.passivity.coupling_design",
