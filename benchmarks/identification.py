@@ -32,6 +32,7 @@ from zwidth.identification.logs import log_of, read_log
 
 TRUE = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12}
 NOISE, DRIFT = 0.1, 0.05
+FINE = 2.5e-4
 CONDITIONS = {
     "22.4 um, 1 kHz": {},
     "224 um, 1 kHz": {"resolution": "224 um"},
@@ -48,21 +49,22 @@ def record(seed, samples, seconds=None, **others):
     device = zw.Device(**{**TRUE, "resolution": "22.4 um", "sample_period": "1 ms", **others})
     period = float(device.exact("sample_period"))
     samples = samples if seconds is None else round(seconds / period)
-    at = np.arange(samples + 1) * period
+    finer = max(1, round(period / FINE))  # the hand's path is straight between samples
+    at = np.arange(samples * finer + 1) * period / finer
     waves = zip(rng.normal(size=12), rng.uniform(0.3, 4.0, 12), rng.uniform(0, 6.28, 12), strict=True)
     path = sum(a * np.sin(2 * np.pi * f * at + p) for a, f, p in waves)
     path = path * 0.02 / path.std() - 1.0
     hand = zw.operators.Tracking(path, stiffness=300.0, damping=0.0)
     trace = zw.simulate(
-        device,
+        device.replace(sample_period=device.exact("sample_period") / finer),
         zw.Wall(stiffness=1),  # a metre away
         hand,
         samples * device.exact("sample_period"),
         initial_position=path[0],
     )
     names = ("measured_position", "velocity", "hand_force")
-    read, v, force = (trace[name].values[:samples] for name in names)
-    at = at[:samples]
+    read, v, force = (trace[name].values[: samples * finer : finer] for name in names)
+    at = at[: samples * finer : finer]
     knots = np.arange(0.0, at[-1] + 20.0, 20.0)
     zero = np.interp(at, knots, DRIFT * np.cumsum(rng.normal(size=knots.size)))
     measured = force + zero + NOISE * rng.normal(size=samples)

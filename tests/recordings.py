@@ -34,7 +34,8 @@ def hand_moves(
 ) -> Recording:
     """A hand wanders about 20 mm to and fro; the load cell has white noise [N] and a drifting zero [N].
 
-    The hand is a spring without damper or mass: its force has no jumps where the path is bent.
+    The hand is a spring without damper or mass: its force has no jumps where the path is bent.  It is soft,
+    since the path is straight between samples: that looks like a mass of k T²/12.
     """
     rng = np.random.default_rng(seed)
     period = float(device.exact("sample_period"))
@@ -43,7 +44,7 @@ def hand_moves(
     waves = zip(rng.normal(size=12), rng.uniform(0.3, 4.0, 12), rng.uniform(0, 6.28, 12), strict=True)
     path = sum(a * np.sin(2 * np.pi * f * time + p) for a, f, p in waves)
     path = path * 0.02 / path.std() - 1.0
-    hand = zw.operators.Tracking(path, stiffness=300.0, damping=0.0)
+    hand = zw.operators.Tracking(path, stiffness=40.0, damping=0.0)
     wall = zw.Wall(stiffness=1)  # a metre away
     trace = zw.simulate(device, wall, hand, samples * device.exact("sample_period"), initial_position=path[0])
     read, x, v, force = (
