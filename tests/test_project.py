@@ -21,7 +21,7 @@ from zwidth.passivity import checker
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src" / "zwidth"
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-RESULTS = {"FrictionModel", "InputError", "Verdict", "Witness"}
+RESULTS = {"FrictionModel", "InputError", "Log", "Verdict", "Witness"}
 """Classes that zwidth makes and a person only reads."""
 
 CLASSES = [name for name in zw.__all__ if inspect.isclass(getattr(zw, name)) and name not in RESULTS]

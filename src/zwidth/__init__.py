@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from zwidth.bench import LawComparison
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring
+    from zwidth.identification.logs import Log, log_of, read_log
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
@@ -59,6 +60,7 @@ __all__ = [
     "InputError",
     "Interval",
     "LawComparison",
+    "Log",
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
@@ -82,9 +84,11 @@ __all__ = [
     "coupling_condition",
     "design_coupling",
     "load_trace",
+    "log_of",
     "operators",
     "passive_limit",
     "quantization",
+    "read_log",
     "render",
     "rendering",
     "replay",
@@ -100,6 +104,7 @@ _LATER = {
     "CouplingCondition": "zwidth.passivity.coupling",
     "CouplingDesign": "zwidth.passivity.coupling_design",
     "LawComparison": "zwidth.bench",
+    "Log": "zwidth.identification.logs",
     "compare": "zwidth.traces",
     "HuntCrossley": "zwidth.environment",
     "NonlinearSpring": "zwidth.environment",
@@ -108,6 +113,7 @@ _LATER = {
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
+    "read_log": "zwidth.identification.logs",
     "render": "zwidth.rendering.rendered",
     "rendering": "zwidth.rendering",
     "replay": "zwidth.passivity.real_hand",
@@ -115,6 +121,7 @@ _LATER = {
     "coupling_condition": "zwidth.passivity.coupling",
     "design_coupling": "zwidth.passivity.coupling_design",
     "load_trace": "zwidth.traces",
+    "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",
     "simulate": "zwidth.traces",
     "simulate_batch": "zwidth.traces",

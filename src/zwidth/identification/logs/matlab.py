@@ -1,0 +1,67 @@
+"""MATLAB files: 7.3 is HDF5; older ones are read whole, so there is a limit to their size."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.io import loadmat
+from scipy.io.matlab import mat_struct
+
+from zwidth.errors import InputError
+from zwidth.identification.logs.table import PIECE, Table, Values
+
+LARGEST = 2**30
+"""[bytes] Largest file that is read whole; MATLAB's own limit for a variable in it is 2 GiB."""
+
+_MOST_COLUMNS = 64
+
+
+def matlab_table(path: Path) -> Table:
+    """The vectors in a file of MATLAB 4 to 7.2, structures included.
+
+    Raises
+    ------
+    InputError
+        If it is larger than `LARGEST`.
+    """
+    size = path.stat().st_size
+    if size > LARGEST:
+        raise InputError(
+            f"{path} has {size >> 20} MiB; MATLAB files before 7.3 are read whole, up to {LARGEST >> 20}; "
+            'save it with "-v7.3"'
+        )
+    columns: dict[str, Values] = {}
+    for name, value in loadmat(path, squeeze_me=True, struct_as_record=False).items():
+        if not name.startswith("__"):
+            columns.update(_vectors(name, value))
+
+    def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
+        chosen = [columns[name] for name in names]
+        sizes = {name: values.size for name, values in zip(names, chosen, strict=True)}
+        if len(set(sizes.values())) > 1:
+            said = ", ".join(f'"{name}" has {count}' for name, count in sizes.items())
+            raise InputError(f"{path}: columns of one length belong together; {said} samples")
+        for k in range(0, chosen[0].size, PIECE):
+            yield tuple(values[k : k + PIECE] for values in chosen)
+
+    return Table(source=str(path), units=dict.fromkeys(columns), read=read)
+
+
+def _vectors(name: str, value: Any) -> dict[str, Values]:
+    """Vectors in a variable: itself, the columns of a matrix, or what its fields hold."""
+    if isinstance(value, mat_struct):
+        parts = [_vectors(f"{name}.{field}", getattr(value, field)) for field in value._fieldnames]
+        return {key: vector for part in parts for key, vector in part.items()}
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu" or array.ndim not in (1, 2) or array.size < 2:
+        return {}
+    if array.ndim == 1:
+        return {name: array}
+    if array.shape[1] > min(array.shape[0], _MOST_COLUMNS):
+        array = array.T
+    if array.shape[1] > _MOST_COLUMNS:
+        return {}
+    return {f"{name}[{k}]": array[:, k] for k in range(array.shape[1])}

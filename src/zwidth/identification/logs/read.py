@@ -1,0 +1,115 @@
+"""A log from a file, whatever its format: the first bytes say which it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+
+from zwidth.errors import InputError
+from zwidth.identification.logs.arrays import stated_resolution
+from zwidth.identification.logs.build import log_from, stated_period
+from zwidth.identification.logs.log import Log, Motion
+from zwidth.identification.logs.names import recognise
+from zwidth.identification.logs.scales import meaning_of
+from zwidth.identification.logs.table import Table, readable
+
+
+def read_log(
+    path: str | PathLike[str],
+    *,
+    columns: Mapping[str, str | None] | None = None,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, object] | None = None,
+    sample_rate: object = None,
+    sample_period: object = None,
+    resolution: object = None,
+    counts_per_turn: object = None,
+    motion: Motion | None = None,
+) -> Log:
+    """A log from a file: text, Parquet, NetCDF, HDF5, MATLAB, MCAP, ROS bags, traces of zwidth.
+
+    Parameters
+    ----------
+    path
+        The file, or the directory of a rosbag2.
+    columns
+        The column of each of time, position, hand_force and actuator_force, where its name is not recognised:
+        {"position": "enc_left"}; None leaves one out: {"hand_force": None}.
+    units
+        The unit of each, where neither the file nor the name states it: {"position": "mm"}.
+    scale
+        What a number in a column stands for: {"hand_force": "2 N/V"}, {"position": -1}.
+    sample_rate, sample_period
+        [Hz], [s] as stated; needed where there is no time, else compared with the stamps.
+    resolution
+        [m; rad] step of the encoder as stated; what a count is where the position is in counts.
+    counts_per_turn
+        Of a rotary encoder, instead of the resolution.
+    motion
+        "linear" or "rotary", where the unit of the position does not say it.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a column or its unit is not known, or nothing can be learnt from it.
+    """
+    source = Path(path)
+    period = stated_period(sample_rate, sample_period)
+    with readable(str(source)):
+        table = _table(source)
+        names = recognise(table.units, columns, table.source)
+        meaning = meaning_of(
+            table,
+            names,
+            units=units,
+            scale=scale,
+            resolution=resolution if resolution is not None or counts_per_turn else stated_resolution(table),
+            counts_per_turn=counts_per_turn,
+            motion=motion,
+        )
+        return log_from(table, meaning, period)
+
+
+def _table(path: Path) -> Table:
+    """The table of a file, by its first bytes: the libraries take their time to load."""
+    if path.is_dir() and not (path / "metadata.yaml").is_file():
+        raise InputError(
+            f"{path} is a directory, and no rosbag2: there is no metadata.yaml in it; name a file"
+        )
+    if not path.exists():
+        raise InputError(f"{path} cannot be read: there is no such file")
+    start = b"" if path.is_dir() else _first_bytes(path)
+    if start[:4] == b"PAR1":
+        from zwidth.identification.logs.parquet import parquet_table
+
+        return parquet_table(path)
+    if start[:8] == b"\x89HDF\r\n\x1a\n" or start[512:520] == b"\x89HDF\r\n\x1a\n":
+        from zwidth.identification.logs.hdf5 import hdf5_table
+
+        return hdf5_table(path)
+    if start[:6] == b"MATLAB" or path.suffix.lower() == ".mat":
+        from zwidth.identification.logs.matlab import matlab_table
+
+        return matlab_table(path)
+    if (
+        path.is_dir()
+        or start[:5] == b"\x89MCAP"
+        or start[:9] == b"#ROSBAG V"
+        or start[:13] == b"SQLite format"
+    ):
+        from zwidth.identification.logs.bags import bag_table
+
+        return bag_table(path)
+    if start[:3] == b"CDF":
+        raise InputError(f"{path} is NetCDF 3; write it as NetCDF 4, for example with nccopy -k nc4")
+    if start[:2] == b"PK":
+        raise InputError(f"{path} is a zip archive or a spreadsheet; unpack it, or save it as CSV")
+    from zwidth.identification.logs.text import text_table
+
+    return text_table(path)
+
+
+def _first_bytes(path: Path) -> bytes:
+    with open(path, "rb") as file:
+        return file.read(520)

@@ -1,0 +1,242 @@
+"""From the numbers in a column to SI: by its unit, a factor such as "2 N/V", or a step such as "22.4 um".
+
+No unit, no number: a column whose unit nobody states is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from zwidth.errors import InputError
+from zwidth.identification.logs.log import Motion
+from zwidth.identification.logs.names import QUANTITIES, name_and_unit
+from zwidth.identification.logs.table import Table
+from zwidth.quantity.dimension import PI, Unit, unit_of
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.units import parse_number
+
+_LENGTH, _ANGLE, _TIME = unit_of("m").dimension, unit_of("rad").dimension, unit_of("s").dimension
+_FORCE, _TORQUE = unit_of("N").dimension, unit_of("N*m").dimension
+_ALIASES = {
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
+    **dict.fromkeys(("msec", "milliseconds", "millisecond"), "ms"),
+    **dict.fromkeys(("usec", "microseconds", "microsecond"), "us"),
+    **dict.fromkeys(("nsec", "nanoseconds", "nanosecond"), "ns"),
+    **dict.fromkeys(("degree", "degrees"), "deg"),
+    **dict.fromkeys(("radian", "radians"), "rad"),
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
+    **dict.fromkeys(("newton", "newtons", "n"), "N"),
+    **dict.fromkeys(("turns", "revs"), "turn"),
+    **dict.fromkeys(("N_m", "Nm", "N.m", "N m", "N-m"), "N*m"),
+    **dict.fromkeys(("mNm", "mN_m", "mN.m", "mN m"), "mN*m"),
+    **dict.fromkeys(("Nmm", "N_mm", "N.mm", "N mm"), "N*mm"),
+}
+_COUNTS = ("count", "counts", "cnt", "cts", "ticks", "tick", "lsb", "LSB", "digit", "digits")
+_SPELLING = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*", "°": "deg"})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Meaning:
+    """What the columns of a table are.
+
+    Parameters
+    ----------
+    columns
+        The column of each quantity that there is.
+    factors
+        SI per number in the column, of each.
+    motion
+        "linear" or "rotary".
+    resolution
+        [m; rad] stated step of the encoder; None if nobody stated it.
+    """
+
+    columns: Mapping[str, str]
+    factors: Mapping[str, float]
+    motion: Motion
+    resolution: float | None
+
+
+def meaning_of(
+    table: Table,
+    columns: Mapping[str, str],
+    *,
+    units: Mapping[str, str] | None,
+    scale: Mapping[str, object] | None,
+    resolution: object,
+    counts_per_turn: object,
+    motion: str | None,
+) -> Meaning:
+    """Factors to SI of every column, and whether the device turns.
+
+    Raises
+    ------
+    InputError
+        If a unit is missing, unknown, or of another kind than the quantity.
+    """
+    _check_keys("units", units, columns)
+    _check_keys("scale", scale, columns)
+    stated = {q: _unit_text(table, q, c, units) for q, c in columns.items()}
+    if motion is None and table.attributes.get("motion") in ("linear", "rotary"):
+        motion = table.attributes["motion"]
+    turning = _turning(motion, stated["position"], (scale or {}).get("position"), resolution, counts_per_turn)
+    step = _step(resolution, counts_per_turn, turning)
+    factors = {}
+    for quantity, column in columns.items():
+        if quantity == "position" and _is_counts(stated[quantity]) and "position" not in (scale or {}):
+            if step is None:
+                raise InputError(
+                    f'{table.source}: "{column}" is in counts; say what a count is with '
+                    'resolution="22.4 um" '
+                    "or counts_per_turn=4096"
+                )
+            factors[quantity] = step
+            continue
+        where = f'{table.source}: {quantity} in column "{column}"'
+        factors[quantity] = _factor(where, quantity, stated[quantity], (scale or {}).get(quantity), turning)
+    return Meaning(
+        columns=columns, factors=factors, motion="rotary" if turning else "linear", resolution=step
+    )
+
+
+def is_unit(text: str) -> bool:
+    """True where a text spells a unit, a count, or nothing."""
+    plain = text.translate(_SPELLING)
+    try:
+        unit_of(_ALIASES.get(plain, plain))
+    except InputError:
+        return _is_counts(plain)
+    return True
+
+
+def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[str, str]) -> None:
+    for key in given or {}:
+        if key not in QUANTITIES:
+            raise InputError(f'{what}: there is no quantity "{key}"; there are {", ".join(QUANTITIES)}')
+        if key not in columns:
+            raise InputError(f"{what}: the log has no {key}; leave it out, or name its column in columns")
+
+
+def _unit_text(table: Table, quantity: str, column: str, units: Mapping[str, str] | None) -> str | None:
+    text = (units or {}).get(quantity) or table.units[column] or name_and_unit(column, quantity)[1]
+    if text is None:
+        return None
+    plain = text.strip().translate(_SPELLING)
+    if quantity == "time":
+        plain = plain.split(" since ")[0]
+    return _ALIASES.get(plain, plain)
+
+
+def _is_counts(unit: str | None) -> bool:
+    return unit in _COUNTS
+
+
+def _turning(
+    motion: str | None, unit: str | None, scale: object, resolution: object, counts_per_turn: object
+) -> bool:
+    """True for a rotary device: as stated, or as the unit of its position says."""
+    if motion not in (None, "linear", "rotary"):
+        raise InputError(f'motion is "linear" or "rotary", got {motion!r}')
+    kinds = []
+    if isinstance(scale, str):
+        kinds.append(_scale(scale, "scale of the position")[1].dimension)
+    elif unit is not None and not _is_counts(unit):
+        kinds.append(unit_of(unit).dimension)
+    if isinstance(resolution, str):
+        kinds.append(unit_of(resolution.translate(_SPELLING).lstrip("+-0123456789.eE/ ")).dimension)
+    if counts_per_turn is not None:
+        kinds.append(_ANGLE)
+    turns = {_ANGLE: True, _LENGTH: False}
+    seen = {turns[kind] for kind in kinds if kind in turns}
+    if motion is not None:
+        seen.add(motion == "rotary")
+    if len(seen) > 1:
+        raise InputError(
+            "the position is a length in one place and an angle in another: check motion, the unit of the "
+            "position, resolution and counts_per_turn"
+        )
+    return seen.pop() if seen else False
+
+
+def _step(resolution: object, counts_per_turn: object, turning: bool) -> float | None:
+    if counts_per_turn is not None:
+        if resolution is not None:
+            raise InputError("resolution and counts_per_turn say the same; give one of them")
+        count = parse_number(counts_per_turn, "1", "counts_per_turn")
+        if count <= 0:
+            raise InputError(f"counts_per_turn must be > 0, got {float(count):g}")
+        return float(2 * PI / count.fraction)
+    if resolution is None:
+        return None
+    step = parse_number(resolution, "rad" if turning else "m", "resolution")
+    if step < 0:
+        raise InputError(f"resolution must be ≥ 0, got {float(step):g}")
+    return float(step) or None
+
+
+def _factor(where: str, quantity: str, unit: str | None, scale: object, turning: bool) -> float:
+    wanted = {"time": _TIME, "position": _ANGLE if turning else _LENGTH}.get(
+        quantity, _TORQUE if turning else _FORCE
+    )
+    kind = {
+        _TIME: "a time, such as ms",
+        _LENGTH: "a length, such as mm",
+        _ANGLE: "an angle, such as deg",
+    }.get(wanted, "a torque, such as N*m" if turning else "a force, such as N")
+    if scale is not None and not isinstance(scale, str):
+        return _factor(where, quantity, unit, None, turning) * float(
+            parse_number(scale, "1", f"{where}: scale")
+        )
+    if scale is not None:
+        factor, result, per = _scale(scale, f"{where}: scale")
+        if result.dimension != wanted:
+            raise InputError(f'{where}: scale "{scale}" does not lead to {kind}')
+        if unit is None or _is_counts(unit) or per is None:
+            return factor * _si(result)
+        raw = _known(unit, where)
+        if raw.dimension != per.dimension:
+            raise InputError(f'{where} is in {unit}; scale "{scale}" is for another unit')
+        return factor * _si(result) * _si(raw) / _si(per)
+    if unit is None:
+        example = {"time": "ms", "position": "mm"}.get(quantity, "N")
+        raise InputError(f'{where} has no unit; state it with units={{"{quantity}": "{example}"}}')
+    if _is_counts(unit):
+        raise InputError(
+            f'{where} is in counts; say what a count is with scale={{"{quantity}": "0.01 N/count"}}'
+        )
+    known = _known(unit, where)
+    if known.dimension != wanted:
+        electric = known.dimension in (unit_of("V").dimension, unit_of("A").dimension)
+        hint = f'; say what it stands for with scale={{"{quantity}": "2 N/{unit}"}}' if electric else ""
+        raise InputError(f"{where} is in {unit}, which is not {kind}{hint}")
+    return _si(known)
+
+
+def _known(text: str, where: str) -> Unit:
+    try:
+        return unit_of(text)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _si(unit: Unit) -> float:
+    return float(Exact(unit.scale) if unit.turns == 0 else unit.scale * PI**unit.turns)
+
+
+def _scale(text: str, what: str) -> tuple[float, Unit, Unit | None]:
+    """The number, the unit it leads to, and the unit it is for (None: counts): "2 N/V"."""
+    plain = text.translate(_SPELLING).strip()
+    top, slash, bottom = plain.rpartition("/")
+    if not slash:
+        top, bottom = plain, "count"
+    number, _, unit = top.strip().partition(" ")
+    bottom = bottom.strip()
+    try:
+        factor = float(Exact(number))
+        per = None if _is_counts(bottom) else unit_of(bottom)
+        return factor, unit_of(_ALIASES.get(unit.strip(), unit.strip())), per
+    except InputError as error:
+        raise InputError(
+            f'{what}: "{text}" is no factor such as "2 N/V" or "0.01 N/count": {error}'
+        ) from None

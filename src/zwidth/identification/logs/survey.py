@@ -1,0 +1,132 @@
+"""The first look at a log, once through: how many samples, how even their stamps, what range, which step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zwidth.errors import InputError
+from zwidth.identification.logs.runs import Segment
+from zwidth.identification.logs.steps import FEWEST, Grid, grid_of, offset_on, on_grid
+from zwidth.identification.logs.wraps import Jumps
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_LEVELS = 64
+"""Different positions after which the step is looked for."""
+
+_LONG = 4096
+"""Samples whose mean interval shows that the rate is another one."""
+
+
+class Survey:
+    """What the segments of a log have in common.
+
+    Parameters
+    ----------
+    period
+        [s] roughly T.
+    resolution
+        [m; rad] as stated, or None.
+    unit
+        [m; rad] of the numbers in the file.
+    source
+        For messages.
+    """
+
+    def __init__(self, period: float, resolution: float | None, unit: float, source: str) -> None:
+        self.period, self.stated, self.unit, self.source = period, resolution, unit, source
+        self.samples = self.runs = 0
+        self.intervals, self.elapsed, self.squares = 0, 0.0, 0.0
+        self.shortest, self.longest, self.latest = np.inf, -np.inf, 0.0
+        self.ranges: dict[str, tuple[float, float]] = {}
+        self.jumps = Jumps()
+        self.grid: Grid | None = None
+        self.found: Grid | None = None
+        self.sought, self.off_grid = False, 0
+        self._levels = np.empty(0)
+        self._before = np.nan
+
+    def take(self, segments: Iterable[Segment]) -> Iterator[Segment]:
+        """Look at each segment as it passes."""
+        for segment in segments:
+            self.samples += segment.rows.time.size
+            self.runs += segment.begins
+            self._stamps(segment)
+            self.jumps.take(segment.rows.position, follows=not segment.begins)
+            self._position(segment.rows.position)
+            for name in ("hand_force", "actuator_force"):
+                self._force(name, getattr(segment.rows, name))
+            yield segment
+        if not self.sought:
+            self._seek()
+
+    @property
+    def mean_interval(self) -> float:
+        """[s] over all runs."""
+        return self.elapsed / self.intervals if self.intervals else self.period
+
+    @property
+    def deviation(self) -> float:
+        """[s] standard deviation of the intervals between stamps."""
+        if not self.intervals:
+            return 0.0
+        return float(
+            np.sqrt(max(0.0, self.squares / self.intervals - (self.mean_interval - self.period) ** 2))
+        )
+
+    def _stamps(self, segment: Segment) -> None:
+        time = segment.rows.time
+        start = time[0] if segment.begins else self._before
+        steps = np.diff(time)
+        if not segment.begins:
+            steps = np.append(steps, time[0] - self._before)
+        self._before = time[-1]
+        self.latest = max(self.latest, abs(float(time[-1])), abs(float(start)))
+        if steps.size == 0:
+            return
+        self.intervals += steps.size
+        self.elapsed += float(time[-1] - start)
+        self.shortest, self.longest = min(self.shortest, steps.min()), max(self.longest, steps.max())
+        steps -= self.period
+        self.squares += float(steps @ steps)
+        means = np.diff(time[::_LONG]) / _LONG
+        other = np.flatnonzero(np.abs(means - self.period) > 0.01 * self.period)
+        if other.size:
+            raise InputError(
+                f"{self.source}: the sample period changes: roughly {self.period:.6g} s, but "
+                f"{means[other[0]]:.6g} s after t = {time[other[0] * _LONG]:.6g} s; cut the file where "
+                "it changes"
+            )
+
+    def _position(self, position: Array) -> None:
+        if not self.sought:
+            self._levels = np.unique(np.concatenate((self._levels, position)))
+            if self._levels.size >= _LEVELS:
+                self._seek()
+        elif self.grid is not None:
+            self.off_grid += position.size - on_grid(position, self.grid)
+
+    def _seek(self) -> None:
+        """Find the step in the positions so far; a stated one holds if they lie on it."""
+        self.sought = True
+        self.grid = self.found = grid_of(self._levels, self.unit)
+        if self.stated is None or self._levels.size == 0:
+            return
+        stated = Grid(self.stated, offset_on(self._levels, self.stated))
+        fits = on_grid(self._levels, stated) > 0.995 * self._levels.size
+        coarser = self.found is not None and self.found.step > 1.5 * self.stated
+        if fits and not coarser:
+            self.grid = stated
+        elif self._levels.size < FEWEST or (self.found is not None and self.found.step < 0.3 * self.stated):
+            self.grid = stated if fits else None
+
+    def _force(self, name: str, force: Array | None) -> None:
+        if force is not None:
+            low, high = self.ranges.get(name, (np.inf, -np.inf))
+            self.ranges[name] = min(low, float(force.min())), max(high, float(force.max()))

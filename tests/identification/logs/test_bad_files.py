@@ -1,0 +1,195 @@
+"""Whatever a file holds: one message, no traceback, and bounded memory."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+import zwidth as zw
+
+GOOD = "time_s,position_mm,force_N\n" + "".join(f"{k / 1000},{k % 37},{k % 11}\n" for k in range(2000))
+RANDOM = np.random.default_rng(1).bytes(20000)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "is empty"),
+        (b"\n\n  \n", "is empty"),
+        (b"\0" * 5000, "no text"),
+        (RANDOM, "no text|no table"),
+        (b"time_s,position_mm\n", "no table of numbers"),
+        (b"once upon a time\nthere was a wall\n", "no table of numbers"),
+        (GOOD.encode("utf-16"), "UTF-16"),
+        (GOOD.replace("time_s", "when").encode(), 'known to be the time.*"when"'),
+        (GOOD.replace("position_mm", "where_mm").encode(), 'known to be the position.*"where_mm"'),
+        (GOOD.replace("force_N", "pos_mm").encode(), "may each be the position"),
+        (GOOD.replace("_mm", "").encode(), "has no unit"),
+        (GOOD.replace("_mm", " [furlong]").encode(), "furlong"),
+        (GOOD.replace("_mm", " [kg]").encode(), "not a length"),
+        (GOOD.replace("force_N", "force [N*m]").encode(), "not a force"),
+        (GOOD.replace("0.5,", "0.5,oops ", 1).encode(), "near line 502.*oops|oops.*near line 502"),
+        ((GOOD * 9 + "1,2\n" * 3000).encode(), "another number of columns"),
+        (b"time_s,position_mm,force_N\n" + b"0.1,far,2\n" * 50, '"position_mm" holds text, such as "far"'),
+        (b"time_s,position_mm\n0,1\n", "fewer than two rows"),
+        (b"time_s,position_mm\n" + b"0.001,1\n" * 50, "time stands still"),
+        (b"time_s,position_mm\n" + b"".join(b"%f,1\n" % (k / 1000) for k in range(50)), "never changes"),
+        (b"PK\x03\x04" + RANDOM, "zip archive"),
+        (b"CDF\x01" + RANDOM, "NetCDF 3"),
+        (b"PAR1" + RANDOM, "cannot be read"),
+        (b"\x89HDF\r\n\x1a\n" + RANDOM, "cannot be read"),
+        (b"MATLAB 5.0 MAT-file" + RANDOM, "cannot be read"),
+        (b"\x89MCAP0\r\n" + RANDOM, "cannot be read"),
+        (b"SQLite format 3\0" + RANDOM, "cannot be read"),
+        (b"#ROSBAG V2.0\n" + RANDOM, "cannot be read"),
+    ],
+)
+def test_foreign_content_is_one_message(content: bytes, message: str, tmp_path: Path) -> None:
+    """The name of the file is in it; the suffix does not matter."""
+    path = tmp_path / "log.csv"
+    path.write_bytes(content)
+    with pytest.raises(zw.InputError, match=message) as caught:
+        zw.read_log(path)
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 1200
+
+
+def test_missing_files_and_directories(tmp_path: Path) -> None:
+    """They are named."""
+    with pytest.raises(zw.InputError, match="no such file"):
+        zw.read_log(tmp_path / "none.csv")
+    with pytest.raises(zw.InputError, match="no rosbag2"):
+        zw.read_log(tmp_path)
+
+
+def outcome(path: Path) -> tuple[str, int]:
+    """The message or the source, and how many samples were read."""
+    try:
+        log = zw.read_log(path)
+        return log.source, sum(b.time.size for b in log.blocks())
+    except zw.InputError as error:
+        return str(error), 0
+
+
+@pytest.mark.parametrize("keep", [0.2, 0.6, 0.95, 0.999])
+@pytest.mark.parametrize("kind", ["parquet", "h5", "mat", "csv", "gz"])
+def test_truncated_files(kind: str, keep: float, tmp_path: Path) -> None:
+    """A copy that was cut short: a message, or the part that is there with a word about it."""
+    import gzip
+
+    import scipy.io
+
+    columns = {"time_s": np.arange(3000) / 1000, "position_mm": np.arange(3000) % 41 * 1.0}
+    path = tmp_path / f"log.{kind}"
+    if kind == "parquet":
+        pq.write_table(pa.table(columns), path)
+    elif kind == "h5":
+        with h5py.File(path, "w") as file:
+            for name, values in columns.items():
+                file[name] = values
+    elif kind == "mat":
+        scipy.io.savemat(path, columns)
+    else:
+        path.write_bytes(GOOD.encode() if kind == "csv" else gzip.compress(GOOD.encode()))
+    content = path.read_bytes()
+    path.write_bytes(content[: int(keep * len(content))])
+    said, samples = outcome(path)
+    assert str(path) in said
+    assert samples < 2000
+    assert samples == 0 or kind in ("csv", "mat")
+
+
+def test_any_damage_is_a_message_or_a_log(tmp_path: Path) -> None:
+    """Bytes changed at random in a text never end in anything else."""
+    random = np.random.default_rng(7)
+    path = tmp_path / "log.csv"
+    for _ in range(60):
+        content = bytearray(GOOD.encode())
+        for place in random.integers(0, len(content), random.integers(1, 30)):
+            content[place] = random.choice(list(b"0123456789,;\n\t .-eE#\0\xff\"'x"))
+        path.write_bytes(content)
+        said, samples = outcome(path)
+        assert str(path) in said
+        assert samples <= 2100
+
+
+def test_columns_of_different_lengths(tmp_path: Path) -> None:
+    """They were not recorded together."""
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        file["time_s"], file["position_mm"] = np.arange(100) / 1000, np.arange(90.0)
+    with pytest.raises(zw.InputError, match="one length"):
+        zw.read_log(path)
+
+
+def test_unknown_keys_of_the_dictionaries(tmp_path: Path) -> None:
+    """A slip in columns, units or scale is not silently ignored."""
+    path = tmp_path / "log.csv"
+    path.write_text(GOOD)
+    with pytest.raises(zw.InputError, match='did you mean "force_N"'):
+        zw.read_log(path, columns={"hand_force": "force_n"})
+    assert zw.read_log(path, columns={"hand_force": None}).channels == ()
+    with pytest.raises(zw.InputError, match='no quantity "force"'):
+        zw.read_log(path, columns={"force": "force_N"})
+    with pytest.raises(zw.InputError, match="the log has no actuator_force"):
+        zw.read_log(path, units={"actuator_force": "N"})
+    with pytest.raises(zw.InputError, match="no factor"):
+        zw.read_log(path, scale={"hand_force": "two N/V"})
+
+
+MEASURED = """
+import resource, sys
+import zwidth as zw
+try:
+    log = zw.read_log(sys.argv[1])
+    said = str(sum(block.time.size for block in log.blocks()))
+except zw.InputError as error:
+    said = str(error)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024, said)
+"""
+
+
+def peak(path: Path) -> tuple[int, str]:
+    """[MiB] most memory of a process that reads a file, and what it said."""
+    run = subprocess.run(
+        [sys.executable, "-c", MEASURED, str(path)], capture_output=True, text=True, check=True
+    )
+    memory, _, said = run.stdout.strip().partition(" ")
+    return int(memory), said
+
+
+@pytest.mark.parametrize("start", [b"", GOOD.encode(), b"PAR1", b"MATLAB 5.0 MAT-file"])
+def test_three_gigabytes_of_nothing(start: bytes, tmp_path: Path) -> None:
+    """A sparse file is neither loaded nor believed, whatever it begins with."""
+    path = tmp_path / "log.csv"
+    with open(path, "wb") as file:
+        file.write(start)
+        file.truncate(3 * 2**30)
+    memory, said = peak(path)
+    assert memory < 700
+    assert said == "2000" if start == GOOD.encode() else "log.csv" in said
+
+
+def test_a_sparse_hdf5_is_read_in_slices(tmp_path: Path) -> None:
+    """Three datasets of 1 GB each, never written: nothing moves, and memory stays bounded."""
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        for name in ("position_m", "force_N"):
+            file.create_dataset(name, shape=(2**25,), dtype="f8", chunks=(2**18,))
+        file["position_m"][: 2**18] = np.arange(2**18) % 97 * 1e-5
+        file["force_N"][: 2**18] = np.arange(2**18) % 13 * 1.0
+        file["position_m"].attrs["units"] = "m"
+    script = MEASURED.replace("sys.argv[1]", "sys.argv[1], sample_rate=1000")
+    run = subprocess.run(
+        [sys.executable, "-c", script, str(path)], capture_output=True, text=True, check=True
+    )
+    memory, _, said = run.stdout.strip().partition(" ")
+    assert said == str(2**25)
+    assert int(memory) < 900

@@ -1,0 +1,321 @@
+"""Every format gives the same log; columns and units are recognised, or asked for."""
+
+from __future__ import annotations
+
+import bz2
+import gzip
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+import scipy.io
+
+import zwidth as zw
+from zwidth.identification.logs.names import name_and_unit
+
+HEADER = ("time_s", "position_mm", "force_N")
+
+
+def rows_of(recording) -> list[tuple[float, ...]]:
+    """Rows in s, mm, N."""
+    return list(
+        zip(
+            recording.time.tolist(),
+            (recording.position * 1e3).tolist(),
+            recording.force.tolist(),
+            strict=True,
+        )
+    )
+
+
+def text_of(recording, sep=",", header=HEADER, decimal=".") -> str:
+    """The recording as a text."""
+    lines = [sep.join(header)] if header else []
+    lines += [sep.join(map(repr, row)).replace(".", decimal) for row in rows_of(recording)]
+    return "\n".join(lines) + "\n"
+
+
+def assert_same(log: zw.Log, recording, force: bool = True) -> None:
+    """The log holds the recording, to rounding."""
+    blocks = list(log.blocks())
+    assert np.abs(np.concatenate([b.time for b in blocks]) - recording.time).max() < 1e-12
+    assert np.abs(np.concatenate([b.position for b in blocks]) - recording.position).max() < 1e-15
+    if force:
+        assert (np.concatenate([b.hand_force for b in blocks]) == recording.force).all()
+    assert log.sample_period == 5e-4
+    assert log.resolution == pytest.approx(22.4e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "sep", "header", "decimal"),
+    [
+        ("plain.csv", ",", HEADER, "."),
+        ("brackets.csv", ",", ("Time [s]", "enc (mm)", '"load cell [N]"'), "."),
+        ("slashes.csv", ",", ("t / s", "x / mm", "F / N"), "."),
+        ("german.csv", ";", HEADER, ","),
+        ("tab.tsv", "\t", HEADER, "."),
+        ("tab.csv", "\t", HEADER, ","),
+        ("bars.txt", "|", HEADER, "."),
+        ("space.txt", "   ", HEADER, "."),
+        ("units-below.csv", ",", ("time,pos,force\ns", "mm", "N"), "."),
+        ("preamble.csv", ",", ("Logger 3.1\nday, monday, rain\n\ntime_s", "position_mm", "force_N"), "."),
+        ("comment.dat", " ", ("# written by savetxt\n# time_s", "position_mm", "force_N"), "."),
+        ("json-comment.csv", ",", ('# {"who": "me"}\ntime_s', "position_mm", "force_N"), "."),
+        ("other-delimiter.csv", ";", ("time_s,position_mm,force_N",), "."),
+    ],
+)
+def test_texts(name, sep, header, decimal, recording, tmp_path: Path) -> None:
+    """Delimiters, decimal signs, headers, preambles and lines of units as loggers write them."""
+    path = tmp_path / name
+    path.write_text(text_of(recording, sep, header, decimal))
+    assert_same(zw.read_log(path), recording)
+
+
+def test_texts_without_a_header_have_numbered_columns(recording, tmp_path: Path) -> None:
+    """The user says which is which, and their units."""
+    path = tmp_path / "bare.txt"
+    path.write_text(text_of(recording, " ", ()))
+    with pytest.raises(zw.InputError, match='"column 1", "column 2", "column 3"'):
+        zw.read_log(path)
+    columns = {"time": "column 1", "position": "column 2", "hand_force": "column 3"}
+    with pytest.raises(zw.InputError, match="has no unit"):
+        zw.read_log(path, columns=columns)
+    log = zw.read_log(path, columns=columns, units={"time": "s", "position": "mm", "hand_force": "N"})
+    assert_same(log, recording)
+
+
+def test_compressed_text(recording, tmp_path: Path) -> None:
+    """gzip and bzip2 are unpacked while reading."""
+    for suffix, pack in (("gz", gzip.compress), ("bz2", bz2.compress)):
+        path = tmp_path / f"log.csv.{suffix}"
+        path.write_bytes(pack(text_of(recording).encode()))
+        assert_same(zw.read_log(path), recording)
+
+
+def test_texts_with_scars(recording, tmp_path: Path) -> None:
+    """A header again, a comment, a row too short, zero bytes at the end: said, and read around."""
+    text = text_of(recording)
+    (tmp_path / "twice.csv").write_text(text + text)
+    twice = zw.read_log(tmp_path / "twice.csv")
+    assert (twice.runs, twice.samples) == (2, 8000)
+    assert {"headers", "restart"} <= {f.kind for f in twice.findings}
+    lines = text.splitlines(keepends=True)
+    lines[100] = "# the hand let go\n" + lines[100]
+    lines[500] = "0.2,0.4\n"
+    (tmp_path / "scars.csv").write_bytes("".join(lines).encode() + b"\0" * 70000)
+    log = zw.read_log(tmp_path / "scars.csv")
+    assert (log.runs, log.samples) == (2, 3999)
+    assert {"broken rows", "zeros", "gap"} <= {f.kind for f in log.findings}
+    (tmp_path / "cut.csv").write_text(text[:-9])
+    cut = zw.read_log(tmp_path / "cut.csv")
+    assert cut.samples == 3999
+    assert "unfinished" in {f.kind for f in cut.findings}
+
+
+def test_dates_and_integers_in_text(recording, tmp_path: Path) -> None:
+    """ISO dates, and nanoseconds since 1970 that no double can hold."""
+    nanoseconds = 1_700_000_000_000_000_000 + np.rint(recording.time * 1e9).astype(np.int64)
+    dates = nanoseconds.astype("datetime64[ns]").astype(str)
+    for name, stamps in (("timestamp", dates), ("t_ns", nanoseconds.tolist())):
+        path = tmp_path / f"{name}.csv"
+        body = "".join(
+            f"{s},{x},note\n" for s, x in zip(stamps, (recording.position * 1e3).tolist(), strict=True)
+        )
+        path.write_text(f"{name},position_mm,remark\n{body}")
+        assert_same(zw.read_log(path), recording, force=False)
+
+
+def test_parquet_in_any_types(recording, tmp_path: Path) -> None:
+    """Timestamps, integers, nulls, units in the metadata of a field; groups of rows of any size."""
+    counts = np.rint(recording.position / 22.4e-6).astype(np.int16)
+    stamps = pa.array(1_700_000_000_000_000 + np.rint(recording.time * 1e6).astype(np.int64)).cast(
+        pa.timestamp("us")
+    )
+    force = pa.field("f_h", pa.float64(), metadata={"units": "mN"})
+    schema = pa.schema([("stamp", pa.timestamp("us")), ("enc_counts", pa.int16()), force])
+    table = pa.table([stamps, counts, pa.array((recording.force * 1e3).tolist())], schema=schema)
+    pq.write_table(table, tmp_path / "log.parquet", row_group_size=999)
+    log = zw.read_log(tmp_path / "log.parquet", resolution="22.4 um")
+    (block,) = log.blocks()
+    assert np.abs(block.hand_force - recording.force).max() < 1e-12
+    assert_same(log, recording, force=False)
+    with_null = table.set_column(1, "enc_counts", pa.array([None, *counts[1:].tolist()], pa.int16()))
+    pq.write_table(with_null, tmp_path / "null.parquet")
+    assert zw.read_log(tmp_path / "null.parquet", resolution="22.4 um").samples == 3999
+
+
+def test_hdf5_groups_matrices_and_compounds(recording, tmp_path: Path) -> None:
+    """Datasets by path with their units; columns of a matrix, either way up; fields of a compound."""
+    path = tmp_path / "log.h5"
+    matrix = np.stack([recording.time, recording.position * 1e3, recording.force], axis=1)
+    with h5py.File(path, "w") as file:
+        for name, unit, values in (("time", "s", 0), ("position", "mm", 1), ("force", "N", 2)):
+            data = file.create_dataset(f"robot/left/{name}", data=matrix[:, values], chunks=(700,))
+            data.attrs["units"] = unit
+        file["tall"], file["wide"] = matrix, matrix.T
+        file["label"] = "a text"
+        file["rows"] = np.rec.fromarrays(matrix.T, names="time_s,x_mm,fh_N")
+    assert_same(zw.read_log(path, columns={"position": "robot/left/position", "time": "robot/left/time",
+                                           "hand_force": "robot/left/force"}), recording)  # fmt: skip
+    units = {"time": "s", "position": "mm", "hand_force": "N"}
+    for name in ("tall", "wide"):
+        columns = {"time": f"{name}[0]", "position": f"{name}[1]", "hand_force": f"{name}[2]"}
+        assert_same(zw.read_log(path, columns=columns, units=units), recording)
+    columns = {"time": "rows.time_s", "position": "rows.x_mm", "hand_force": "rows.fh_N"}
+    assert_same(zw.read_log(path, columns=columns), recording)
+    with pytest.raises(zw.InputError, match="may each be the time"):
+        zw.read_log(path)
+
+
+def test_netcdf_is_unpacked(recording, tmp_path: Path) -> None:
+    """Units, fill values and packed integers as the conventions have them."""
+    import xarray as xr
+
+    counts = np.rint(recording.position / 22.4e-6)
+    counts[50] = np.nan
+    data = xr.Dataset(
+        {"encoder": ("time", counts * 22.4e-6, {"units": "m"})},
+        coords={"time": ("time", recording.time * 1e3, {"units": "milliseconds"})},
+    )
+    packed = {"encoder": {"dtype": "int16", "scale_factor": 22.4e-6, "_FillValue": -32768}}
+    data.to_netcdf(tmp_path / "log.nc", engine="h5netcdf", encoding=packed)
+    log = zw.read_log(tmp_path / "log.nc")
+    assert log.samples == 3999
+    assert log.runs == 2
+    assert log.resolution == pytest.approx(22.4e-6, rel=1e-9)
+
+
+def test_matlab_old_and_new(recording, tmp_path: Path) -> None:
+    """Vectors, structures and matrices of version 5, and the HDF5 of 7.3."""
+    vectors = {"time_s": recording.time, "position_mm": recording.position * 1e3, "force_N": recording.force}
+    scipy.io.savemat(tmp_path / "v5.mat", {"log": {"run": vectors}, "note": "hello"})
+    assert_same(zw.read_log(tmp_path / "v5.mat"), recording)
+    scipy.io.savemat(tmp_path / "matrix.mat", {"data": np.stack(list(vectors.values()))})
+    columns = {"time": "data[0]", "position": "data[1]", "hand_force": "data[2]"}
+    units = {"time": "s", "position": "mm", "hand_force": "N"}
+    assert_same(zw.read_log(tmp_path / "matrix.mat", columns=columns, units=units), recording)
+    with h5py.File(tmp_path / "v73.mat", "w", userblock_size=512) as file:
+        for name, values in vectors.items():
+            file[name] = values[np.newaxis, :]
+    with open(tmp_path / "v73.mat", "r+b") as raw:
+        raw.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64")
+    assert_same(zw.read_log(tmp_path / "v73.mat"), recording)
+
+
+@pytest.mark.parametrize("storage", ["MCAP", "SQLITE3"])
+def test_rosbags(storage: str, recording, tmp_path: Path) -> None:
+    """Joint states and a wrench on a topic of its own, each with its header's stamp."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    types = store.types
+    time_type, header_type = types["builtin_interfaces/msg/Time"], types["std_msgs/msg/Header"]
+    vector, wrench = types["geometry_msgs/msg/Vector3"], types["geometry_msgs/msg/Wrench"]
+    joint, stamped = types["sensor_msgs/msg/JointState"], types["geometry_msgs/msg/WrenchStamped"]
+    path, none = tmp_path / "bag", np.empty(0)
+    with Writer(path, version=9, storage_plugin=StoragePlugin[storage]) as writer:
+        first = writer.add_connection("/joint_states", joint.__msgtype__, typestore=store)
+        second = writer.add_connection("/hand", stamped.__msgtype__, typestore=store)
+        for t, x, f in zip(*recording, strict=True):
+            now = 1_700_000_000_000_000_000 + round(t * 1e9)
+            for connection, late in ((first, 0), (second, 60_000)):
+                stamp = time_type(*divmod(now + late, 10**9))
+                header = header_type(stamp=stamp, frame_id="")
+                zero = vector(0.0, 0.0, 0.0)
+                message = (
+                    joint(header, ["stylus"], np.array([x]), none, none)
+                    if connection is first
+                    else stamped(header, wrench(force=vector(0.0, 0.0, f), torque=zero))
+                )
+                data = store.serialize_cdr(message, connection.msgtype)
+                writer.write(connection, now + late + 300_000, data)
+    log = zw.read_log(path, columns={"hand_force": "/hand.wrench.force.z"}, units={"position": "m"})
+    assert_same(log, recording)
+    assert {"dates", "two topics"} <= {f.kind for f in log.findings}
+    with pytest.raises(zw.InputError, match=r"joint_states.position\[0\].*has no unit"):
+        zw.read_log(path)
+    (file,) = [p for p in path.iterdir() if p.suffix in (".mcap", ".db3")]
+    assert_same(
+        zw.read_log(file, columns={"hand_force": "/hand.wrench.force.z"}, units={"position": "m"}), recording
+    )
+
+
+def test_without_the_library_for_bags_its_name_is_said(tmp_path: Path, monkeypatch) -> None:
+    """The message says what to install."""
+    monkeypatch.setitem(__import__("sys").modules, "rosbags.highlevel", None)
+    path = tmp_path / "log.mcap"
+    path.write_bytes(b"\x89MCAP0\r\n" + bytes(100))
+    with pytest.raises(zw.InputError, match=r"zwidth\[logs\]"):
+        zw.read_log(path)
+
+
+@pytest.mark.parametrize("suffix", ["nc", "parquet", "csv"])
+@pytest.mark.parametrize("rotary", [False, True])
+def test_traces_of_zwidth_are_logs(suffix: str, rotary: bool, tmp_path: Path) -> None:
+    """The encoder's reading at the samples alone, with period, step and motion as the trace says."""
+    if rotary:
+        device = zw.rotary(inertia=2e-5, damping=2e-4, coulomb_friction=2e-3, resolution=1e-4, rate=2000)
+        trace = zw.simulate(device, zw.Wall(0.5), zw.operators.Finger(), 0.3, initial_position=-0.05)
+    else:
+        paddle = zw.catalogue.device("haptic-paddle")
+        trace = zw.simulate(paddle, zw.Wall(300.0), zw.operators.Finger(), 0.3, points_per_sample=3)
+    trace.zwidth.save(tmp_path / f"trace.{suffix}")
+    log = zw.read_log(tmp_path / f"trace.{suffix}")
+    at_samples = trace.isel(time=trace.sampled.values)
+    (block,) = log.blocks()
+    assert log.motion == ("rotary" if rotary else "linear")
+    assert log.sample_period == trace.attrs["sample_period_s"]
+    assert log.resolution == trace.attrs["resolution_rad" if rotary else "resolution_m"]
+    assert np.abs(block.position - at_samples.measured_position.values).max() < 1e-12
+    assert (block.hand_force == at_samples.hand_force.values).all()
+    assert (block.actuator_force == at_samples.actuator_force.values).all()
+    (direct,) = zw.log_of(trace).blocks()
+    assert all((a == b).all() for a, b in zip(direct[1:], block[1:], strict=True))
+
+
+def test_units_and_factors(recording, tmp_path: Path) -> None:
+    """Volts by a factor, counts by a step, degrees to radians, a sign turned round."""
+    path = tmp_path / "raw.csv"
+    counts = np.rint(recording.position / 22.4e-6).astype(int)
+    body = "".join(
+        f"{t!r},{c},{f!r}\n"
+        for t, c, f in zip(recording.time.tolist(), counts, recording.force.tolist(), strict=True)
+    )
+    path.write_text("t_s,enc_counts,load_cell_V\n" + body)
+    with pytest.raises(zw.InputError, match="what a count is"):
+        zw.read_log(path)
+    with pytest.raises(zw.InputError, match="2 N/V"):
+        zw.read_log(path, resolution="22.4 um")
+    log = zw.read_log(path, resolution="22.4 um", scale={"hand_force": "-2500 mN/V"})
+    (block,) = log.blocks()
+    assert np.abs(block.hand_force + 2.5 * recording.force).max() < 1e-12
+    assert_same(log, recording, force=False)
+    turning = zw.read_log(path, counts_per_turn=4096, scale={"hand_force": "0.01 N*m/V"})
+    assert (turning.motion, turning.resolution) == ("rotary", pytest.approx(2 * np.pi / 4096, rel=1e-12))
+    degrees = zw.read_log(path, units={"position": "deg"}, scale={"hand_force": "0.01 N*m/V", "position": -1})
+    (block,) = degrees.blocks()
+    assert np.abs(block.position + np.radians(counts)).max() < 1e-12
+    with pytest.raises(zw.InputError, match="not a torque"):
+        zw.read_log(path, units={"position": "deg", "hand_force": "N"})
+
+
+@pytest.mark.parametrize(
+    ("column", "quantity", "expected"),
+    [
+        ("position_m", "position", ("position", "m")),
+        ("hand_force_N_m", "hand_force", ("hand_force", "N_m")),
+        ("Encoder Position [µm]", "position", ("encoder_position", "µm")),
+        ("left/enc (counts)", "position", ("enc", "counts")),
+        ("x", "position", ("x", None)),
+        ("robot.state.time_ms", "time", ("time", "ms")),
+        ("/joint_states.position[0]", "position", ("position", None)),
+        ("velocity_m_per_s", "position", ("velocity_m_per_s", None)),
+    ],
+)
+def test_names_and_their_units(column: str, quantity: str, expected: tuple[str, str | None]) -> None:
+    """The word that is compared, and the unit behind it."""
+    assert name_and_unit(column, quantity) == expected
