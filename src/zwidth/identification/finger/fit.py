@@ -55,7 +55,7 @@ class Fit(NamedTuple):
         return found
 
 
-def fitted(rows: Means | None, by_hand: bool, friction: float, moving: float = MOVING) -> Fit | None:
+def fitted(rows: Means | None, by_hand: bool, friction: float, resting: bool = False) -> Fit | None:
     """Mass, damping and stiffness of what meets a force; None where too little is known.
 
     Parameters
@@ -65,18 +65,17 @@ def fitted(rows: Means | None, by_hand: bool, friction: float, moving: float = M
     by_hand
         True: of the finger, from −f_h; False: of device and finger, from −f_a − f_c sgn ẋ.
     friction
-        f_c, of the device [N; N·m]; where it is not 0 only pulses count during which it surely moves, but
-        for short turns, whose friction is as much one way as the other.
-    moving
-        Part of a pulse during which it must surely move, between 0 and 1.
+        f_c, of the device [N; N·m]; where it is not 0 only pulses count that have no more than short turns.
+    resting
+        True: as if in a turn there were no friction; else it changes its sign in the middle.
     """
     if rows is None:
         return None
     force = rows.hand if by_hand else rows.actuator
     assert force is not None  # the question fits the channels
     sliding = not by_hand and friction > 0
-    kept = rows.moving >= moving if sliding else np.ones(force.size, dtype=bool)
-    force = -force - friction * rows.side if sliding else -force
+    kept = rows.moving >= MOVING if sliding else np.ones(force.size, dtype=bool)
+    force = -force - friction * (rows.side if resting else rows.turning) if sliding else -force
     steps = [rows.actuator_slope] if by_hand and rows.actuator_slope is not None else []
     groups = [rows.even, rows.odd, rows.expected if rows.expected is not None else rows.odd]
     columns, piece = _without_slow(

@@ -32,7 +32,7 @@ from zwidth.errors import InputError
 from zwidth.identification.device.identified import Estimate
 from zwidth.identification.device.identify import LENGTHS, LONGER, SAFETY
 from zwidth.identification.device.pulses import PIECES
-from zwidth.identification.finger.fit import MOVING, TERMS, Fit, fitted
+from zwidth.identification.finger.fit import TERMS, Fit, fitted
 from zwidth.identification.finger.identified import IdentifiedFinger
 from zwidth.identification.finger.means import Pieces, means, pieces_of, response
 from zwidth.identification.finger.weights import Weights, weights
@@ -41,9 +41,6 @@ from zwidth.quantity.exact import ends
 
 ROUNDS = 4
 """Of the model that makes the instrument."""
-
-MOVING_SURELY = 0.95
-"""Part of a pulse during which the device moves where turns hardly count; what they matter is told by the change."""
 
 Instrument = Literal["perturbation", "position"]
 
@@ -100,8 +97,8 @@ def identify_finger(
     shift = SAFETY * np.abs(ways.fit.values - ways.longer.values)
     if known:
         rows = means(pieces, ways.shape, log.sample_period)
-        for f_c, moving in ((known["coulomb_friction"][1], MOVING), (friction, MOVING_SURELY)):
-            other = fitted(rows, by_hand, f_c, moving)
+        for f_c, resting in ((known["coulomb_friction"][1], False), (friction, True)):
+            other = fitted(rows, by_hand, f_c, resting)
             if other is not None:
                 shift = shift + np.abs(other.values - ways.fit.values)
     estimates = _estimates(ways.fit, shift, known, log.motion)

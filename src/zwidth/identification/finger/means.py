@@ -58,8 +58,8 @@ class Means(NamedTuple):
         f_h.
     actuator, actuator_slope
         f_a as it was held, and its rate.
-    side, moving
-        sgn ẋ, and the part of the pulse inside strokes.
+    side, turning, moving
+        sgn ẋ, 0 in turns; the same with a change of sign in the middle of turns; and the part inside strokes.
     piece
         Which piece it is of.
     """
@@ -71,6 +71,7 @@ class Means(NamedTuple):
     actuator: Array | None
     actuator_slope: Array | None
     side: Array
+    turning: Array
     moving: Array
     piece: NDArray[np.int64]
 
@@ -180,6 +181,21 @@ def means(pieces: Pieces, shape: Weights, period: float) -> Means | None:
         None if actuator is None else mean(actuator, shape.held, start),
         None if actuator is None else mean(actuator, shape.steps, start) / period,
         mean(pieces.side, shape.force),
+        mean(_turning(pieces.side), shape.force),
         mean(np.abs(pieces.side), shape.force),
         np.repeat(np.arange(len(pieces.position)), centres.size),
     )
+
+
+def _turning(side: Array) -> Array:
+    """Each 0 replaced by the nearest sign in its row.
+
+    A count is left by the edge by which it was entered, and a device that only turns, under a force that
+    hardly changes, turns in the middle between the two.
+    """
+    at = np.broadcast_to(np.arange(side.shape[1]), side.shape)
+    before = np.maximum.accumulate(np.where(side != 0, at, 0), axis=1)
+    after = np.minimum.accumulate(np.where(side != 0, at, side.shape[1] - 1)[:, ::-1], axis=1)[:, ::-1]
+    early, late = (np.take_along_axis(side, where, axis=1) for where in (before, after))
+    found: Array = np.where(at - before < after - at, early, np.where(at - before > after - at, late, (early + late) / 2))
+    return found
