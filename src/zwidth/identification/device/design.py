@@ -8,7 +8,7 @@ as for any least squares, the guesses of m, b, f_c do not enter, the noise σ of
 the motion do.  Strokes go to and fro, each x = −½L cos(πt/D); the line that the zero of a load
 cell drifts along in ten seconds is taken out of a first, as `identify` does.
 
-γ is what `identify` loses against that, measured over simulated runs: `INEFFICIENCY`.
+γ is what `identify` loses against that, its allowance for the method included: `INEFFICIENCY`.
 
 The shares are those with the least cᵀVc, c for the parameter that limits the wall (c-optimal;
 Elfving 1952).  One speed alone does: along a stroke it varies; a slow and a fast one do better.
@@ -26,7 +26,7 @@ from zwidth.identification.device.pieces import SECONDS
 PARAMETERS = ("mass", "damping", "coulomb_friction")
 
 INEFFICIENCY = 1.2
-"""γ: what half an interval of `identify` was in standard errors of the law above, over 1.96; see docs/experiment.md."""
+"""γ, on the safe side of what was measured: docs/experiment.md."""
 
 SAMPLES = 4000
 """At which the regressors of ten seconds are taken."""
@@ -88,8 +88,8 @@ def covariance(
         t of recorded motion.
     """
     mean = sum(w * s.information() for w, s in zip(shares, strokes, strict=True))
-    found: Array = INEFFICIENCY**2 * noise**2 * period / seconds * np.linalg.inv(mean)
-    return found
+    scale = (INEFFICIENCY * noise) ** 2 * period / seconds
+    return np.asarray(scale * np.linalg.inv(mean), dtype=np.float64)
 
 
 def best_shares(strokes: tuple[Stroke, ...], parameter: str) -> tuple[float, ...]:

@@ -9,6 +9,7 @@ noise may be poor: after each run the data decide, `Plan.reached`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, inf
 from typing import Any, Literal
@@ -105,31 +106,32 @@ class Plan:
 
     def __repr__(self) -> str:
         """The protocol for a person."""
-        rotary = self.guess.motion == "rotary"
-        force, length = ("N m", "rad") if rotary else ("N", "m")
-        symbol, wall = {"damping": ("b", "2b/T"), "coulomb_friction": ("f_c", "2f_c/Δ")}[self.limits]
-        lines = [
-            f"To know {symbol}, which sets the limit K = {wall}, within ±{self.precision:.3g} of itself "
-            f"({self.confidence:.4g} confidence):",
-            f"1. Motor off. Hold the handle by the load cell and nothing else; up to {self.force:.2g} {force} will act.",
-            "2. Let go, set the zero of the load cell, start to record.",
-            *(
-                f"{n}. {_spoken(s, w, length)}"
-                for n, (s, w) in enumerate(zip(self.strokes, self.shares, strict=True), start=3)
-            ),
-        ]
-        last = 3 + len(self.strokes)
-        lines += [
-            f"{last}. Stop the recording. Identify all runs so far together. Once there are {FEWEST_STROKES} strokes and "
-            f"{symbol} is known within ±{self.precision:.3g} of itself: done. Else go on with 2.",
-            f"Expected: {self.runs} run{'s' if self.runs > 1 else ''} of {RUN:.0f} s. Let lengths and times vary, "
-            "do not rest, do not hit the stops.",
-        ]
-        return "\n".join(lines)
+        return "\n".join(_protocol(self))
 
 
-def _spoken(stroke: Stroke, share: float, length: str) -> str:
-    size = f"{stroke.length:.3g} rad" if length == "rad" else f"{100 * stroke.length:.3g} cm"
+def _protocol(plan: Plan) -> Iterator[str]:
+    rotary = plan.guess.motion == "rotary"
+    force = "N m" if rotary else "N"
+    symbol, wall = {"damping": ("b", "2b/T"), "coulomb_friction": ("f_c", "2f_c/Δ")}[plan.limits]
+    known = f"{symbol} within ±{plan.precision:.3g} of itself ({plan.confidence:.4g} confidence)"
+    yield f"To know {known}; it sets the limit K = {wall}:"
+    yield (
+        "1. Motor off. Hold the handle by the load cell and by nothing else; "
+        f"up to {plan.force:.2g} {force} will act."
+    )
+    yield "2. Let go, set the zero of the load cell, start to record."
+    for n, (stroke, share) in enumerate(zip(plan.strokes, plan.shares, strict=True), start=3):
+        yield f"{n}. {_spoken(stroke, share, rotary)}"
+    yield (
+        f"{3 + len(plan.strokes)}. Stop the recording. Identify all runs so far together. "
+        f"With {FEWEST_STROKES} strokes or more, and {symbol} known so well: done. Else go on with 2."
+    )
+    runs = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
+    yield (f"Expected: {runs} of {RUN:.0f} s. Let lengths and times vary, do not rest, do not hit the stops.")
+
+
+def _spoken(stroke: Stroke, share: float, rotary: bool) -> str:
+    size = f"{stroke.length:.3g} rad" if rotary else f"{100 * stroke.length:.3g} cm"
     count = max(round(share * RUN / stroke.duration), 1)
     return f"{count} strokes of some {size}, {stroke.duration:.3g} s each, to and fro."
 
@@ -149,7 +151,8 @@ def plan_identification(
     Parameters
     ----------
     guess
-        A device with mass, damping, Coulomb friction, resolution and sample period, or what a first run showed.
+        A device with mass, damping, Coulomb friction, resolution and sample period; or what a first run
+        showed.
     force_noise
         σ > 0 of the measured force, per sample [N; N·m]; None: what the first run showed.
     length
@@ -174,12 +177,16 @@ def plan_identification(
     given: dict[str, Any] = {"force_noise": force_noise, "length": length, "slow": slow, "fast": fast}
     for name, value in given.items():
         if not 0 < value < inf:
-            raise InputError(f"{name} must be > 0 and finite, got {value!r}: without it nothing is to be planned")
+            raise InputError(
+                f"{name} must be > 0 and finite, got {value!r}: without it nothing is to be planned"
+            )
     for name, value in {"precision": precision, "confidence": confidence}.items():
         if not 0 < value < 1:
             raise InputError(f"{name} must be between 0 and 1, got {value!r}; 0.05 and 0.95 are usual")
     if slow <= fast:
-        raise InputError(f"a slow stroke takes longer than a fast one, got slow {slow:g} s and fast {fast:g} s")
+        raise InputError(
+            f"a slow stroke takes longer than a fast one, got slow {slow:g} s and fast {fast:g} s"
+        )
     limits = _limiting(device)
     strokes = (Stroke(length, slow), Stroke(length, fast))
     shares = np.clip(best_shares(strokes, limits), LEAST_SHARE, 1 - LEAST_SHARE)
@@ -200,7 +207,7 @@ def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:
     for name in ("damping", "coulomb_friction"):
         if not float(device.exact(name)) > 0:
             raise InputError(
-                f"the guess of {name} must be > 0: a part of it is what shall be known; a rough guess is enough"
+                f"the guess of {name} must be > 0: it shall be known to a part of itself; guess roughly"
             )
     by_damping = device.exact("damping") / device.exact("sample_period")
     coarse = device.exact("resolution")

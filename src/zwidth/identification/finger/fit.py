@@ -1,6 +1,6 @@
 """Least squares with instruments over short pieces, what is slow taken out, the pieces as measure of scatter.
 
-    θ = (Σ Zᵀ A)⁻¹ Σ Zᵀ y        V = (ZᵀA)⁻¹ (Σ_p g_p g_pᵀ) (ZᵀA)⁻ᵀ n/(n − 3),   g_p = Σ_{p} z (y − aᵀ θ)
+θ = (Σ Zᵀ A)⁻¹ Σ Zᵀ y        V = (ZᵀA)⁻¹ (Σ_p g_p g_pᵀ) (ZᵀA)⁻ᵀ n/(n − 3),   g_p = Σ_{p} z (y − aᵀ θ)
 """
 
 from __future__ import annotations
@@ -81,11 +81,10 @@ def fitted(rows: Means | None, by_hand: bool, friction: float, resting: bool = F
     columns, piece = _without_slow(
         np.column_stack([*groups, *steps, force])[kept], rows.piece[kept], np.flatnonzero(kept)
     )
-    even, odd, expected = (
-        np.column_stack([columns[:, k : k + 3], columns[:, 9:-1]]) for k in (0, 3, 6)
-    )
-    pairs = [(expected, (even + odd) / 2)] if rows.expected is not None else [(even / 2, odd), (odd / 2, even)]
-    return _solved(pairs, columns[:, -1], piece)
+    even, odd, expected = (np.column_stack([columns[:, k : k + 3], columns[:, 9:-1]]) for k in (0, 3, 6))
+    if rows.expected is not None:
+        return _solved([(expected, (even + odd) / 2)], columns[:, -1], piece)
+    return _solved([(even / 2, odd), (odd / 2, even)], columns[:, -1], piece)
 
 
 def _solved(pairs: list[tuple[Array, Array]], y: Array, piece: NDArray[np.int64]) -> Fit | None:
@@ -98,12 +97,12 @@ def _solved(pairs: list[tuple[Array, Array]], y: Array, piece: NDArray[np.int64]
     size = np.sqrt(np.abs(np.diag(matrix)))
     if not (size > 0).all() or np.linalg.cond(matrix / np.outer(size, size)) > 1e8:
         return None
-    values = np.linalg.solve(matrix, right)
+    values: Array = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     scatter = sum(z * (y - a @ values)[:, None] for z, a in pairs)
     each = np.add.reduceat(scatter, starts)
-    inverse = np.linalg.inv(matrix)
+    inverse = np.asarray(np.linalg.inv(matrix), dtype=np.float64)
     few = starts.size / (starts.size - count)
-    covariance = few * inverse @ (each.T @ each) @ inverse.T
+    covariance: Array = few * inverse @ (each.T @ each) @ inverse.T
     left = np.mean([y - a @ values for _, a in pairs], axis=0)
     some = slice(len(TERMS))
     return Fit(values[some], covariance[some, some], starts.size, y.size, float(1 - left @ left / (y @ y)))

@@ -64,9 +64,7 @@ class IdentifiedFinger:
             raise InputError(
                 f"the stiffness found is not > 0: {self.estimates['stiffness']}; perturb more, or hold firmly"
             )
-        return Finger(
-            mass=self._best("mass"), damping=self._best("damping"), stiffness=stiffness, **others
-        )
+        return Finger(mass=self._best("mass"), damping=self._best("damping"), stiffness=stiffness, **others)
 
     @property
     def model(self) -> dict[str, float]:

@@ -29,8 +29,8 @@ import numpy as np
 from zwidth.compiled import Array
 from zwidth.device.device import Device
 from zwidth.errors import InputError
+from zwidth.identification.device.choice import LENGTHS, LONGER, SAFETY
 from zwidth.identification.device.identified import Estimate
-from zwidth.identification.device.identify import LENGTHS, LONGER, SAFETY
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.finger.fit import TERMS, Fit, fitted
 from zwidth.identification.finger.identified import IdentifiedFinger
@@ -77,8 +77,8 @@ def identify_finger(
     delay
         From a sample to the actuator force computed from it, ≥ 0 [s].
     instrument
-        "perturbation": f_a, which must not depend on the position, so no wall while it acts; the default where
-        f_a was recorded. "position": the even and odd samples.
+        "perturbation": f_a, which must not depend on the position, so no wall while it acts; the default
+        where f_a was recorded. "position": the even and odd samples.
 
     Raises
     ------
@@ -101,6 +101,8 @@ def identify_finger(
             other = fitted(rows, by_hand, f_c, resting)
             if other is not None:
                 shift = shift + np.abs(other.values - ways.fit.values)
+    if "actuator_force" not in log.channels:
+        shift = shift + _half_a_sample(ways.fit.values, log.sample_period)
     estimates = _estimates(ways.fit, shift, known, log.motion)
     return IdentifiedFinger(
         estimates=estimates,
@@ -119,16 +121,20 @@ def _checked(
     log: Log, device: Device | None, piece: float, delay: float, instrument: Instrument | None
 ) -> Instrument:
     if not log.channels:
-        raise InputError(f"{log.source} has no force: a finger is what it answers; log the hand's or the actuator's")
+        raise InputError(
+            f"{log.source} has no force: a finger is what it answers; log the hand's or the actuator's"
+        )
     if "hand_force" not in log.channels and (device is None or device.mass is None):
         raise InputError(
-            f"{log.source} has no force of the hand: device and finger move together, and only the device, with its "
-            "mass, tells them apart; identify it first, and give it as device"
+            f"{log.source} has no force of the hand: device and finger move together, and only a device with "
+            "a mass tells them apart; identify it first, and give it as device"
         )
     if not 8 * log.sample_period < piece < np.inf:
         raise InputError(f"piece must be longer than 8 samples and finite, got {piece!r} s; 0.25 is usual")
     if not 0 <= delay < piece:
-        raise InputError(f"delay must be ≥ 0 s and < piece, got {delay!r}: the force follows the sample it came from")
+        raise InputError(
+            f"delay must be ≥ 0 s and < piece, got {delay!r}: the force follows the sample it came from"
+        )
     if instrument not in (None, "perturbation", "position"):
         raise InputError(f'instrument is "perturbation" or "position", got {instrument!r}')
     recorded = "actuator_force" in log.channels
@@ -181,15 +187,26 @@ def _perturbed(pieces: Pieces, log: Log, shape: Weights, delay: float, friction:
     return pieces
 
 
+def _half_a_sample(values: Array, period: float) -> Array:
+    """What it matters when within a sample the force steps, which only the actuator's force tells.
+
+    c v + k x at t + τ are c (v + τ a) + k (x + τ v): τ early reads c τ more mass and k τ more damping.
+    """
+    _, damping, stiffness = np.abs(values)
+    return np.array([damping, stiffness, 0.0]) * period / 2
+
+
 def _too_little(log: Log) -> str:
     return (
-        f"{log.source}: {log.duration:.3g} s show too little to tell mass, damping and stiffness apart: shake the "
-        "finger for a minute with steps in random order, 5 to 50 ms each, some newtons strong, so that it moves "
-        "by many counts; hold still; take longer pieces if the sample period is long"
+        f"{log.source}: {log.duration:.3g} s show too little to tell mass, damping and stiffness apart: "
+        "shake the finger for a minute with steps in random order, some 10 ms each and a newton strong, so that it "
+        "moves by many counts; hold still; take longer pieces if the sample period is long"
     )
 
 
-def _estimates(fit: Fit, shift: Array, known: dict[str, tuple[float, float]], motion: str) -> dict[str, Estimate]:
+def _estimates(
+    fit: Fit, shift: Array, known: dict[str, tuple[float, float]], motion: str
+) -> dict[str, Estimate]:
     turn = motion == "rotary"
     units = ("kg m²", "N m s/rad", "N m/rad") if turn else ("kg", "N s/m", "N/m")
     found = {}
@@ -212,8 +229,8 @@ def _findings(estimates: dict[str, Estimate], by_hand: bool, instrument: Instrum
     if instrument == "position":
         yield Finding(
             kind="tremor",
-            text="the numbers hold if the finger does not push on its own account quicker than its slow motion; "
-            "record the perturbation, and it need not be so",
+            text="the numbers hold if the finger does not push on its own account quicker than its slow "
+            "motion; record the perturbation, and it may",
         )
     if by_hand:
         yield Finding(

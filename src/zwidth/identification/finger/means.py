@@ -22,6 +22,7 @@ from zwidth.identification.logs import Block, Log
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+
 class Pieces(NamedTuple):
     """What was recorded, a row for each piece.
 
@@ -197,5 +198,7 @@ def _turning(side: Array) -> Array:
     before = np.maximum.accumulate(np.where(side != 0, at, 0), axis=1)
     after = np.minimum.accumulate(np.where(side != 0, at, side.shape[1] - 1)[:, ::-1], axis=1)[:, ::-1]
     early, late = (np.take_along_axis(side, where, axis=1) for where in (before, after))
-    found: Array = np.where(at - before < after - at, early, np.where(at - before > after - at, late, (early + late) / 2))
+    found: Array = np.where(
+        at - before < after - at, early, np.where(at - before > after - at, late, (early + late) / 2)
+    )
     return found

@@ -11,12 +11,17 @@ A hand that moves a device in strokes of some hertz does not tell such sums from
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from scipy.interpolate import BSpline
 
 from zwidth.compiled import Array
-from zwidth.identification.device.pulses import pulse
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_SPLINE = BSpline.basis_element(np.arange(-2.0, 3.0), extrapolate=False)
 
 
 class Weights(NamedTuple):
@@ -58,17 +63,19 @@ def weights(piece: int, delay: float) -> Weights:
         From a sample to its actuator force [samples], ≥ 0.
     """
     reach = 2 * piece + 1
-    value = np.pad(pulse(piece).value / piece, 1)
+    value = np.nan_to_num(_SPLINE(np.arange(-reach, reach + 1) / piece)) / piece
     bend = np.convolve(value, (1, -2, 1), "same")
     slope = np.convolve(np.convolve(value, (-0.5, 0, 0.5), "same"), (-1 / 12, 14 / 12, -1 / 12), "same")
     lag = int(np.ceil(delay)) + 1
     begins = np.arange(-reach - lag, reach + 2) + delay
     steps = -np.diff(np.interp(begins, np.arange(-reach, reach + 1), value))
     place = value + bend / 12
-    return Weights(piece, reach, (bend, slope, place), place, np.diff(_integral(value, begins + reach)), steps, lag)
+    return Weights(
+        piece, reach, (bend, slope, place), place, np.diff(_integral(value, begins + reach)), steps, lag
+    )
 
 
-def _integral(value: Array, at: Array) -> Array:
+def _integral(value: Array, at: NDArray[np.floating[Any]]) -> Array:
     """Of the pulse from its first sample on, straight between samples."""
     whole = np.append(0.0, np.cumsum((value[1:] + value[:-1]) / 2))
     inside = np.clip(at, 0.0, value.size - 1.0)
