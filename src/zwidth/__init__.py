@@ -28,7 +28,10 @@ if TYPE_CHECKING:
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
     from zwidth.identification import tissue
-    from zwidth.identification.logs import Log, log_of, read_log
+    from zwidth.identification.device.plan import Plan, plan_identification
+    from zwidth.identification.device.published import Published, identify_published
+    from zwidth.identification.finger import IdentifiedFinger, identify_finger
+    from zwidth.identification.logs import Log, join_logs, log_of, read_log
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
@@ -63,6 +66,7 @@ __all__ = [
     "FrictionModel",
     "GeneralizedMaxwell",
     "HuntCrossley",
+    "IdentifiedFinger",
     "InputError",
     "Interval",
     "LawComparison",
@@ -70,6 +74,8 @@ __all__ = [
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
+    "Plan",
+    "Published",
     "PulseTransferFunction",
     "RealHand",
     "StandardLinearSolid",
@@ -94,10 +100,14 @@ __all__ = [
     "coupling_condition",
     "design_coupling",
     "fit_tissue",
+    "identify_finger",
+    "identify_published",
+    "join_logs",
     "load_trace",
     "log_of",
     "operators",
     "passive_limit",
+    "plan_identification",
     "quantization",
     "read_log",
     "render",
@@ -123,7 +133,10 @@ _LATER = {
     "Log": "zwidth.identification.logs",
     "compare": "zwidth.traces",
     "HuntCrossley": "zwidth.environment",
+    "IdentifiedFinger": "zwidth.identification.finger",
     "NonlinearSpring": "zwidth.environment",
+    "Plan": "zwidth.identification.device.plan",
+    "Published": "zwidth.identification.device.published",
     "Timing": "zwidth.loop.timing",
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
@@ -140,9 +153,13 @@ _LATER = {
     "coupling_condition": "zwidth.passivity.coupling",
     "design_coupling": "zwidth.passivity.coupling_design",
     "fit_tissue": "zwidth.identification.tissue",
+    "identify_finger": "zwidth.identification.finger",
+    "identify_published": "zwidth.identification.device.published",
+    "join_logs": "zwidth.identification.logs",
     "load_trace": "zwidth.traces",
     "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",
+    "plan_identification": "zwidth.identification.device.plan",
     "simulate": "zwidth.traces",
     "simulate_admittance": "zwidth.loop.admittance",
     "simulate_batch": "zwidth.traces",
