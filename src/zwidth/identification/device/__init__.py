@@ -1,0 +1,1 @@
+"""A device from a log: mass, damping, Coulomb friction, and how well they are known."""

@@ -1,0 +1,124 @@
+"""Sums over strokes, all that an estimate needs, in an amount of memory that does not grow.
+
+    G_s = ½ Σ (A_even A_oddᵀ + A_odd A_evenᵀ)   over the pulses of stroke s,   A = (a, v, sgn v, …, f)
+
+G = Σ_s G_s gives the parameters, and Σ_s G_s ⊗ G_s how much the strokes differ among themselves,
+which is what their uncertainty is taken from.  The zero of a load cell drifts: from each piece
+of some seconds a straight line is taken out of every column first, so that a line in the
+force means nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zwidth.compiled import Array, compiled
+from zwidth.identification.device import pulses
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from zwidth.identification.device.regression import Regression
+
+REGRESSORS = ("mass", "damping", "coulomb_friction", "spring", "quadratic", "force_lag")
+"""What the force may be made of: m a, b v, f_c sgn v, k x, c v |v|, and −τ df/dt of a force that came late."""
+
+COLUMNS = len(REGRESSORS) + 1
+"""The regressors, and the force."""
+
+
+@dataclass
+class Moments:
+    """The sums.
+
+    Parameters
+    ----------
+    sum
+        G.
+    square
+        Σ_s G_s ⊗ G_s, as a matrix over pairs of columns.
+    strokes, pulses
+        How many there were.
+    lines
+        Numbers that were fitted to take the lines out.
+    means
+        Sum over the pieces of the means of the columns.
+    pieces
+        How many pieces.
+    """
+
+    sum: Array = field(default_factory=lambda: np.zeros((COLUMNS, COLUMNS)))
+    square: Array = field(default_factory=lambda: np.zeros((COLUMNS**2, COLUMNS**2)))
+    strokes: int = 0
+    pulses: int = 0
+    lines: int = 0
+    means: Array = field(default_factory=lambda: np.zeros(COLUMNS))
+    pieces: int = 0
+
+    def add(self, rows: Array, zero: str) -> None:
+        """Count in the pulses of one piece, its zero taken out."""
+        if not len(rows):
+            return
+        even, odd = halves(rows)
+        self.means += (even + odd).mean(axis=0) / 2
+        self.pieces += 1
+        basis = line(rows, zero)
+        even = even - basis @ (basis.T @ even)
+        odd = odd - basis @ (basis.T @ odd)
+        self.lines += basis.shape[1]
+        _, stroke = np.unique(rows[:, pulses.STROKE], return_inverse=True)
+        count = int(stroke[-1]) + 1
+        parts = np.zeros((count, COLUMNS, COLUMNS))
+        _products(parts, even, odd, stroke)
+        flat = parts.reshape(count, COLUMNS**2)
+        self.sum += parts.sum(axis=0)
+        self.square += flat.T @ flat
+        self.strokes += count
+        self.pulses += len(rows)
+
+    def offset(self, fit: Regression, mass: float | None) -> float:
+        """What the force has besides the fitted terms, the mean over the pieces [N; N·m]."""
+        known = self.means[-1] - (mass or 0.0) * self.means[0]
+        terms = sum(fit.value(name) * self.means[REGRESSORS.index(name)] for name in fit.names)
+        return float((known - terms) / max(self.pieces, 1))
+
+
+def line(rows: Array, zero: str) -> Array:
+    """What the zero of a piece may be, as orthonormal columns: a line, a constant, or nothing."""
+    time = rows[:, pulses.TIME]
+    columns = {"drifts": 2, "constant": 1, "exact": 0}[zero]
+    basis = np.stack([np.ones(len(rows)), time - time.mean()], axis=1)[:, : min(columns, len(rows))]
+    return np.linalg.qr(basis)[0]
+
+
+def halves(rows: Array) -> tuple[Array, Array]:
+    """The columns of the pulses by the even samples and by the odd ones."""
+    found = []
+    for a, v in (
+        (pulses.EVEN_ACCELERATION, pulses.EVEN_VELOCITY),
+        (pulses.ODD_ACCELERATION, pulses.ODD_VELOCITY),
+    ):
+        speed = rows[:, v]
+        columns = (
+            rows[:, a],
+            speed,
+            rows[:, pulses.SIDE],
+            rows[:, pulses.POSITION],
+            speed * np.abs(speed),
+            -rows[:, pulses.FORCE_SLOPE],
+            rows[:, pulses.FORCE],
+        )
+        found.append(np.stack(columns, axis=1))
+    return found[0], found[1]
+
+
+@compiled
+def _products(parts: Array, even: Array, odd: Array, stroke: NDArray[np.int64]) -> None:
+    for n in range(even.shape[0]):
+        part = parts[stroke[n]]
+        for i in range(even.shape[1]):
+            for j in range(even.shape[1]):
+                part[i, j] += 0.5 * (even[n, i] * odd[n, j] + odd[n, i] * even[n, j])

@@ -1,0 +1,104 @@
+"""A log cut into pieces of some seconds, each turned into pulses; never more than that in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+
+from zwidth.compiled import Array
+from zwidth.identification.device.pulses import Pulse, weighed
+from zwidth.identification.device.strokes import (
+    Strokes,
+    count_without_steps,
+    counted,
+    find_strokes,
+    positions,
+)
+from zwidth.identification.logs import Block, Log
+
+SECONDS = 10.0
+"""Length of a piece: within it the zero of the load cell may drift along a straight line [s]."""
+
+
+class Piece(NamedTuple):
+    """A stretch of a run.
+
+    Parameters
+    ----------
+    position
+        Inside the strokes, between ticks by a cubic [m; rad].
+    strokes
+        Where the device surely moves.
+    block
+        What was recorded.
+    """
+
+    position: Array
+    strokes: Strokes
+    block: Block
+
+    def pulses(self, shape: Pulse, period: float) -> Array:
+        """A row for each pulse, see `pulses`."""
+        return weighed(
+            shape, self.position, self.strokes, period, self.block.hand_force, self.block.actuator_force
+        )
+
+
+def pieces(log: Log) -> Iterator[Piece]:
+    """The log in pieces of `SECONDS`, shorter at the end of a run."""
+    size = max(int(round(SECONDS / log.sample_period)), 1)
+    count = log.resolution
+    for block in _cut(log.blocks(), size):
+        if not count:
+            count = count_without_steps(block.position)
+        yield _piece(block, log.resolution, count)
+
+
+def _piece(block: Block, resolution: float, count: float) -> Piece:
+    if count == 0:  # it does not move
+        return Piece(block.position, find_strokes(np.zeros(block.position.size)), block)
+    origin = block.position[0]
+    if resolution == 0:
+        return Piece(block.position, find_strokes(counted(block.position - origin, count)), block)
+    counts = np.rint((block.position - origin) / resolution)
+    strokes = find_strokes(counts)
+    return Piece(positions(counts, strokes) * resolution + origin, strokes, block)
+
+
+def _cut(blocks: Iterator[Block], size: int) -> Iterator[Block]:
+    """The same samples in stretches of `size`, each within a run."""
+    kept: list[Block] = []
+    held = 0
+    for block in chain(blocks, [None]):
+        if kept and (block is None or block.run != kept[0].run):
+            yield _joined(kept)
+            kept, held = [], 0
+        if block is None:
+            return
+        while held + block.time.size >= size:
+            taken, block = _split(block, size - held)
+            yield _joined([*kept, taken])
+            kept, held = [], 0
+        if block.time.size:
+            kept.append(block)
+            held += block.time.size
+
+
+def _split(block: Block, at: int) -> tuple[Block, Block]:
+    def part(where: slice) -> Block:
+        columns = (None if c is None else c[where] for c in block[1:])
+        return Block(block.run, *columns)  # type: ignore[arg-type]
+
+    return part(slice(None, at)), part(slice(at, None))
+
+
+def _joined(blocks: list[Block]) -> Block:
+    if len(blocks) == 1:
+        return blocks[0]
+    columns = (
+        None if c[0] is None else np.concatenate(c) for c in zip(*(b[1:] for b in blocks), strict=True)
+    )
+    return Block(blocks[0].run, *columns)  # type: ignore[arg-type]

@@ -1,0 +1,105 @@
+"""From the sums over strokes to parameters, and how well they are known.
+
+    θ = G_AA⁻¹ G_Af        V = G_AA⁻¹ (Σ_s g_s g_sᵀ) G_AA⁻¹ · n/(n − p),   g_s = G_s,Af − G_s,AA θ
+
+V takes the scatter of the strokes for what it is, whatever its cause: noise that is not white,
+friction that is not quite f_c + b |v| (the "sandwich", clustered by stroke; Liang & Zeger 1986).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import nan
+
+import numpy as np
+from scipy import stats
+
+from zwidth.compiled import Array
+from zwidth.identification.device.moments import COLUMNS, REGRESSORS, Moments
+
+FEWEST = 6
+"""Strokes more than parameters, below which no uncertainty is stated."""
+
+
+@dataclass(frozen=True)
+class Regression:
+    """Parameters by least squares.
+
+    Parameters
+    ----------
+    names
+        Which of `REGRESSORS` were fitted.
+    values
+        θ, SI units.
+    covariance
+        V.
+    degrees
+        Degrees of freedom that the scatter of the strokes leaves.
+    residual
+        Mean square of what is left of the pulses' force [N²; (N·m)²].
+    explained
+        r², part of the force's variance that is explained.
+    """
+
+    names: tuple[str, ...]
+    values: Array
+    covariance: Array
+    degrees: int
+    residual: float
+    explained: float
+
+    def value(self, name: str) -> float:
+        """One parameter."""
+        return float(self.values[self.names.index(name)])
+
+    def error(self, name: str) -> float:
+        """Its standard error."""
+        k = self.names.index(name)
+        return float(np.sqrt(self.covariance[k, k]))
+
+    def reach(self, confidence: float) -> float:
+        """Standard errors to either side of a two-sided interval of Student's t."""
+        return float(stats.t.ppf(0.5 + confidence / 2, self.degrees))
+
+
+def regress(moments: Moments, names: tuple[str, ...], mass: float | None = None) -> Regression | None:
+    """Fit the named parameters; None where the strokes are too few or too much alike.
+
+    Parameters
+    ----------
+    moments
+        The sums.
+    names
+        Some of `REGRESSORS`.
+    mass
+        m where it is known and not fitted [kg; kg·m²]: m a then counts to the force.
+    """
+    degrees = moments.strokes - len(names) - moments.lines
+    if degrees < FEWEST:
+        return None
+    chosen = [REGRESSORS.index(name) for name in names]
+    known = np.zeros(COLUMNS)
+    known[-1] = 1.0
+    if mass is not None:
+        known[REGRESSORS.index("mass")] = -mass
+    matrix = moments.sum[np.ix_(chosen, chosen)]
+    right = moments.sum[chosen] @ known
+    size = np.sqrt(np.abs(np.diag(matrix)))
+    if not (size > 0).all() or np.linalg.cond(matrix / np.outer(size, size)) > 1e10:
+        return None
+    values = np.linalg.solve(matrix, right)
+    residual = known.copy()  # the combination of columns that is left: f − m a − Σ θ A
+    residual[chosen] -= values
+    selection = np.zeros((len(chosen), COLUMNS**2))
+    for row, k in enumerate(chosen):
+        selection[row, k * COLUMNS : (k + 1) * COLUMNS] = residual
+    scatter = selection @ moments.square @ selection.T
+    inverse = np.linalg.inv(matrix)
+    spare = moments.pulses - len(names) - moments.lines
+    few = moments.strokes / (moments.strokes - 1) * moments.pulses / spare if spare > 0 else nan
+    covariance = inverse @ scatter @ inverse.T * few
+    left = float(residual @ moments.sum @ residual)
+    whole = float(known @ moments.sum @ known)
+    return Regression(
+        names, values, covariance, degrees, max(left, 0.0) / spare, 1 - left / whole if whole > 0 else nan
+    )
