@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from zwidth.identification.device.regression import Regression
 
 REGRESSORS = ("mass", "damping", "coulomb_friction", "spring", "quadratic", "force_lag")
-"""What the force may be made of: m a, b v, f_c sgn v, k x, c v |v|, and −τ df/dt of a force that came late."""
+"""What a force may be made of: m a, b v, f_c sgn v, k x, c v |v|, −τ df/dt of one that came late."""
 
 COLUMNS = len(REGRESSORS) + 1
 """The regressors, and the force."""

@@ -49,7 +49,7 @@ class Piece(NamedTuple):
 
 def pieces(log: Log) -> Iterator[Piece]:
     """The log in pieces of `SECONDS`, shorter at the end of a run."""
-    size = max(int(round(SECONDS / log.sample_period)), 1)
+    size = max(round(SECONDS / log.sample_period), 1)
     count = log.resolution
     for block in _cut(log.blocks(), size):
         if not count:

@@ -48,7 +48,7 @@ ROWS = 10
 
 
 class Pulse(NamedTuple):
-    """A pulse as weights of the samples, and what it is to a force that is held.
+    """A pulse as weights of the samples, and of the forces that go with them.
 
     Parameters
     ----------
@@ -56,22 +56,26 @@ class Pulse(NamedTuple):
         h, even: samples of each of its four pieces.
     value, slope, bend
         h φ, h² φ′, h³ φ″ at the samples from −2h − 1 to 2h + 1, the last with its correction.
+    hand, hand_slope
+        h φ and h² φ′ for a force at the samples, `pad` more of them to either side.
     held, held_slope
-        h φ and h² φ′ in the mean over the time from a sample's force to the next one's.
-    lag
-        Samples by which the held weights begin later.
+        The same for a force that is held, in the mean over the time from one to the next.
+    pad
+        Samples by which the forces reach farther than the positions.
     """
 
     piece: int
     value: Array
     slope: Array
     bend: Array
+    hand: Array
+    hand_slope: Array
     held: Array
     held_slope: Array
-    lag: int
+    pad: int
 
 
-def pulse(piece: int, delay: float = 0.0) -> Pulse:
+def pulse(piece: int, delay: float = 0.0, late: float = 0.0) -> Pulse:
     """The pulse of pieces of so many samples.
 
     Parameters
@@ -80,14 +84,18 @@ def pulse(piece: int, delay: float = 0.0) -> Pulse:
         h ≥ 2, even, so that even and odd samples see the same pulse.
     delay
         From a sample to its actuator force [samples], ≥ 0.
+    late
+        By which forces were recorded later than positions [samples], either sign.
     """
     reach = _reach(piece)
     at = np.arange(-reach, reach + 1) / piece
-    lag = int(np.ceil(delay)) + 1
-    fine = (np.arange(_FINE) + 0.5) / _FINE
-    span = np.arange(-reach - lag, reach + 1)[:, None] + delay + fine
-    held, held_slope = (shape(span / piece).mean(axis=1) for shape in (_value, _slope))
-    return Pulse(piece, _value(at), _slope(at), _bend(at) + _corrections(piece), held, held_slope, lag)
+    pad = int(np.ceil(delay + abs(late))) + 1
+    wide = np.arange(-reach - pad, reach + pad + 1) - late
+    fine = wide[:, None] + delay + (np.arange(_FINE) + 0.5) / _FINE
+    hand, hand_slope = (shape(wide / piece) for shape in (_value, _slope))
+    held, held_slope = (shape(fine / piece).mean(axis=1) for shape in (_value, _slope))
+    bend = _bend(at) + _corrections(piece)
+    return Pulse(piece, _value(at), _slope(at), bend, hand, hand_slope, held, held_slope, pad)
 
 
 def _reach(piece: int) -> int:
@@ -163,13 +171,7 @@ def weighed(
         strokes.first,
         strokes.last,
         strokes.side,
-        shape.piece,
-        shape.lag,
-        shape.value,
-        shape.slope,
-        shape.bend,
-        shape.held,
-        shape.held_slope,
+        *shape,
         period,
     )
     return rows[:found]
@@ -185,12 +187,14 @@ def _weigh(
     last: NDArray[np.int64],
     side: Array,
     h: int,
-    lag: int,
     value: Array,
     slope: Array,
     bend: Array,
+    hand_value: Array,
+    hand_slope: Array,
     held: Array,
     held_slope: Array,
+    pad: int,
     period: float,
 ) -> int:
     reach, found, width = 2 * h + 1, 0, h * period
@@ -201,9 +205,10 @@ def _weigh(
             continue
         count = room // h + 1
         centre = begin + reach + (room - (count - 1) * h) // 2
-        if centre - reach - lag < 0:
-            continue
         for _ in range(count):
+            if centre - reach - pad < 0 or centre + reach + pad >= x.size:
+                centre += h
+                continue
             middle = x[centre]
             a0, a1, v0, v1, mean, f, df = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             for k in range(-reach, reach + 1):
@@ -216,14 +221,14 @@ def _weigh(
                 else:
                     a0 += bend[at] * moved
                     v0 -= slope[at] * moved
-            if hand.size > 0:
-                for k in range(-reach, reach + 1):
-                    f += value[k + reach] * hand[centre + k]
-                    df -= slope[k + reach] * hand[centre + k]
-            if actuator.size > 0:
-                for k in range(-reach - lag, reach + 1):
-                    f -= held[k + reach + lag] * actuator[centre + k]
-                    df += held_slope[k + reach + lag] * actuator[centre + k]
+            for k in range(-reach - pad, reach + pad + 1):
+                at = k + reach + pad
+                if hand.size > 0:
+                    f += hand_value[at] * hand[centre + k]
+                    df -= hand_slope[at] * hand[centre + k]
+                if actuator.size > 0:
+                    f -= held[at] * actuator[centre + k]
+                    df += held_slope[at] * actuator[centre + k]
             row = rows[found]
             row[EVEN_ACCELERATION] = 2.0 * a0 / (h * width * width)
             row[ODD_ACCELERATION] = 2.0 * a1 / (h * width * width)

@@ -87,7 +87,7 @@ def regress(moments: Moments, names: tuple[str, ...], mass: float | None = None)
     size = np.sqrt(np.abs(np.diag(matrix)))
     if not (size > 0).all() or np.linalg.cond(matrix / np.outer(size, size)) > 1e10:
         return None
-    values = np.linalg.solve(matrix, right)
+    values: Array = np.linalg.solve(matrix, right)
     residual = known.copy()  # the combination of columns that is left: f − m a − Σ θ A
     residual[chosen] -= values
     selection = np.zeros((len(chosen), COLUMNS**2))
@@ -97,7 +97,7 @@ def regress(moments: Moments, names: tuple[str, ...], mass: float | None = None)
     inverse = np.linalg.inv(matrix)
     spare = moments.pulses - len(names) - moments.lines
     few = moments.strokes / (moments.strokes - 1) * moments.pulses / spare if spare > 0 else nan
-    covariance = inverse @ scatter @ inverse.T * few
+    covariance: Array = inverse @ scatter @ inverse.T * few
     left = float(residual @ moments.sum @ residual)
     whole = float(known @ moments.sum @ known)
     return Regression(

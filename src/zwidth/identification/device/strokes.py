@@ -125,7 +125,8 @@ def _slope(ticks: NDArray[np.int64], edges: Array, begin: int, end: int, i: int)
     before = (edges[c] - edges[c - 1]) / (ticks[c] - ticks[c - 1])
     after = (edges[c + 1] - edges[c]) / (ticks[c + 1] - ticks[c])
     bend = (after - before) / (ticks[c + 1] - ticks[c - 1])
-    return before + bend * (2 * ticks[i] - ticks[c - 1] - ticks[c])
+    slope: float = before + bend * (2 * ticks[i] - ticks[c - 1] - ticks[c])
+    return slope
 
 
 def count_without_steps(position: Array) -> float:

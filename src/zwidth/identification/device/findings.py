@@ -1,0 +1,65 @@
+"""What a person should know about an identified device, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from zwidth.identification.device.choice import SURE
+from zwidth.identification.device.fit import Found, units_of
+from zwidth.identification.device.identified import Estimate
+from zwidth.identification.logs import Finding
+
+_SEEN = {
+    "spring": "a spring, or gravity on an arc,",
+    "force_lag": "a force recorded late, or early where this is negative,",
+}
+
+
+def findings(
+    found: Found, names: tuple[str, ...], estimates: Mapping[str, Estimate], period: float
+) -> Iterable[Finding]:
+    """The wrong model first, then what is not known, then what was fitted besides."""
+    yield from _model(found, names, estimates, period)
+    for name in ("damping", "coulomb_friction"):
+        if name in estimates and estimates[name].interval(0.95)[0] <= 0:
+            word = name.replace("_", " ")
+            text = f"the data do not rule out that {word} is 0: {estimates[name]}"
+            yield Finding(kind=f"no {word}", text=text)
+    for name, what in _SEEN.items():
+        if name in estimates:
+            text = f"{what} is seen and fitted: {estimates[name]}"
+            yield Finding(kind=name.replace("_", " "), text=text)
+    if "coulomb_friction" in names and found.sees(names, "quadratic"):
+        bent = found.regression((*names, "quadratic"))
+        assert bent is not None  # it was seen
+        yield Finding(
+            kind="bent friction",
+            text=f"friction is not f_c + b |v|: a term c v |v| with c = {bent.value('quadratic'):.3g} "
+            f"{units_of(found.motion)['quadratic']} is seen; look at the friction curve",
+        )
+
+
+def _model(
+    found: Found, names: tuple[str, ...], estimates: Mapping[str, Estimate], period: float
+) -> Iterable[Finding]:
+    units = units_of(found.motion)
+    whole = (*(n for n in names if n != "coulomb_friction"), "coulomb_friction")
+    full, viscous = found.regression(whole), found.regression(whole[:-1])
+    if full is None or viscous is None:
+        return
+    limits = [f"{2 * fit.value('damping') / period:.4g} {units['spring']}" for fit in (viscous, full)]
+    if "coulomb_friction" not in names:
+        if found.sees(names, "coulomb_friction"):
+            yield Finding(
+                kind="wrong model",
+                text=f"a mass and a damper are the wrong model: Coulomb friction of "
+                f"{full.value('coulomb_friction'):.3g} {units['coulomb_friction']} is seen; without it 2b/T "
+                f"reads {limits[0]} instead of {limits[1]}: walls between the two would be called passive "
+                "and are not",
+            )
+    elif estimates["coulomb_friction"].beyond(SURE):
+        yield Finding(
+            kind="Coulomb friction",
+            text=f"Coulomb friction is seen; a mass–damper model of the same data would say b = "
+            f"{viscous.value('damping'):.3g} {units['damping']}, 2b/T = {limits[0]} instead of {limits[1]}",
+        )

@@ -1,0 +1,108 @@
+"""What one way through a log leaves, and the parameters that follow from it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from zwidth.identification.device.choice import LONGER, SURE, Choice, Zero, shifts
+from zwidth.identification.device.identified import Estimate
+from zwidth.identification.device.moments import Moments
+from zwidth.identification.device.pieces import pieces
+from zwidth.identification.device.points import Points
+from zwidth.identification.device.pulses import Pulse, pulse
+from zwidth.identification.device.regression import Regression, regress
+from zwidth.identification.logs import Log
+
+
+class Found(NamedTuple):
+    """The sums.
+
+    Parameters
+    ----------
+    shape
+        The pulse.
+    late
+        By which the forces were recorded late [s].
+    moments, longer
+        Of the pulses, and of those twice as long.
+    points
+        Some pulses, for pictures.
+    mass
+        Where it is given, and not fitted [kg; kg·m²].
+    motion
+        "linear" or "rotary".
+    """
+
+    shape: Pulse
+    late: float
+    moments: Moments
+    longer: Moments
+    points: Points
+    mass: float | None
+    motion: str
+
+    def regression(self, names: tuple[str, ...]) -> Regression | None:
+        """The named parameters by the pulses."""
+        return regress(self.moments, names, self.mass)
+
+    def estimates(self, names: tuple[str, ...]) -> dict[str, Estimate] | None:
+        """The named parameters with all their uncertainty; None where there are too few strokes."""
+        fit, longer = (regress(sums, names, self.mass) for sums in (self.moments, self.longer))
+        if fit is None or longer is None:
+            return None
+        units = units_of(self.motion)
+        offsets = {"force_lag": self.late}
+        return {
+            name: Estimate(
+                fit.value(name) + offsets.get(name, 0.0),
+                fit.error(name),
+                float(shift),
+                fit.degrees,
+                units[name],
+            )
+            for name, shift in zip(names, shifts(fit, longer), strict=True)
+        }
+
+    def sees(self, names: tuple[str, ...], term: str) -> bool:
+        """True where one term more is larger than its uncertainty, that of the method included."""
+        estimates = self.estimates((*names, term))
+        return estimates is not None and estimates[term].beyond(SURE)
+
+
+def gather(
+    log: Log,
+    choice: Choice,
+    *,
+    mass: float | None,
+    delay: float,
+    zero: Zero,
+    progress: Callable[[int, int], None] | None,
+) -> Found:
+    """Go through the log once; `delay` of the actuator's force in samples."""
+    shape, other = (pulse(h, delay, choice.late) for h in (choice.piece, LONGER * choice.piece))
+    late = choice.late * log.sample_period
+    found = Found(shape, late, Moments(), Moments(), Points(), mass, log.motion)
+    done = 0
+    for piece in pieces(log):
+        rows = piece.pulses(shape, log.sample_period)
+        found.moments.add(rows, zero)
+        found.points.add(rows, zero)
+        found.longer.add(piece.pulses(other, log.sample_period), zero)
+        done += piece.position.size
+        if progress is not None:
+            progress(done, log.samples)
+    return found
+
+
+def units_of(motion: str) -> dict[str, str]:
+    """The unit of each parameter."""
+    turn = motion == "rotary"
+    return {
+        "mass": "kg m²" if turn else "kg",
+        "damping": "N m s/rad" if turn else "N s/m",
+        "coulomb_friction": "N m" if turn else "N",
+        "spring": "N m/rad" if turn else "N/m",
+        "quadratic": "N m s²/rad²" if turn else "N s²/m²",
+        "force_lag": "s",
+    }
