@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from zwidth.bench import LawComparison
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring
+    from zwidth.identification import Identified
     from zwidth.identification.logs import Log, log_of, read_log
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from zwidth.rendering.rendered import render
     from zwidth.traces import (
         compare_traces,
+        identify,
         load_trace,
         passive_limit,
         simulate,
@@ -57,6 +59,7 @@ __all__ = [
     "FrictionModel",
     "GeneralizedMaxwell",
     "HuntCrossley",
+    "Identified",
     "InputError",
     "Interval",
     "LawComparison",
@@ -83,6 +86,7 @@ __all__ = [
     "compare_traces",
     "coupling_condition",
     "design_coupling",
+    "identify",
     "load_trace",
     "log_of",
     "operators",
@@ -120,6 +124,8 @@ _LATER = {
     "compare_traces": "zwidth.traces",
     "coupling_condition": "zwidth.passivity.coupling",
     "design_coupling": "zwidth.passivity.coupling_design",
+    "Identified": "zwidth.identification",
+    "identify": "zwidth.traces",
     "load_trace": "zwidth.traces",
     "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",

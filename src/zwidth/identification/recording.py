@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -65,7 +65,7 @@ def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) 
     if isinstance(recording, Log):
         if reading:
             raise InputError(
-                f"a log has been read already; {', '.join(reading)} is for read_log, or give identify the file"
+                f"a log has been read already; {', '.join(reading)} is for read_log; or give the file instead"
             )
         return recording
     if isinstance(recording, str | PathLike):

@@ -16,9 +16,10 @@ from zwidth.identification.device.limits import percent
 from zwidth.identification.device.pulses import PIECES, pulse
 from zwidth.identification.device.table import rows, title
 from zwidth.plots.files import save_figure
-from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure, number
+from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure
 
 if TYPE_CHECKING:
+    import xarray as xr
     from numpy.typing import NDArray
 
     from zwidth.identification.device.identified import Identified
@@ -59,11 +60,11 @@ def identification_figure(identified: Identified) -> Figure:
         What `zwidth.identify` returned.
     """
     figure = new_figure(11.0, 7.4)
-    top, bottom = figure.add_gridspec(2, 1, height_ratios=(1.25, 1.0))
-    upper = top.subgridspec(1, 2, width_ratios=(1.75, 1.0))
+    grid = figure.add_gridspec(2, 1, height_ratios=(1.25, 1.0))
+    upper = grid[0].subgridspec(1, 2, width_ratios=(1.75, 1.0))
     draw_friction_points(figure.add_subplot(upper[0]), identified)
     _numbers(figure.add_subplot(upper[1]), identified)
-    lower = bottom.subgridspec(1, 3, width_ratios=(1.75, 1.15, 0.6))
+    lower = grid[1].subgridspec(1, 3, width_ratios=(1.75, 1.15, 0.6))
     _data(figure.add_subplot(lower[0]), identified)
     left = figure.add_subplot(lower[1])
     _left(left, identified)
@@ -78,13 +79,18 @@ def draw_friction_points(axes: Axes, identified: Identified) -> None:
     points = _thinned(identified)
     speed = np.abs(points["speed"].values)
     friction = points["friction"].values * np.sign(points["speed"].values)
-    axes.plot(speed, friction, ".", ms=2, color=GREY, alpha=0.25, mew=0, rasterized=True)
+    axes.plot(speed, friction, ".", ms=2.5, color=GREY, alpha=0.4, mew=0, rasterized=True)
     quickest = float(speed.max())
     along = np.linspace(0.0, quickest, 50)
     fit, reach = _fitted(identified, along)
     axes.fill_between(along, fit - reach, fit + reach, color=BLUE, alpha=0.2, lw=0)
     axes.plot(along, fit, color=BLUE, label=f"fit, {percent(_CONFIDENCE)} band")
     bins = friction_bins(identified.points, _BINS)
+    if "coulomb_friction" in identified.estimates:
+        alone = identified.viscous_alone
+        axes.plot(
+            along, alone * along, ":", color=ORANGE, lw=1.6, label=f"mass–damper model: {alone:.3g} |v|"
+        )
     if bins.sizes["bin"] >= 2:
         _bars(axes, identified, along)
     low, high = np.quantile(friction, [0.01, 0.99])
@@ -115,7 +121,7 @@ def _bars(axes: Axes, identified: Identified, along: Array) -> None:
     curve = curve_below(identified.points, _CONFIDENCE, _BINS)
     best = curve.best(identified.sample_period, identified.resolution)
     below = float(best.coulomb_friction) + float(best.damping) * along
-    text = f"below all bars: {number(float(best.coulomb_friction))} + {number(float(best.damping))} |v|"
+    text = f"below all bars: {float(best.coulomb_friction):.3g} + {float(best.damping):.3g} |v|"
     axes.plot(along, below, color=RED, ls="--", lw=1.4, label=text)
 
 
@@ -157,9 +163,7 @@ def _data(axes: Axes, identified: Identified) -> None:
 def _left(axes: Axes, identified: Identified) -> None:
     """What is left over against velocity; a bend of the means would be friction of another form."""
     points = _thinned(identified)
-    axes.plot(
-        points["speed"], points["residual"], ".", ms=2, color=GREY, alpha=0.25, mew=0, rasterized=True
-    )
+    axes.plot(points["speed"], points["residual"], ".", ms=2.5, color=GREY, alpha=0.4, mew=0, rasterized=True)
     velocity, left = identified.points["speed"].values, identified.points["residual"].values
     order = np.argsort(velocity, kind="stable")
     parts = [part for part in np.array_split(order, 2 * _BINS) if part.size]
@@ -179,7 +183,12 @@ def _histogram(axes: Axes, identified: Identified) -> None:
     left = identified.points["residual"].values
     reach = 4.0 * float(left.std())
     axes.hist(
-        left, bins=np.linspace(-reach, reach, 61), density=True, orientation="horizontal", color=GREY, alpha=0.5
+        left,
+        bins=np.linspace(-reach, reach, 61).tolist(),
+        density=True,
+        orientation="horizontal",
+        color=GREY,
+        alpha=0.5,
     )
     at = np.linspace(-reach, reach, 201)
     counts, force = expected_scatter(identified)
@@ -188,8 +197,9 @@ def _histogram(axes: Axes, identified: Identified) -> None:
         bell = np.exp(-((at / both) ** 2) / 2) / (both * np.sqrt(2 * np.pi))
         axes.plot(bell, at, color=BLUE, lw=1.2)
     unit = _force(identified)
-    share = f"deviation {number(round(float(left.std()), 6))} {unit};\nexpected {number(float(f'{both:.3g}'))}:"
-    share += f"\nnoise {force:.2g},\nencoder {counts:.2g}"
+    share = (
+        f"deviation {left.std():.3g} {unit};\nexpected {both:.3g}:\nnoise {force:.2g},\nencoder {counts:.2g}"
+    )
     axes.text(0.98, 0.99, share, transform=axes.transAxes, ha="right", va="top", fontsize=7.5)
     axes.tick_params(labelleft=False)
     axes.set_xticks([])
@@ -221,16 +231,17 @@ def _numbers(axes: Axes, identified: Identified) -> None:
         axes.text(0.16, y, f"{row.value} {row.unit}", va="top", color=BLACK, fontweight="bold")
         axes.text(0.56, y, row.interval, va="top", color=GREY)
     below = 0.97 - 0.085 * len(table) - 0.04
+    milliseconds = 1e3 * identified.pulse_length
     text = [
-        f"{percent(_CONFIDENCE)} intervals; r² = {identified.explained:.4f}; {identified.strokes} strokes, "
-        f"{identified.pulses} means over {1e3 * identified.pulse_length:.3g} ms",
+        f"{percent(_CONFIDENCE)} intervals; r² = {identified.explained:.4f}",
+        f"{identified.strokes} strokes, {identified.pulses} means over {milliseconds:.3g} ms",
         *(f"· {finding}" for finding in identified.findings),
     ]
     lines = "\n".join(fill(line, 62, subsequent_indent="  ") for line in text)
     axes.text(0.0, below, lines, va="top", fontsize=7.5, color=GREY, parse_math=False)
 
 
-def _thinned(identified: Identified) -> Array:
+def _thinned(identified: Identified) -> xr.Dataset:
     points = identified.points
     stride = max(1, points.sizes["pulse"] // _MOST)
     return points.isel(pulse=slice(None, None, stride))

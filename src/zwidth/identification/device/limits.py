@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from zwidth.identification.device.identified import Estimate, Identified
 
 NARROW = 3.0
-"""Ratio of quick to slow speeds, the upper to the lower tenth, below which b and f_c are hard to tell apart."""
+"""Ratio of quick to slow speeds (upper to lower tenth) below which b and f_c are hard to tell apart."""
 
 
 class Limit(NamedTuple):
@@ -63,6 +63,8 @@ def limits(identified: Identified) -> tuple[Limit, ...]:
 
 def advice(identified: Identified, confidence: float) -> tuple[str, ...]:
     """Which number limits the stiffest wall, and how to know it better."""
+    if any(finding.kind == "wrong model" for finding in identified.findings):
+        return ("fit Coulomb friction too: these numbers are of another model than the device",)
     found = limits(identified)
     binding = min(found, key=lambda limit: limit.interval(confidence)[0])
     name = {"damping": "damping", "coulomb_friction": "Coulomb friction"}[binding.parameter]
@@ -77,8 +79,8 @@ def advice(identified: Identified, confidence: float) -> tuple[str, ...]:
         )
     else:
         lines.append(
-            f"a longer log would not halve the interval of {name}: half of it and more is what the means over "
-            f"{1e3 * identified.pulse_length:.3g} ms may be off; smoother and longer strokes allow longer means"
+            f"a longer log would not halve the interval of {name}: half of it and more is what means over "
+            f"{1e3 * identified.pulse_length:.3g} ms may be off; smoother, longer strokes allow longer ones"
         )
     slow, quick = np.quantile(np.abs(identified.points["speed"].values), [0.1, 0.9])
     if quick < NARROW * slow:

@@ -41,15 +41,18 @@ def to_toml(identified: Identified, device: Device, confidence: float | None) ->
 def _story(identified: Identified, confidence: float | None) -> list[str]:
     milliseconds = 1e3 * identified.pulse_length
     story = [
-        f"Identified from {source_name(identified)}: {identified.strokes} strokes, {identified.pulses} means over "
-        f"{milliseconds:.3g} ms, r² = {identified.explained:.4f}.",
+        f"Identified from {source_name(identified)}: {identified.strokes} strokes, {identified.pulses} means "
+        f"over {milliseconds:.3g} ms, r² = {identified.explained:.4f}.",
         "m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a, in means over smooth pulses inside strokes.",
+    ]
+    story += [
+        f"{finding}" for finding in identified.findings if finding.kind in ("wrong model", "bent friction")
     ]
     if confidence is None:
         return [*story, "Best guesses: what is proved of them is not proved of the device."]
     return [
         *story,
-        f"The lower ends of damping and Coulomb friction hold together with {percent(confidence)} confidence.",
+        f"Lower ends of damping and Coulomb friction: both together with {percent(confidence)} confidence.",
     ]
 
 

@@ -26,8 +26,8 @@ NAMES = {
     "coulomb_friction": "Coulomb friction",
     "spring": "a spring, or gravity on an arc",
     "force_lag": "force recorded late by",
-    "2b/T": "stiffest wall by damping",
-    "2f_c/Δ": "stiffest wall by Coulomb friction",
+    "2b/T": "wall by damping",
+    "2f_c/Δ": "wall by Coulomb friction",
 }
 
 
