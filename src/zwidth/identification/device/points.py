@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from zwidth.identification.device.moments import REGRESSORS, halves, line
 
 if TYPE_CHECKING:
     import xarray as xr
+    from numpy.typing import NDArray
 
     from zwidth.identification.device.regression import Regression
 
@@ -50,7 +51,7 @@ class Points:
         """Force, friction and what the fit leaves, along `pulse`; with speed, time, stroke and piece."""
         import xarray as xr
 
-        found: dict[str, list[Array]] = {key: [] for key in _ABOUT}
+        found: dict[str, list[NDArray[Any]]] = {key: [] for key in _ABOUT}
         strokes = 0
         for piece, (rows, basis) in enumerate(self._kept):
             even, odd = halves(rows)
