@@ -16,6 +16,11 @@ def decimals(low: str, high: str, places: int = 6) -> st.SearchStrategy[Decimal]
     return st.decimals(Decimal(low), Decimal(high), places=places, allow_nan=False, allow_infinity=False)
 
 
+def zero_or(low: float, high: float) -> st.SearchStrategy[float]:
+    """Nothing, or a number that a physical quantity may have."""
+    return st.just(0.0) | st.floats(low, high)
+
+
 def fractions(low: str = "0.001", high: str = "1000") -> st.SearchStrategy[Fraction]:
     """Positive rationals with modest denominators."""
     return st.fractions(Fraction(low), Fraction(high), max_denominator=10**6)

@@ -26,14 +26,18 @@ if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.bench import LawComparison
     from zwidth.device import amplifier as amplifiers
-    from zwidth.environment import HuntCrossley, NonlinearSpring
-    from zwidth.identification import Identified
+    from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
+    from zwidth.identification import tissue
+    from zwidth.identification.device.identified import Identified
     from zwidth.identification.logs import Log, log_of, read_log
+    from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
+    from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
     from zwidth.passivity.real_hand import RealHand, replay
+    from zwidth.passivity.virtual_mass import stable_virtual_masses
     from zwidth.passivity.worst_hand import Bracket, WorstHand
     from zwidth.rendering.rendered import render
     from zwidth.traces import (
@@ -71,8 +75,10 @@ __all__ = [
     "RealHand",
     "StandardLinearSolid",
     "Timing",
+    "TissueFit",
     "VelocityFilter",
     "Verdict",
+    "VirtualBody",
     "VirtualCoupling",
     "Wall",
     "Window",
@@ -83,9 +89,11 @@ __all__ = [
     "check",
     "closed_forms",
     "compare",
+    "compare_tissues",
     "compare_traces",
     "coupling_condition",
     "design_coupling",
+    "fit_tissue",
     "identify",
     "load_trace",
     "log_of",
@@ -98,7 +106,10 @@ __all__ = [
     "replay",
     "rotary",
     "simulate",
+    "simulate_admittance",
     "simulate_batch",
+    "stable_virtual_masses",
+    "tissue",
     "two_port",
     "worst_hand",
 ]
@@ -113,6 +124,8 @@ _LATER = {
     "HuntCrossley": "zwidth.environment",
     "NonlinearSpring": "zwidth.environment",
     "Timing": "zwidth.loop.timing",
+    "VirtualBody": "zwidth.environment",
+    "TissueFit": "zwidth.identification.tissue",
     "amplifiers": "zwidth.device.amplifier",
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
@@ -121,16 +134,21 @@ _LATER = {
     "render": "zwidth.rendering.rendered",
     "rendering": "zwidth.rendering",
     "replay": "zwidth.passivity.real_hand",
+    "compare_tissues": "zwidth.identification.tissue",
     "compare_traces": "zwidth.traces",
     "coupling_condition": "zwidth.passivity.coupling",
     "design_coupling": "zwidth.passivity.coupling_design",
-    "Identified": "zwidth.identification",
+    "fit_tissue": "zwidth.identification.tissue",
+    "Identified": "zwidth.identification.device.identified",
     "identify": "zwidth.traces",
     "load_trace": "zwidth.traces",
     "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",
     "simulate": "zwidth.traces",
+    "simulate_admittance": "zwidth.loop.admittance",
     "simulate_batch": "zwidth.traces",
+    "stable_virtual_masses": "zwidth.passivity.virtual_mass",
+    "tissue": "zwidth.identification.tissue",
     "two_port": "zwidth.passivity.two_port",
     "worst_hand": "zwidth.traces",
 }

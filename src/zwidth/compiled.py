@@ -26,7 +26,12 @@ Array = NDArray[np.float64]
 
 _PACKAGE = Path(__file__).parent
 
-_TOGETHER = (("rendering", "loop"), ("passivity/worst_hand",), ("passivity/checker",))
+_TOGETHER = (
+    ("rendering", "loop"),
+    ("passivity/worst_hand",),
+    ("passivity/checker",),
+    ("identification/tissue",),
+)
 """Chapters whose functions call each other."""
 
 

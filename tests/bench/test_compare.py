@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 import zwidth as zw
+from zwidth import rendering
 from zwidth.bench import scores, standard_laws
 from zwidth.bench.adversary import attack
 from zwidth.cli.comparison import _json
@@ -208,3 +209,15 @@ def test_advice_counts_the_delay():
     assert zw.check(PADDLE, zw.Wall(250)).outcome == "passive"
     advice = zw.compare(late, zw.Wall(250), {"wall": zw.Wall(250)}).advice
     assert "The device alone renders 100 N/m passively" in advice
+
+
+def test_the_game_settles_what_the_adversary_does_not():
+    """Dither to and fro: a hand in step with it gains from f_c on, in no motion that the adversary tries."""
+    laws = {name: zw.render(zw.Wall(100), rendering.Dither(name)) for name in ("0.11", "0.14")}
+    laws["timed"] = zw.render(zw.Wall(100), rendering.Damper("0.05", rendering.TickTime()))
+    found = zw.compare(PADDLE, zw.Wall(100), laws)
+    assert not any(attack.extracts for attack in found.attacks.values())
+    assert list(found.scores["status"].values) == ["undecided", "active", "undecided"]
+    assert "on either side of the surface take no energy out, proved; others may" in found.evidence["0.11"]
+    assert "the game of the worst hand finds more" in found.evidence["0.14"]
+    assert found.evidence["timed"].endswith("it remembers too much for the game")

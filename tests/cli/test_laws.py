@@ -130,15 +130,37 @@ def test_compare_puts_the_row_on_the_bench(tmp_path, monkeypatch, capsys):
     assert 'did you mean "damper"?' in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("command", ["check", "limit"])
-def test_what_proves_says_that_laws_in_a_row_are_not_proved(command, tmp_path, monkeypatch, capsys):
+def test_limit_plays_the_game_against_laws_in_a_row(tmp_path, monkeypatch, capsys):
+    """From a file or from the option, the bracket of Python; its evidence is verified."""
+    monkeypatch.chdir(tmp_path)
+    Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "saturation"\n', encoding="utf-8")
+    bounds = ["--penetration", "0.2 mm", "--speed", "0.1 m/s"]
+    assert main(["limit", "loop.toml", *bounds, "--json", "-o", "limit.json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    law = zw.render(WALL, rendering.Saturation())
+    again = zw.passive_limit(zw.catalogue.device("haptic-paddle"), law, penetration="0.0002", speed="0.1")
+    assert found["proved_passive_N_per_m"] == again.passive
+    assert found["proved_active_N_per_m"] == again.active
+    assert main(["limit", "haptic-paddle", "--stiffness", "400", "--law", "saturation", *bounds]) == 0
+    assert "with saturation at the force limit" in capsys.readouterr().out
+    assert main(["verify", "limit.json"]) == 0
+    shown = capsys.readouterr().out
+    assert "No hand within these bounds takes energy out" in shown
+    assert "row storage" in shown
+    assert "row motion" in shown
+
+
+def test_check_says_that_laws_in_a_row_have_no_transfer_function(tmp_path, monkeypatch, capsys):
     """One line that names the commands that take them."""
     monkeypatch.chdir(tmp_path)
     Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "saturation"\n', encoding="utf-8")
-    said = "laws in a row are not proved: zwidth compare judges them, zwidth simulate shows a touch\n"
-    assert main([command, "loop.toml"]) == 2
+    said = (
+        "laws in a row have no H(z) to check: zwidth limit plays the game of the worst hand against them, "
+        "zwidth compare judges them, zwidth simulate shows a touch\n"
+    )
+    assert main(["check", "loop.toml"]) == 2
     assert capsys.readouterr().err == f"zwidth: loop.toml: [[law]]: {said}"
-    assert main([command, "haptic-paddle", "--stiffness", "400", "--law", "saturation"]) == 2
+    assert main(["check", "haptic-paddle", "--stiffness", "400", "--law", "saturation"]) == 2
     assert capsys.readouterr().err == f"zwidth: --law: {said}"
 
 

@@ -12,6 +12,7 @@ import scipy.signal
 import zwidth as zw
 from zwidth.passivity import checker
 from zwidth.passivity.certificate import verify_document
+from zwidth.passivity.document import to_json
 from zwidth.passivity.motion import Motion
 
 PADDLE = zw.Device(
@@ -544,3 +545,12 @@ def test_the_limit_is_claimed_only_at_the_limit(damping, said):
     verdict = zw.check(zw.Device(damping=damping, rate=1000), resonator)
     assert assert_evidence(verdict).outcome == "passive"
     assert ("exactly at its limit" in verdict.claim) is said
+
+
+@pytest.mark.parametrize(
+    "value", [Fraction(7, 2**90), Fraction(-3, 5**40), 10**40 + Fraction(1, 8), Fraction(1, 3)]
+)
+def test_a_rational_is_written_digit_for_digit(value):
+    """However many digits that takes: a motion may hang on the last one."""
+    (written,) = json.loads(to_json([value]), parse_float=str)
+    assert Fraction(written) == value

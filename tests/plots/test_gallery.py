@@ -11,22 +11,26 @@ import pytest
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 NUMBERS = {
+    "plot_adaptive_tissue": "taken out: naive 2.37 mJ, adaptive 0.00 mJ",
     "plot_bounded_hands": "every hand: 300 N/m; hands up to 0.5 m/s: 747 N/m",
     "plot_bouncing_ball": "after 3 strikes the ball comes back 12.37 times as far as it started",
     "plot_buzz_or_bounce": "active tactile: largest passive stiffness 107.1 N/m",
     "plot_contact_with_memory": "fed with the position: active at 1.84 of the linear criterion's damping",
     "plot_coupling": "one sample late: 115.5 N/m, a spring alone 75.0 N/m",
+    "plot_creep_relaxation": "relaxation time 0.200 s, retardation time 0.333 s",
     "plot_damped_wall_map": "friction: 8 of 8 brackets lie within 1 % of σ = ½ + β_v",
     "plot_delay": "with 0.3 ms: 174.2 N/m; rounded up to 1 ms: 100 N/m",
     "plot_how_stiff": "largest passive stiffness at 1 kHz: 300 N/m",
     "plot_laws": "wall 18.5 mJ at 99%, virtual-damping 0 mJ at 99%, virtual-coupling 4.78 mJ at 33%",
     "plot_motorized_guide": "measured over passive, Kelvin-Voigt without damping: 9.9",
     "plot_paddle_experiments": "10 of 11 statements agree; the other is the boundary at 90 N/m",
+    "plot_parallel_controller": "sampled observer: energy -2.54e-07 J",
     "plot_passivity_controller": "published observer: tail 1.6 mm, energy -18.5 mJ",
     "plot_plane": "largest passive stiffness: 26.08 N·m/rad",
     "plot_prediction": "last over first: original 12.37, prediction 0.03, correction 1.000",
     "plot_soft_tissue": "largest relative difference over 99 points: ",
     "plot_staircase": "energy leaked by the hold: 1.5 mJ, 1.000000000000 of the formula",
+    "plot_tracking_tissue": "found again 3.4 s after the change",
     "plot_velocity_filter": "N = 20: b ≥ 0.248 B, tightest at 35 Hz",
     "plot_worst_case": "admissible speed at 770 N/m: 0.474 m/s",
 }

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from recordings import NOISE, PERIOD, STEP, paddle
+from known_motion import NOISE, PERIOD, STEP, paddle
 
 import zwidth as zw
 from zwidth.plots import identification_figure

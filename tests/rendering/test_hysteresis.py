@@ -101,3 +101,12 @@ def test_descriptions():
     assert Hysteresis(fastest=3, stiffness=5, clamped=True).describe("rotary") == (
         "hysteresis of the width for 3 rad/s, spring of 5 N·m/rad, never pulls"
     )
+
+
+def test_a_hand_to_and_fro_finds_the_same_forces_to_the_bit():
+    """Where the spring sticks nothing adds up: after a thousand rounds no rounding has gathered."""
+    x = np.tile([0.00031, 0.00037, 0.00034, 0.00029], 1000)
+    _, force = commands(x, Hysteresis("0.31", 870), device=IDEAL)
+    rounds = np.reshape(force[4:], (-1, 4))
+    assert (rounds == rounds[0]).all()
+    assert len(set(rounds[0])) == 4

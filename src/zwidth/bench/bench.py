@@ -23,11 +23,15 @@ from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.passivity.check import check
+from zwidth.passivity.worst_hand import worst_hand
 from zwidth.rendering.rendered import Rendered
 from zwidth.rendering.stage import Surroundings
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_PATIENCE = 5.0
+"""Time for the game of a law that nothing else decides [s]."""
 
 _TIMED = 20_000
 """Samples over which a step is timed."""
@@ -199,7 +203,26 @@ def _status(device: Device, law: Environment, found: Attack) -> tuple[str, str]:
     reason = law.stages[-1].theorem(Surroundings(device, law.environment))
     if reason is not None:
         return "theorem", f"By a proof on paper, without a certificate: {reason}."
-    return "undecided", f"{found}; no criterion covers this law"
+    return _by_the_game(device, law, found)
+
+
+def _by_the_game(device: Device, law: Rendered, found: Attack) -> tuple[str, str]:
+    """What the game on a small board adds: a motion refutes; a proof is one of hands on that board."""
+    no_proof = f"{found}; no criterion covers this law"
+    try:
+        played = worst_hand(device, law, seconds=_PATIENCE)
+    except InputError as error:
+        return "undecided", f"{no_proof}; the game of the worst hand was not played: {_cause(error)}"
+    if played.outcome == "active":
+        return "active", f"{found}; but the game of the worst hand finds more. {played.claim}"
+    if played.outcome == "undecided":
+        return "undecided", f"{no_proof}; nor does the game of the worst hand decide it"
+    return "undecided", f"{no_proof}; {played.hand} take no energy out, proved; others may"
+
+
+def _cause(error: InputError) -> str:
+    """What is wrong, without what to try."""
+    return str(error).partition(";")[0]
 
 
 def _covering(law: Rendered) -> Wall | None:

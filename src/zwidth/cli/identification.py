@@ -16,7 +16,7 @@ from zwidth.errors import InputError
 
 if TYPE_CHECKING:
     from zwidth.environment import Environment
-    from zwidth.identification import Identified
+    from zwidth.identification.device.identified import Identified
     from zwidth.identification.logs import Log
     from zwidth.passivity.verdict import Verdict
 
@@ -128,7 +128,7 @@ def run_identify(arguments: argparse.Namespace) -> int:
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     from zwidth.cli.patience import warn_of_compiling_the_estimates
-    from zwidth.identification import identify, log_from
+    from zwidth.identification.recording import identify, log_from
     from zwidth.traces.progress import progress_bar
 
     options = _options(arguments)

@@ -27,8 +27,11 @@ if TYPE_CHECKING:
 
 Form = Literal["quantity", "word", "flag", "list", "velocity"]
 
-NOT_PROVED = "laws in a row are not proved: zwidth compare judges them, zwidth simulate shows a touch"
-"""What `check` and `limit` say to them."""
+NOT_PROVED = (
+    "laws in a row have no H(z) to check: zwidth limit plays the game of the worst hand against them, zwidth "
+    "compare judges them, zwidth simulate shows a touch"
+)
+"""What `check` says to them."""
 
 MOST = 16
 """Laws in a row; more is a mistake."""

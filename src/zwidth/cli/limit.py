@@ -6,7 +6,8 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.environments import option_keys
-from zwidth.cli.options import Once, add_parameters, overrides, refuse_laws
+from zwidth.cli.laws import with_laws
+from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
 from zwidth.cli.output import print_json, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.device.catalogue import PROPERTIES
@@ -24,15 +25,17 @@ BOTH, ONE_OR_NONE = 0, 3
 def configure_limit(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth limit`."""
     parser.usage = (
-        "%(prog)s [SOURCE ...] [--parameter NAME] [--penetration LENGTH] [--speed SPEED] "
+        "%(prog)s [SOURCE ...] [--law NAMES] [--parameter NAME] [--penetration LENGTH] [--speed SPEED] "
         "[--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
         metavar="SOURCE",
         nargs="*",
-        help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both",
+        help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both, "
+        "and [[law]] tables",
     )
+    add_law_option(parser)
     search = parser.add_argument_group("search")
     for option, metavar, meaning in (
         ("--parameter", "NAME", "which parameter, named as its option is (default: stiffness)"),
@@ -54,16 +57,18 @@ def configure_limit(parser: argparse.ArgumentParser) -> None:
         "-o", "--save", metavar="FILE", action=Once, help="save bracket and evidence, for zwidth verify"
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
-    refuse_laws(parser)
     add_parameters(parser)
 
 
 def run_limit(arguments: argparse.Namespace) -> int:
     """`zwidth limit`: 0 if both sides of the limit were found, else 3."""
-    from zwidth.cli.specification import load
+    from zwidth.cli.specification import WITH_LAWS, Specification, read_tables, specified
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    loop = load(arguments.sources, overrides(arguments))
+    tables = read_tables(arguments.sources, WITH_LAWS)
+    given = specified(tables, overrides(arguments))
+    rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
+    loop = Specification(given.device, rendered)
     parameter = _parameter(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
     from zwidth.cli.patience import warn_of_compiling_the_game

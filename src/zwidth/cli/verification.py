@@ -63,7 +63,7 @@ def _misfit(part: Part, outcome: str, what: str) -> Part:
 
 def _is_bounded(part: Mapping[str, object]) -> bool:
     """True for a storage function: it speaks of the hands on its board only."""
-    return part.get("kind") == "storage"
+    return part.get("kind") in ("storage", "row storage")
 
 
 def print_verifications(parts: Sequence[Part]) -> None:

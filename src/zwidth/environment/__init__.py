@@ -16,6 +16,7 @@ from zwidth.environment.wall import Wall
 if TYPE_CHECKING:
     from zwidth.environment.hunt_crossley import HuntCrossley
     from zwidth.environment.nonlinear_spring import NonlinearSpring
+    from zwidth.environment.virtual_body import VirtualBody
 
 __all__ = [
     "BackwardDifference",
@@ -30,13 +31,18 @@ __all__ = [
     "RationalFunction",
     "StandardLinearSolid",
     "VelocityFilter",
+    "VirtualBody",
     "Wall",
     "Window",
     "as_environment",
 ]
 
 
-_RARE = {"HuntCrossley": "hunt_crossley", "NonlinearSpring": "nonlinear_spring"}
+_RARE = {
+    "HuntCrossley": "hunt_crossley",
+    "NonlinearSpring": "nonlinear_spring",
+    "VirtualBody": "virtual_body",
+}
 """Few loops have one: where they are, until they are first used."""
 
 

@@ -188,14 +188,14 @@ def _frame(
     if not isinstance(drive, Amplifier):
         raise InputError(f"amplifier is one of zwidth.amplifiers, got {type(drive).__name__}")
     period = device.exact("sample_period")
-    samples = _samples(duration, period)
+    samples = whole_samples(duration, period)
     points = _points(points_per_sample, samples)
     actuation = drive.actuation(device)
     plant = _plant(device, operator, actuation)
     _check_pieces(plant, float(period), operator.kinematic)
     times, lengths, arrivals, missed = _clock(timing, samples, period, device.exact("delay"))
     signals = operator.signals(times)
-    _check_signals(signals, samples)
+    check_signals(signals, samples)
     if signals.switch_position is not None and timing is not None:
         raise InputError("a motion with switch positions needs a regular clock: leave timing out")
     delay = device.exact("delay") / period
@@ -321,7 +321,7 @@ def _gate(environment: Environment) -> float:
     return laws.SURFACE if isinstance(environment, Wall | HuntCrossley) else laws.PENETRATION
 
 
-def _samples(duration: RealLike, period: Fraction) -> int:
+def whole_samples(duration: RealLike, period: Fraction) -> int:
     length = _number(duration, "duration")
     if length <= 0:
         raise InputError(f"duration must be > 0 s, got {length:g}")
@@ -401,7 +401,7 @@ def _clock(
     return times, lengths, np.stack([interval.astype(np.float64), into]), missed
 
 
-def _check_signals(signals: Signals, samples: int) -> None:
+def check_signals(signals: Signals, samples: int) -> None:
     wanted = {"force": samples, "anchor": samples + 1, "position": samples + 1, "switch_position": samples}
     for name, length in wanted.items():
         values = getattr(signals, name)

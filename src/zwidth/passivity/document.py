@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from decimal import Decimal
+from decimal import Context, Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -106,5 +106,6 @@ def _plain(decimal: Decimal) -> str:
     """Decimal text that JSON accepts, without exponent padding surprises."""
     if decimal == 0:
         return "0"
-    text = str(decimal.normalize() if decimal.adjusted() < 25 else decimal)
+    exact = Context(prec=len(decimal.as_tuple().digits))  # the usual one would round to 28 digits
+    text = str(decimal.normalize(exact) if decimal.adjusted() < 25 else decimal)
     return text.replace("E+", "e").replace("E", "e")

@@ -10,7 +10,7 @@ from typing import Any
 from zwidth.errors import InputError
 from zwidth.passivity.motion import Motion, Repeat
 
-KINDS = ("motion", "contact motion")
+KINDS = ("motion", "contact motion", "row motion")
 
 
 def saved_motion(document: object, name: str) -> Motion:

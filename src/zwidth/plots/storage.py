@@ -57,13 +57,17 @@ def draw_storage(axes: Axes, found: Storage) -> None:
     resolution = float(found.played.board.losses.resolution)
     points = len(position) // found.played.board.domain.cells
     cells = np.arange(len(position)) // points + found.played.board.domain.lowest
-    waiting = energy.values[np.abs(before[:, None] - cells[None, :]).argmin(axis=0), np.arange(len(position))]
     low, high = np.nanmin(energy.values, axis=0), np.nanmax(energy.values, axis=0)
     joules, energy_unit = scale([float(high.max())], "J")
     metres, length_unit = scale([float(np.abs(position).max())], str(energy["position"].attrs["units"]))
     x = metres * position
     axes.fill_between(x, joules * low, joules * high, color=SKY, alpha=0.35, lw=0, label="after any move")
-    axes.plot(x, joules * waiting, color=BLUE, label="the hand waits", gid="waiting")
+    if before.dtype.kind in "if":
+        waits = np.abs(before[:, None] - cells[None, :]).argmin(axis=0)
+        waiting = energy.values[waits, np.arange(len(position))]
+        axes.plot(x, joules * waiting, color=BLUE, label="the hand waits", gid="waiting")
+    else:  # of laws in a row only the extremes are known
+        axes.plot(x, joules * high, color=BLUE, label="at most", gid="most")
     edges = np.arange(cells[0], cells[-1] + 2)
     if len(edges) <= _EDGES:
         axes.xaxis.set_minor_locator(FixedLocator((metres * resolution * edges).tolist()))

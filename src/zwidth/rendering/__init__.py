@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from zwidth.rendering.held import Held
     from zwidth.rendering.hysteresis import Hysteresis
     from zwidth.rendering.kalman import Kalman
+    from zwidth.rendering.parallel_controller import ParallelController
     from zwidth.rendering.passive_leap import PassiveLeap
     from zwidth.rendering.passivity_controller import PassivityController
     from zwidth.rendering.pole_matched import PoleMatched
@@ -48,6 +49,7 @@ __all__ = [
     "Held",
     "Hysteresis",
     "Kalman",
+    "ParallelController",
     "PassiveLeap",
     "PassivityController",
     "PoleMatched",
@@ -77,6 +79,7 @@ _LATER = {
     "Held": "held",
     "Hysteresis": "hysteresis",
     "Kalman": "kalman",
+    "ParallelController": "parallel_controller",
     "PassiveLeap": "passive_leap",
     "PassivityController": "passivity_controller",
     "PoleMatched": "pole_matched",

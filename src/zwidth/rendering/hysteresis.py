@@ -11,6 +11,9 @@ project.  A cycle of depth D ≫ h/k takes 2 h D out.  The hold leaks ½ K (v T)
 
 pays for it up to the speed v_max.  A velocity is not needed: no noise of the encoder is
 amplified, only a step of k Δ is felt.
+
+What is kept is not s but z = u − s/k, where the spring would be relaxed: it moves only while
+the spring slips, so that a hand that goes to and fro finds the same forces again, to the bit.
 """
 
 from __future__ import annotations
@@ -28,7 +31,7 @@ from zwidth.rendering.stage import Stage, Surroundings, positive
 HYSTERESIS = 11.0
 
 _FORCE, _STIFFNESS, _SURFACE, _CLAMPED = range(4)
-_BEFORE, _SPRING = range(2)
+_RELAXED = 0
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
@@ -55,7 +58,7 @@ class Hysteresis(Stage):
     """
 
     code: ClassVar[float] = HYSTERESIS
-    slots: ClassVar[int] = 2
+    slots: ClassVar[int] = 1
 
     force: Exact | None
     stiffness: Exact | None
@@ -100,8 +103,8 @@ class Hysteresis(Stage):
         return [width, spring, float(at.environment.unilateral), float(self.clamped)]
 
     def rested(self, reading: float) -> list[float]:
-        """Where the hand is; the spring relaxed."""
-        return [reading, 0.0]
+        """The spring relaxed where the hand is."""
+        return [reading]
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
@@ -121,11 +124,9 @@ def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: fl
     """One sample; p from i and s from j on are this law's."""
     outside = p[i + _SURFACE] > 0.0 and x <= 0.0
     if outside:
-        s[j + _BEFORE], s[j + _SPRING] = 0.0, 0.0
+        s[j + _RELAXED] = 0.0
         return force
-    width = p[i + _FORCE]
-    spring = s[j + _SPRING] + p[i + _STIFFNESS] * (x - s[j + _BEFORE])
-    spring = min(max(spring, -width), width)
-    s[j + _BEFORE], s[j + _SPRING] = x, spring
-    force += spring
+    width, stiffness = p[i + _FORCE], p[i + _STIFFNESS]
+    s[j + _RELAXED] = min(max(s[j + _RELAXED], x - width / stiffness), x + width / stiffness)
+    force += min(max(stiffness * (x - s[j + _RELAXED]), -width), width)
     return max(force, 0.0) if p[i + _CLAMPED] > 0.0 else force

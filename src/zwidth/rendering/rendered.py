@@ -65,7 +65,10 @@ class Rendered(Environment):
 
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
         """None: raises InputError."""
-        raise InputError(f"there is no H(z) of this, its laws are not linear: {self.describe()}")
+        raise InputError(
+            f"there is no H(z) of this, its laws are not linear: {self.describe()}; zwidth.worst_hand plays "
+            "the game of the worst hand against it"
+        )
 
     def describe(self, motion: str = "linear") -> str:
         """Environment and laws, on one line."""

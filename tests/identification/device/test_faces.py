@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from recordings import COULOMB, DAMPING, MASS, PERIOD, STEP, Recording, paddle
+from known_motion import COULOMB, DAMPING, MASS, PERIOD, STEP, Recording, paddle
 from scipy import stats
 
 import zwidth as zw
 from zwidth.cli.specification import load
-from zwidth.identification import Estimate
 from zwidth.identification.device.curve import friction_bins
+from zwidth.identification.device.identified import Estimate
 from zwidth.identification.device.limits import advice, limits, percent
 
 

@@ -61,6 +61,8 @@ def identify(
         If the log shows too little: too few strokes, or no force and no mass.
     """
     zero = _checked(log, mass, delay, zero)
+    if model not in ("Coulomb and viscous", "viscous"):
+        raise InputError(f'model is "Coulomb and viscous" or "viscous", got {model!r}')
     own = (*(() if mass is not None else ("mass",)), "damping", "coulomb_friction")
     samples = delay / log.sample_period
     choice = choose(log, own, mass, samples, zero)

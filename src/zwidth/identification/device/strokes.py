@@ -28,10 +28,13 @@ From rest at a constant acceleration the first tick takes √2 + 1 times as long
 NOISE_COUNTS = 8
 """Where the position has no steps: standard deviations of its noise that make a count."""
 
+MEDIAN = 0.6745
+"""Of the absolute value of Gaussian noise, in standard deviations."""
+
 FINEST = 1e-5
 """A count where the position has neither steps nor noise, in parts of its range."""
 
-HYSTERESIS = 0.25
+HYSTERESIS = 0.5
 """Parts of a count by which a position without steps must pass an edge."""
 
 
@@ -131,13 +134,15 @@ def _slope(ticks: NDArray[np.int64], edges: Array, begin: int, end: int, i: int)
 
 def count_without_steps(position: Array) -> float:
     """What serves as a count where the position has no steps: above its noise [m; rad]."""
-    noise = np.diff(position, 3).std() / np.sqrt(20.0) if position.size > 3 else 0.0
-    return max(NOISE_COUNTS * float(noise), FINEST * float(np.ptp(position)))
+    noise = 0.0
+    if position.size > 3:  # third differences leave no motion; the median is not led astray by jumps
+        noise = float(np.median(np.abs(np.diff(position, 3)))) / (MEDIAN * np.sqrt(20.0))
+    return max(NOISE_COUNTS * noise, FINEST * float(np.ptp(position)))
 
 
 @compiled
 def counted(position: Array, count: float) -> Array:
-    """Readings of a position without steps, [counts]: an edge is passed by a quarter count or not at all."""
+    """Readings of a position without steps, [counts]: an edge is passed by half a count or not at all."""
     readings = np.empty(position.size)
     reading = np.floor(position[0] / count)
     for k in range(position.size):

@@ -64,7 +64,7 @@ def period(survey: Survey, stated: float | None, timed: bool, source: str) -> tu
         text = f"sample period {stated:.9g} s as stated; there are no stamps to compare with"
         return stated, Finding(kind="sample period", text=text)
     mean, count = survey.mean_interval, max(1, survey.intervals)
-    uncertainty = (4 * survey.deviation * survey.runs**0.5 + 4e-16 * survey.latest) / count + 1e-12 * mean
+    uncertainty = (2 * survey.deviation * survey.runs**0.5 + 4e-16 * survey.latest) / count + 1e-12 * mean
     inferred = settled(mean, uncertainty)
     if stated is None:
         return inferred, Finding(kind="sample period", text=f"sample period {inferred:.9g} s from the stamps")
@@ -105,8 +105,11 @@ def clock(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Findi
         text = f"time starts again, {tally['restarts']} ×: recordings one after the other, a run each"
         yield Finding(kind="restart", text=text)
     if tally["repeated"]:
-        text = f"{tally['repeated']} stamps come twice while the clock goes on; the second row is left out"
+        text = f"{tally['repeated']} rows come twice while the clock goes on; the second is left out"
         yield Finding(kind="repeated", text=text, samples=tally["repeated"])
+    if tally["twice"]:
+        text = f"{tally['twice']} stamps come twice with different numbers; they are taken for two samples"
+        yield Finding(kind="stamp twice", text=text, samples=tally["twice"])
     supposed = (
         "supposed: the samples were taken evenly and only the stamps vary, so the row's number is the clock"
     )

@@ -46,7 +46,7 @@ def _unit(field: pa.Field) -> str | None:
 
 
 def _read(path: Path, names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
-    with pq.ParquetFile(path) as file:
+    with pq.ParquetFile(path, pre_buffer=False) as file:
         for batch in file.iter_batches(batch_size=PIECE, columns=list(dict.fromkeys(names))):
             yield tuple(_values(batch.column(batch.schema.get_field_index(name))) for name in names)
 

@@ -80,6 +80,10 @@ class Cutter:
 
     def _pieces(self, rows: Rows, where: NDArray[np.intp], kinds: NDArray[np.intp]) -> Iterator[Segment]:
         repeated = where[kinds == REPEATED]
+        repeated = repeated[repeated > 0]
+        same = _same_as_before(rows, repeated)
+        self.tally["twice"] += int(np.count_nonzero(~same))
+        repeated = repeated[same]
         if repeated.size:
             self.tally["repeated"] += repeated.size
             kept = np.ones(rows.time.size, dtype=bool)
@@ -129,3 +133,12 @@ class Cutter:
             self.tally["restarts"] += 1
         self._run += 1
         self._begins = True
+
+
+def _same_as_before(rows: Rows, places: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Where a row holds the numbers of the one before it."""
+    same = np.ones(places.size, dtype=bool)
+    for column in rows[1:]:
+        if column is not None:
+            same &= column[places] == column[places - 1]
+    return same

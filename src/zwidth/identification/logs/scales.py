@@ -77,6 +77,7 @@ def meaning_of(
     """
     _check_keys("units", units, columns)
     _check_keys("scale", scale, columns)
+    _check_scales(scale or {})
     stated = {q: _unit_text(table, q, c, units) for q, c in columns.items()}
     if motion is None and table.attributes.get("motion") in ("linear", "rotary"):
         motion = table.attributes["motion"]
@@ -116,6 +117,14 @@ def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[
             raise InputError(f'{what}: there is no quantity "{key}"; there are {", ".join(QUANTITIES)}')
         if key not in columns:
             raise InputError(f"{what}: the log has no {key}; leave it out, or name its column in columns")
+
+
+def _check_scales(scale: Mapping[str, object]) -> None:
+    for quantity, given in scale.items():
+        what = f"scale of the {quantity}"
+        factor = _scale(given, what)[0] if isinstance(given, str) else float(parse_number(given, "1", what))
+        if factor == 0:
+            raise InputError(f"{what} must not be 0: nothing would be left of the column")
 
 
 def _unit_text(table: Table, quantity: str, column: str, units: Mapping[str, str] | None) -> str | None:

@@ -12,6 +12,7 @@ by their lowest, since a stamp in a packet is late and never early.
 
 from __future__ import annotations
 
+from bisect import bisect
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
 
 _SIDE, _NOISY_SIDE = 7, 31
 """Samples on each side of a jump that say where r was and is; more where stamps vary by a tenth of T."""
+
+_REPEATS = 0.005
+"""Share of stamps that come twice beyond which the clock is a coarse one."""
 
 _WIDEST = 4096
 """Samples over which stamps in groups are averaged."""
@@ -77,7 +81,8 @@ def clock_of(time: Array, source: str) -> Clock:
     usual = float(np.median(steps))
     width = max(1, min(steps.size // 2, _WIDEST))
     period = float(np.median(time[width:] - time[:-width])) / width
-    if usual > 0 and period < 2.5 * usual and np.mean(np.abs(steps - usual) < 0.25 * usual) > 0.5:
+    single = period < 2.5 * usual and np.mean(np.abs(steps) < 0.25 * usual) <= _REPEATS
+    if usual > 0 and single and np.mean(np.abs(steps - usual) < 0.25 * usual) > 0.5:
         low, high = np.quantile(steps, (0.25, 0.75))
         return Clock(period=usual, group=1, noisy=bool(high - low > 0.1 * usual))
     group = _longest_group(steps, period)
@@ -100,8 +105,8 @@ def _wanders(time: Array, period: float, width: int) -> bool:
 
 
 def _longest_group(steps: Array, period: float) -> int:
-    """Of the stretches between steps longer than 1.5 T, the length below which nearly all lie."""
-    ends = np.flatnonzero(steps > 1.5 * period)
+    """Of the stretches between steps longer than T/2, the length below which nearly all lie."""
+    ends = np.flatnonzero(steps > 0.5 * period)
     if ends.size < 2:
         return max(2, steps.size)
     return max(2, int(np.quantile(np.diff(ends), 0.99)))
@@ -117,7 +122,8 @@ def jumps(time: Array, first: int, clock: Clock) -> tuple[Indices, Indices]:
     odd = (steps > 1.5 * period) | (steps < (0.5 if clock.group == 1 else -0.5) * period)
     where = np.flatnonzero(odd)
     where = where[where >= first]
-    shift = _shift(time - period * np.arange(time.size), where, clock) / period
+    residual = time - period * np.arange(time.size)
+    shift = _shift(residual, where, clock) / period
     kind = np.zeros(where.size, dtype=np.intp)
     least = 0.5 if clock.group == 1 else max(0.6, clock.group / 8)
     kind[(steps[where] > 1.5 * period) & (shift > least)] = GAP
@@ -125,8 +131,10 @@ def jumps(time: Array, first: int, clock: Clock) -> tuple[Indices, Indices]:
         kind[(steps[where] < 0.5 * period) & (shift < -0.5)] = REPEATED
     kind[(steps[where] < -0.5 * period) & (shift < -least)] = BACK
     real = kind > 0
-    if clock.group > 1 or clock.noisy:
+    if clock.group > 1:
         real = _widest_of_each(where, real, steps, clock.reach)
+    elif clock.noisy:
+        real = _told_apart(where, real, steps, residual, clock)
     return where[real], kind[real]
 
 
@@ -152,6 +160,27 @@ def _widest_of_each(where: Indices, real: NDArray[np.bool_], steps: Array, reach
     for near in np.split(marked, np.flatnonzero(np.diff(where[marked]) > reach) + 1):
         if near.size:
             kept[near[np.argmax(np.abs(steps[where[near]]))]] = True
+    return kept
+
+
+def _told_apart(
+    where: Indices, real: NDArray[np.bool_], steps: Array, residual: Array, clock: Clock
+) -> NDArray[np.bool_]:
+    """Of marks near each other, those that still jump when no level reaches across a wider jump."""
+    kept = np.zeros_like(real)
+    accepted: list[int] = []
+    marked = np.flatnonzero(real)
+    for mark in marked[np.argsort(-np.abs(steps[where[marked]]), kind="stable")]:
+        k = int(where[mark])
+        place = bisect(accepted, k)
+        low = max(k + 1 - clock.reach, 0, accepted[place - 1] + 1 if place else 0)
+        high = min(k + 1 + clock.reach, residual.size)
+        if place < len(accepted):
+            high = min(high, accepted[place] + 1)
+        shift = float(np.median(residual[k + 1 : high]) - np.median(residual[low : k + 1]))
+        if abs(shift) > 0.5 * clock.period:
+            accepted.insert(place, k)
+            kept[mark] = True
     return kept
 
 

@@ -20,11 +20,13 @@ from .contact_proof import contact
 from .motions import motion_energy, stored_at_start
 from .proofs import PROOFS
 from .reading import Invalid, get, number
+from .row_motion import row_motion_energy
 from .storage_proof import storage
+from .storage_row import storage_of_row
 
 __all__ = ["Verification", "verify"]
 
-_KINDS = {**PROOFS, "contact": contact, "storage": storage}
+_KINDS = {**PROOFS, "contact": contact, "storage": storage, "row storage": storage_of_row}
 
 
 class Verification(NamedTuple):
@@ -42,7 +44,9 @@ def verify(document: Mapping[str, Any]) -> Verification:
         if kind == "motion":
             return _motion(document)
         if kind == "contact motion":
-            return _contact_motion(document)
+            return _round_again(contact_motion_energy(document))
+        if kind == "row motion":
+            return _round_again(row_motion_energy(document))
         if not isinstance(kind, str) or kind not in _KINDS:
             raise Invalid(f"kind must be motion, {', '.join(_KINDS)}; got {str(kind)[:40]!r}")
         return Verification(True, _KINDS[kind](document))
@@ -66,9 +70,9 @@ def _motion(document: Mapping[str, Any]) -> Verification:
     return Verification(True, f"the motion extracts {float(energy):g} J", energy)
 
 
-def _contact_motion(document: Mapping[str, Any]) -> Verification:
-    """A motion that begins without contact, gains in all, and gains again with every further round."""
-    energy, gain = contact_motion_energy(document)
+def _round_again(found: tuple[Fraction, Fraction]) -> Verification:
+    """A motion that gains in all, and gains again with every further round."""
+    energy, gain = found
     if energy <= 0 or gain <= 0:
         less = min(energy, gain)
         return Verification(False, f"the motion extracts {float(less):g} J: none comes out", energy)

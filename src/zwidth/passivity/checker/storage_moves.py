@@ -106,6 +106,28 @@ def first_violation_in_parts(
     return -1
 
 
+@njit(cache=True, parallel=True)
+def first_violation_in_table(value: Any, successors: Any, forces: Any, costs: Any, steps: int) -> int:
+    """The same where a table says which state follows, −1 off the board; value is (states, steps + 1)."""
+    states, knots = value.shape
+    reach = successors.shape[1] // 2
+    worst = np.full(states, -1, np.int64)
+    for s in prange(states):
+        for j in range(knots):
+            for move in range(2 * reach + 1):
+                then = successors[s, move]
+                if then < 0:
+                    continue
+                for j2 in range(knots):
+                    d = (move - reach) * steps + j2 - j
+                    if abs(d) < costs.size and value[s, j] < value[then, j2] - forces[s] * d - costs[abs(d)]:
+                        worst[s] = s * knots + j
+    for s in range(states):
+        if worst[s] >= 0:
+            return int(worst[s])
+    return -1
+
+
 @njit(cache=True)
 def _between(value: Any, n: int, h: int, at: int, j: int) -> int:
     """V at a level given in 2⁻¹⁶ parts, rounded up."""

@@ -135,20 +135,20 @@ def signed(value: Any) -> int:
     return int(found)
 
 
-def values_of(text: Any, shape: tuple[int, ...]) -> Any:
+def values_of(text: Any, shape: tuple[int, ...], kind: str = "<i8") -> Any:
     import numpy as np
 
     if not isinstance(text, str):
-        raise Invalid("the storage function must be text")
+        raise Invalid("storage functions and tables must be text")
     size = 8 * prod(shape)
     try:
         packed = base64.b64decode(text, validate=True)
         raw = zlib.decompressobj().decompress(packed, size + 1)
     except (ValueError, zlib.error) as error:
-        raise Invalid(f"the storage function cannot be unpacked: {error}") from None
+        raise Invalid(f"a storage function or table cannot be unpacked: {error}") from None
     if len(raw) != size:
         raise Invalid("the storage function has not one value for each state")
-    return np.frombuffer(raw, dtype="<i8").reshape(shape)
+    return np.frombuffer(raw, dtype=kind).reshape(shape)
 
 
 def histories_of(reach: int, memory: int) -> list[tuple[int, ...]]:

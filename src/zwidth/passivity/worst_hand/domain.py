@@ -85,9 +85,9 @@ def domain_for(
     memory = law.memory + losses.delay
     usual = (COUNTS if law.relaxing is None else RELAXING_COUNTS).get(memory, 1)
     deepest = (
-        _counts("penetration", penetration, losses.resolution) or _extent(law, losses) or Fraction(usual)
+        counts_of("penetration", penetration, losses.resolution) or _extent(law, losses) or Fraction(usual)
     )
-    fastest = _counts("speed", speed, losses.resolution / losses.period)
+    fastest = counts_of("speed", speed, losses.resolution / losses.period)
     highest = max(1, ceil(deepest) - 1)
     reach = ceil(fastest) if fastest else min(usual, 2 * highest + 1)
     lowest = 1 - (memory + 1) * reach  # beyond it, a hand has been forgotten
@@ -112,7 +112,14 @@ def domain_for(
     return domain
 
 
-def _counts(name: str, value: RealLike | None, unit: Fraction) -> Fraction:
+def counts_of(name: str, value: RealLike | None, unit: Fraction) -> Fraction:
+    """A bound on the hand in counts; 0 where there is none.
+
+    Raises
+    ------
+    InputError
+        If it is not > 0.
+    """
     if value is None:
         return Fraction(0)
     exact = Exact(value).fraction

@@ -25,9 +25,11 @@ from zwidth.passivity.worst_hand.law import FiniteLaw, finite_law
 from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.play_relaxing import play_relaxing
 from zwidth.passivity.worst_hand.relaxing import RelaxingBoard
+from zwidth.passivity.worst_hand.row_game import RowGame, row_game
 from zwidth.passivity.worst_hand.solve import Played, play
 from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import RealLike
+from zwidth.rendering.rendered import Rendered
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -154,6 +156,27 @@ class Game:
             f"up to {deepest:.4g} {length} ({self.domain.highest + 1} counts) {outside}"
         )
 
+    @property
+    def contact(self) -> str:
+        """What is covered of contact, in words."""
+        return (
+            "contact made and broken at any instant"
+            + ("; the law never pulls" if self.law.clamped else "")
+            + ("" if self.law.surface != "none" else "; the law acts on both sides of x = 0")
+        )
+
+    @property
+    def actuator(self) -> tuple[bool, bool]:
+        """Whether force limit and converter steps are counted in."""
+        return self.law.force_limit is not None, self.law.force_step is not None
+
+    @property
+    def further(self) -> tuple[str, ...]:
+        """What of the law is not exact."""
+        if self.law.power is None or self.law.power[1].denominator == 1:
+            return ()
+        return (f"K uⁿ is rounded to {DIGITS} digits, as no decimal writes it",)
+
     def prove(
         self, steps: int, deadline: float = float("inf"), tell: Tell | None = None, on: str = "cpu"
     ) -> Storage | None:
@@ -194,14 +217,16 @@ def game_of(
     force_limit: bool = False,
     force_resolution: bool = False,
     friction: FrictionCurve | None = None,
-) -> Game:
+) -> Game | RowGame:
     """The game of a loop; arguments as for `worst_hand`."""
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
-    given = as_environment(environment)
-    law = finite_law(device, given, force_limit=force_limit, force_resolution=force_resolution)
     if friction is not None and not isinstance(friction, FrictionCurve):
         raise InputError(f"friction is a FrictionCurve, got {type(friction).__name__}")
+    given = as_environment(environment)
+    if isinstance(given, Rendered):
+        return row_game(device, given, penetration, speed, force_limit, force_resolution, friction)
+    law = finite_law(device, given, force_limit=force_limit, force_resolution=force_resolution)
     losses = losses_of(device, friction)
     return Game(law, losses, domain_for(law, losses, penetration, speed), device.motion)
 
@@ -290,39 +315,30 @@ def patience(seconds: float) -> float:
     return float(seconds)
 
 
-def assumptions(device: Device, game: Game) -> tuple[str, ...]:
+def assumptions(device: Device, game: Game | RowGame) -> tuple[str, ...]:
     """What a proof of a game covers, in words."""
     force, drag = ("N·m", "N·m·s/rad") if device.motion == "rotary" else ("N", "N·s/m")
     losses = game.losses
     return (
-        "contact made and broken at any instant"
-        + ("; the law never pulls" if game.law.clamped else "")
-        + ("" if game.law.surface != "none" else "; the law acts on both sides of x = 0"),
+        game.contact,
         f"{_COVERS}{game.hand}",
         f"the device takes out at least b = {float(losses.damping):.6g} {drag} of viscous and "
         f"f_c = {float(losses.coulomb_friction):.6g} {force} of Coulomb friction"
         if losses.curve is None
         else f"the device takes out what its friction curve says; {losses.curve.assumption}",
         "a hand without limit on force; the mass of the device plays no part",
-        _actuator(game.law),
+        _actuator(*game.actuator),
         "a constant sample period and delay, no missed samples",
         "encoder counts of one size, their phase against the surface unknown",
         *(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed),
-        *_rounded(game.law),
+        *game.further,
     )
 
 
-def _rounded(law: FiniteLaw) -> tuple[str, ...]:
-    """What of the law is not exact."""
-    if law.power is None or law.power[1].denominator == 1:
-        return ()
-    return (f"K uⁿ is rounded to {DIGITS} digits, as no decimal writes it",)
-
-
-def _actuator(law: FiniteLaw) -> str:
+def _actuator(limited: bool, stepped: bool) -> str:
     """What of the actuator is in the game."""
-    parts = {"force limit": law.force_limit, "converter steps": law.force_step}
-    counted = [name for name, value in parts.items() if value is not None]
+    parts = {"force limit": limited, "converter steps": stepped}
+    counted = [name for name, value in parts.items() if value]
     rest = ", ".join([name for name in parts if name not in counted] + ["current rise and added filters"])
     if not counted:
         return f"ideal actuator: {rest} are not in the claim"

@@ -23,9 +23,12 @@ from zwidth.passivity.document import to_json, unit_suffix
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.worst_hand.gain import Gain
 from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of, patience
+from zwidth.passivity.worst_hand.row_game import RowGame, row_game
+from zwidth.passivity.worst_hand.row_table import DoesNotClose
 from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.rendering.rendered import Rendered
 
 MORE_IS_SAFER = frozenset({"device.damping", "device.coulomb_friction", "device.rate"})
 """Parameters of which a loop needs enough; of all others it may have too much."""
@@ -168,7 +171,7 @@ def passive_limit(
         A parameter of the environment ("stiffness", "damping") or of the device
         ("coulomb_friction", "device.damping", "sample_period", "resolution", …);
         of a `NonlinearSpring` "gain", a factor on its forces; of a `HuntCrossley` contact
-        "stiffness" or "dissipation".
+        "stiffness" or "dissipation".  Of laws in a row one of the environment that they render.
     penetration, speed
         Bounds on the hand [m; rad], [m/s; rad/s], as for `worst_hand`.
     force_limit, force_resolution
@@ -208,11 +211,21 @@ def passive_limit(
         return bracket
     known = (None, None) if bracket is None else (bracket.passive, bracket.active)
 
-    def game(value: Exact) -> Game:
-        loop = search.parameter.change(value)
-        return game_of(*loop, penetration, speed, force_limit, force_resolution, friction)
+    counted = penetration, speed, force_limit, force_resolution, friction
+    boards = _one_board(device, law, *counted) if isinstance(law, Rendered) else ()
+
+    def game(value: Exact) -> Game | RowGame:
+        changed, environment = search.parameter.change(value)
+        if isinstance(environment, Rendered):
+            return row_game(changed, environment, *counted, boards)
+        return game_of(changed, environment, *counted)
 
     return search.by_games(device, game, known)
+
+
+def _one_board(device: Device, law: Rendered, *counted: Any) -> tuple[tuple[int, int]]:
+    """The board on which laws in a row close as they are given, for all values of a parameter."""
+    return (row_game(device, law, *counted).board,)
 
 
 class _Search:
@@ -261,7 +274,7 @@ class _Search:
     def by_games(
         self,
         device: Device,
-        game: Callable[[Exact], Game],
+        game: Callable[[Exact], Game | RowGame],
         every_hand: tuple[float | None, float | None],
     ) -> Bracket:
         """A bracket from games on finer and finer boards."""
@@ -274,7 +287,10 @@ class _Search:
 
             def proved(value: Exact, steps: int = steps, tell: Tell = tell) -> bool:
                 self._count()
-                storage = game(value).prove(steps, self.deadline, tell)
+                try:
+                    storage = game(value).prove(steps, self.deadline, tell)
+                except DoesNotClose:
+                    return False
                 if storage is not None:
                     proofs.clear()
                     proofs[value] = storage
@@ -282,7 +298,10 @@ class _Search:
 
             def refuted(value: Exact, fine: int = fine, tell: Tell = tell) -> bool:
                 self._count()
-                motion = game(value).refute(fine, self.deadline, tell)
+                try:
+                    motion = game(value).refute(fine, self.deadline, tell)
+                except DoesNotClose:
+                    return False
                 if motion is not None:
                     motions[value] = motion
                 return motion is not None
@@ -354,7 +373,7 @@ class _Search:
             if good is None or bad is None:
                 value = _decimal(value * (factor if (towards > 0) == forward else 1 / factor))
                 factor = min(factor**2, 4.0)
-            if abs(log2(value / start)) > _FARTHEST:
+            if max(abs(log2(value / origin)) for origin in (start, self._first())) > _FARTHEST:
                 break
         while good is not None and bad is not None and abs(bad - good) > fine * max(bad, good):
             if self._late():
@@ -420,6 +439,15 @@ def _decimal(value: float) -> Exact:
 
 
 def _parameter(device: Device, environment: Environment, name: str) -> _Parameter:
+    if isinstance(environment, Rendered):  # one of the environment that is rendered; laws follow it
+        row = environment
+        inner = _parameter(device, row.environment, name)
+
+        def rendered(value: Exact) -> tuple[Device, Environment]:
+            changed, environment = inner.change(value)
+            return changed, Rendered(environment, row.stages)
+
+        return inner._replace(change=rendered)
     owner, _, key = name.rpartition(".")
     in_environment = {f.name for f in fields(environment)} - {"exponent"}  # it changes the unit of K
     in_device = {f.name for f in fields(device)} | {"rate"}

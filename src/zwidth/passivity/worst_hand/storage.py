@@ -16,6 +16,7 @@ import numpy as np
 
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.worst_hand.board import Board
 from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.relaxing import RelaxingBoard
 from zwidth.passivity.worst_hand.solve import Played
@@ -49,12 +50,7 @@ class Storage:
             "kind": "storage",
             "loop": loop_document(board.losses, self.motion),
             "law": board.law_document(self.motion),
-            "domain": {
-                "lowest_count": board.domain.lowest,
-                "highest_count": board.domain.highest,
-                "largest_move_counts": _plainly(board.domain.speed),
-                "steps_per_count": board.steps,
-            },
+            "domain": domain_document(board),
             "force_unit": exact_text(board.force_unit),
             "storage": base64.b64encode(packed).decode("ascii"),
         }
@@ -124,6 +120,16 @@ class Storage:
 def _plainly(counts: Fraction) -> int | str:
     """A whole number as one."""
     return int(counts) if counts.denominator == 1 else exact_text(counts)
+
+
+def domain_document(board: Board) -> dict[str, Any]:
+    """Where the hand may be and how far it may go, as data."""
+    return {
+        "lowest_count": board.domain.lowest,
+        "highest_count": board.domain.highest,
+        "largest_move_counts": _plainly(board.domain.speed),
+        "steps_per_count": board.steps,
+    }
 
 
 def loop_document(losses: Losses, motion: str) -> dict[str, Any]:

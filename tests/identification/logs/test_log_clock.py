@@ -91,6 +91,14 @@ def test_gaps_on_the_border_of_a_piece_are_found() -> None:
         assert sum(b.time.size for b in log.blocks()) == count - 5
 
 
+@pytest.mark.parametrize("rate", [1003, 1010, 1050, 1500, 2200])
+def test_a_clock_of_milliseconds_drops_no_sample_of_a_faster_loop(rate: int) -> None:
+    """Between 1 and 2 kHz stamps in whole ms come once or twice: every row is a sample."""
+    log = zw.log_of(time=np.round(np.arange(20000) / rate, 3), position=drift(20000))
+    assert (log.samples, log.runs) == (20000, 1)
+    assert log.sample_period == pytest.approx(1 / rate, rel=1e-3)
+
+
 @pytest.mark.parametrize("unit", [1e-3, 1.1e-3, 5e-3])
 def test_a_coarse_clock_repeats_stamps_and_no_sample_is_left_out(unit: float) -> None:
     """3 kHz stamped by a clock that ticks every few ms: the rows are the clock, the period their mean."""
@@ -201,3 +209,20 @@ def test_rows_without_a_number_cut_the_run(recording) -> None:
     mostly = np.where(np.arange(4000) % 3 == 0, recording.force, np.nan)
     with pytest.raises(zw.InputError, match="different rates"):
         zw.log_of(time=recording.time, position=x, hand_force=mostly)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_every_gap_is_found_behind_jitter(seed: int) -> None:
+    """Gaps of any length, wherever they fall, and stamps off by up to T/5: runs and times as they were."""
+    random = np.random.default_rng(seed)
+    count, period = int(random.integers(1000, 20000)), 10 ** random.uniform(-4, -2)
+    kept = np.ones(count, dtype=bool)
+    for start in random.integers(10, count - 60, random.integers(0, 12)):
+        kept[start : start + random.integers(1, 40)] = False
+    spread = random.choice([0.0, 0.02, 0.1, 0.2])
+    (rows,) = np.nonzero(kept)
+    stamps = (rows + spread * random.uniform(-1, 1, rows.size)) * period
+    log = zw.log_of(time=stamps, position=random.normal(size=rows.size))
+    assert log.runs == 1 + np.count_nonzero(np.diff(rows) > 1)
+    time = np.concatenate([b.time for b in log.blocks()])
+    assert np.abs(time - rows * period).max() < 0.5 * period

@@ -140,6 +140,9 @@ def test_unknown_keys_of_the_dictionaries(tmp_path: Path) -> None:
         zw.read_log(path, columns={"force": "force_N"})
     with pytest.raises(zw.InputError, match="the log has no actuator_force"):
         zw.read_log(path, units={"actuator_force": "N"})
+    for nothing in (0, "0 N/V"):
+        with pytest.raises(zw.InputError, match="must not be 0"):
+            zw.read_log(path, scale={"hand_force": nothing})
     with pytest.raises(zw.InputError, match="no factor"):
         zw.read_log(path, scale={"hand_force": "two N/V"})
 

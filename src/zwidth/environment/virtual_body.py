@@ -1,0 +1,82 @@
+"""What a display of admittance renders: a body that answers the hand's force with a velocity.
+
+    implicit   (M + B T + K T²) v_k = M v_{k−1} + T (φ_k − K y_k)
+    explicit   M v_k = M v_{k−1} + T (φ_{k−1} − B v_{k−1} − K y_{k−1})
+               y_{k+1} = y_k + T v_k
+
+φ is the force that was read, y where the body is; its spring ends at y = 0.  Both
+are the body M v̇ + B v + K y = f in one step of Euler, backward and forward: the
+explicit one answers a sample later.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from zwidth.environment.coefficients import read_coefficient
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike
+
+Integration = Literal["implicit", "explicit"]
+
+INTEGRATIONS: tuple[Integration, ...] = ("implicit", "explicit")
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class VirtualBody:
+    """A mass with a damper and a spring to the ground, ``M v̇ + B v + K y = f``, stepped with the samples.
+
+    Parameters
+    ----------
+    mass
+        M > 0 [kg].
+    damping
+        B ≥ 0 [N·s/m].
+    stiffness
+        K ≥ 0, to y = 0 [N/m].
+    integration
+        "implicit" (default), Euler backward; "explicit", forward, a sample later.
+
+    Raises
+    ------
+    InputError
+        If a number is outside its bound, or integration is none of the two.
+    """
+
+    mass: Exact
+    damping: Exact
+    stiffness: Exact
+    integration: Integration
+
+    def __init__(
+        self,
+        mass: RealLike,
+        damping: RealLike = 0,
+        stiffness: RealLike = 0,
+        integration: Integration = "implicit",
+    ) -> None:
+        m, b, k = (
+            read_coefficient(value, key)
+            for value, key in ((mass, "mass"), (damping, "damping"), (stiffness, "stiffness"))
+        )
+        if m <= 0:
+            raise InputError(
+                f"mass must be > 0, got {m:g}: a body without mass follows every jump of the force; a light "
+                "one is unstable against a stiff hand, see zwidth.stable_virtual_masses"
+            )
+        for key, value in (("damping", b), ("stiffness", k)):
+            if value < 0:
+                raise InputError(f"{key} must be ≥ 0, got {value:g}: the body itself would give out energy")
+        if integration not in INTEGRATIONS:
+            raise InputError(f'integration is "implicit" or "explicit", got {integration!r}')
+        own = {"mass": m, "damping": b, "stiffness": k, "integration": integration}
+        for name, given in own.items():
+            object.__setattr__(self, name, given)
+
+    def describe(self) -> str:
+        """The body with its numbers, on one line."""
+        parts = [f"{self.mass:.6g} kg"]
+        parts += [f"{self.damping:.6g} N·s/m"] if self.damping else []
+        parts += [f"{self.stiffness:.6g} N/m"] if self.stiffness else []
+        return f"virtual body, {', '.join(parts)}, {self.integration}"

@@ -1,0 +1,40 @@
+"""Soft tissue from measurements: how it relaxes and creeps, fits, tracking, and a wall that follows it."""
+
+from zwidth.environment.creeping import creep, position_response
+from zwidth.environment.relaxing import force_response, relaxation
+from zwidth.identification.tissue.adaptive import AdaptiveSolid, Rendered, required_damping
+from zwidth.identification.tissue.comparison import TissueComparison
+from zwidth.identification.tissue.first_order import (
+    Solid,
+    coefficients,
+    five_parameters,
+    solid_of,
+    solid_of_five,
+)
+from zwidth.identification.tissue.fit import compare_tissues, fit_tissue
+from zwidth.identification.tissue.published import track_five_parameters
+from zwidth.identification.tissue.recursive import RecursiveSolid, Track, Tracker
+from zwidth.identification.tissue.result import TissueFit
+
+__all__ = [
+    "AdaptiveSolid",
+    "RecursiveSolid",
+    "Rendered",
+    "Solid",
+    "TissueComparison",
+    "TissueFit",
+    "Track",
+    "Tracker",
+    "coefficients",
+    "compare_tissues",
+    "creep",
+    "fit_tissue",
+    "five_parameters",
+    "force_response",
+    "position_response",
+    "relaxation",
+    "required_damping",
+    "solid_of",
+    "solid_of_five",
+    "track_five_parameters",
+]

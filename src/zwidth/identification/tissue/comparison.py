@@ -1,0 +1,45 @@
+"""Several models fitted to one record, beside each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from zwidth.identification.tissue.result import TissueFit
+from zwidth.identification.tissue.table import html_of, lines_of
+
+
+@dataclass(frozen=True, eq=False)
+class TissueComparison:
+    """Several models fitted to one record, that of the smallest BIC first.
+
+    Parameters
+    ----------
+    fits
+        In the order of their BIC.
+    """
+
+    fits: tuple[TissueFit, ...]
+
+    @property
+    def best(self) -> TissueFit:
+        """The fit of the smallest BIC."""
+        return self.fits[0]
+
+    def __getitem__(self, name: str) -> TissueFit:
+        return {fit.model.name: fit for fit in self.fits}[name]
+
+    def table(self) -> list[list[str]]:
+        """Headings, then one line of text per model; AIC and BIC above the smallest."""
+        aic, bic = (min(getattr(fit, key) for fit in self.fits) for key in ("aic", "bic"))
+        lines = [["model", "parameters", "r²", "RMS", "AIC above", "BIC above", "identifiable"]]
+        for fit in self.fits:
+            numbers = f"{fit.r_squared:.6f}", f"{fit.rms:.3g}", f"{fit.aic - aic:.1f}", f"{fit.bic - bic:.1f}"
+            known = "yes" if fit.identifiable else "no"
+            lines.append([fit.model.name, str(fit.estimates.size), *numbers, known])
+        return lines
+
+    def __repr__(self) -> str:
+        return "\n".join(lines_of(self.table()))
+
+    def _repr_html_(self) -> str:
+        return html_of(self.table())

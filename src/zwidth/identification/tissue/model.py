@@ -1,0 +1,156 @@
+"""The models that are fitted to tissue: their parameters, all > 0, and what each predicts.
+
+kelvin-voigt            f = K x + B ẋ
+maxwell                 H(s) = μ η s/(μ + η s)
+standard-linear-solid   H(s) = μ0 + μ1 η1 s/(μ1 + η1 s)
+generalized-maxwell     H(s) = μ0 + Σ μᵢ ηᵢ s/(μᵢ + ηᵢ s)
+hunt-crossley           f = K uⁿ (1 + λ u̇),   u = max(x, 0)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from zwidth.compiled import Array
+from zwidth.environment import GeneralizedMaxwell, HuntCrossley, Maxwell, StandardLinearSolid, Wall
+from zwidth.environment.creeping import position_response
+from zwidth.environment.discretization import Discretization
+from zwidth.environment.environment import Environment
+from zwidth.environment.relaxing import Elements, force_response
+from zwidth.environment.wall import Parameter
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Interval
+
+Response = Literal["force", "position"]
+
+OWN_PARAMETERS = {
+    "kelvin-voigt": ("stiffness", "damping"),
+    "maxwell": ("stiffness", "damping"),
+    "standard-linear-solid": ("stiffness", "branch_stiffness", "branch_damping"),
+    "generalized-maxwell": ("stiffness",),
+    "hunt-crossley": ("stiffness", "exponent", "dissipation"),
+}
+
+MOST_BRANCHES = 6
+"""Relaxation times closer than a third of a decade are not told apart in any record."""
+
+
+class Record(NamedTuple):
+    """What was measured: times [s], positions [m; rad], forces [N; N·m]; which of the two is predicted from
+    the other; and the other's value before the first sample."""
+
+    time: Array
+    position: Array
+    force: Array
+    response: Response
+    rest: float | None
+
+    @property
+    def output(self) -> Array:
+        """What is predicted, and taken as noisy."""
+        return self.force if self.response == "force" else self.position
+
+
+@dataclass(frozen=True)
+class Model:
+    """One of the models, with as many branches as it has."""
+
+    name: str
+    branches: int
+
+    @property
+    def linear(self) -> bool:
+        """False for Hunt–Crossley."""
+        return self.name != "hunt-crossley"
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of its parameters."""
+        own = OWN_PARAMETERS[self.name]
+        if self.name != "generalized-maxwell":
+            return own
+        return own + tuple(
+            f"branch_{what}_{i + 1}" for i in range(self.branches) for what in ("stiffness", "damping")
+        )
+
+    def elements(self, p: Sequence[float]) -> Elements:
+        """Springs and dashpots of parameters."""
+        if self.name == "kelvin-voigt":
+            return Elements(p[0], p[1], ())
+        if self.name == "maxwell":
+            return Elements(0.0, 0.0, ((p[0], p[1]),))
+        return Elements(p[0], 0.0, tuple(zip(p[1::2], p[2::2], strict=True)))
+
+    def predict(self, p: Sequence[float], record: Record) -> Array:
+        """The output of the record as the model has it."""
+        if not self.linear:
+            depth = np.maximum(record.position, 0.0)
+            speed = np.gradient(record.position, record.time)
+            return np.asarray(p[0] * depth ** p[1] * (1.0 + p[2] * speed))
+        if record.response == "force":
+            return force_response(self.elements(p), record.time, record.position, record.rest)
+        return position_response(self.elements(p), record.time, record.force, record.rest)
+
+    def environment(
+        self, values: Sequence[Parameter], discretization: Discretization, clamped: bool
+    ) -> Environment:
+        """What a controller renders."""
+        if self.name == "kelvin-voigt":
+            return Wall(values[0], values[1], clamped=clamped)
+        if self.name == "hunt-crossley":
+            k, n, d = (value for value in values if not isinstance(value, Interval | tuple))
+            return HuntCrossley(k, n, d, clamped)
+        if self.name == "maxwell":
+            return Maxwell(values[0], values[1], discretization, clamped)
+        if self.name == "standard-linear-solid":
+            return StandardLinearSolid(values[0], values[1], values[2], discretization, clamped)
+        pairs = list(zip(values[1::2], values[2::2], strict=True))
+        return GeneralizedMaxwell(values[0], pairs, discretization, clamped)
+
+
+def as_model(name: object, branches: int | None, response: Response) -> Model:
+    """Check the name of a model and its branches.
+
+    Raises
+    ------
+    InputError
+        If there is no such model, it has no such number of branches, or cannot predict the response.
+    """
+    if name not in OWN_PARAMETERS:
+        choices = ", ".join(f'"{choice}"' for choice in OWN_PARAMETERS)
+        raise InputError(f"model is one of {choices}; got {name!r}")
+    if name == "hunt-crossley" and response != "force":
+        raise InputError(
+            "a Hunt–Crossley contact is fitted to the force under a measured position; "
+            'give response="force", or one of the linear models'
+        )
+    if name != "generalized-maxwell":
+        if branches is not None:
+            raise InputError(f'branches is for "generalized-maxwell"; {name!r} has what it has')
+        return Model(str(name), 1 if name in ("maxwell", "standard-linear-solid") else 0)
+    number = 2 if branches is None else branches
+    if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= MOST_BRANCHES:
+        raise InputError(
+            f"branches is a whole number from 1 to {MOST_BRANCHES}, got {branches!r}: more relaxation "
+            "times are not told apart in any record"
+        )
+    return Model(str(name), number)
+
+
+def unit_of(parameter: str, motion: str, exponent: float = 1.0) -> str:
+    """The SI unit of a parameter, as the glossary writes it."""
+    length = "rad" if motion == "rotary" else "m"
+    force = "N*m" if motion == "rotary" else "N"
+    if parameter == "offset":
+        return ""
+    if parameter == "exponent":
+        return "1"
+    if parameter == "dissipation":
+        return f"s/{length}"
+    viscous = "N*m*s/rad" if motion == "rotary" else "N*s/m"
+    power = "" if exponent == 1 else f"^{exponent:.3g}"
+    return viscous if "damping" in parameter else f"{force}/{length}{power}"

@@ -1,0 +1,117 @@
+"""From a winning cycle against laws in a row to a witness: replayed by the law, counted exactly.
+
+The cycle is one of states, so that the law does the same in each round, to the bit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.loop.kernel import R_HAND_WORK
+from zwidth.loop.setup import empty_record, prepare
+from zwidth.loop.simulate import run_setup
+from zwidth.operator import PrescribedMotion
+from zwidth.passivity.checker.row_motion import row_motion_energy
+from zwidth.passivity.document import unit_key
+from zwidth.passivity.motion import Motion, Repeat
+from zwidth.passivity.witness import FORMAT
+from zwidth.passivity.worst_hand.gain import Gain
+from zwidth.passivity.worst_hand.row_board import NO_LAW, RowBoard
+from zwidth.passivity.worst_hand.row_document import MOTION, Run, columns, law_document, same_law
+from zwidth.passivity.worst_hand.row_law import RowLaw
+from zwidth.passivity.worst_hand.solve import Played
+from zwidth.passivity.worst_hand.storage import loop_document
+
+_NEAREST = 40
+"""Halvings of a count by which a hand at an edge may have to stay inside its cell."""
+
+_LONGEST = 2_000_000
+"""Samples that are simulated at most; of a longer motion the first rounds."""
+
+
+def row_gain(played: Played, law: RowLaw, device: Device, environment: Environment) -> Gain | None:
+    """The winning cycle of a game as a witness, or None if, run again, it gains nothing.
+
+    It is accepted only if exact arithmetic finds a gain with the forces that the law gives, and
+    the simulator finds energy coming out.
+    """
+    board = played.board
+    assert isinstance(board, RowBoard)
+    for halvings in range(6, _NEAREST, 4):
+        document, path = _document(board, played.cycle, law, halvings, device.motion)
+        energy, per_round = row_motion_energy(document)
+        if per_round <= 0:
+            continue
+        times = 1 if energy > 0 else ceil(-energy / per_round) + 2
+        document["repeats"]["times"] = times
+        energy += (times - 1) * per_round
+        path = path.repeated(times)
+        found = Gain(
+            {**document, "energy_J": energy},
+            path,
+            energy,
+            per_round,
+            NO_LAW,
+            board.losses.period,
+            "rad" if device.motion == "rotary" else "m",
+        )
+        if same_law(found.document, device, environment) and _simulated(path, law, device, environment):
+            return found
+    return None
+
+
+def _document(
+    board: RowBoard, cycle: tuple[tuple[int, int], ...], law: RowLaw, halvings: int, motion: str
+) -> tuple[dict[str, Any], Motion]:
+    """Way in, one round, and the forces that the law gives."""
+    resolution, counts = board.losses.resolution, board.table.counts
+    round_ = [_place(board, knot, int(counts[state]), halvings) for knot, state in cycle]
+    way = [int(counts[s]) for s in board.table.way(cycle[0][1])]
+    x = [*((Fraction(2 * n + 1, 2)) * resolution for n in way[:-1]), *round_, round_[0]]
+    part = Repeat(len(way) - 1, len(x) - 1, 1)
+    run = Run(law, way[0])
+    forces = [Fraction(run.force(int(p // resolution))) for p in x[:-1]]
+    positions, held = columns(motion)
+    document = {
+        "format": FORMAT,
+        "kind": MOTION,
+        "loop": loop_document(board.losses, motion),
+        "law": law_document(law),
+        unit_key("sample_period"): board.losses.period,
+        "energy_J": Fraction(0),
+        "repeats": part._asdict(),
+        positions: x,
+        held: forces,
+    }
+    return document, Motion(tuple(x), (), (part,))
+
+
+def _place(board: RowBoard, knot: int, cell: int, halvings: int) -> Fraction:
+    """Where the hand stands: near an edge a little inside its cell, where no rounding moves the reading."""
+    near = Fraction(1, 2**halvings)
+    x = Fraction(knot, board.steps)
+    return min(max(x, cell + near / 2**8), cell + 1 - near) * board.losses.resolution
+
+
+def _simulated(path: Motion, law: RowLaw, device: Device, environment: Environment) -> bool:
+    """True if the simulator finds energy coming out: of all of it, or of the last of some rounds."""
+    part = path.repeats[0]
+    samples = part.last - part.first
+    rounds = min(part.times, max(2, _LONGEST // samples))
+    x = np.array([float(v) for v in path.repeated(rounds).listed().positions])
+    x = np.append(x, x[-1])  # the mass at rest again
+    period = device.exact("sample_period")
+    setup = prepare(device, environment, PrescribedMotion(x), (len(x) - 1) * period)
+    commands, record, work = empty_record(setup)
+    setup = replace(setup, law=law.packed)
+    run_setup(setup, setup.state.copy(), setup.memory.copy(), work, commands, record, None)
+    taken = -record[R_HAND_WORK]
+    last, begun = (-1, 0) if rounds == part.times else (len(x) - 2, len(x) - 2 - samples)
+    return bool(taken[last] > taken[begun])

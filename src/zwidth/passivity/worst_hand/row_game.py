@@ -1,0 +1,161 @@
+"""The game of the worst hand for laws in a row: which board, which table, both sets of rules."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import ceil
+from typing import Any
+
+from zwidth.device.device import Device
+from zwidth.device.friction import FrictionCurve
+from zwidth.errors import InputError
+from zwidth.passivity.worst_hand.board import Domain
+from zwidth.passivity.worst_hand.domain import counts_of, losses_of
+from zwidth.passivity.worst_hand.gain import Gain
+from zwidth.passivity.worst_hand.losses import Losses
+from zwidth.passivity.worst_hand.row_board import NO_LAW, RowBoard
+from zwidth.passivity.worst_hand.row_gain import row_gain
+from zwidth.passivity.worst_hand.row_law import RowLaw, row_law
+from zwidth.passivity.worst_hand.row_play import play_row
+from zwidth.passivity.worst_hand.row_storage import RowStorage
+from zwidth.passivity.worst_hand.row_table import MOST_STATES, DoesNotClose, Table, tabulate
+from zwidth.passivity.worst_hand.solve import Played
+from zwidth.quantity.exact import RealLike
+from zwidth.rendering.rendered import Rendered
+
+COUNTS = ((32, 16), (16, 8), (8, 4), (4, 2))
+"""Counts on either side and counts a sample that are tried by default, until the law closes."""
+
+USUAL_STATES = 20_000
+"""States within which it has to close on one of them."""
+
+
+@dataclass(frozen=True, eq=False)
+class RowGame:
+    """Laws in a row and one domain, to be played with either set of rules; as `hand.Game`."""
+
+    device: Device
+    environment: Rendered
+    law: RowLaw
+    losses: Losses
+    domain: Domain
+    board: tuple[int, int]
+    most: int
+
+    @property
+    def motion(self) -> str:
+        """Linear or rotary."""
+        return self.device.motion
+
+    @property
+    def hand(self) -> str:
+        """The hands that a proof covers, in words."""
+        length, speed = ("rad", "rad/s") if self.motion == "rotary" else ("m", "m/s")
+        resolution, counts = self.losses.resolution, float(self.domain.speed)
+        deepest = float((self.domain.highest + 1) * resolution)
+        fastest = counts * float(resolution / self.losses.period)
+        return (
+            f"hands of up to {fastest:.4g} {speed} over one sample ({counts:.4g} counts a sample), up to "
+            f"{deepest:.4g} {length} ({self.domain.highest + 1} counts) on either side of the surface"
+        )
+
+    @property
+    def contact(self) -> str:
+        """What is covered of contact, in words."""
+        begun = "outside" if self.law.unilateral else "at the first count"
+        return (
+            f"contact made and broken at any instant within the board, by a hand that begins at rest {begun}"
+        )
+
+    @property
+    def actuator(self) -> tuple[bool, bool]:
+        """Whether force limit and converter steps are counted in."""
+        return self.law.limited, self.law.stepped
+
+    @property
+    def further(self) -> tuple[str, ...]:
+        """What else a proof takes for granted."""
+        return (
+            "the law is a table of its states and forces, as the simulator's compiled law gives them in "
+            "doubles; the checker takes the table as it stands, same_law compares it with the law",
+        )
+
+    @cached_property
+    def table(self) -> Table:
+        """All states of the law."""
+        return tabulate(self.law, self.domain, self.most)
+
+    def prove(
+        self, steps: int, deadline: float = float("inf"), tell: Any = None, on: str = "cpu"
+    ) -> RowStorage | None:
+        """A storage function on so many steps per count, or None."""
+        played = self._play(steps, "generous", self.domain, self.table, deadline, tell, on)
+        return None if played.value is None else RowStorage(played, self.motion, self.law)
+
+    def refute(
+        self, steps: int, deadline: float = float("inf"), tell: Any = None, on: str = "cpu"
+    ) -> Gain | None:
+        """A motion that gains, replayed by the simulator, or None."""
+        within = self.domain.within
+        if within.highest < 1:  # no reading inside lies within the bounds
+            return None
+        same = (within.lowest, within.highest) == (self.domain.lowest, self.domain.highest)
+        table = self.table if same else tabulate(self.law, within, self.most)
+        played = self._play(steps, "strict", within, table, deadline, tell, on)
+        return row_gain(played, self.law, self.device, self.environment) if played.cycle else None
+
+    def _play(
+        self, steps: int, rules: Any, domain: Domain, table: Table, deadline: float, tell: Any, on: str
+    ) -> Played:
+        if on != "cpu":
+            raise InputError("laws in a row are played on the processor: leave out on")
+        return play_row(RowBoard(NO_LAW, self.losses, domain, steps, rules, table=table), deadline, tell)
+
+
+def row_game(
+    device: Device,
+    environment: Rendered,
+    penetration: RealLike | None = None,
+    speed: RealLike | None = None,
+    force_limit: bool = False,
+    force_resolution: bool = False,
+    friction: FrictionCurve | None = None,
+    boards: Sequence[tuple[int, int]] = COUNTS,
+) -> RowGame:
+    """The game of laws in a row; arguments as for `worst_hand`.
+
+    `boards` are tried for what is not given: counts on either side, and counts a sample.
+
+    Raises
+    ------
+    DoesNotClose
+        If the law does not close on any of them.
+    InputError
+        If it cannot be played.
+    """
+    losses = losses_of(device, friction)
+    deepest = counts_of("penetration", penetration, losses.resolution)
+    fastest = counts_of("speed", speed, losses.resolution / losses.period)
+    tried = boards if not (deepest and fastest) else boards[:1]
+    for far, reach in tried:
+        depth = deepest or Fraction(far)
+        highest = max(1, ceil(depth) - 1)
+        most = ceil(fastest) if fastest else min(reach, 2 * highest + 1)
+        domain = Domain(-highest - 1, highest, most, depth, fastest or None)
+        law = row_law(
+            device, environment, domain.lowest, force_limit=force_limit, force_resolution=force_resolution
+        )
+        last = (far, reach) == tried[-1]
+        most_states = MOST_STATES if last else USUAL_STATES
+        game = RowGame(device, environment, law, losses, domain, (far, reach), most_states)
+        try:
+            _ = game.table
+        except DoesNotClose:
+            if last:
+                raise
+            continue
+        return game
+    raise AssertionError("the last board that is tried returns or raises")

@@ -1,0 +1,258 @@
+"""Mass, damping and friction from logs whose truth is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from recordings import best_possible, hand_moves, paddle
+
+import zwidth as zw
+from zwidth.errors import InputError
+from zwidth.identification.device.identify import identify
+from zwidth.identification.logs import log_of
+
+TRUE = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12}
+
+
+def _log(recording, resolution=22.4e-6, **changes):
+    arrays = {k: getattr(recording, k) for k in ("time", "position", "hand_force")}
+    return log_of(resolution=resolution, **{**arrays, **changes})
+
+
+@pytest.fixture(scope="module")
+def recording():
+    """A minute of the paddle."""
+    return hand_moves(paddle(), 60.0, seed=1)
+
+
+@pytest.fixture(scope="module")
+def found(recording):
+    """What it says."""
+    return identify(_log(recording))
+
+
+def test_the_paddle_is_found(found):
+    """m, b and f_c lie in their 99.9 % intervals, which are within a few per cent."""
+    for name, true in TRUE.items():
+        low, high = found.estimates[name].interval(0.999)
+        assert low < true < high
+        assert high - low < 0.25 * true
+
+
+def test_intervals_hold_and_are_short():
+    """Of 60 recordings, three parameters each, 95 % intervals hold the truth nearly as often as they say.
+
+    With 95 % of 180 expected, fewer than 160 would happen once in ten thousand times. The mean interval is
+    not twice as wide as the Cramér–Rao bound allows.
+    """
+    held, widths = 0, []
+    for seed in range(60):
+        recording = hand_moves(paddle(), 20.0, seed=seed)
+        estimates = identify(_log(recording)).estimates
+        halves = []
+        for name, true in TRUE.items():
+            low, high = estimates[name].interval(0.95)
+            held += low <= true <= high
+            halves.append((high - low) / 2)
+        widths.append(np.array(halves) / (1.96 * best_possible(recording, 0.1)))
+    assert held >= 160
+    assert (np.mean(widths, axis=0) < 2.0).all()
+
+
+@pytest.mark.parametrize(
+    ("period", "resolution"),
+    [("1 ms", "224 um"), ("1 ms", "2.24 mm"), ("2 ms", "22.4 um"), ("0.2 ms", "22.4 um")],
+)
+def test_coarse_encoders_and_other_rates(period, resolution):
+    """Friction is found 100 times coarser, at 500 Hz and at 5 kHz, in intervals that hold it."""
+    device = paddle(sample_period=period, resolution=resolution)
+    estimates = identify(
+        _log(hand_moves(device, 60.0, seed=5), resolution=float(device.exact("resolution")))
+    ).estimates
+    for name in ("damping", "coulomb_friction"):
+        low, high = estimates[name].interval(0.999)
+        assert low < TRUE[name] < high
+        assert high - low < (1.2 if resolution == "2.24 mm" else 0.6) * TRUE[name]
+
+
+def test_the_wrong_model_is_never_silent(recording, found):
+    """A mass–damper fit of the same data says a stiffness 2b/T that is not passive, and both fits say so."""
+    viscous = identify(_log(recording), model="viscous")
+    assert viscous.estimates["damping"].interval(0.999)[0] > 2 * TRUE["damping"]
+    assert "wrong model" in [finding.kind for finding in viscous.findings]
+    text = next(f.text for f in found.findings if f.kind == "Coulomb friction")
+    assert f"{2 * found.viscous_alone / 1e-3:.4g} N/m" in text
+    assert found.viscous_alone == pytest.approx(viscous.estimates["damping"].value, rel=0.05)
+    wall = zw.Wall(stiffness=2 * found.viscous_alone / 1e-3)
+    assert zw.check(found.device(None), wall).outcome != "passive"
+
+
+def test_the_right_model_is_not_called_wrong():
+    """A device without Coulomb friction: no finding, f_c = 0 is inside its interval, and this is said."""
+    device = paddle(coulomb_friction=0, damping=0.5)
+    found = identify(_log(hand_moves(device, 60.0, seed=2)))
+    kinds = [finding.kind for finding in found.findings]
+    assert "Coulomb friction" not in kinds
+    assert "no coulomb friction" in kinds
+    viscous = identify(_log(hand_moves(device, 60.0, seed=2)), model="viscous")
+    assert "wrong model" not in [finding.kind for finding in viscous.findings]
+    low, high = viscous.estimates["damping"].interval(0.999)
+    assert low < 0.5 < high
+
+
+def test_a_force_recorded_late_is_read_in_time(recording):
+    """A load cell 3.4 ms behind the encoder would make b half as large again; it is found and said."""
+    late = np.interp(recording.time - 3.4e-3, recording.time, recording.hand_force)
+    found = identify(_log(recording, hand_force=late))
+    assert found.estimates["force_lag"].value == pytest.approx(3.4e-3, abs=4e-4)
+    assert "force lag" in [finding.kind for finding in found.findings]
+    for name, true in TRUE.items():
+        low, high = found.estimates[name].interval(0.999)
+        assert low < true < high
+
+
+def test_a_spring_is_seen_and_does_not_spoil_the_friction(recording):
+    """Gravity or a centring spring of 5 N/m is found, and the other numbers stay."""
+    pulled = recording.hand_force + 5.0 * (recording.true_position + 1.0)
+    found = identify(_log(recording, hand_force=pulled))
+    assert found.estimates["spring"].value == pytest.approx(5.0, rel=0.1)
+    low, high = found.estimates["damping"].interval(0.999)
+    assert low < 0.15 < high
+
+
+def test_bent_friction_is_flagged(recording):
+    """Friction that rises with the square of the speed is no f_c + b |v|."""
+    v = recording.true_velocity
+    bent = identify(_log(recording, hand_force=recording.hand_force + 0.3 * v * np.abs(v)))
+    assert "bent friction" in [finding.kind for finding in bent.findings]
+
+
+def test_asymmetry_looks_like_the_zero_of_the_sensor(recording, found):
+    """Friction larger by 0.04 N one way: half the difference goes into f_c, and no more can be known."""
+    v = recording.true_velocity
+    uneven = identify(_log(recording, hand_force=recording.hand_force + 0.04 * (v > 0)))
+    more = uneven.estimates["coulomb_friction"].value - found.estimates["coulomb_friction"].value
+    assert more == pytest.approx(0.02, abs=2e-3)
+    assert uneven.offset - found.offset == pytest.approx(0.02, abs=4e-3)
+
+
+def _motor(seed, delay=0):
+    """The paddle driven by its motor alone, with a force commanded `delay` samples before it acts."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(40_000) * 1e-3
+    waves = zip(0.4 * rng.normal(size=8), rng.uniform(1, 6, 8), rng.uniform(0, 6.28, 8), strict=True)
+    force = sum(a * np.sin(2 * np.pi * f * time + p) for a, f, p in waves)
+    push = zw.operators.RecordedForce(force)
+    trace = zw.simulate(paddle(), zw.Wall(stiffness=1), push, 40, initial_position=-9.0)
+    commanded = -np.concatenate([force[delay:], np.zeros(delay)])
+    return log_of(
+        time=time,
+        position=trace["measured_position"].values[:-1],
+        actuator_force=commanded,
+        resolution=22.4e-6,
+    )
+
+
+def test_a_motor_whose_force_is_known_needs_no_load_cell():
+    """Without noise in the force all three numbers are found to a thousandth, a delay of 2 ms known."""
+    found = identify(_motor(3, delay=2), delay=2e-3)
+    for name, true in TRUE.items():
+        low, high = found.estimates[name].interval(0.999)
+        assert low < true < high
+        assert found.estimates[name].value == pytest.approx(true, rel=2e-3)
+
+
+def test_a_delay_that_was_not_said_is_found():
+    """The motor's force acts 2 ms after its sample: seen as a force recorded early."""
+    assert identify(_motor(3, delay=2)).estimates["force_lag"].value == pytest.approx(-2e-3, abs=5e-5)
+
+
+def _releases(mass):
+    """Sixty runs of the paddle, pushed and let go."""
+    rng = np.random.default_rng(7)
+    runs = []
+    for _ in range(60):
+        speed = rng.uniform(0.2, 1.0) * rng.choice([-1, 1])
+        trace = zw.simulate(
+            paddle(mass=mass),
+            zw.Wall(stiffness=1),
+            zw.operators.RecordedForce(np.zeros(500)),
+            0.5,
+            initial_position=-9.0,
+            initial_velocity=speed,
+        )
+        runs.append(trace["measured_position"].values[:-1])
+    return np.concatenate(runs)
+
+
+def test_free_decay_with_a_known_mass():
+    """The motion alone, with the mass from a scale: b and f_c to a few thousandths."""
+    position = _releases(0.036)
+    log = log_of(time=np.arange(position.size) * 1e-3, position=position, resolution=22.4e-6)
+    found = identify(log, mass=0.036)
+    assert "mass" not in found.estimates
+    for name in ("damping", "coulomb_friction"):
+        low, high = found.estimates[name].interval(0.999)
+        assert low < TRUE[name] < high
+        assert found.estimates[name].value == pytest.approx(TRUE[name], rel=0.01)
+    with pytest.raises(InputError, match="give the mass"):
+        identify(log)
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.floats(0.1, 10), st.floats(0.1, 10))
+def test_units_do_not_matter(recording, found, length, force):
+    """Positions in other units of length and forces in other units: the same numbers, rescaled."""
+    log = _log(
+        recording,
+        resolution=22.4e-6 * length,
+        position=recording.position * length,
+        hand_force=recording.hand_force * force,
+    )
+    again = identify(log).estimates
+    scales = {"mass": force / length, "damping": force / length, "coulomb_friction": force}
+    for name, scale in scales.items():
+        assert again[name].value == pytest.approx(found.estimates[name].value * scale, rel=1e-6)
+        assert again[name].error == pytest.approx(found.estimates[name].error * scale, rel=1e-6)
+
+
+def test_the_verdict_takes_the_uncertainty_into_account(found):
+    """Far below the limit all that the data allow is passive; far above nothing is; near it, part of it."""
+    assert found.confidence(zw.Wall(stiffness=200)) > 0.9999
+    assert found.confidence(zw.Wall(stiffness=400)) == 0.0
+    low = 2 * found.estimates["damping"].interval(0.9)[0] / 1e-3
+    assert found.confidence(zw.Wall(stiffness=low)) == pytest.approx(0.9, abs=2e-3)
+    device = found.device(0.9)
+    assert zw.check(device, zw.Wall(stiffness=0.999 * low)).outcome == "passive"
+    assert zw.check(device, zw.Wall(stiffness=1.001 * low)).outcome != "passive"
+
+
+def test_more_data_narrower_intervals():
+    """Four times the data: half the interval, within a quarter."""
+    short, long = (identify(_log(hand_moves(paddle(), s, seed=11))) for s in (30.0, 120.0))
+    for name in TRUE:
+        assert long.estimates[name].error == pytest.approx(short.estimates[name].error / 2, rel=0.25)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"mass": -1.0}, "mass must be > 0"),
+        ({"delay": -1e-3}, "delay must be ≥ 0"),
+        ({"zero": "free"}, "zero is"),
+        ({"model": "stick"}, "model is"),
+    ],
+)
+def test_bad_arguments(recording, changes, words):
+    """One message: what was given, and the bound."""
+    with pytest.raises(InputError, match=words):
+        identify(_log(recording), **changes)
+
+
+def test_too_little_motion_is_refused(recording):
+    """A second of motion says nothing, and the message says what to do."""
+    arrays = {k: getattr(recording, k)[:600] for k in ("time", "position", "hand_force")}
+    with pytest.raises(InputError, match="move to and fro"):
+        identify(log_of(resolution=22.4e-6, **arrays))
