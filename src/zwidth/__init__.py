@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
     from zwidth.identification import tissue
+    from zwidth.identification.device.identified import Identified
     from zwidth.identification.device.plan import Plan, plan_identification
     from zwidth.identification.device.published import Published, identify_published
     from zwidth.identification.finger import IdentifiedFinger, identify_finger
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from zwidth.rendering.rendered import render
     from zwidth.traces import (
         compare_traces,
+        identify,
         load_trace,
         passive_limit,
         simulate,
@@ -66,6 +68,7 @@ __all__ = [
     "FrictionModel",
     "GeneralizedMaxwell",
     "HuntCrossley",
+    "Identified",
     "IdentifiedFinger",
     "InputError",
     "Interval",
@@ -100,6 +103,7 @@ __all__ = [
     "coupling_condition",
     "design_coupling",
     "fit_tissue",
+    "identify",
     "identify_finger",
     "identify_published",
     "join_logs",
@@ -156,6 +160,8 @@ _LATER = {
     "identify_finger": "zwidth.identification.finger",
     "identify_published": "zwidth.identification.device.published",
     "join_logs": "zwidth.identification.logs",
+    "Identified": "zwidth.identification.device.identified",
+    "identify": "zwidth.traces",
     "load_trace": "zwidth.traces",
     "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",
