@@ -172,9 +172,11 @@ class Identified:
         """A friction curve below the data, for friction that is not f_c + b |v|.
 
         Its points are lower bounds of the mean friction in bins of speed, at the mean speed of
-        each.  `FrictionCurve.best` finds the model f_c + b |v| below it that proves the stiffest wall.
+        each, and one at the largest speed, by a lower bound of the slope over the quicker half of the
+        pulses.  `FrictionCurve.best` finds the model f_c + b |v| below it that proves the stiffest wall.
         Assumed are, beside `FrictionCurve.assumption`: the mass; the same friction in both
-        directions; and that within a bin friction is nearly a straight line of speed.
+        directions; that within a bin friction is nearly a straight line of speed; and that beyond the
+        largest speed it rises as over the quicker half at least.
 
         Parameters
         ----------
