@@ -6,11 +6,12 @@ with f̄_i the mean friction of the N_i pulses against their motion, r_k what a 
 speed leaves of that of pulse k, s the n strokes that have pulses in the bin.  What one stroke has
 too much of counts once, however many pulses it has.
 
-A last point, at the largest speed, lies on a line from the last bound whose slope is a lower
-bound too, that of friction over the quicker half of the pulses: a model below the curve takes its
-damping from there, and two bounds beside each other may be steeper than what they bound.  All
-bounds, B and the slope, hold together with the stated confidence: each has the (B + 1)-th part of
-the risk (Bonferroni).
+A first point, at rest, lies as far below the first bound as friction could fall with an upper bound of
+its slope over the slower half.  A last point, at the largest speed, lies on a line from the last bound
+whose slope is a lower bound too, that of friction over the quicker half of the pulses: a model below
+the curve takes its damping from there, and two bounds beside each other may be steeper than what they
+bound.  All bounds, B and the two slopes, hold together with the stated confidence: each has the
+(B + 2)-th part of the risk (Bonferroni).
 """
 
 from __future__ import annotations
@@ -121,18 +122,26 @@ def curve_below(points: xr.Dataset, confidence: float, bins: int) -> FrictionCur
         )
     low = lower_bounds(found, confidence)
     speed, friction, stroke = _against(points)
-    half = slice(speed.size // 2, None)
-    line = _line(speed[half], friction[half], stroke[half])
-    reach = float(stats.t.ppf(_each(found, confidence), max(line.strokes - 1, 1)))
-    slope = max(line.slope - reach * line.slope_error, 0.0)
-    last = float(found["speed"][-1])
+    half = speed.size // 2
+    slow, quick = (
+        _line(speed[part], friction[part], stroke[part]) for part in (slice(None, half), slice(half, None))
+    )
+    each = _each(found, confidence)
+    steepest = max(slow.slope + _reach(slow, each) * slow.slope_error, 0.0)
+    slope = max(quick.slope - _reach(quick, each) * quick.slope_error, 0.0)
+    first, last = (float(found["speed"][k]) for k in (0, -1))
+    rest = max(float(low[0]) - steepest * first, 0.0)
     beyond = max(float(speed[-1]), 1.01 * last)
     end = float(low[-1]) + slope * (beyond - last)
-    return FrictionCurve([*found["speed"].values.tolist(), beyond], [*low.tolist(), end])
+    return FrictionCurve([0.0, *found["speed"].values.tolist(), beyond], [rest, *low.tolist(), end])
+
+
+def _reach(line: _Line, confidence: float) -> float:
+    return float(stats.t.ppf(confidence, max(line.strokes - 1, 1)))
 
 
 def lower_bounds(found: xr.Dataset, confidence: float) -> Array:
-    """Of the bins' friction, together with the slope beyond them, not below 0 [N; N·m]."""
+    """Of the bins' friction, together with the slopes beside them, not below 0 [N; N·m]."""
     reach = stats.t.ppf(_each(found, confidence), found["strokes"].values - 1)
     low: Array = np.maximum(found["friction"].values - reach * found["error"].values, 0.0)
     return low
@@ -140,4 +149,4 @@ def lower_bounds(found: xr.Dataset, confidence: float) -> Array:
 
 def _each(found: xr.Dataset, confidence: float) -> float:
     """Confidence of one bound, for all of them together to have the stated one."""
-    return 1 - (1 - confidence) / (found.sizes["bin"] + 1)
+    return 1 - (1 - confidence) / (found.sizes["bin"] + 2)
