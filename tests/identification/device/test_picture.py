@@ -10,7 +10,7 @@ from known_motion import NOISE, PERIOD, STEP, paddle
 
 import zwidth as zw
 from zwidth.identification.device.picture import expected_scatter
-from zwidth.plots import identification_figure
+from zwidth.identification.device.picture import identification_figure
 
 
 @pytest.fixture(scope="module")
