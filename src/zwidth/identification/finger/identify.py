@@ -199,8 +199,8 @@ def _half_a_sample(values: Array, period: float) -> Array:
 def _too_little(log: Log) -> str:
     return (
         f"{log.source}: {log.duration:.3g} s show too little to tell mass, damping and stiffness apart: "
-        "shake the finger for a minute with steps in random order, some 10 ms each and a newton strong, so that it "
-        "moves by many counts; hold still; take longer pieces if the sample period is long"
+        "shake the finger for a minute with steps in random order, some 10 ms each and a newton strong, so "
+        "that it moves by many counts; hold still; take longer pieces if the sample period is long"
     )
 
 
