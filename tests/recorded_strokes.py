@@ -23,7 +23,7 @@ def recorded(
     damping: float = 0.15,
     coulomb_friction: float = 0.12,
 ) -> zw.Log:
-    """A log of strokes, (length [m], duration [s], seconds of such) one kind after the other, varied by 15 %."""
+    """A log of strokes, (length [m], duration [s], seconds of such), varied by 15 %."""
     parts = []
     here = 0.0
     for length, duration, seconds in kinds:

@@ -43,7 +43,7 @@ def shaken(
     noise: float = 0.02,
     tremor: float = 0.0,
 ) -> dict[str, Array]:
-    """Arrays of a log: ±push [N] for 10 ms each at random, a finger (m, c, k) that wanders by half a millimetre.
+    """Arrays of a log: ±push [N] for 10 ms each at random, a finger (m, c, k) that wanders a little.
 
     The load cell has white noise [N]; the finger trembles at 8 to 12 Hz with so many newtons.
     """

@@ -11,7 +11,7 @@ import zwidth as zw
 
 
 def test_without_noise_counts_and_passes_it_finds_the_truth():
-    """Least squares with differences of a finely read, slow motion gives m, b, f_c to a part in a thousand."""
+    """Least squares with differences of a finely read, slow motion gives m, b, f_c to 0.1 %."""
     log = recorded([(0.06, 0.5, 20)], np.random.default_rng(1), resolution=1e-9, noise=0.0)
     arrays = next(log.blocks())
     speed = np.gradient(arrays.position, 1e-3)
@@ -47,7 +47,7 @@ def test_it_is_the_normal_equations_of_smoothed_differences():
 
 
 def test_few_passes_leave_counts_and_many_take_the_motion():
-    """On 2.24 mm counts mass is lost with few passes; with many, damping is overstated; `identify` does neither."""
+    """On 2.24 mm counts mass is lost with few passes; with many, damping is overstated."""
     device = paddle(resolution="2.24 mm")
     recording = hand_moves(device, 60.0, seed=3, drift=0.0)
     log = zw.log_of(
@@ -63,7 +63,7 @@ def test_few_passes_leave_counts_and_many_take_the_motion():
 
 
 def test_without_coulomb_friction_damping_is_more_than_doubled():
-    """The mass–damper fit calls stiff walls passive that are not: Abbott & Okamura (2005) found 0.41 for 0.15."""
+    """A mass and a damper call walls passive that are not: Abbott & Okamura (2005) found 0.41 for 0.15."""
     log = recorded([(0.06, 0.5, 30)], np.random.default_rng(4))
     viscous = zw.identify_published(log, model="viscous")
     assert viscous.coulomb_friction is None

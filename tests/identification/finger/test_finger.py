@@ -114,7 +114,7 @@ def test_a_coarse_encoder_does_not_bias():
 
 
 def test_without_the_force_of_the_actuator_half_a_sample_is_in_the_intervals(arrays):
-    """When within a sample the force stepped nobody knows: k T/2 for damping, c T/2 for mass; and it is said."""
+    """When within a sample the force stepped is not known: k T/2 for damping, c T/2 for mass."""
     found = zw.identify_finger(_log(arrays, "actuator_force"))
     assert found.instrument == "position"
     assert found.estimates["damping"].shift > 0.95 * FINGER[2] * 1e-3 / 2
@@ -134,7 +134,7 @@ def test_a_delayed_actuator_is_known_by_its_delay():
 
 
 def _late(rng):
-    """Steps of the actuator, each 1.3 samples after its sample, and the exact motion without Coulomb friction."""
+    """Steps of the actuator, 1.3 samples after their own, and the exact motion without Coulomb friction."""
     m, c, k = FINGER
     total, period = 0.036 + m, 1e-3
     system = np.zeros((3, 3))

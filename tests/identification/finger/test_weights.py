@@ -9,7 +9,7 @@ from zwidth.identification.finger.weights import weights
 
 
 def _motion(rng, samples, fine):
-    """A motion under a force held over each sample, as read, and its integrals against a straight-line pulse."""
+    """A motion under a force held over each sample, as read, and as it is between."""
     acceleration = rng.normal(size=samples)
     v = np.concatenate([[0.3], 0.3 + np.cumsum(acceleration)])
     x = np.concatenate([[0.7], 0.7 + np.cumsum((v[:-1] + v[1:]) / 2)])
@@ -49,7 +49,7 @@ def test_held_forces_count_from_when_they_act(delay):
 
 
 def test_the_samples_of_either_parity_see_the_same_motion():
-    """Cubics come out alike from the even and from the odd samples: each half is an instrument of the other."""
+    """Cubics come out alike from the even and from the odd samples."""
     shape = weights(8, 0.0)
     k = np.arange(-shape.reach, shape.reach + 1)
     for power in range(4):
