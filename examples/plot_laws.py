@@ -102,11 +102,11 @@ axes[3].text(0, 1.0, "\n".join(f"{n:2d}  {law}" for law, n in number.items()), v
 axes[3].legend(loc="lower left", bbox_to_anchor=(-0.1, -0.03))
 
 # %%
-# Proved with a certificate is the virtual coupling alone, and it gives a third of the stiffness.  It gives
-# out energy, too: a held spring does; the proof says that the friction of the device takes more.  On the
-# course plant not even the coupling is passive: an encoder without Coulomb friction pays a hand
-# that toggles over an edge, however soft the wall.  Force bounding that knows of the encoder's counts is
-# proved as well, on paper, and keeps far more: a push that was paid for may be as stiff as one likes.
+# Proved with a certificate are the virtual coupling and force bounding.  The coupling gives a third of the
+# stiffness.  It gives out energy, too: a held spring does; the proof says that the friction of the device
+# takes more.  On the course plant the coupling is not passive: an encoder without Coulomb friction pays a
+# hand that toggles over an edge, however soft the wall.  Force bounding that knows of the encoder's counts
+# is proved on each device and keeps far more: a push that was paid for may be as stiff as one likes.
 #
 # Virtual damping, much the same in another form as extrapolation, matched poles and prediction, keeps the
 # stiffness of the wall and gives out next to nothing in these touches; a hand that moves to and fro from

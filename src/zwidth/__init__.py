@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
     from zwidth.identification import tissue
+    from zwidth.identification.device.identified import Identified
     from zwidth.identification.device.plan import Plan, plan_identification
     from zwidth.identification.device.published import Published, identify_published
     from zwidth.identification.finger import IdentifiedFinger, identify_finger
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
+    from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
     from zwidth.passivity.real_hand import RealHand, replay
@@ -44,6 +46,7 @@ if TYPE_CHECKING:
     from zwidth.rendering.rendered import render
     from zwidth.traces import (
         compare_traces,
+        identify,
         load_trace,
         passive_limit,
         simulate,
@@ -53,6 +56,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BackwardDifference",
+    "Bounding",
     "Bracket",
     "Certificate",
     "ContinuousTransferFunction",
@@ -64,6 +68,7 @@ __all__ = [
     "FrictionModel",
     "GeneralizedMaxwell",
     "HuntCrossley",
+    "Identified",
     "IdentifiedFinger",
     "InputError",
     "Interval",
@@ -90,6 +95,7 @@ __all__ = [
     "amplifiers",
     "catalogue",
     "check",
+    "check_bounding",
     "closed_forms",
     "compare",
     "compare_tissues",
@@ -97,6 +103,7 @@ __all__ = [
     "coupling_condition",
     "design_coupling",
     "fit_tissue",
+    "identify",
     "identify_finger",
     "identify_published",
     "join_logs",
@@ -121,6 +128,8 @@ __all__ = [
 ]
 
 _LATER = {
+    "Bounding": "zwidth.passivity.bounding",
+    "check_bounding": "zwidth.passivity.bounding",
     "Bracket": "zwidth.passivity.worst_hand",
     "CouplingCondition": "zwidth.passivity.coupling",
     "CouplingDesign": "zwidth.passivity.coupling_design",
@@ -151,6 +160,8 @@ _LATER = {
     "identify_finger": "zwidth.identification.finger",
     "identify_published": "zwidth.identification.device.published",
     "join_logs": "zwidth.identification.logs",
+    "Identified": "zwidth.identification.device.identified",
+    "identify": "zwidth.traces",
     "load_trace": "zwidth.traces",
     "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",

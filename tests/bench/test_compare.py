@@ -127,18 +127,28 @@ def test_a_controller_of_limited_damping_is_proved():
     assert not any(a.extracts for a in found.attacks.values())
 
 
-def test_laws_with_a_theorem_are_not_broken(stiff):
-    """Force bounding that knows of the counts: proved on paper, and no motion gains."""
+def test_force_bounding_is_proved_and_not_broken(stiff):
+    """Force bounding that knows of the counts: a certificate, and no motion gains; not where it is late."""
     status = stiff.scores["status"]
-    assert status.sel(law="force-bounding").item() == "theorem"
-    assert "paper" in stiff.evidence["force-bounding"]
+    assert status.sel(law="force-bounding").item() == "passive"
+    assert "force bounding credits" in stiff.evidence["force-bounding"]
+    assert not stiff.attacks["force-bounding"].extracts
     assert float(stiff.scores["static_stiffness"].sel(law="force-bounding")) > 1000
     late = zw.compare(
         PADDLE.replace(delay="0.0005"),
         zw.Wall(2000),
         {"late": zw.render(zw.Wall(2000), zw.rendering.ForceBounding())},
     )
-    assert late.scores["status"].item() != "theorem"
+    assert late.scores["status"].item() not in ("passive", "theorem")
+
+
+def test_a_proof_on_paper_alone_is_called_a_theorem():
+    """Energy bounding with an ideal encoder."""
+    device = PADDLE.replace(resolution=0)
+    law = zw.render(zw.Wall(2000), zw.rendering.EnergyBounding())
+    found = zw.compare(device, zw.Wall(2000), {"energy": law})
+    assert found.scores["status"].item() == "theorem"
+    assert "paper" in found.evidence["energy"]
 
 
 def test_a_passive_wall_is_never_attacked_with_success():
@@ -173,6 +183,12 @@ def test_the_command(tmp_path, monkeypatch, capsys):
     saved = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))
     assert list(saved["laws"]) == ["wall", "virtual-damping"]
     assert saved["laws"]["wall"]["static_stiffness_N_per_m"] == pytest.approx(400, rel=0.05)
+    assert main([*wall, "--laws", "wall", "--fastest", "fast"]) == 2
+    assert "fastest" in capsys.readouterr().err
+    assert main([*wall, "--laws", "passivity-controller-published", "--fastest", "1 m/s", "--json"]) == 0
+    assert (
+        json.loads(capsys.readouterr().out)["laws"]["passivity-controller-published"]["status"] == "undecided"
+    )
     assert main([*wall, "--laws", "magic"]) == 2
     assert 'no law "magic"' in capsys.readouterr().err
     assert main([*wall[:2], "--type", "maxwell", "--branch-stiffness", "3", "--branch-damping", "1"]) == 2

@@ -56,6 +56,7 @@ OPTIONS = {
     "spring": {"reference": "spring"},
     "resets": {"resets": True},
     "ceiling": {"ceiling": "0.00001"},
+    "forgets": {"forgetting": "0.004"},
     "all": {"credit": True, "resets": True, "ceiling": 0, "slowest": "0.01", "largest_damping": 1},
 }
 
@@ -84,6 +85,7 @@ def plain(
     reference="zero",
     resets=False,
     ceiling=1e300,
+    forgetting=None,
 ):
     """The law once more, written down as its docstring has it."""
     period, b, f_c = 0.001, 0.15, 0.12
@@ -91,6 +93,8 @@ def plain(
     for x in readings:
         moved = x - before
         wall = stiffness * x if x > 0 else 0.0
+        if forgetting is not None and energy > 0:
+            energy *= np.exp(-period / float(forgetting))
         friction = f_c * abs(moved) + b / period * moved**2 if credit else 0.0
         if observer == "published":
             energy += wall * moved + added_before * moved_before + friction

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from zwidth.bench import scores
-from zwidth.bench.adversary import Attack, attack
+from zwidth.bench.adversary import FASTEST, Attack, attack
 from zwidth.bench.laws import standard_laws
+from zwidth.bench.motions import found_motions
 from zwidth.bench.touches import Touch, standard_touches
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
@@ -22,6 +23,7 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
+from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check
 from zwidth.passivity.worst_hand import worst_hand
 from zwidth.rendering.rendered import Rendered
@@ -123,6 +125,7 @@ def compare(
     environment: Wall | Any,
     laws: Mapping[str, Environment] | None = None,
     *,
+    fastest: float = FASTEST,
     progress: Callable[[int, int], None] | None = None,
 ) -> LawComparison:
     """Put laws on the bench: three touches, a stroke in free air, and a hand that tries to take energy out.
@@ -135,13 +138,17 @@ def compare(
         The wall that is to be rendered.
     laws
         Environments by name, such as ``{"mine": zw.render(wall, MyLaw())}``; None: all of `standard_laws`.
+    fastest
+        Speed of the fastest hand that tries to take energy out [m/s].  What gains only beyond 1 m/s, about
+        what a hand reaches, says so in the evidence.
     progress
         Told (laws done, laws in all).
 
     Raises
     ------
     InputError
-        If the device is rotary or has no mass, or the environment is no wall with a stiffness.
+        If the device is rotary or has no mass, the environment is no wall with a stiffness, or the speed is
+        not > 0.
     """
     wall = as_environment(environment)
     if not isinstance(wall, Wall):
@@ -154,6 +161,7 @@ def compare(
     if not chosen:
         raise InputError("laws is empty: there is nothing to compare")
     touches = standard_touches(device, float(wall.stiffness))  # type: ignore[arg-type]
+    known = found_motions(device, wall, fastest)
     traces: dict[str, dict[str, xr.Dataset]] = {}
     attacks: dict[str, Attack] = {}
     status: dict[str, tuple[str, str]] = {}
@@ -162,7 +170,7 @@ def compare(
         if progress is not None:
             progress(done, len(chosen))
         traces[name] = {key: _touched(device, law, touch) for key, touch in touches.items()}
-        attacks[name] = attack(device, law)
+        attacks[name] = attack(device, law, fastest=fastest, known=known)
         status[name] = _status(device, law, attacks[name])
         times[name] = _step_time(device, law, touches["press"])
     if progress is not None:
@@ -200,6 +208,10 @@ def _status(device: Device, law: Environment, found: Attack) -> tuple[str, str]:
                 f"What the laws add is never more than that of {covering.damping} N·s/m, and every such "
                 f"force is covered, contact made and broken: {verdict.claim}"
             )
+    if is_bounded(law):
+        bounding = check_bounding(device, law)
+        if bounding.outcome == "passive":
+            return "passive", bounding.claim
     reason = law.stages[-1].theorem(Surroundings(device, law.environment))
     if reason is not None:
         return "theorem", f"By a proof on paper, without a certificate: {reason}."

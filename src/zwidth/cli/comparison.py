@@ -12,6 +12,7 @@ from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
 from zwidth.cli.output import print_json, quiet_pipe, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
+from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
     from zwidth.bench import LawComparison
@@ -24,8 +25,8 @@ YOURS = "yours"
 def configure_compare(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth compare`."""
     parser.usage = (
-        "%(prog)s [SOURCE ...] [--laws NAMES] [--law NAMES] [--PARAMETER VALUE ...] [--json] [--plot FILE] "
-        "[-o FILE] [--force]"
+        "%(prog)s [SOURCE ...] [--laws NAMES] [--law NAMES] [--fastest SPEED] [--PARAMETER VALUE ...] "
+        "[--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -40,6 +41,12 @@ def configure_compare(parser: argparse.ArgumentParser) -> None:
         help="laws of the bench, with commas between them, or all (default: all)",
     )
     add_law_option(parser)
+    parser.add_argument(
+        "--fastest",
+        metavar="SPEED",
+        action=Once,
+        help="of the fastest hand that tries to take energy out [m/s] (default: 10)",
+    )
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the scores as JSON, units in the keys")
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the plot: .png, .svg or .pdf")
@@ -63,7 +70,7 @@ def run_compare(arguments: argparse.Namespace) -> int:
     warn_of_compiling()
     yours = {} if own is loop.environment else {YOURS: own}
     laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
-    found = compare(loop.device, loop.environment, laws)
+    found = compare(loop.device, loop.environment, laws, fastest=_speed(arguments.fastest))
     if save is not None:
         with writing(save):
             save.write_text(_json(found) + "\n", encoding="utf-8")
@@ -76,6 +83,12 @@ def run_compare(arguments: argparse.Namespace) -> int:
         with quiet_pipe():
             print(found)
     return 0
+
+
+def _speed(typed: str | None) -> float:
+    from zwidth.bench.adversary import FASTEST
+
+    return FASTEST if typed is None else float(parse_number(typed, "m/s", "fastest"))
 
 
 def _chosen(

@@ -152,6 +152,7 @@ LAWS: Mapping[str, LawType] = MappingProxyType(
                 "reference": _word("zero", "spring"),
                 "resets": Key("flag", "true to count anew in each contact"),
                 "ceiling": _quantity("energy above which no credit is kept", "J"),
+                "forgetting": _quantity("time constant in which credit is forgotten", "s"),
             },
         ),
         "force-bounding": LawType(

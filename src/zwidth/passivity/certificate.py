@@ -46,13 +46,13 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """ "spring", "contact", "linear", "quantized" or "delays"; of several parts the first."""
+        """ "spring", "contact", "linear", "quantized", "delays" or "force bounding"; of several the first."""
         return str(self.documents[0]["kind"])
 
     @property
     def covers_contact(self) -> bool:
         """True when every part covers contact made and broken."""
-        return all(document["kind"] in ("spring", "contact") for document in self.documents)
+        return all(d["kind"] in ("spring", "contact", "force bounding") for d in self.documents)
 
     @property
     def is_of_springs(self) -> bool:

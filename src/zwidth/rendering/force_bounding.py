@@ -17,19 +17,28 @@ of which the best is taken, and the force is bounded by
     |f| ≤ f_c + 2 √(b S/T),   S = E − |g| Δ/2 ≥ 0, the least of V in the count.
 
 At Δ = f_c = 0 it is the public law.  Proofs: docs, "Laws that bound the force".
+
+Numbers are rounded, so each line is kept a hair below the one that was computed: ε = 2⁻⁴⁸ of
+all that was summed, which is more than what rounding can add, for ever.  A hand that stays pays none.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from math import sqrt
 from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
-from zwidth.rendering.reading import damping_per_sample, half_step, one_of, truth
+from zwidth.rendering.reading import above, below, damping_per_sample, half_step, one_of, truth
 from zwidth.rendering.stage import Stage, Surroundings
 
 FORCE_BOUNDING = 20.0
+
+HAIR = 2.0**-48
+"""ε, relative: 32 roundings of a double."""
+
+_LESS, _MORE = 1.0 - HAIR, 1.0 + HAIR
 
 _PAID, _FRICTION, _COUNT, _HALF_STEP, _RESETS = range(5)
 _BEFORE, _ENERGY, _SLOPE = range(3)
@@ -39,9 +48,10 @@ _BEFORE, _ENERGY, _SLOPE = range(3)
 class ForceBounding(Stage):
     """``|f| ≤ 2 √(b E/T)``, E what the hand has put in, device damping counted.
 
-    Proved: no motion of any hand takes energy out, whatever the environment.  Hypotheses: the device
-    takes at least b and, counted, f_c; no delay, regular samples, no law behind this one, an amplifier
-    without lag.  "ideal" needs an encoder without counts as well.
+    Proved, with a certificate from `zwidth.check_bounding`: no motion of any hand takes energy
+    out, whatever the environment.  Hypotheses: the device takes at least b and, counted, f_c; no delay,
+    regular samples, no law behind this one, an amplifier without lag.  "ideal" needs an encoder without
+    counts as well.
 
     Parameters
     ----------
@@ -80,18 +90,11 @@ class ForceBounding(Stage):
         InputError
             If the device has no damping.
         """
-        friction, size = (
-            float(at.device.exact(key)) if self.encoder == "counted" else 0.0
-            for key in ("coulomb_friction", "resolution")
-        )
+        friction, size = 0.0, 0.0
+        if self.encoder == "counted":
+            friction = below(at.device.exact("coulomb_friction") * (1 - Fraction(HAIR)))
+            size = above(at.device.exact("resolution"))
         return [damping_per_sample(at, "force bounding"), friction, size, half_step(at), float(self.resets)]
-
-    def theorem(self, at: Surroundings) -> str | None:
-        """Where nothing is late, and the law knows of the counts or there are none."""
-        counted = self.encoder == "counted" or at.device.exact("resolution") == 0
-        if not counted or at.device.exact("delay") != 0:
-            return None
-        return "force bounding: the force is never more than what the hand has put in can pay for"
 
     def describe(self, motion: str = "linear") -> str:
         """The law in a few words."""
@@ -105,7 +108,8 @@ def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: fl
     energy, slope = s[j + _ENERGY], s[j + _SLOPE]
     if p[i + _RESETS] > 0.0 and applied == 0.0:
         energy, slope = 0.0, 0.0
-    moved = x - s[j + _BEFORE]
+    before = s[j + _BEFORE]
+    moved = x - before
     # the slopes between which the best is found: where the friction's own slope is that of a move
     # half a count shorter, or longer, than the reading's
     low, high = applied - friction, applied + friction
@@ -113,12 +117,16 @@ def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: fl
         middle = applied + (friction if moved > 0.0 else -friction) + 2 * paid * moved
         low, high = middle - 2 * paid * half, middle + 2 * paid * half
     new = min(max(slope, low), high)
-    beyond = max(abs(new - applied) - friction, 0.0)
-    energy += new * moved - beyond * beyond / (4 * paid) - abs(new - slope) * half
-    spare = energy - abs(new) * half
+    swing = abs(new - applied)
+    beyond = max(swing - friction, 0.0)
+    if moved != 0.0 or new != slope or beyond > 0.0:
+        reach, turn = swing + friction, abs(new - slope) * half
+        size = abs(energy) + abs(new) * (abs(x) + abs(before)) + reach * reach / (4 * paid) + turn
+        energy = energy + new * moved - beyond * beyond / (4 * paid) - turn - HAIR * size
+    spare = _LESS * energy - _MORE * abs(new) * half
     if spare < 0.0:  # it was proved to be at least 0: V = 0 is as true, and better
         energy, new, spare = 0.0, 0.0, 0.0
     s[j + _BEFORE], s[j + _ENERGY], s[j + _SLOPE] = x, energy, new
-    room = max(friction + 2 * sqrt(paid * spare) - p[i + _HALF_STEP], 0.0)
+    room = max(_LESS * (friction + 2 * sqrt(paid * spare)) - p[i + _HALF_STEP], 0.0)
     bounded: float = min(max(force, -room), room)
     return bounded

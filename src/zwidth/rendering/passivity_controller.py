@@ -17,6 +17,7 @@ the move before it; with the exact observer by Ryu, Kim & Hannaford (2004).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import exp
 from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
@@ -27,7 +28,8 @@ from zwidth.rendering.stage import Stage, Surroundings, positive
 
 PASSIVITY_CONTROLLER = 1.0
 
-_PERIOD, _DAMPING, _FORCE, _FLOOR, _PUBLISHED, _FRICTION, _DRAG, _REFERENCE, _RESETS, _CEILING = range(10)
+_PERIOD, _DAMPING, _FORCE, _FLOOR, _PUBLISHED = range(5)
+_FRICTION, _DRAG, _REFERENCE, _RESETS, _CEILING, _KEPT = range(5, 11)
 _BEFORE, _ENERGY, _ADDED, _MOVED = range(4)
 
 UNLIMITED = 1e300
@@ -62,6 +64,10 @@ class PassivityController(Stage):
         Energy above which no credit is kept [J], ≥ 0: what was dissipated long ago cannot hide
         what comes out now; None: all is kept.
 
+    forgetting
+        Time constant in which credit is forgotten, E ← E e^{−T/τ} where E > 0 [s], > 0; a debt never
+        is.  None: nothing is forgotten.
+
     Raises
     ------
     InputError
@@ -79,6 +85,7 @@ class PassivityController(Stage):
     reference: Literal["zero", "spring"]
     resets: bool
     ceiling: Exact | None
+    forgetting: Exact | None
 
     def __init__(
         self,
@@ -91,6 +98,7 @@ class PassivityController(Stage):
         reference: Literal["zero", "spring"] = "zero",
         resets: bool = False,
         ceiling: RealLike | None = None,
+        forgetting: RealLike | None = None,
     ) -> None:
         own = {
             "observer": one_of("observer", observer, "sampled", "published"),
@@ -103,6 +111,9 @@ class PassivityController(Stage):
             "ceiling": None
             if ceiling is None
             else positive("ceiling", ceiling, "it is the energy that is kept at most", zero=True),
+            "forgetting": None
+            if forgetting is None
+            else positive("forgetting", forgetting, "it is the time in which credit is forgotten"),
         }
         for name, value in own.items():
             object.__setattr__(self, name, value)
@@ -135,6 +146,7 @@ class PassivityController(Stage):
             at.stiffness / 2 if self.reference == "spring" else 0.0,
             float(self.resets),
             UNLIMITED if self.ceiling is None else float(self.ceiling),
+            1.0 if self.forgetting is None else exp(-period / float(self.forgetting)),
         ]
 
     def most_damping(self) -> Exact | None:
@@ -150,6 +162,8 @@ class PassivityController(Stage):
         if self.largest_force is not None:
             parts.append(f"at most {float(self.largest_force):g} {force}")
         parts += [word for word, said in (("device credited", self.credit), ("resets", self.resets)) if said]
+        if self.forgetting is not None:
+            parts.append(f"forgets credit in {float(self.forgetting):g} s")
         if self.reference == "spring":
             parts.append("the spring's energy as reference")
         return f"passivity controller ({', '.join(parts)})"
@@ -163,12 +177,15 @@ def _limit(name: str, value: RealLike | None) -> Exact | None:
 def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: float) -> float:
     """One sample; p from i and s from j on are this law's, `applied` is the force that was held."""
     moved = x - s[j + _BEFORE]
+    before = s[j + _ENERGY]
+    if before > 0.0:
+        before *= p[i + _KEPT]
     lost = p[i + _FRICTION] * abs(moved) + p[i + _DRAG] * moved * moved
     if p[i + _PUBLISHED] > 0.0:
-        energy = s[j + _ENERGY] + force * moved + s[j + _ADDED] * s[j + _MOVED] + lost
+        energy = before + force * moved + s[j + _ADDED] * s[j + _MOVED] + lost
         ahead = energy
     else:
-        energy = s[j + _ENERGY] + applied * moved + lost
+        energy = before + applied * moved + lost
         ahead = energy + force * moved
     if p[i + _RESETS] > 0.0 and force == 0.0:
         energy, ahead = 0.0, 0.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from math import inf, nextafter
 from typing import TypeVar
 
 from zwidth.errors import InputError
@@ -52,23 +54,34 @@ def count(name: str, value: RealLike, why: str) -> int:
 
 
 def damping_per_sample(at: Surroundings, law: str) -> float:
-    """b/T, the energy that the device takes per squared move of one sample [N/m; N·m/rad].
+    """b/T, rounded down: what the device takes per squared move of one sample, at least [N/m; N·m/rad].
 
     Raises
     ------
     InputError
         If the device has no damping.
     """
-    damping = float(at.device.exact("damping"))
-    if damping <= 0.0:
+    damping = at.device.exact("damping")
+    if damping <= 0:
         raise InputError(
             f"{law} pays for the force with the device's damping, and {at.device.name} has none: "
             "give the damping that was measured, or another law"
         )
-    return damping / at.period
+    return below(damping / at.device.exact("sample_period"))
 
 
 def half_step(at: Surroundings) -> float:
     """What the device's converter can add to a force at most, ΔF/2; 0 where its step is unknown [N; N·m]."""
     step = at.device.force_resolution
-    return 0.0 if step is None else float(at.device.exact("force_resolution")) / 2
+    return 0.0 if step is None else above(at.device.exact("force_resolution")) / 2
+
+
+def below(value: Fraction) -> float:
+    """The largest double that is no more than a rational."""
+    nearest = float(value)
+    return nearest if nearest <= value else nextafter(nearest, -inf)
+
+
+def above(value: Fraction) -> float:
+    """The smallest double that is no less than a rational."""
+    return -below(-value)

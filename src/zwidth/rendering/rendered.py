@@ -67,7 +67,8 @@ class Rendered(Environment):
         """None: raises InputError."""
         raise InputError(
             f"there is no H(z) of this, its laws are not linear: {self.describe()}; zwidth.worst_hand plays "
-            "the game of the worst hand against it"
+            "the game of the worst hand against it, a row that ends in ForceBounding() is proved by "
+            "zwidth.check_bounding"
         )
 
     def describe(self, motion: str = "linear") -> str:

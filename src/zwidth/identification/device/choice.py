@@ -5,7 +5,7 @@ What a pulse twice as long changes is taken for the error of the method itself, 
 the one with the shortest intervals.
 
 A force that is recorded τ late is f(t − τ).  Where −τ df/dt is seen in what is left over, the forces
-are read so much later, again and again until nothing is seen.
+are read later until nothing is seen.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ SURE = 0.999
 LATENESS = 0.05
 """Parts of a sample below which a force is in time."""
 
-ROUNDS = 20
-"""Times that the forces are moved at most."""
+ROUNDS = 4
+"""Steps of the secants."""
 
 Zero = Literal["drifts", "constant", "exact"]
 
@@ -60,10 +60,14 @@ class Choice(NamedTuple):
         h, samples of a piece of a pulse.
     late
         Samples by which forces were recorded late.
+    shares
+        Of these pulses and of the longer ones, the part of the variance of df/dt that is motion; the rest
+        is noise, which makes the coefficient of −df/dt too small.
     """
 
     piece: int
     late: float
+    shares: tuple[float, float] = (1.0, 1.0)
 
 
 def choose(log: Log, names: tuple[str, ...], mass: float | None, delay: float, zero: Zero) -> Choice:
@@ -80,8 +84,11 @@ def choose(log: Log, names: tuple[str, ...], mass: float | None, delay: float, z
         raise InputError(too_little(log))
     if not log.channels:
         return Choice(piece, 0.0)
-    late = pilot.lateness(piece)
-    return Choice(pilot.best_piece(late) or piece, late)
+    late, longer = pilot.lateness(piece), pilot.lateness(LONGER * piece)
+    if abs(late) <= SAFETY * abs(late - longer):  # counts of a coarse encoder look late too, to short pulses
+        return Choice(piece, 0.0)
+    piece = pilot.best_piece(late) or piece
+    return Choice(piece, late, (pilot.share(piece, late), pilot.share(LONGER * piece, late)))
 
 
 def shifts(fit: Regression, longer: Regression) -> Array:
@@ -134,16 +141,29 @@ class _Pilot(NamedTuple):
         return min(halves, key=lambda h: float((halves[h] / best).sum()))
 
     def lateness(self, piece: int) -> float:
+        """The τ at which nothing of −τ df/dt is left, by secants [samples]; 0 where nothing is seen."""
+        fit = self.lag(piece, 0.0)
+        if fit is None or abs(fit.value("force_lag")) < max(
+            LATENESS * self.period, fit.reach(SURE) * fit.error("force_lag")
+        ):
+            return 0.0
         late = 0.0
         for _ in range(ROUNDS):
-            fit = regress(self.sums(piece, late), (*self.names, "force_lag"), self.mass)
-            if fit is None:
-                return late
-            more, error = (x / self.period for x in (fit.value("force_lag"), fit.error("force_lag")))
-            if abs(more) < max(LATENESS, (fit.reach(SURE) if late == 0.0 else 1.0) * error):
-                return late
-            late += more
+            fit, share = self.lag(piece, late), self.share(piece, late)
+            if fit is None or share <= 0:
+                break
+            late += fit.value("force_lag") / (share * self.period)
         return late
+
+    def share(self, piece: int, late: float) -> float:
+        """By how much the coefficient of −df/dt falls where forces are read later: 1 without noise."""
+        before, after = self.lag(piece, late - 1.0), self.lag(piece, late + 1.0)
+        if before is None or after is None:
+            return 1.0
+        return (before.value("force_lag") - after.value("force_lag")) / (2 * self.period)
+
+    def lag(self, piece: int, late: float) -> Regression | None:
+        return regress(self.sums(piece, late), (*self.names, "force_lag"), self.mass)
 
 
 def _first(stream: Iterable[Piece]) -> Iterable[Piece]:

@@ -24,6 +24,8 @@ class Found(NamedTuple):
         The pulse.
     late
         By which the forces were recorded late [s].
+    shares
+        See `Choice`.
     moments, longer
         Of the pulses, and of those twice as long.
     points
@@ -36,6 +38,7 @@ class Found(NamedTuple):
 
     shape: Pulse
     late: float
+    shares: tuple[float, float]
     moments: Moments
     longer: Moments
     points: Points
@@ -44,11 +47,12 @@ class Found(NamedTuple):
 
     def regression(self, names: tuple[str, ...]) -> Regression | None:
         """The named parameters by the pulses."""
-        return regress(self.moments, names, self.mass)
+        return regress(self.moments, names, self.mass, self.shares[0])
 
     def estimates(self, names: tuple[str, ...]) -> dict[str, Estimate] | None:
         """The named parameters with all their uncertainty; None where there are too few strokes."""
-        fit, longer = (regress(sums, names, self.mass) for sums in (self.moments, self.longer))
+        fit = self.regression(names)
+        longer = regress(self.longer, names, self.mass, self.shares[1])
         if fit is None or longer is None:
             return None
         units = units_of(self.motion)
@@ -82,7 +86,7 @@ def gather(
     """Go through the log once; `delay` of the actuator's force in samples."""
     shape, other = (pulse(h, delay, choice.late) for h in (choice.piece, LONGER * choice.piece))
     late = choice.late * log.sample_period
-    found = Found(shape, late, Moments(), Moments(), Points(), mass, log.motion)
+    found = Found(shape, late, choice.shares, Moments(), Moments(), Points(), mass, log.motion)
     done = 0
     for piece in pieces(log):
         rows = piece.pulses(shape, log.sample_period)

@@ -62,7 +62,9 @@ class Regression:
         return float(stats.t.ppf(0.5 + confidence / 2, self.degrees))
 
 
-def regress(moments: Moments, names: tuple[str, ...], mass: float | None = None) -> Regression | None:
+def regress(
+    moments: Moments, names: tuple[str, ...], mass: float | None = None, share: float = 1.0
+) -> Regression | None:
     """Fit the named parameters; None where the strokes are too few or too much alike.
 
     Parameters
@@ -73,6 +75,8 @@ def regress(moments: Moments, names: tuple[str, ...], mass: float | None = None)
         Some of `REGRESSORS`.
     mass
         m where it is known and not fitted [kg; kg·m²]: m a then counts to the force.
+    share
+        Part of the variance of df/dt that is motion and not noise, for `force_lag`.
     """
     degrees = moments.strokes - len(names) - moments.lines
     if degrees < FEWEST:
@@ -87,6 +91,9 @@ def regress(moments: Moments, names: tuple[str, ...], mass: float | None = None)
     size = np.sqrt(np.abs(np.diag(matrix)))
     if not (size > 0).all() or np.linalg.cond(matrix / np.outer(size, size)) > 1e10:
         return None
+    if "force_lag" in names and share != 1.0:
+        lag = names.index("force_lag")
+        matrix[lag, lag] -= (1 - share) / np.linalg.inv(matrix)[lag, lag]
     values: Array = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     residual = known.copy()  # the combination of columns that is left: f − m a − Σ θ A
     residual[chosen] -= values

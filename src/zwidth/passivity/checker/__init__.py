@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from .contact_motion import contact_motion_energy
 from .contact_proof import contact
+from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
 from .proofs import PROOFS
 from .reading import Invalid, get, number
@@ -26,7 +27,13 @@ from .storage_row import storage_of_row
 
 __all__ = ["Verification", "verify"]
 
-_KINDS = {**PROOFS, "contact": contact, "storage": storage, "row storage": storage_of_row}
+_KINDS = {
+    **PROOFS,
+    "contact": contact,
+    "force bounding": force_bounding,
+    "storage": storage,
+    "row storage": storage_of_row,
+}
 
 
 class Verification(NamedTuple):

@@ -1,0 +1,167 @@
+"""A row of laws that force bounding ends: passive whatever comes before it, with a certificate.
+
+    β ≤ b/T    φ (1 + u) ≤ f_c    δ ≥ Δ    h ≥ ΔF/2    delay = 0
+
+with β, φ, δ and h the very doubles that the compiled law reckons with.  The proof is in the
+documentation, "Laws that bound the force"; the checker goes through its inequalities.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Literal
+
+from zwidth.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.errors import InputError
+from zwidth.passivity import checker
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.document import exact_text, to_json, unit_key, unit_suffix
+from zwidth.quantity.glossary import GLOSSARY
+
+ROUNDOFF = Fraction(1, 2**53)
+"""u: relative error of one operation on doubles, at most."""
+
+
+@dataclass(frozen=True)
+class Bounding:
+    """Whether force bounding at the end of a row of laws keeps every hand from taking energy out.
+
+    Attributes
+    ----------
+    outcome
+        "passive" with a certificate that the independent checker accepted; "undecided" otherwise.
+    claim
+        The outcome in a sentence.
+    assumptions
+        What the claim covers and takes for granted.
+    certificate
+        The proof; None unless passive.
+    """
+
+    outcome: Literal["passive", "undecided"]
+    claim: str
+    assumptions: tuple[str, ...]
+    certificate: Certificate | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Outcome, assumptions and certificate as plain data."""
+        document: dict[str, Any] = {
+            "format": "zwidth bounding 1",
+            "outcome": self.outcome,
+            "claim": self.claim,
+            "assumptions": list(self.assumptions),
+        }
+        if self.certificate is not None:
+            document["certificate"] = self.certificate.to_dict()
+        return document
+
+    def save(self, path: str | Path) -> None:
+        """Write it as JSON for `zwidth verify`."""
+        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+
+    def __repr__(self) -> str:
+        return f"<Bounding {self.outcome}: {self.claim}>"
+
+
+def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
+    """Decide whether force bounding, the last law in a row, makes a loop passive.
+
+    Nothing is asked of the environment and of the laws before it: what they command may be anything.
+
+    Parameters
+    ----------
+    device
+        Every number certain.
+    environment
+        ``zw.render(…, ForceBounding())``.
+
+    Raises
+    ------
+    InputError
+        If the last law is another one, or a number of the device is an interval or missing.
+    """
+    law = as_environment(environment)
+    numbers = _numbers(device, law)
+    if numbers is None:
+        raise InputError(
+            f"a row of laws is proved here if ForceBounding() is the last of them, got {law.describe()}"
+        )
+    document = _document(device, numbers)
+    found = checker.verify(document)
+    if not found.valid:
+        return Bounding("undecided", f"Not proved: {found.reason}.", _assumptions(device), None)
+    claim = (
+        "No motion of the hand, however fast or skilled, takes energy out of this loop, whatever comes "
+        f"before force bounding: {found.reason}."
+    )
+    return Bounding("passive", claim, _assumptions(device), Certificate((document,)))
+
+
+def is_bounded(environment: Environment) -> bool:
+    """True for a row of laws with force bounding at its end."""
+    from zwidth.rendering import ForceBounding, Rendered  # loads numba, which takes its time
+
+    return isinstance(environment, Rendered) and isinstance(environment.stages[-1], ForceBounding)
+
+
+def _numbers(device: Device, law: Environment) -> dict[str, Fraction] | None:
+    """What the compiled law reckons with, each double as the rational that it is."""
+    if not is_bounded(law):
+        return None
+    from zwidth.rendering import Rendered
+    from zwidth.rendering.force_bounding import HAIR
+    from zwidth.rendering.stage import Surroundings
+
+    assert isinstance(law, Rendered)
+    credit, friction, count, half_step, _ = law.stages[-1].numbers(Surroundings(device, law.environment))
+    doubles = {"credit": credit, "friction": friction, "count": count, "half_step": half_step, "hair": HAIR}
+    return {name: Fraction(value) for name, value in doubles.items()}
+
+
+def _document(device: Device, numbers: dict[str, Fraction]) -> dict[str, Any]:
+    keys = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
+    loop = {key: device.exact(key) for key in keys}
+    known = device.force_resolution is not None
+    loop["force_resolution"] = device.exact("force_resolution") if known else Fraction(0)
+    force, length, slope = (
+        unit_suffix(GLOSSARY[name].unit_for(device.motion)) for name in ("force", "position", "stiffness")
+    )
+    units = {"credit": slope, "friction": force, "count": length, "half_step": force}
+    law = {
+        f"{name}_{units[name]}" if name in units else name: exact_text(value)
+        for name, value in numbers.items()
+    }
+    return {
+        "format": FORMAT,
+        "kind": "force bounding",
+        "loop": {unit_key(name, device.motion): exact_text(value) for name, value in loop.items()},
+        "law": {**law, "roundoff": exact_text(ROUNDOFF)},
+    }
+
+
+def _assumptions(device: Device) -> tuple[str, ...]:
+    """What the claim covers and takes for granted."""
+    unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
+    b, friction = (float(device.exact(key)) for key in ("damping", "coulomb_friction"))
+    lines = [
+        "contact made and broken at any instant; any environment and any laws before force bounding, which "
+        "is the last in the row",
+        f"the device takes out at least b = {b:.6g} {unit['b']} of viscous and f_c = {friction:.6g} "
+        f"{unit['N']} of Coulomb friction",
+        "a hand without limits on speed and force; the mass of the device plays no part",
+        "the force is applied at the sample and held for one constant period; no missed samples",
+        "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
+        "encoder counts of one size, their phase against the surface unknown"
+        if device.exact("resolution")
+        else "ideal position sensor: no quantization",
+        "converter steps of the size that the device states, and a force limit that the law is told of"
+        if device.force_resolution is not None
+        else "no converter steps; a force limit, if any, that the law is told of",
+        "an amplifier without lag or limit of voltage",
+    ]
+    lines.extend(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed)
+    return tuple(lines)
