@@ -164,13 +164,18 @@ def test_the_protocol_can_be_followed():
         ({}, {"confidence": 95}, "confidence"),
         ({"mass": None}, {}, "no mass"),
         ({"coulomb_friction": 0}, {}, "coulomb_friction must be"),
-        ({"damping": (0.1, 0.2)}, {}, "no single value"),
     ],
 )
 def test_bad_input_is_refused(changes, arguments, message):
     """One message says what cannot be planned with."""
     with pytest.raises(zw.InputError, match=message):
         zw.plan_identification(paddle(**changes), **{"force_noise": 0.1, **arguments})
+
+
+def test_of_an_interval_the_middle_is_the_guess():
+    """A device that was identified before is known in intervals."""
+    wide = zw.plan_identification(paddle(damping=("0.1", "0.2"), mass=("0.03", "0.042")), force_noise=0.1)
+    assert wide.seconds == pytest.approx(zw.plan_identification(paddle(), force_noise=0.1).seconds)
 
 
 def test_no_time_is_refused():
