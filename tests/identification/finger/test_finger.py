@@ -181,6 +181,7 @@ def test_an_interval_is_of_student_t_with_the_pieces(arrays):
         (("hand_force", "actuator_force"), {}, "no force"),
         (("hand_force",), {}, "device"),
         (("hand_force",), {"device": zw.Device(damping=0.1, sample_period="1 ms")}, "mass"),
+        ((), {"device": zw.Device(damping=1, mass=1, sample_period="1 ms", motion="rotary")}, "rotary"),
         (("actuator_force",), {"instrument": "perturbation"}, "no force of the actuator"),
         ((), {"instrument": "tremor"}, "instrument is"),
         ((), {"piece": 0.005}, "piece"),
