@@ -203,6 +203,18 @@ def _traces(arguments: argparse.Namespace) -> int:
     return run_traces(arguments)
 
 
+def _configure_plan(parser: argparse.ArgumentParser) -> None:
+    from zwidth.cli.planning import configure_plan
+
+    configure_plan(parser)
+
+
+def _plan(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.planning import run_plan
+
+    return run_plan(arguments)
+
+
 COMMANDS: Mapping[str, Command] = MappingProxyType(
     {
         "check": Command(
@@ -282,6 +294,17 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth identify swing.csv --mass '36 g'",
             _configure_identify,
             _identify,
+        ),
+        "plan": Command(
+            "how to move a device by hand so that its limit becomes known",
+            "Plan the experiment for zwidth identify: which strokes, how many, how long, and when to stop.",
+            "The guess of the device may be rough: after each run the data decide.\n\n"
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth plan haptic-paddle --force-noise '0.1 N'\n"
+            "  zwidth plan my-device.toml --force-noise '0.02 N' --length '10 cm' --precision 0.02",
+            _configure_plan,
+            _plan,
         ),
         "devices": Command(
             "the catalogue of real devices, each value with its source",

@@ -91,6 +91,17 @@ def specified(tables: Mapping[str, Table], overrides: Mapping[str, str] | None =
     return Specification(device, build_environment(environment, device.motion))
 
 
+def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> Device:
+    """The device alone: files with a [device] or a name in the catalogue, then the command line's parameters.
+
+    Raises
+    ------
+    InputError
+        As `load`; if a file has an environment, which would be ignored.
+    """
+    return build_device(_device_table(read_tables(sources, ("device",)), overrides))
+
+
 def build_device(table: Table) -> Device:
     """The device that a table describes.
 

@@ -9,8 +9,7 @@ import pytest
 from known_motion import NOISE, PERIOD, STEP, paddle
 
 import zwidth as zw
-from zwidth.identification.device.picture import expected_scatter
-from zwidth.identification.device.picture import identification_figure
+from zwidth.identification.device.picture import expected_scatter, identification_figure
 
 
 @pytest.fixture(scope="module")

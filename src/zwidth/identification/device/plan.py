@@ -21,6 +21,7 @@ from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.identification.device.design import PARAMETERS, Stroke, best_shares, covariance
 from zwidth.identification.device.identified import Identified
+from zwidth.quantity.exact import Interval
 
 RUN = 30.0
 """Length of a run [s]: a load cell is zeroed again after it."""
@@ -151,8 +152,8 @@ def plan_identification(
     Parameters
     ----------
     guess
-        A device with mass, damping, Coulomb friction, resolution and sample period; or what a first run
-        showed.
+        A device with mass, damping, Coulomb friction, resolution and sample period, of intervals the
+        middle; or what a first run showed.
     force_noise
         σ > 0 of the measured force, per sample [N; N·m]; None: what the first run showed.
     length
@@ -169,7 +170,7 @@ def plan_identification(
     InputError
         If a number is outside its bound, or the guess lacks one.
     """
-    device = guess.device(None) if isinstance(guess, Identified) else guess
+    device = _middle(guess.device(None) if isinstance(guess, Identified) else guess)
     if force_noise is None:
         if not isinstance(guess, Identified):
             raise InputError("force_noise is needed with a guessed device: σ of the load cell per sample [N]")
@@ -199,6 +200,12 @@ def plan_identification(
         precision=precision,
         confidence=confidence,
     )
+
+
+def _middle(device: Device) -> Device:
+    """The device with the middle of each interval."""
+    intervals = {k: v for k, v in device.parameters().items() if isinstance(v, Interval)}
+    return device.replace(**{k: float(v.low + v.high) / 2 for k, v in intervals.items()})
 
 
 def _limiting(device: Device) -> Literal["damping", "coulomb_friction"]:

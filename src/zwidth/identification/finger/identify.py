@@ -34,7 +34,7 @@ from zwidth.identification.device.identified import Estimate
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.finger.fit import TERMS, Fit, fitted
 from zwidth.identification.finger.identified import IdentifiedFinger
-from zwidth.identification.finger.means import Pieces, means, pieces_of, response
+from zwidth.identification.finger.means import Means, Pieces, means, pieces_of, response
 from zwidth.identification.finger.weights import Weights, weights
 from zwidth.identification.logs import Finding, Log
 from zwidth.quantity.exact import ends
@@ -89,18 +89,15 @@ def identify_finger(
     by_hand = "hand_force" in log.channels
     pieces = pieces_of(log, piece)
     known = {} if by_hand else _known(device)
-    friction = sum(known.get("coulomb_friction", (0.0, 0.0))) / 2
+    least, most = known.get("coulomb_friction", (0.0, 0.0))
+    friction = (least + most) / 2
     ways = _chosen(pieces, log, delay / log.sample_period, by_hand, friction)
     if instrument == "perturbation":
-        pieces = _perturbed(pieces, log, ways.shape, delay, 0.0 if by_hand else friction)
+        pieces = _perturbed(pieces, log, ways.shape, delay, friction)
         ways = _again(pieces, log, ways.shape, delay / log.sample_period, by_hand, friction)
     shift = SAFETY * np.abs(ways.fit.values - ways.longer.values)
-    if known:
-        rows = means(pieces, ways.shape, log.sample_period)
-        for f_c, resting in ((known["coulomb_friction"][1], False), (friction, True)):
-            other = fitted(rows, by_hand, f_c, resting)
-            if other is not None:
-                shift = shift + np.abs(other.values - ways.fit.values)
+    if most > 0:
+        shift = shift + _doubt(ways, means(pieces, ways.shape, log.sample_period), friction, most)
     if "actuator_force" not in log.channels:
         shift = shift + _half_a_sample(ways.fit.values, log.sample_period)
     estimates = _estimates(ways.fit, shift, known, log.motion)
@@ -128,6 +125,11 @@ def _checked(
         raise InputError(
             f"{log.source} has no force of the hand: device and finger move together, and only a device with "
             "a mass tells them apart; identify it first, and give it as device"
+        )
+    if device is not None and device.motion != log.motion:
+        raise InputError(
+            f"{log.source} is {log.motion} and the device {device.motion}: units do not match; "
+            "state both at the handle, or both at the axis"
         )
     if not 8 * log.sample_period < piece < np.inf:
         raise InputError(f"piece must be longer than 8 samples and finite, got {piece!r} s; 0.25 is usual")
@@ -185,6 +187,16 @@ def _perturbed(pieces: Pieces, log: Log, shape: Weights, delay: float, friction:
             raise InputError(_too_little(log))
         pieces = pieces._replace(expected=response(log, pieces, total.values, delay))
     return pieces
+
+
+def _doubt(ways: Ways, rows: Means | None, friction: float, most: float) -> Array:
+    """What it matters that friction may be as large as it can be, and that the device may rest in turns."""
+    shift = np.zeros(len(TERMS))
+    for f_c, resting in ((most, False), (friction, True)):
+        other = fitted(rows, False, f_c, resting)
+        if other is not None:
+            shift += np.abs(other.values - ways.fit.values)
+    return shift
 
 
 def _half_a_sample(values: Array, period: float) -> Array:
