@@ -102,7 +102,7 @@ def _behind(parameter: Any) -> Any:
 
 
 def run_identify(arguments: argparse.Namespace) -> int:
-    """`zwidth identify`: 0; with an environment the status of `zwidth check`."""
+    """`zwidth identify`: 0; with an environment that of `zwidth check`, "undecided" of a wrong model."""
     from zwidth.cli.commands import STATUS
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
@@ -113,7 +113,7 @@ def run_identify(arguments: argparse.Namespace) -> int:
     if save is not None:
         found.identified.save(save, confidence, force=True, **found.others)
     if plot is not None:
-        from zwidth.plots.identification import save_identification  # matplotlib takes its time
+        from zwidth.identification.device.picture import save_identification  # matplotlib takes its time
 
         with writing(plot):
             save_identification(found.identified, plot, overwrite=True)
@@ -123,7 +123,9 @@ def run_identify(arguments: argparse.Namespace) -> int:
         from zwidth.cli.identification_report import print_identified
 
         print_identified(found, [path for path in (save, plot) if path is not None])
-    return 0 if found.verdict is None else STATUS[found.verdict.outcome]
+    if found.environment is None:
+        return 0
+    return STATUS["undecided" if found.verdict is None else found.verdict.outcome]
 
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:
@@ -142,6 +144,8 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     others = {"delay": options["delay"]} if "delay" in options else {}
     if environment is None:
         return Result(log, identified, confidence, others, None, None, None)
+    if identified.shows("wrong model"):
+        return Result(log, identified, confidence, others, environment, None, None)
     from zwidth.cli.commands import decided
     from zwidth.cli.specification import Specification
 

@@ -45,7 +45,7 @@ def print_identified(found: Result, written: Sequence[Path]) -> None:
 
 def _headline(found: Result) -> Padding:
     badge, colour = "IDENTIFIED", "green"
-    if any(finding.kind == "wrong model" for finding in found.identified.findings):
+    if found.identified.shows("wrong model"):
         badge, colour = "WRONG MODEL", "yellow"
     grid = Table.grid(padding=(0, 1))
     grid.add_row(Text(f" {badge} ", style=f"bold white on {colour}"), Text(_claim(found), style="bold"))
@@ -53,7 +53,7 @@ def _headline(found: Result) -> Padding:
 
 
 def _claim(found: Result) -> str:
-    if any(finding.kind == "wrong model" for finding in found.identified.findings):
+    if found.identified.shows("wrong model"):
         return "Coulomb friction is seen and was not fitted: these numbers allow no wall."
     device = found.identified.device(found.confidence, **found.others)
     stiffest = check_by_closed_forms(device, Wall(stiffness=1)).max_stiffness

@@ -2,19 +2,14 @@
 
 Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
-`witness`, `worst_case`, `storage`, `cycle`, `check_figure`, `limit_figure` and
-`identification_figure` return a `matplotlib.figure.Figure` that belongs to no window; the `draw_…`
+`witness`, `worst_case`, `storage`, `cycle`, `check_figure` and `limit_figure`
+return a `matplotlib.figure.Figure` that belongs to no window; the `draw_…`
 functions draw on axes of your own, in the look of `LOOK` if your axes have it.
 """
 
 from zwidth.plots.budget import budget, draw_damping, draw_friction
 from zwidth.plots.criterion import criterion, draw_criterion
 from zwidth.plots.cycle import cycle, draw_cycle
-from zwidth.plots.identification import (
-    draw_friction_points,
-    identification_figure,
-    save_identification,
-)
 from zwidth.plots.limit import limit_figure, save_limit
 from zwidth.plots.plane import draw_plane, plane
 from zwidth.plots.report import check_figure, save_check
@@ -33,16 +28,13 @@ __all__ = [
     "draw_cycle",
     "draw_damping",
     "draw_friction",
-    "draw_friction_points",
     "draw_plane",
     "draw_storage",
     "draw_witness",
     "draw_worst_case",
-    "identification_figure",
     "limit_figure",
     "plane",
     "save_check",
-    "save_identification",
     "save_limit",
     "storage",
     "witness",

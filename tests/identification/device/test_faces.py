@@ -215,12 +215,13 @@ def test_friction_that_bends_is_bounded_below() -> None:
 
 
 def test_the_errors_of_the_bins_are_those_of_the_strokes(found: zw.Identified) -> None:
-    """By another road: the means of 400 samples of whole strokes, drawn with replacement, scatter as much."""
+    """By another road: means at one speed, of whole strokes drawn with replacement, scatter as much."""
     points = found.points
     speed = np.abs(points["speed"].values)
     friction = points["friction"].values * np.sign(points["speed"].values)
     edges = np.quantile(speed, [0.5, 0.75])
     inside = (speed > edges[0]) & (speed <= edges[1])
+    friction = friction - DAMPING * speed
     strokes = [friction[inside & (points["stroke"].values == s)] for s in np.unique(points["stroke"])]
     strokes = [part for part in strokes if part.size]
     random = np.random.default_rng(3)
@@ -233,12 +234,12 @@ def test_the_errors_of_the_bins_are_those_of_the_strokes(found: zw.Identified) -
 
 
 def test_all_bounds_share_the_risk(found: zw.Identified) -> None:
-    """Eight bounds at 95 % have 0.625 % each."""
+    """Eight bounds and a slope at 95 % have a ninth of 5 % each."""
     bins = friction_bins(found.points, 8)
     curve = found.friction_curve(0.95, 8)
-    reach = stats.t.ppf(1 - 0.05 / 8, float(bins["strokes"][3]) - 1)
+    reach = stats.t.ppf(1 - 0.05 / 10, float(bins["strokes"][3]) - 1)
     expected = float(bins["friction"][3]) - reach * float(bins["error"][3])
-    assert float(curve.forces[3]) == pytest.approx(expected, rel=1e-12)
+    assert float(curve.forces[4]) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(("confidence", "bins"), [(0.0, 8), (1.0, 8), (float("nan"), 8), (0.9, 1)])
@@ -292,11 +293,12 @@ def test_the_wrong_model_is_said_everywhere() -> None:
     found = zw.identify(log_of(paddle()), model="viscous")
     assert found.estimates["damping"].value > 1.2 * DAMPING
     assert "wrong model" in repr(found)
-    assert "wrong model" in found.to_toml()
     assert advice(found, 0.99) == (
         "fit Coulomb friction too: these numbers are of another model than the device",
     )
-    assert zw.check(found.device(), zw.Wall(stiffness=1.5 * DAMPING / PERIOD)).outcome != "passive"
+    for refused in (found.device, found.to_toml):
+        with pytest.raises(zw.InputError, match="no device has them"):
+            refused()
 
 
 def test_the_document_is_json(found: zw.Identified) -> None:

@@ -121,6 +121,9 @@ class Identified:
     def device(self, confidence: float | None = 0.99, **others: Any) -> Device:
         """A device whose b and f_c are at least as large as stated, with this confidence for both together.
 
+        Where friction was found not to be f_c + b |v|, their lower ends are those of the model below the
+        friction curve that proves the stiffest wall: the fitted line lies above friction somewhere.
+
         Parameters
         ----------
         confidence
@@ -131,8 +134,13 @@ class Identified:
         Raises
         ------
         InputError
-            If the confidence is no such number.
+            If the confidence is no such number, or Coulomb friction is seen that was not fitted.
         """
+        if self.shows("wrong model"):
+            raise InputError(
+                "these numbers are of a mass and a damper, and Coulomb friction is seen: no device has them, "
+                'and walls that they allow take energy out; identify with model="Coulomb and viscous"'
+            )
         given: dict[str, Any] = {
             "sample_period": self.sample_period,
             "resolution": self.resolution,
@@ -144,9 +152,18 @@ class Identified:
         for name in ("mass", "damping", "coulomb_friction"):
             if name in self.estimates:
                 given[name] = _parameter(self.estimates[name], confidence)
+        if self.shows("bent friction"):
+            below = self.friction_curve(0.5 if confidence is None else confidence)
+            for name, low in below.best(self.sample_period, self.resolution)._asdict().items():
+                high = max(float(low), self.estimates[name].value)
+                given[name] = low if confidence is None else Interval(float(low), high)
         if isinstance(given.get("mass"), Interval) and given["mass"].low <= 0:
             del given["mass"]  # the data do not rule out 0, which no device has; no criterion needs it
         return Device(**{**given, **others})
+
+    def shows(self, kind: str) -> bool:
+        """True where there is a finding of this kind."""
+        return any(finding.kind == kind for finding in self.findings)
 
     def confidence(self, environment: Environment | Any, **others: Any) -> float:
         """For how much of what the data allow the loop is passive, at least: 0 to 0.999999.
@@ -172,9 +189,12 @@ class Identified:
         """A friction curve below the data, for friction that is not f_c + b |v|.
 
         Its points are lower bounds of the mean friction in bins of speed, at the mean speed of
-        each.  `FrictionCurve.best` finds the model f_c + b |v| below it that proves the stiffest wall.
+        each; one at rest, by an upper bound of the slope over the slower half of the pulses; and one
+        at the largest speed, by a lower bound of it over the quicker half.  `FrictionCurve.best`
+        finds the model f_c + b |v| below it that proves the stiffest wall.
         Assumed are, beside `FrictionCurve.assumption`: the mass; the same friction in both
-        directions; and that within a bin friction is nearly a straight line of speed.
+        directions; that within a bin friction is nearly a straight line of speed; and that beyond the
+        largest speed it rises as over the quicker half at least.
 
         Parameters
         ----------
@@ -244,7 +264,7 @@ class Identified:
         force
             Replace a file that exists.
         """
-        from zwidth.plots.identification import identification_figure, save_identification
+        from zwidth.identification.device.picture import identification_figure, save_identification
 
         if path is not None:
             save_identification(self, Path(path), overwrite=force)

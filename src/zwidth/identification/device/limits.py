@@ -63,7 +63,7 @@ def limits(identified: Identified) -> tuple[Limit, ...]:
 
 def advice(identified: Identified, confidence: float) -> tuple[str, ...]:
     """Which number limits the stiffest wall, and how to know it better."""
-    if any(finding.kind == "wrong model" for finding in identified.findings):
+    if identified.shows("wrong model"):
         return ("fit Coulomb friction too: these numbers are of another model than the device",)
     found = limits(identified)
     binding = min(found, key=lambda limit: limit.interval(confidence)[0])

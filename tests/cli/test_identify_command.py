@@ -174,6 +174,11 @@ def test_the_wrong_model_is_the_headline(run: Run) -> None:
     result = run("plain.csv", "--model", "viscous", "--stiffness", "1")
     assert result.out.startswith(" WRONG MODEL  Coulomb friction is seen")
     assert "fit Coulomb friction too" in words(result)
+    assert result.status == 3
+    result = run("plain.csv", "--model", "viscous", "-o", "no.toml")
+    assert result.status == 2
+    assert "no device has them" in result.err
+    assert not Path("no.toml").exists()
 
 
 def test_files_are_not_replaced_unasked(run: Run) -> None:

@@ -9,8 +9,8 @@ import pytest
 from known_motion import NOISE, PERIOD, STEP, paddle
 
 import zwidth as zw
+from zwidth.identification.device.picture import expected_scatter
 from zwidth.plots import identification_figure
-from zwidth.plots.identification import expected_scatter
 
 
 @pytest.fixture(scope="module")
