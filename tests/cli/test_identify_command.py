@@ -181,6 +181,21 @@ def test_the_wrong_model_is_the_headline(run: Run) -> None:
     assert not Path("no.toml").exists()
 
 
+def test_several_logs_are_one(run: Run) -> None:
+    """Runs of one device are identified together; a log of another rate is refused."""
+    header, *lines = Path("plain.csv").read_text().splitlines(keepends=True)
+    half = len(lines) // 2
+    Path("one.csv").write_text(header + "".join(lines[:half]))
+    Path("two.csv").write_text(header + "".join(lines[half:]))
+    whole, parts = run("plain.csv", "--json"), run("one.csv", "two.csv", "--json")
+    found, again = json.loads(whole.out), json.loads(parts.out)
+    key = "damping_N_s_per_m"
+    assert again[key]["value"] == pytest.approx(found[key]["value"], rel=0.02)
+    assert again["strokes"] == pytest.approx(found["strokes"], abs=4)
+    Path("slow.csv").write_text(header + "".join(lines[::2]))
+    assert "identify them one by one" in run("one.csv", "slow.csv").err
+
+
 def test_files_are_not_replaced_unasked(run: Run) -> None:
     """Plot and device are kept; with --force both are written anew."""
     for path in ("mine.toml", "fig.png"):

@@ -58,12 +58,15 @@ class Result(NamedTuple):
 def configure_identify(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth identify`."""
     parser.usage = (
-        "%(prog)s LOG [SOURCE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] "
+        "%(prog)s LOG [LOG ...] [SOURCE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] "
         "[--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument("log", metavar="LOG", help="what the device recorded, in a file of any format")
     parser.add_argument(
-        "sources", metavar="SOURCE", nargs="*", help="TOML file with an [environment] table to check"
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="further logs of the same device; a TOML file with an [environment] table to check",
     )
     reading = parser.add_argument_group("log")
     for option, name, metavar, meaning in _PAIRS:
@@ -130,6 +133,7 @@ def run_identify(arguments: argparse.Namespace) -> int:
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     from zwidth.cli.patience import warn_of_compiling_the_estimates
+    from zwidth.identification.logs import join_logs
     from zwidth.identification.recording import identify, log_from
     from zwidth.traces.progress import progress_bar
 
@@ -137,7 +141,9 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     environment_of = _environment(arguments)
     warn_of_compiling_the_estimates()
     with _as_options():
-        log = log_from(Path(arguments.log), **_reading(arguments))
+        reading = _reading(arguments)
+        logs = [log_from(Path(name), **reading) for name in (arguments.log, *_further_logs(arguments))]
+        log = logs[0] if len(logs) == 1 else join_logs(logs)
         environment = environment_of(log.motion)
         with progress_bar("samples") as progress:
             identified = identify(log, **options, progress=progress)
@@ -152,6 +158,11 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     verdict = decided(Specification(identified.device(confidence, **others), environment))
     passive_for = identified.confidence(environment, **others)
     return Result(log, identified, confidence, others, environment, passive_for, verdict)
+
+
+def _further_logs(arguments: argparse.Namespace) -> list[str]:
+    """What stands behind the first log and is no specification."""
+    return [name for name in arguments.sources if not name.lower().endswith(".toml")]
 
 
 def _reading(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -221,7 +232,8 @@ def _environment(arguments: argparse.Namespace) -> Any:
 
     keys = [p.key for p in environment_parameters()]
     words = given(arguments, (*keys, *(BEHIND + key for key in keys)))
-    tables = read_tables(arguments.sources)
+    further = _further_logs(arguments)
+    tables = read_tables([name for name in arguments.sources if name not in further])
     if "device" in tables:
         raise InputError(
             f"{tables['device'].label} gives a device, and here the device comes from the log; "
