@@ -6,9 +6,9 @@
     slack(k) = (1/T)∫ vᵀδv dt − v̄ᵀΛv̄
 
 u(k) is the force commanded at the end of sample k, for that is when y(k) is known; it is held over sample
-k + d + 1.  V is the energy of the device, h the mean power of the hand.  If the device dissipates at least vᵀΛv,
-the slack is ≥ 0, whatever u does: that is Lemma 2 (Miller, Colgate & Freeman).  For a constant δ = Λ the slack is
-(1/T)∫ (v − v̄)ᵀδ(v − v̄) dt: the lemma loses only the change of velocity within a sample.
+k + d + 1.  V is the energy of the device, h the mean power of the hand.  If the device dissipates at least
+vᵀΛv, the slack is ≥ 0, whatever u does: that is Lemma 2 (Miller, Colgate & Freeman).  For a constant δ = Λ it
+is (1/T)∫ (v − v̄)ᵀδ(v − v̄) dt: the lemma loses only the change of velocity within a sample.
 """
 
 from __future__ import annotations
