@@ -121,6 +121,62 @@ def test_a_tenth_of_that_damping_feeds_it():
     assert run.energies.max() > 3 * run.energies[0]
 
 
+def at_the_hand(q, stiffness, arm):
+    """Torques Jᵀ F of a spring at the end of the arm, and the Hessian of its potential in the joints."""
+    l1, l2 = arm.lengths
+    place = np.array([l1 * np.sin(q[0]) + l2 * np.sin(q.sum()), -l1 * np.cos(q[0]) - l2 * np.cos(q.sum())])
+    a, b = np.array([np.cos(q[0]), np.sin(q[0])]) * l1, np.array([np.cos(q.sum()), np.sin(q.sum())]) * l2
+    jacobian = np.array([a + b, b]).T
+    force = stiffness * (place - np.array([0.25, -0.1]))
+    upward_1, upward_2 = np.array([-a[1], a[0]]), np.array([-b[1], b[0]])
+    bend = np.array([[force @ (upward_1 + upward_2), force @ upward_2], [force @ upward_2] * 2])
+    return jacobian.T @ force, jacobian.T @ jacobian * stiffness + bend
+
+
+@pytest.mark.parametrize("delay", [0, 1])
+def test_a_spring_at_the_end_of_the_arm_by_its_slopes_in_the_joints(delay):
+    """J(q) is held with the force: the slopes of Φ(x(q)) in the joints, curvature included, pay for it."""
+    stiffness, grid = 60.0, np.linspace(-np.pi, np.pi, 73)
+    probe = Arm(DAMPING)
+    slopes = [
+        np.linalg.eigvalsh(at_the_hand(np.array([a, b]), stiffness, probe)[1]) for a in grid for b in grid
+    ]
+    least, greatest = np.min(slopes), np.max(slopes) * 1.01
+    need = float(zw.required_damping_by_slopes(least, greatest, "0.004", Fraction(delay, 250)))
+    arm = Arm(need * np.eye(2), start=np.array([0.5, 0.6, 0.0, 0.0]))
+    end = np.array(
+        [0.23 * np.sin(0.5) + 0.19 * np.sin(1.1) - 0.25, -0.23 * np.cos(0.5) - 0.19 * np.cos(1.1) + 0.1]
+    )
+    run, given = arm.run((lambda k, q: -at_the_hand(q, stiffness, arm)[0], 120), delay)
+    data = zw.loop_storage(given, run.positions, run.energies, arm.damping, arm.period, delay)
+    spring = stiffness / 2 * end @ end
+    assert least < 0 < greatest
+    assert float((data["supply"] - data["dissipation"]).cumsum().max()) * arm.period <= spring * (1 + 1e-9)
+    assert 0.01 * spring < run.energies.max() <= spring
+
+
+def test_what_a_redundant_arm_can_be_counted_on_to_dissipate():
+    """(J δ_m⁻¹ Jᵀ)⁻¹ is the least loss over joint velocities; (Jᵀ)†δ_m J† is that of the least velocity.
+
+    With as many joints as axes they are the same.
+    """
+    random = np.random.default_rng(2)
+    jacobian, damping = random.normal(0, 1, (2, 3)), np.diag([0.03, 0.11, 0.02])
+    inverse, v = np.linalg.pinv(jacobian), np.array([0.3, -0.8])
+    least, published = (
+        np.linalg.inv(jacobian @ np.linalg.inv(damping) @ jacobian.T),
+        inverse.T @ damping @ inverse,
+    )
+    idle = np.linalg.svd(jacobian)[2][2]
+    moves = inverse @ v + np.linspace(-3, 3, 6001)[:, None] * idle
+    losses = np.einsum("ki,ij,kj->k", moves, damping, moves)
+    assert losses.min() == pytest.approx(v @ least @ v, rel=1e-5)
+    assert losses.min() < 0.95 * (v @ published @ v)
+    square = jacobian[:, :2]
+    same = np.linalg.inv(square @ np.linalg.inv(damping[:2, :2]) @ square.T)
+    assert np.allclose(same, np.linalg.inv(square).T @ damping[:2, :2] @ np.linalg.inv(square))
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

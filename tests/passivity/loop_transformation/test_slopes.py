@@ -126,6 +126,25 @@ def test_any_multiplier_is_sound():
         assert need >= best * (1 - 1e-9)
 
 
+def test_the_slopes_of_a_spring_given_by_points():
+    """Detents have ±4F/p; a magnet that lets go on one side has the steeper fall as its least slope."""
+    detents = zw.Slopes.of(zw.NonlinearSpring.detents(3, "0.01", 2))
+    assert (detents.least, detents.greatest) == (-800, 800)
+    magnet = zw.Slopes.of(zw.NonlinearSpring(["-0.01", 0, "0.002"], [-3, "0.5", 0]))
+    assert (magnet.least, magnet.greatest) == (-250, 350)
+    assert zw.Slopes.of(zw.NonlinearSpring([0, 1], [-1, 2])).least == 0
+
+
+@pytest.mark.parametrize(
+    "spring",
+    [zw.NonlinearSpring([0, 1], [1, 2]), zw.NonlinearSpring([0, 1], [0, -1]), zw.Wall(1, 0)],
+)
+def test_a_spring_that_leads_away_has_no_such_slopes(spring):
+    """Its potential has no least value: refused, as is what is no spring by points."""
+    with pytest.raises(InputError):
+        zw.Slopes.of(spring)
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -65,6 +65,17 @@ def test_the_shortage_reaches_b_just_at_the_need(environment, delay):
     assert (below["shortage"] > need * 0.99).any()
 
 
+@pytest.mark.parametrize("delay", [0, 1, 3])
+def test_the_transformation_loses_nothing(delay):
+    """Σ f̂ŷ + b ŷ² = Σ [z^{−d−1}f v̄ + b v̄²] − ¼ Σ f²/b over the forces on their way, for any f and v̄."""
+    random = np.random.default_rng(delay)
+    f, v, b = random.normal(0, 3, 50), random.normal(0, 1, 50), 0.37
+    late = np.concatenate([np.zeros(delay + 1), f])[:50]
+    y = v - (f - late) / (2 * b)
+    on_their_way = np.sum(f[50 - delay - 1 :] ** 2) / (4 * b)
+    assert np.sum(f * y + b * y**2) == pytest.approx(np.sum(late * v + b * v**2) - on_their_way, rel=1e-12)
+
+
 def test_what_does_not_fit_is_refused():
     """No damping, parts of a sample, frequencies beyond half the rate."""
     with pytest.raises(InputError, match="damping"):

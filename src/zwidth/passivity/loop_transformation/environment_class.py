@@ -17,7 +17,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
+from zwidth.environment import NonlinearSpring
 from zwidth.errors import InputError
 from zwidth.passivity.hypotheses import number
 from zwidth.quantity.exact import Exact, RealLike
@@ -52,6 +54,26 @@ class Slopes:
             raise InputError(f"the least slope is no more than the greatest; got {least} and {greatest}")
         object.__setattr__(self, "least", Exact(low))
         object.__setattr__(self, "greatest", Exact(high))
+
+    @classmethod
+    def of(cls, spring: NonlinearSpring) -> Slopes:
+        """The slopes of a spring given by points, and 0, for beyond the points its force is constant.
+
+        Raises
+        ------
+        InputError
+            If it is no `NonlinearSpring`, or pushes away for ever at one end, so that Φ has no least value.
+        """
+        if not isinstance(spring, NonlinearSpring):
+            raise InputError(f"slopes are read from a NonlinearSpring, got {type(spring).__name__}")
+        x, f = ([p.fraction for p in points] for points in (spring.positions, spring.forces))
+        if f[0] > 0 or f[-1] < 0:
+            raise InputError(
+                f"the first force must be ≤ 0 and the last ≥ 0, got {float(f[0]):g} and {float(f[-1]):g}: "
+                "a force that leads away beyond the points gives out energy for ever; end it with a stop"
+            )
+        slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in pairwise(zip(x, f, strict=True))]
+        return cls(min(0, *slopes), max(0, *slopes))
 
     def input_index(self, sample_period: RealLike) -> Exact:
         """ι = μT/2 [N·s/m; N·m·s/rad]: f(k) e ≥ ΔΦ + ½ μ e²."""
