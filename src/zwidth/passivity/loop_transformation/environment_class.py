@@ -73,7 +73,7 @@ class Slopes:
                 "a force that leads away beyond the points gives out energy for ever; end it with a stop"
             )
         slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in pairwise(zip(x, f, strict=True))]
-        return cls(min(0, *slopes), max(0, *slopes))
+        return cls(min(Fraction(0), *slopes), max(Fraction(0), *slopes))
 
     def input_index(self, sample_period: RealLike) -> Exact:
         """ι = μT/2 [N·s/m; N·m·s/rad]: f(k) e ≥ ΔΦ + ½ μ e²."""
