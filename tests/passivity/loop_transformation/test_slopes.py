@@ -91,6 +91,26 @@ def test_a_search_over_springs_and_motions_gains_nothing(least, delay):
     assert searched_gain((least, 1.0), need / 3, delay) > 1e-3
 
 
+@pytest.mark.parametrize("delay", [0, 1, 3])
+def test_curvature_within_a_matrix_is_paid_by_it(delay):
+    """−H ⪯ ∇²Φ ⪯ H in two joints: (2d + 1) H T/2 is enough for every motion tried; a fifth of it is not."""
+    random = np.random.default_rng(delay)
+    heights, waves = np.array([0.4, -0.7, 0.2]), random.normal(0, 1, (3, 2))
+    matrix = np.einsum("i,ij,ik->jk", np.abs(heights), waves, waves) * (2 * delay + 1) / 2
+    over, under = [], []
+    for _ in range(400):
+        q = np.cumsum(random.normal(0, random.choice([0.1, 1.0]), (20, 2)), axis=0) + random.uniform(-5, 5, 2)
+        force = -(heights * np.sin(q @ waves.T)) @ waves
+        q, force = np.vstack([q[:1], q]), np.vstack([*[force[:1]] * (delay + 1), force])
+        moves, stored = np.diff(q, axis=0), heights @ np.cos(q @ waves.T)[[0, -1]].T
+        work = np.sum(force[: len(moves)] * moves)
+        heat = np.einsum("ki,ij,kj->", moves, matrix, moves)
+        over.append(work + heat - np.diff(stored)[0])
+        under.append(work + heat / 5 - np.diff(stored)[0])
+    assert min(over) >= -1e-12
+    assert min(under) < -1e-3
+
+
 def test_below_the_need_a_spring_is_active():
     """One per cent below, `check` has a motion for the spring of greatest slope; at the need a proof."""
     need = zw.required_damping_by_slopes(-500, 500, T, T)

@@ -19,7 +19,7 @@ def device(damping, delay=0, **more):
     return zw.Device(damping=damping, rate=1000, delay=delay * T, **more)
 
 
-@pytest.mark.parametrize("delay", [0, 1, 2])
+@pytest.mark.parametrize("delay", [0, 1, 2, 30])
 @pytest.mark.parametrize(("k", "b"), COUPLINGS)
 def test_passive_environments_are_those_of_the_coupling_condition(k, b, delay):
     """Without excess or shortage the transformation asks for what `coupling_condition` proves necessary."""
