@@ -28,7 +28,7 @@ def test_the_closed_form_is_the_best_of_the_form(delay):
     """At slopes −μ within (1 + 1/d) L the searched multiplier finds no less and no more."""
     for least in (-470, -333, 0, 200):
         slopes = zw.Slopes(least, 470)
-        searched, _ = largest_need(best_form(slopes, DIRECT, delay), float(T))
+        searched, _ = largest_need(best_form(slopes, DIRECT, delay), T)
         assert searched == pytest.approx(
             float(zw.required_damping_by_slopes(least, 470, T, delay * T)), rel=1e-7
         )
@@ -42,6 +42,16 @@ def test_the_edge_of_the_closed_form():
     assert at == 1.25
     assert at <= past < at * 1.001
     assert far > 1.2 * at
+
+
+@pytest.mark.parametrize(("least", "delay"), [(-3000, 1), (-800, 2), (-1200, 3)])
+def test_beyond_the_closed_form_the_number_itself_is_proved(least, delay):
+    """The float that is returned holds by exact arithmetic; a millionth less does not."""
+    need = zw.required_damping_by_slopes(least, 500, T, delay * T)
+    there = zw.Device(damping=need, sample_period=T, delay=delay * T)
+    assert zw.transformed_condition(there, zw.Slopes(least, 500)).holds
+    short = there.replace(damping=need * (1 - 1e-6))
+    assert not zw.transformed_condition(short, zw.Slopes(least, 500)).holds
 
 
 def wavy(random, slopes):
@@ -142,7 +152,7 @@ def test_any_multiplier_is_sound():
     """Whatever g, the form asks for no less than the best one."""
     slopes, best = zw.Slopes(-100, 300), float(zw.required_damping_by_slopes(-100, 300, T, T))
     for more in (0, Fraction(1, 900), Fraction(1, 100)):
-        need, _ = largest_need(slopes_form(slopes, least_multiplier(slopes) + more, DIRECT, 1), float(T))
+        need, _ = largest_need(slopes_form(slopes, least_multiplier(slopes) + more, DIRECT, 1), T)
         assert need >= best * (1 - 1e-9)
 
 

@@ -48,7 +48,7 @@ class TransformedCondition:
     holds
         True when it is proved, by exact arithmetic.  False says that this theorem does not promise it.
     required_damping
-        b that is enough [N·s/m; N·m·s/rad]; None if none is.
+        b that is enough, itself proved [N·s/m; N·m·s/rad]; None if none is.
     binding
         What would have to change: the damping of the device, against hold and delay; or coupling and
         environment, which together must be strictly passive whatever the device.
@@ -136,9 +136,7 @@ def transformed_condition(
         form = best_form(environment, connection, d)
     else:
         form = indices_form(environment, connection, d, period)
-    return _condition(
-        device, environment, form.is_nonnegative(b / period), *largest_need(form, float(period))
-    )
+    return _condition(device, environment, form.is_nonnegative(b / period), *largest_need(form, period))
 
 
 def _check_kinds(device: Device, environment: Slopes | Indices) -> None:
@@ -180,7 +178,7 @@ def _bare_spring(slopes: Slopes, d: int, b: Fraction, period: Fraction) -> tuple
     if exact is not None:
         return b >= period * exact, float(period * exact), None
     form = best_form(slopes, DIRECT, d)
-    return form.is_nonnegative(b / period), *largest_need(form, float(period))
+    return form.is_nonnegative(b / period), *largest_need(form, period)
 
 
 def _bare_indices(indices: Indices, b: Fraction) -> tuple[bool, float, float | None]:

@@ -55,7 +55,7 @@ def required_damping_by_slopes(
     t = positive("sample_period", sample_period, NO_CLOCK)
     d = whole_delay(delay, t)
     exact = exact_need(slopes, d)
-    return largest_need(best_form(slopes, DIRECT, d), float(t))[0] if exact is None else Exact(t * exact)
+    return largest_need(best_form(slopes, DIRECT, d), t)[0] if exact is None else Exact(t * exact)
 
 
 def exact_need(slopes: Slopes, d: int) -> Fraction | None:
