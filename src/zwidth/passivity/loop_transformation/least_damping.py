@@ -46,7 +46,7 @@ def best_form(slopes: Slopes, connection: Connection, d: int) -> TwoSignalForm:
 def largest_need(form: TwoSignalForm, period: Fraction) -> tuple[float, float]:
     """b that is enough [N·s/m], infinite if none is, and the frequency that asks for it [Hz].
 
-    The need over frequency is found by floats and raised until it is proved, by 10⁻¹² of itself or little more.
+    The need over frequency is found by floats, and raised until it is proved, by 10⁻¹² of itself or so.
     """
     needs = form.need(np.cos(_ANGLES))
     top = int(np.argmax(needs))
