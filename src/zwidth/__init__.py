@@ -40,6 +40,16 @@ if TYPE_CHECKING:
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
+    from zwidth.passivity.loop_transformation import (
+        Indices,
+        Slopes,
+        TransformedCondition,
+        delay_sum,
+        loop_storage,
+        required_damping_by_slopes,
+        transformed_blocks,
+        transformed_condition,
+    )
     from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.passivity.virtual_mass import stable_virtual_masses
     from zwidth.passivity.worst_hand import Bracket, WorstHand
@@ -70,6 +80,7 @@ __all__ = [
     "HuntCrossley",
     "Identified",
     "IdentifiedFinger",
+    "Indices",
     "InputError",
     "Interval",
     "LawComparison",
@@ -81,9 +92,11 @@ __all__ = [
     "Published",
     "PulseTransferFunction",
     "RealHand",
+    "Slopes",
     "StandardLinearSolid",
     "Timing",
     "TissueFit",
+    "TransformedCondition",
     "VelocityFilter",
     "Verdict",
     "VirtualBody",
@@ -101,6 +114,7 @@ __all__ = [
     "compare_tissues",
     "compare_traces",
     "coupling_condition",
+    "delay_sum",
     "design_coupling",
     "fit_tissue",
     "identify",
@@ -109,6 +123,7 @@ __all__ = [
     "join_logs",
     "load_trace",
     "log_of",
+    "loop_storage",
     "operators",
     "passive_limit",
     "plan_identification",
@@ -117,12 +132,15 @@ __all__ = [
     "render",
     "rendering",
     "replay",
+    "required_damping_by_slopes",
     "rotary",
     "simulate",
     "simulate_admittance",
     "simulate_batch",
     "stable_virtual_masses",
     "tissue",
+    "transformed_blocks",
+    "transformed_condition",
     "two_port",
     "worst_hand",
 ]
@@ -145,6 +163,14 @@ _LATER = {
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
     "amplifiers": "zwidth.device.amplifier",
+    "Indices": "zwidth.passivity.loop_transformation",
+    "Slopes": "zwidth.passivity.loop_transformation",
+    "TransformedCondition": "zwidth.passivity.loop_transformation",
+    "delay_sum": "zwidth.passivity.loop_transformation",
+    "loop_storage": "zwidth.passivity.loop_transformation",
+    "required_damping_by_slopes": "zwidth.passivity.loop_transformation",
+    "transformed_blocks": "zwidth.passivity.loop_transformation",
+    "transformed_condition": "zwidth.passivity.loop_transformation",
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
