@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
+    from zwidth.passivity.index import Extraction, PassivityIndex
+    from zwidth.passivity.indices import PassivityIndices, passivity_indices
     from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.passivity.virtual_mass import stable_virtual_masses
     from zwidth.passivity.worst_hand import Bracket, WorstHand
@@ -59,6 +61,7 @@ __all__ = [
     "CouplingDesign",
     "Device",
     "Exact",
+    "Extraction",
     "FrictionCurve",
     "FrictionModel",
     "GeneralizedMaxwell",
@@ -70,6 +73,8 @@ __all__ = [
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
+    "PassivityIndex",
+    "PassivityIndices",
     "PulseTransferFunction",
     "RealHand",
     "StandardLinearSolid",
@@ -98,6 +103,7 @@ __all__ = [
     "log_of",
     "operators",
     "passive_limit",
+    "passivity_indices",
     "quantization",
     "read_log",
     "render",
@@ -128,6 +134,10 @@ _LATER = {
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
     "amplifiers": "zwidth.device.amplifier",
+    "Extraction": "zwidth.passivity.index",
+    "PassivityIndex": "zwidth.passivity.index",
+    "PassivityIndices": "zwidth.passivity.indices",
+    "passivity_indices": "zwidth.passivity.indices",
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",

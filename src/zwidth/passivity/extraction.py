@@ -91,6 +91,34 @@ def signals(port: Port, motion: Motion) -> tuple[list[Fraction], list[Fraction]]
     return u, y
 
 
+def played(port: Port, motion: Motion, points: int) -> tuple[list[float], list[float], list[float]]:
+    """(t, u, y) to rounding: the samples, or so many points from beginning to end."""
+    if motion.kind == "sequence":
+        u, y = signals(port, motion)
+        return [k * float(port.period) for k in range(len(u))], [*map(float, u)], [*map(float, y)]
+    x = [k / (points - 1) for k in range(points)]
+    if motion.kind == "polynomial":
+        duration = float(motion.numbers[0])
+        u, y = ([float(_horner(side, Fraction(at))) for at in x] for side in signals(port, motion))
+        return [duration * at for at in x], u, y
+    step, cycles, power = motion.numbers
+    u, y = ([0.0] * points for _ in range(2))
+    for j, b in lines(int(power)):
+        for total, side in ((u, port.denominator), (y, port.numerator)):
+            real, imaginary = (float(b * part) for part in on_axis(side, (cycles + j) * step))
+            for k, at in enumerate(x):
+                phase = 2 * pi * float(cycles + j) * at
+                total[k] += real * cos(phase) - imaginary * sin(phase)
+    return [2 * pi / float(step) * at for at in x], u, y
+
+
+def _horner(ascending: Sequence[Fraction], x: Fraction) -> Fraction:
+    total = Fraction(0)
+    for c in reversed(ascending):
+        total = total * x + c
+    return total
+
+
 def _sign_at(form: fmpz_poly, c: Fraction) -> fmpq:
     return form(fmpq(c.numerator, c.denominator))
 

@@ -58,7 +58,7 @@ def largest_level(port: Port, root: str = "pole") -> Largest | NoLevel:
     """
     p, w = _in_lowest_terms(*port.real_part)
     if _vanishes(w):
-        return NoLevel(_at_axis(port, root))
+        return NoLevel(_without_bound(port, root, w(-1) == 0))
     least, cosine = _minimum(p, w)
     flat = p.degree() <= 0 and w.degree() <= 0
     low = _proved_below(port, least)
@@ -133,12 +133,11 @@ def _proved_below(port: Port, least: Fraction) -> Fraction:
     return least - step
 
 
-def _at_axis(port: Port, root: str) -> str:
+def _without_bound(port: Port, root: str, at_end: bool) -> str:
     if port.time == "discrete":
         return f"the real part is without bound at a {root} on the unit circle"
-    if len(port.numerator) > len(port.denominator):
-        return f"the real part is without bound at infinite frequency or at a {root} on the imaginary axis"
-    return f"the real part is without bound at a {root} on the imaginary axis"
+    where = "as the frequency grows" if at_end else f"at a {root} on the imaginary axis"
+    return f"the real part is without bound {where}"
 
 
 def _not_stable(port: Port, root: str) -> str:
@@ -150,6 +149,8 @@ def _not_stable(port: Port, root: str) -> str:
     growing = [(e, r) for e, r in excess if e > 1e-9 * abs(r)]
     if growing:
         return f"there is an unstable {root} at {'s' if continuous else 'z'} = {_text(max(growing, key=_first)[1])}"
+    if continuous and len(port.numerator) > len(port.denominator):
+        return "it grows with the frequency, with a negative sign"
     where = "the imaginary axis" if continuous else "the unit circle"
     return f"a {root} on {where} is multiple, or has a negative residue"
 
