@@ -1,4 +1,4 @@
-"""Is a symmetric rational matrix positive semidefinite?  By elimination, and if not, a vector that says so."""
+"""Is a symmetric rational matrix positive semidefinite?  If not, a vector that says so."""
 
 from __future__ import annotations
 

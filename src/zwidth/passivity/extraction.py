@@ -93,23 +93,35 @@ def signals(port: Port, motion: Motion) -> tuple[list[Fraction], list[Fraction]]
 
 def played(port: Port, motion: Motion, points: int) -> tuple[list[float], list[float], list[float]]:
     """(t, u, y) to rounding: the samples, or so many points from beginning to end."""
+    if motion.kind == "burst":
+        return _played_burst(port, motion, points)
+    u, y = signals(port, motion)
     if motion.kind == "sequence":
-        u, y = signals(port, motion)
         return [k * float(port.period) for k in range(len(u))], [*map(float, u)], [*map(float, y)]
-    x = [k / (points - 1) for k in range(points)]
-    if motion.kind == "polynomial":
-        duration = float(motion.numbers[0])
-        u, y = ([float(_horner(side, Fraction(at))) for at in x] for side in signals(port, motion))
-        return [duration * at for at in x], u, y
+    x = [Fraction(k, points - 1) for k in range(points)]
+    tau = motion.numbers[0]
+    return (
+        [float(tau * at) for at in x],
+        [float(_horner(u, at)) for at in x],
+        [float(_horner(y, at)) for at in x],
+    )
+
+
+def _played_burst(port: Port, motion: Motion, points: int) -> tuple[list[float], list[float], list[float]]:
+    """The sum of the lines, each turned and scaled by D or N."""
     step, cycles, power = motion.numbers
-    u, y = ([0.0] * points for _ in range(2))
-    for j, b in lines(int(power)):
-        for total, side in ((u, port.denominator), (y, port.numerator)):
+    x = [k / (points - 1) for k in range(points)]
+    played: list[list[float]] = []
+    for side in (port.denominator, port.numerator):
+        total = [0.0] * points
+        for j, b in lines(int(power)):
             real, imaginary = (float(b * part) for part in on_axis(side, (cycles + j) * step))
-            for k, at in enumerate(x):
-                phase = 2 * pi * float(cycles + j) * at
-                total[k] += real * cos(phase) - imaginary * sin(phase)
-    return [2 * pi / float(step) * at for at in x], u, y
+            turn = 2 * pi * float(cycles + j)
+            total = [
+                t + real * cos(turn * at) - imaginary * sin(turn * at) for t, at in zip(total, x, strict=True)
+            ]
+        played.append(total)
+    return [2 * pi / float(step) * at for at in x], played[0], played[1]
 
 
 def _horner(ascending: Sequence[Fraction], x: Fraction) -> Fraction:
@@ -185,7 +197,11 @@ def _sequence(port: Port, level: Fraction) -> Motion | None:
 
 
 def _pairing(
-    u: Sequence[Fraction], y: Sequence[Fraction], v: Sequence[Fraction], z: Sequence[Fraction], level: Fraction
+    u: Sequence[Fraction],
+    y: Sequence[Fraction],
+    v: Sequence[Fraction],
+    z: Sequence[Fraction],
+    level: Fraction,
 ) -> fmpq:
     total = sum(a * d + b * c - 2 * level * a * c for a, b, c, d in zip(u, y, v, z, strict=True))
     return _q(Fraction(total) / 2)
@@ -199,7 +215,10 @@ def _polynomial(port: Port, level: Fraction) -> Motion | None:
     for tau in _durations(port):
         basis = [[Fraction(0)] * (lowest + j) + [Fraction(1)] for j in range(_TERMS)]
         u = [_differentiated(phi, port.denominator, tau) for phi in basis]
-        w = [_above(_differentiated(phi, port.numerator, tau), v, level) for phi, v in zip(basis, u, strict=True)]
+        w = [
+            _above(_differentiated(phi, port.numerator, tau), v, level)
+            for phi, v in zip(basis, u, strict=True)
+        ]
         form = [
             [_q((_integral(u[i], w[j]) + _integral(u[j], w[i])) / 2) for j in range(_TERMS)]
             for i in range(_TERMS)
@@ -250,16 +269,17 @@ def _rounded(values: Sequence[Fraction], digits: int) -> list[Fraction]:
 def _shifted(phi: Sequence[Fraction | int], ascending: Sequence[int], order: int) -> list[Fraction]:
     """Σ a_i φ(k + i − order) for as long as φ is given, φ = 0 before."""
     taps = [(order - i, c) for i, c in enumerate(ascending) if c]
-    return [
-        Fraction(sum(c * phi[k - lag] for lag, c in taps if lag <= k)) for k in range(len(phi))
-    ]
+    return [Fraction(sum(c * phi[k - lag] for lag, c in taps if lag <= k)) for k in range(len(phi))]
 
 
 def _differentiated(phi: Sequence[Fraction], ascending: Sequence[int], tau: Fraction) -> list[Fraction]:
     """Σ c_i φ⁽ⁱ⁾ τ⁻ⁱ, in ascending powers of x = t/τ."""
     total, scale = [Fraction(0)] * len(phi), Fraction(1)
     for c in ascending:
-        total = [t + c * scale * p for t, p in zip(total, [*phi, *[Fraction(0)] * (len(total) - len(phi))], strict=True)]
+        total = [
+            t + c * scale * p
+            for t, p in zip(total, [*phi, *[Fraction(0)] * (len(total) - len(phi))], strict=True)
+        ]
         phi, scale = [k * p for k, p in enumerate(phi)][1:], scale / tau
     return total
 

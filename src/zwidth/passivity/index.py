@@ -169,8 +169,8 @@ class PassivityIndex:
         proof = None if self.found is None else prove_level(self.port, at)
         if proof is None:
             raise InputError(
-                f"the {self.name} index is {self.value:.17g}, so the level {float(at):.17g} cannot be certified; "
-                "give a lower one"
+                f"the {self.name} index is {self.value:.17g}, so the level {float(at):.17g} cannot be "
+                "certified; give a lower one"
             )
         document = {
             **self._document("positive real", at),
@@ -214,7 +214,9 @@ class PassivityIndex:
         if isinstance(self.found, NoLevel):
             return f"{symbol} = −∞: {self.reason}"
         f = self.frequency
-        place = "at every frequency" if f is None else "as the frequency grows" if f == inf else f"at {f:.6g} Hz"
+        place = (
+            "at every frequency" if f is None else "as the frequency grows" if f == inf else f"at {f:.6g} Hz"
+        )
         return f"{symbol} = {self.value:.9g} {place}".replace("-", "−")
 
     def __repr__(self) -> str:

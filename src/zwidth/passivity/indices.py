@@ -170,7 +170,7 @@ def _sampled(
         if device is None:
             return None
     decision = decide(device, as_environment(system, discretization))
-    need, cosine = tightest(decision.loop)
+    _, cosine = tightest(decision.loop)
     return SampledDamping(limits.required_damping(decision), frequency(cosine, decision.loop.period), device)
 
 

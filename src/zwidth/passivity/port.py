@@ -10,6 +10,7 @@ Everything is rational.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -83,7 +84,7 @@ class Port:
         """True when N + gain · D has every root in the open left half plane (inside the circle)."""
         n, d = self.on_circle
         total = [x * gain.denominator + y * gain.numerator for x, y in zip(n, d, strict=True)]
-        return total[0] != 0 and is_schur(total[::-1])
+        return total[0] != 0 and _outside_circle(total)
 
     def real_part_at(self, c: Fraction) -> float:
         """Re F at cos θ = c; ±inf or nan at a pole."""
@@ -158,7 +159,16 @@ def port(numerator: Polynomial, denominator: Polynomial, time: Time, period: Fra
 
 def _decays(ascending: list[int], time: Time) -> bool:
     q = _in_zeta(tuple(ascending), len(ascending) - 1, time)
-    return q[0] != 0 and is_schur(q[::-1])
+    return q[0] != 0 and _outside_circle(q)
+
+
+def _outside_circle(in_zeta: Sequence[int]) -> bool:
+    """Every root ζ has |ζ| > 1: from rigorous balls about them, or where these touch the circle exactly."""
+    p = fmpz_poly(list(in_zeta))
+    sizes = [abs(root) for root, _ in p.complex_roots()] if p.degree() > 0 else []
+    if any(size < 1 for size in sizes):
+        return False
+    return all(size > 1 for size in sizes) or is_schur(in_zeta[::-1])
 
 
 def _in_zeta(ascending: tuple[int, ...], order: int, time: Time) -> tuple[int, ...]:

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import inf
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
@@ -102,7 +101,7 @@ def _vanishes(w: fmpq_poly) -> bool:
 
 
 def _minimum(p: fmpq_poly, w: fmpq_poly) -> tuple[Fraction, Fraction]:
-    """The least p/w found and its place: the ends of [−1, 1] and stationary points; of equals the largest c."""
+    """The least p/w of the ends of [−1, 1] and the stationary points, and its place: of equals the largest c."""
     slope = (p.derivative() * w - p * w.derivative()).numer()
     inside = real_roots(slope, _BITS) if slope.degree() >= 1 else []
     places = [Fraction(1), Fraction(-1), *(c for c in inside if -1 < c < 1)]
@@ -148,15 +147,12 @@ def _not_stable(port: Port, root: str) -> str:
     excess = [(r.real if continuous else abs(r) - 1, r) for r in pole_places(port)]
     growing = [(e, r) for e, r in excess if e > 1e-9 * abs(r)]
     if growing:
-        return f"there is an unstable {root} at {'s' if continuous else 'z'} = {_text(max(growing, key=_first)[1])}"
+        variable, worst = "s" if continuous else "z", max(growing, key=lambda pair: pair[0])[1]
+        return f"there is an unstable {root} at {variable} = {_text(worst)}"
     if continuous and len(port.numerator) > len(port.denominator):
         return "it grows with the frequency, with a negative sign"
     where = "the imaginary axis" if continuous else "the unit circle"
     return f"a {root} on {where} is multiple, or has a negative residue"
-
-
-def _first(pair: tuple[float, complex]) -> float:
-    return pair[0]
 
 
 def pole_places(port: Port) -> list[complex]:
@@ -169,5 +165,3 @@ def _text(pole: complex) -> str:
     if abs(pole.imag) <= 1e-12 * abs(pole):
         return f"{pole.real:.6g}"
     return f"{pole.real:.6g} ± {abs(pole.imag):.6g}j"
-
-

@@ -84,9 +84,8 @@ def _frequencies(index: PassivityIndex) -> np.ndarray:
 
 
 def _limit_height(axes: Axes, values: list[float], value: float) -> None:
-    """All that is finite, unless a pole on the axis makes that of no use."""
-    finite = np.array([v for v in values if isfinite(v)] or [0.0])
-    low, high = np.percentile(finite, [1, 99])
-    low, high = min(low, value if isfinite(value) else low, 0.0), max(high, value if isfinite(value) else high, 0.0)
-    span = (high - low) or 1.0
-    axes.set_ylim(low - 0.1 * span, high + 0.1 * span)
+    """Zero, the index and all but the sharpest peaks of the curve."""
+    finite = [v for v in values if isfinite(v)] or [0.0]
+    shown = [0.0, *np.percentile(finite, [1, 99]), *([value] if isfinite(value) else [])]
+    span = (max(shown) - min(shown)) or 1.0
+    axes.set_ylim(min(shown) - 0.1 * span, max(shown) + 0.1 * span)

@@ -1,4 +1,4 @@
-"""A one-port F = N/D with Re F ≥ σ in the right half plane or outside the circle: proved, or refuted by a motion.
+"""A one-port F = N/D with Re F ≥ σ in the right half plane or outside the circle: proved or refuted.
 
 Continuous ports are taken as they are: even and odd parts at s = jω for the sign, Routh's
 table for the roots.  A motion is run from rest and what it takes out is summed.
@@ -71,7 +71,11 @@ def positive_real(document: Mapping[str, Any]) -> str:
 
 
 def _combined(p: _Port, share: Fraction) -> list[Fraction]:
-    return _sum(p.numerator, [share * c for c in p.denominator]) if p.numerator else [share * c for c in p.denominator]
+    return (
+        _sum(p.numerator, [share * c for c in p.denominator])
+        if p.numerator
+        else [share * c for c in p.denominator]
+    )
 
 
 def _inside(descending: list[Fraction]) -> bool:
@@ -87,9 +91,7 @@ def _on_circle(m: list[Fraction], p: _Port) -> list[Fraction]:
     """Re(M D̄) = ¼ (|M + D|² − |M − D|²), in c = cos θ."""
     first, _ = _chebyshev(p.order)
     scale = lcm(*(c.denominator for c in (*m, *p.denominator)))
-    plus, minus = (
-        [int(c * scale) for c in _sum(m, [sign * c for c in p.denominator])] for sign in (1, -1)
-    )
+    plus, minus = ([int(c * scale) for c in _sum(m, [sign * c for c in p.denominator])] for sign in (1, -1))
     sums = (_square_modulus(side, first, p.order) for side in (plus, minus))
     return [Fraction(a - b) for a, b in zip(*sums, strict=True)]
 
@@ -150,7 +152,9 @@ def _burst(p: _Port, motion: Mapping[str, Any]) -> Fraction:
             for side in (p.numerator, p.denominator)
         ]
         (a, b), (c, d) = values
-        total += Fraction(comb(2 * power, power + j), 2**power) ** 2 * (a * c + b * d - p.level * (c * c + d * d))
+        total += Fraction(comb(2 * power, power + j), 2**power) ** 2 * (
+            a * c + b * d - p.level * (c * c + d * d)
+        )
     return total / step
 
 
