@@ -21,8 +21,9 @@ from zwidth.errors import InputError
 from zwidth.passivity import checker
 from zwidth.passivity.certificate import FORMAT, Certificate, positivity_document
 from zwidth.passivity.document import to_json
-from zwidth.passivity.extraction import Motion, absorbed, find_motion, played
+from zwidth.passivity.extraction import find_motion
 from zwidth.passivity.port import Port
+from zwidth.passivity.port_motion import Motion, absorbed, played
 from zwidth.passivity.positive_real import OFFSET, Largest, NoLevel, prove_level
 from zwidth.quantity.exact import Exact, RealLike
 

@@ -55,7 +55,7 @@ class SampledDamping:
     def describe(self) -> str:
         """The need in a line."""
         if self.required is None:
-            return f"no damping is enough, at {self.frequency:.6g} Hz"
+            return "no damping is enough"
         unit = GLOSSARY["damping"].unit_for(self.device.motion)
         return f"b ≥ {self.required:.9g} {unit}, tightest at {self.frequency:.6g} Hz"
 

@@ -101,7 +101,7 @@ def _vanishes(w: fmpq_poly) -> bool:
 
 
 def _minimum(p: fmpq_poly, w: fmpq_poly) -> tuple[Fraction, Fraction]:
-    """The least p/w of the ends of [−1, 1] and the stationary points, and its place: of equals the largest c."""
+    """The least p/w over [−1, 1], at its ends or a stationary point, and where: of equals the largest c."""
     slope = (p.derivative() * w - p * w.derivative()).numer()
     inside = real_roots(slope, _BITS) if slope.degree() >= 1 else []
     places = [Fraction(1), Fraction(-1), *(c for c in inside if -1 < c < 1)]
