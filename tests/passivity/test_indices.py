@@ -218,11 +218,11 @@ def test_a_motion_replayed_by_scipy(g, kind):
     """lsim answers the input with the output that the motion says, and the integral is the share."""
     motion = zw.passivity_indices(g).witness
     assert motion.kind == kind
-    t, u, y = (np.array(x) for x in motion.signals(60001))
+    t, u, y = (np.array(x) for x in motion.signals(20001))
     _, replayed, _ = scipy.signal.lsim((g.num[0][0], g.den[0][0]), u, t)
-    assert np.abs(replayed - y).max() < 1e-5 * np.abs(y).max()
+    assert np.abs(replayed - y).max() < 1e-4 * np.abs(y).max()
     share = -np.trapezoid(u * replayed, t) / np.trapezoid(u * u, t)
-    assert isclose(share, motion.share, rel_tol=1e-4)
+    assert isclose(share, motion.share, rel_tol=1e-3)
     assert share > 0
 
 
@@ -324,6 +324,20 @@ def test_sampled_damping_is_that_of_the_criterion():
     late = zw.passivity_indices(wall, device)
     assert late.sampled_damping.required == zw.check(device, wall).required_damping
     assert late.sampled_damping.margin == 0.3 - late.sampled_damping.required
+
+
+@pytest.mark.parametrize("delay", [0, 1, 3])
+def test_sampled_damping_is_an_input_index(delay):
+    """Minus the input index of T z⁻ᵈ H/(z − 1): another polynomial, the same number."""
+    num, den = [90, -60, 5], [1, -0.5, 0.25, 0]
+    device = zw.Device(damping=0, sample_period="0.002", delay=Fraction(delay, 500))
+    law = control.tf(num, den, 0.002)
+    index = zw.passivity_indices(
+        control.tf([0.002 * c for c in num], np.polymul(den, [1, -1] + [0] * delay), 0.002)
+    ).input
+    need = zw.passivity_indices(law, device).sampled_damping
+    assert isclose(need.required, -index.value, rel_tol=1e-12)
+    assert isclose(need.frequency, index.frequency, rel_tol=1e-9, abs_tol=1e-9)
 
 
 def test_sampled_damping_of_a_continuous_law():

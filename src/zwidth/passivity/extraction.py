@@ -92,10 +92,10 @@ def _sequence(port: Port, level: Fraction) -> Motion | None:
 
 
 def _pairing(
-    u: Sequence[Fraction],
-    y: Sequence[Fraction],
-    v: Sequence[Fraction],
-    z: Sequence[Fraction],
+    u: Sequence[Fraction | int],
+    y: Sequence[Fraction | int],
+    v: Sequence[Fraction | int],
+    z: Sequence[Fraction | int],
     level: Fraction,
 ) -> fmpq:
     total = sum(a * d + b * c - 2 * level * a * c for a, b, c, d in zip(u, y, v, z, strict=True))

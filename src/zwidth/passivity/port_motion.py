@@ -48,38 +48,39 @@ def absorbed(port: Port, level: Fraction, motion: Motion) -> Fraction:
     if motion.kind == "burst":
         step, cycles, power = motion.numbers
         return burst_energy(port, level, step, int(cycles), int(power))
-    u, y = signals(port, motion)
     if motion.kind == "sequence":
-        return sum((a * b - level * a * a for a, b in zip(u, y, strict=True)), Fraction(0))
-    return motion.numbers[0] * integral(u, above(y, u, level))
+        u, y = samples(port, motion)
+        return sum(a * b for a, b in zip(u, y, strict=True)) - level * sum(a * a for a in u)
+    p, q = polynomials(port, motion)
+    return motion.numbers[0] * integral(p, above(q, p, level))
 
 
-def signals(port: Port, motion: Motion) -> tuple[list[Fraction], list[Fraction]]:
-    """u and y: samples of a sequence, coefficients in ascending powers of x of a polynomial."""
-    sides = (port.denominator, port.numerator)
-    if motion.kind == "sequence":
-        u, y = (shifted(motion.numbers, side, port.order) for side in sides)
-    else:
-        tau, lowest, *a = motion.numbers
-        phi = [Fraction(0)] * int(lowest) + a
-        u, y = (differentiated(phi, side, tau) for side in sides)
-    return u, y
+def samples(port: Port, motion: Motion) -> tuple[list[Fraction | int], list[Fraction | int]]:
+    """u and y of a sequence."""
+    return (
+        shifted(motion.numbers, port.denominator, port.order),
+        shifted(motion.numbers, port.numerator, port.order),
+    )
+
+
+def polynomials(port: Port, motion: Motion) -> tuple[list[Fraction], list[Fraction]]:
+    """u and y of a polynomial, in ascending powers of x = t/τ."""
+    tau, lowest, *a = motion.numbers
+    phi = [Fraction(0)] * int(lowest) + a
+    return differentiated(phi, port.denominator, tau), differentiated(phi, port.numerator, tau)
 
 
 def played(port: Port, motion: Motion, points: int) -> tuple[list[float], list[float], list[float]]:
     """(t, u, y) to rounding: the samples, or so many points from beginning to end."""
     if motion.kind == "burst":
         return _played_burst(port, motion, points)
-    u, y = signals(port, motion)
     if motion.kind == "sequence":
+        u, y = samples(port, motion)
         return [k * float(port.period) for k in range(len(u))], [*map(float, u)], [*map(float, y)]
-    x = [Fraction(k, points - 1) for k in range(points)]
-    tau = motion.numbers[0]
-    return (
-        [float(tau * at) for at in x],
-        [float(_horner(u, at)) for at in x],
-        [float(_horner(y, at)) for at in x],
-    )
+    tau, x = motion.numbers[0], [Fraction(k, points - 1) for k in range(points)]
+    sides = polynomials(port, motion)
+    p, q = ([float(_horner(side, at)) for at in x] for side in sides)
+    return [float(tau * at) for at in x], p, q
 
 
 def _played_burst(port: Port, motion: Motion, points: int) -> tuple[list[float], list[float], list[float]]:
@@ -135,10 +136,11 @@ def above(y: Sequence[Fraction], u: Sequence[Fraction], level: Fraction) -> list
     return [b - level * a for a, b in zip(u, y, strict=True)]
 
 
-def shifted(phi: Sequence[Fraction | int], ascending: Sequence[int], order: int) -> list[Fraction]:
-    """Σ a_i φ(k + i − order) for as long as φ is given, φ = 0 before."""
+def shifted(phi: Sequence[Fraction | int], ascending: Sequence[int], order: int) -> list[Fraction | int]:
+    """Σ a_i φ(k + i − order) while φ is given, φ = 0 before; whole numbers stay ints, which are fast."""
+    plain = [x.numerator if x.denominator == 1 else x for x in phi]
     taps = [(order - i, c) for i, c in enumerate(ascending) if c]
-    return [Fraction(sum(c * phi[k - lag] for lag, c in taps if lag <= k)) for k in range(len(phi))]
+    return [sum(c * plain[k - lag] for lag, c in taps if lag <= k) for k in range(len(plain))]
 
 
 def differentiated(phi: Sequence[Fraction], ascending: Sequence[int], tau: Fraction) -> list[Fraction]:
