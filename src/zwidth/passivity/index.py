@@ -40,29 +40,31 @@ class Extraction:
         The system, the level and the motion, as the independent checker reads them.
     share
         What comes out above the level, per ∫ u² (∫ y² for the output index).
+    port, motion
+        F and φ, from which u and y follow.
     """
 
     document: dict[str, Any]
     share: float
-    _port: Port
-    _motion: Motion
+    port: Port
+    motion: Motion
 
     @property
     def kind(self) -> str:
         """ "burst", a sinusoid that fades in and out; "polynomial" or "sequence"."""
-        return self._motion.kind
+        return self.motion.kind
 
     @property
     def frequency(self) -> float | None:
         """Of a burst, its middle frequency [Hz]; None for another motion."""
-        if self._motion.kind != "burst":
+        if self.motion.kind != "burst":
             return None
-        step, cycles, _ = self._motion.numbers
+        step, cycles, _ = self.motion.numbers
         return float(step * cycles) / (2 * pi)
 
     def signals(self, points: int = 1000) -> tuple[list[float], list[float], list[float]]:
         """(t [s], u, y), u with a peak of 1; of a discrete port its samples, whatever `points`."""
-        t, u, y = played(self._port, self._motion, points)
+        t, u, y = played(self.port, self.motion, points)
         if self.document["index"] == "output":
             u, y = y, u
         peak = max(map(abs, u)) or 1.0
@@ -83,12 +85,12 @@ class Extraction:
     def describe(self) -> str:
         """The motion in a sentence."""
         of = "∫u²" if self.document["index"] == "input" else "∫y²"
-        if self._port.time == "discrete":
+        if self.port.time == "discrete":
             of = of.replace("∫", "Σ")
         form = {
             "burst": f"a burst of {self.frequency or 0:.6g} Hz",
-            "polynomial": f"a polynomial over {float(self._motion.numbers[0]):.4g} s",
-            "sequence": f"{len(self._motion.numbers)} samples",
+            "polynomial": f"a polynomial over {float(self.motion.numbers[0]):.4g} s",
+            "sequence": f"{len(self.motion.numbers)} samples",
         }[self.kind]
         return f"{form}, from rest: {self.share:.4g} {of} comes out above the level"
 
