@@ -48,7 +48,7 @@ axes[2].set(title=f"burst of {burst.frequency:.1f} Hz", xlabel="time [s]")
 axes[2].legend(loc="upper right")
 
 # %%
-# The certificate is of the number itself: with that much of the force fed through to the velocity it is passive.
+# The certificate is of the number itself: with that much of the force fed through, the port is passive.
 
 assert worst.certificate().verify()
 assert burst.verify()
