@@ -246,6 +246,15 @@ def test_a_discrete_motion_replayed_by_scipy(g):
     assert motion.share > 0
 
 
+def test_slow_growth_is_caught_by_a_longer_polynomial():
+    """A pole pair at 0.07 ± 1.06j, with a real part on the axis that is above the level."""
+    index = zw.passivity_indices(control.tf([-4, 4], [4, 3, 4, 4])).input
+    assert "unstable pole at s = 0.0697809 ± 1.05796j" in index.reason
+    motion = index.refute(-3)
+    assert motion.kind == "polynomial"
+    assert motion.verify()
+
+
 def test_what_grows_slowly_has_no_motion_but_no_proof_either():
     """A pole 1e-4 outside the circle with Re G > 0 on it: not passive, and not certified either way."""
     found = zw.passivity_indices(control.tf([-1, -1], [1, -1.0001], 0.01) + 20001)

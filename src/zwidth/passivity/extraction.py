@@ -12,7 +12,7 @@ from fractions import Fraction
 from math import acos, cos, log10, pi, sin, sqrt
 from typing import Literal
 
-from flint import fmpq, fmpz_poly
+from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.elimination import negative_direction
 from zwidth.passivity.port import Port
@@ -22,7 +22,6 @@ from zwidth.passivity.port_motion import (
     absorbed,
     burst_energy,
     differentiated,
-    integral,
     shifted,
 )
 from zwidth.passivity.positive_real import above_level, pole_places
@@ -30,7 +29,7 @@ from zwidth.passivity.positivity import prove_nonnegative
 
 MOST_CYCLES = 1 << 22
 LONGEST_SEQUENCE = 1 << 17
-_TERMS = 12
+_TERMS = 24
 _LENGTHS = (2, 4, 8, 16, 32, 48)
 _LARGEST_ORDER = 24
 
@@ -108,19 +107,25 @@ def _polynomial(port: Port, level: Fraction) -> Motion | None:
     if lowest > _LARGEST_ORDER:
         return None
     for tau in _durations(port):
-        basis = [[Fraction(0)] * (lowest + j) + [Fraction(1)] for j in range(_TERMS)]
-        u = [differentiated(phi, port.denominator, tau) for phi in basis]
-        w = [
-            above(differentiated(phi, port.numerator, tau), v, level) for phi, v in zip(basis, u, strict=True)
-        ]
-        form = [
-            [_q((integral(u[i], w[j]) + integral(u[j], w[i])) / 2) for j in range(_TERMS)]
-            for i in range(_TERMS)
-        ]
+        pairs = [_answers(port, level, tau, lowest + j) for j in range(_TERMS)]
+        form = [[(_mean(u * z) + _mean(v * w)) / 2 for v, z in pairs] for u, w in pairs]
         found = _verified(port, level, negative_direction(form), "polynomial", (tau, Fraction(lowest)))
         if found is not None:
             return found
     return None
+
+
+def _answers(port: Port, level: Fraction, tau: Fraction, power: int) -> tuple[fmpq_poly, fmpq_poly]:
+    """u and y − σ u of φ = xⁿ."""
+    phi = [Fraction(0)] * power + [Fraction(1)]
+    u, y = (differentiated(phi, side, tau) for side in (port.denominator, port.numerator))
+    first, second = (fmpq_poly([_q(c) for c in p]) for p in (u, above(y, u, level)))
+    return first, second
+
+
+def _mean(p: fmpq_poly) -> fmpq:
+    """∫ p dx over [0, 1]."""
+    return p.integral()(1)
 
 
 def _durations(port: Port) -> list[Fraction]:
