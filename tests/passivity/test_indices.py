@@ -422,6 +422,7 @@ def test_the_checker_refuses_a_false_motion():
     grown = zw.passivity_indices(1 / (1 - s)).witness.to_dict()
     false = [
         tampered(burst, ("motion", "power"), "0"),
+        tampered(burst, ("motion", "step_rad_per_s"), "1" * 200),
         tampered(burst, ("motion", "cycles"), "1"),
         tampered(burst, ("level",), "-1"),
         tampered(burst, ("system", "time"), "discrete"),

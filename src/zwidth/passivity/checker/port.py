@@ -12,11 +12,12 @@ from math import comb, lcm, pi
 from typing import Any, NamedTuple
 
 from .proofs import _chebyshev, _hurwitz, _inside_unit_circle, _multiply, _positivity, _square_modulus, _sum
-from .reading import MOST_COEFFICIENTS, Invalid, get, integer, number, numbers
+from .reading import MOST_COEFFICIENTS, MOST_SAMPLES, Invalid, get, integer, number, numbers
 
 MOST_ORDER = 400
 MOST_POWER = 400
 MOST_WORK = 40_000_000
+MOST_BITS_OF_TIME = 400  # high powers of frequencies and durations are taken
 
 
 class _Port(NamedTuple):
@@ -128,7 +129,7 @@ def extraction(document: Mapping[str, Any]) -> tuple[str, Fraction]:
     elif kind == "polynomial" and p.continuous:
         absorbed = _polynomial(p, motion)
     elif kind == "sequence" and not p.continuous:
-        absorbed = _sequence(p, numbers(get(motion, "latent"), MOST_WORK))
+        absorbed = _sequence(p, numbers(get(motion, "latent"), MOST_SAMPLES))
     else:
         raise Invalid(f"no {str(kind)[:20]!r} motion in this time")
     if absorbed >= 0:
@@ -138,7 +139,7 @@ def extraction(document: Mapping[str, Any]) -> tuple[str, Fraction]:
 
 def _burst(p: _Port, motion: Mapping[str, Any]) -> Fraction:
     """W/π of φ = (1 − cos Ωt)ᵏ cos mΩt over one period, by its lines at (m + j)Ω."""
-    step = number(get(motion, "step_rad_per_s"))
+    step = _short(number(get(motion, "step_rad_per_s")))
     cycles, power = integer(get(motion, "cycles")), integer(get(motion, "power"))
     if step <= 0 or cycles <= power or power > MOST_POWER:
         raise Invalid("a burst needs Ω > 0 and more cycles than its power")
@@ -158,6 +159,12 @@ def _burst(p: _Port, motion: Mapping[str, Any]) -> Fraction:
     return total / step
 
 
+def _short(value: Fraction) -> Fraction:
+    if max(value.numerator.bit_length(), value.denominator.bit_length()) > MOST_BITS_OF_TIME:
+        raise Invalid("a frequency or a duration has too many digits")
+    return value
+
+
 def _horner(ascending: Sequence[Fraction], x: Fraction) -> Fraction:
     total = Fraction(0)
     for c in reversed(ascending):
@@ -167,7 +174,7 @@ def _horner(ascending: Sequence[Fraction], x: Fraction) -> Fraction:
 
 def _polynomial(p: _Port, motion: Mapping[str, Any]) -> Fraction:
     """∫ u y − σ u² over 0 … τ with u = D φ, y = N φ, φ a polynomial of t/τ that begins with power ≥ n."""
-    tau, lowest = number(get(motion, "duration_s")), integer(get(motion, "lowest_power"))
+    tau, lowest = _short(number(get(motion, "duration_s"))), integer(get(motion, "lowest_power"))
     if tau <= 0 or lowest < p.order or lowest > MOST_COEFFICIENTS:
         raise Invalid("the polynomial must last and begin at rest")
     a = numbers(get(motion, "coefficients"), 200)
