@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
+    from zwidth.passivity.index import Extraction, PassivityIndex
+    from zwidth.passivity.indices import PassivityIndices, passivity_indices
     from zwidth.passivity.loop_transformation import (
         Indices,
         Slopes,
@@ -74,6 +76,7 @@ __all__ = [
     "CouplingDesign",
     "Device",
     "Exact",
+    "Extraction",
     "FrictionCurve",
     "FrictionModel",
     "GeneralizedMaxwell",
@@ -88,6 +91,8 @@ __all__ = [
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
+    "PassivityIndex",
+    "PassivityIndices",
     "Plan",
     "Published",
     "PulseTransferFunction",
@@ -126,6 +131,7 @@ __all__ = [
     "loop_storage",
     "operators",
     "passive_limit",
+    "passivity_indices",
     "plan_identification",
     "quantization",
     "read_log",
@@ -171,6 +177,10 @@ _LATER = {
     "required_damping_by_slopes": "zwidth.passivity.loop_transformation",
     "transformed_blocks": "zwidth.passivity.loop_transformation",
     "transformed_condition": "zwidth.passivity.loop_transformation",
+    "Extraction": "zwidth.passivity.index",
+    "PassivityIndex": "zwidth.passivity.index",
+    "PassivityIndices": "zwidth.passivity.indices",
+    "passivity_indices": "zwidth.passivity.indices",
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",

@@ -239,3 +239,30 @@ def test_importing_zwidth_does_not_import_matplotlib():
     """A verdict never waits for a plotting library."""
     code = "import sys, zwidth; sys.exit('matplotlib' in sys.modules or 'zwidth.plots' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_indices_mark_the_least_real_part():
+    """The dashed lines are the indices, and the curve touches each at the mark."""
+    from scipy.signal import TransferFunction
+
+    found = zw.passivity_indices(TransferFunction([1, 1, 5, 0.1], [1, 2, 3, 4]))
+    for axes, index in zip(plots.indices(found).axes, (found.input, found.output), strict=True):
+        assert _dashed(axes) == index.value
+        curve = next(line for line in axes.lines if len(line.get_xdata()) > 100)
+        assert min(curve.get_ydata()) == pytest.approx(index.value, rel=1e-3)
+    assert axes.lines[-1].get_xdata()[0] == index.frequency
+    assert axes.get_ylabel() == "Re $1/G$"
+
+
+@pytest.mark.parametrize(("num", "den"), [([1], [1, -1]), ([1], [1, 0, 0]), ([2], [1])])
+def test_indices_without_a_number_are_drawn_too(num, den):
+    """No level, or one level at every frequency: a title says so."""
+    from scipy.signal import TransferFunction
+
+    for arguments in ({}, {"dt": 0.01}):
+        found = zw.passivity_indices(TransferFunction(num, den, **arguments))
+        left, right = plots.indices(found).axes
+        plots.indices(found).savefig(BytesIO(), format="svg")
+        for axes, index in ((left, found.input), (right, found.output)):
+            infinite = abs(index.value) == float("inf")
+            assert ("∞" in axes.get_title(loc="left")) == (infinite or index.frequency == float("inf"))

@@ -90,11 +90,13 @@ def _claim(part: Part) -> str:
         return reason
     if _is_bounded(part.evidence):
         return f"No hand within these bounds takes energy out of the loop below, proved: {reason}"
+    if part.evidence.get("kind") == "positive real":
+        return f"Of the port below, proved: {reason}"
     return f"The loop below is passive, proved: {reason}"
 
 
 def _rows(part: Part) -> Iterator[tuple[str, str]]:
-    if part.verification.energy is not None:
+    if part.verification.energy is not None and part.evidence.get("kind") != "extraction":
         yield "energy extracted", _joules(part.verification.energy)
     corners = part.evidence.get("corners")
     shown_part: object = part.evidence
@@ -106,7 +108,7 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
     if "kind" in shown_part:
         yield "kind", plain(str(shown_part["kind"]))
     known = _known_keys()
-    for table in ("loop", "law", "domain"):
+    for table in ("loop", "law", "domain", "system", "motion"):
         content = shown_part.get(table)
         for key, value in content.items() if isinstance(content, Mapping) else ():
             name, unit = known.get(str(key), (str(key).replace("_", " "), ""))

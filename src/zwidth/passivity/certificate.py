@@ -46,7 +46,7 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """ "spring", "contact", "linear", "quantized", "delays" or "force bounding"; of several the first."""
+        """ "spring", "contact", "linear", "quantized", "delays", "force bounding" or "positive real"."""
         return str(self.documents[0]["kind"])
 
     @property
@@ -125,8 +125,8 @@ def certify_delays(decision: Decision, pieces: Sequence[Piece], longest: Fractio
         {
             "low": str(piece.low),
             "high": str(piece.high),
-            "at_low": _positivity(piece.at_low),
-            "at_high": _positivity(piece.at_high),
+            "at_low": positivity_document(piece.at_low),
+            "at_high": positivity_document(piece.at_high),
         }
         for piece in pieces
     ]
@@ -146,10 +146,11 @@ def _proof(proof: LinearProof) -> dict[str, Any]:
     stability: dict[str, Any] = {"kind": proof.stability}
     if proof.offset is not None:
         stability["offset"] = str(proof.offset)
-    return {"stability": stability, "positivity": _positivity(proof.positivity)}
+    return {"stability": stability, "positivity": positivity_document(proof.positivity)}
 
 
-def _positivity(sign: Positivity) -> dict[str, Any]:
+def positivity_document(sign: Positivity) -> dict[str, Any]:
+    """A proof of a sign as plain data."""
     return {
         "at_one": sign.at_one,
         "at_minus_one": sign.at_minus_one,

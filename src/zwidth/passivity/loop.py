@@ -26,6 +26,7 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 from zwidth.device import Device
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.errors import InputError
+from zwidth.passivity.cosines import from_cosines, real_product
 from zwidth.passivity.schur import is_schur
 
 LARGEST_DEGREE = 120
@@ -81,12 +82,12 @@ class LinearLoop:
     @cached_property
     def dissipation(self) -> fmpq_poly:
         """|D|² as a polynomial in c."""
-        return _from_cosines(_autocorrelation(self.denominator))
+        return real_product(self.denominator, self.denominator)
 
     @cached_property
     def switching(self) -> fmpq_poly:
         """|N|² as a polynomial in c."""
-        return _from_cosines(_autocorrelation(self.numerator))
+        return real_product(self.numerator, self.numerator)
 
     @cached_property
     def hold(self) -> fmpq_poly:
@@ -97,7 +98,7 @@ class LinearLoop:
         m = (n * shift).left_shift(self.whole_delay)
         lag = len(self.denominator) - 1
         r = (m * fmpq_poly(list(self.denominator[::-1]))).coeffs()
-        return _from_cosines(_dirichlet(r, lag))
+        return from_cosines(_dirichlet(r, lag))
 
     @cached_property
     def criterion(self) -> fmpz_poly:
@@ -194,14 +195,6 @@ def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...], boo
     return tuple(top_down_n), tuple(top_down_d), decay
 
 
-def _autocorrelation(a: tuple[int, ...]) -> list[fmpq]:
-    """Coefficients of |a(ζ)|² = Σ a_j cos jθ."""
-    product = (fmpq_poly(list(a)) * fmpq_poly(list(a[::-1]))).coeffs()
-    product += [fmpq(0)] * (2 * len(a) - 1 - len(product))
-    middle = len(a) - 1
-    return [product[middle]] + [2 * product[middle + j] for j in range(1, len(a))]
-
-
 def _dirichlet(r: list[fmpq], lag: int) -> list[fmpq]:
     """Cosine coefficients of Σ_{m≥1} r₋ₘ D_{m−1} − Σ_{j≥0} r_j D_j, D_j = 1 + 2 Σ_{i≤j} cos iθ.
 
@@ -221,12 +214,3 @@ def _dirichlet(r: list[fmpq], lag: int) -> list[fmpq]:
         total += weights[i]
         cosines[i] = 2 * total if i else total
     return cosines
-
-
-def _from_cosines(a: list[fmpq]) -> fmpq_poly:
-    """Σ a_j cos jθ as a polynomial in c = cos θ."""
-    total = fmpq_poly([])
-    for j, weight in enumerate(a):
-        if weight != 0:
-            total += weight * fmpq_poly(fmpz_poly.chebyshev_t(j))
-    return total

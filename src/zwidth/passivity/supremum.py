@@ -11,9 +11,10 @@ from __future__ import annotations
 from fractions import Fraction
 from math import acos, inf, pi
 
-from flint import ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq_poly
 
 from zwidth.passivity.loop import LinearLoop
+from zwidth.passivity.roots import real_roots
 from zwidth.passivity.schur import is_schur
 
 _FLAT = 1e-12
@@ -54,7 +55,7 @@ def _poles_on_circle(loop: LinearLoop) -> list[Fraction]:
     """Where |D|² vanishes, and the need may be without bound."""
     if is_schur(loop.denominator[::-1]):
         return []
-    return [c for c in _real_roots(loop.dissipation.numer()) if -1 <= c <= 1]
+    return [c for c in real_roots(loop.dissipation.numer()) if -1 <= c <= 1]
 
 
 def _stationary(loop: LinearLoop) -> list[Fraction]:
@@ -63,26 +64,7 @@ def _stationary(loop: LinearLoop) -> list[Fraction]:
     slope = (p.derivative() * weight - p * weight.derivative()).numer()
     if slope.degree() < 1:
         return []
-    return [c for c in _real_roots(slope) if -1 < c < 1]
-
-
-def _real_roots(p: fmpz_poly) -> list[Fraction]:
-    roots = []
-    saved = ctx.prec
-    try:
-        ctx.prec = 128
-        for root, _ in p.complex_roots():
-            if abs(float(root.imag)) <= 1e-30:
-                roots.append(_fraction(root.real))
-    finally:
-        ctx.prec = saved
-    return roots
-
-
-def _fraction(ball: object) -> Fraction:
-    """The midpoint of a real ball, exactly."""
-    middle: fmpq = ball.mid().fmpq()  # type: ignore[attr-defined]
-    return Fraction(int(middle.p), int(middle.q))
+    return [c for c in real_roots(slope) if -1 < c < 1]
 
 
 def _rational(value: float) -> Fraction:

@@ -10,6 +10,7 @@ functions draw on axes of your own, in the look of `LOOK` if your axes have it.
 from zwidth.plots.budget import budget, draw_damping, draw_friction
 from zwidth.plots.criterion import criterion, draw_criterion
 from zwidth.plots.cycle import cycle, draw_cycle
+from zwidth.plots.indices import draw_index, indices
 from zwidth.plots.limit import limit_figure, save_limit
 from zwidth.plots.plane import draw_plane, plane
 from zwidth.plots.report import check_figure, save_check
@@ -28,10 +29,12 @@ __all__ = [
     "draw_cycle",
     "draw_damping",
     "draw_friction",
+    "draw_index",
     "draw_plane",
     "draw_storage",
     "draw_witness",
     "draw_worst_case",
+    "indices",
     "limit_figure",
     "plane",
     "save_check",

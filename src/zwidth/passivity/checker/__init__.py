@@ -19,6 +19,7 @@ from .contact_motion import contact_motion_energy
 from .contact_proof import contact
 from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
+from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
 from .row_motion import row_motion_energy
@@ -31,6 +32,7 @@ _KINDS = {
     **PROOFS,
     "contact": contact,
     "force bounding": force_bounding,
+    "positive real": positive_real,
     "storage": storage,
     "row storage": storage_of_row,
 }
@@ -54,8 +56,10 @@ def verify(document: Mapping[str, Any]) -> Verification:
             return _round_again(contact_motion_energy(document))
         if kind == "row motion":
             return _round_again(row_motion_energy(document))
+        if kind == "extraction":
+            return Verification(True, *extraction(document))
         if not isinstance(kind, str) or kind not in _KINDS:
-            raise Invalid(f"kind must be motion, {', '.join(_KINDS)}; got {str(kind)[:40]!r}")
+            raise Invalid(f"kind must be motion, extraction, {', '.join(_KINDS)}; got {str(kind)[:40]!r}")
         return Verification(True, _KINDS[kind](document))
     except Invalid as error:
         return Verification(False, str(error))

@@ -1,0 +1,182 @@
+"""How passive a linear system is: its input and output index, and the damping its sampled loop needs.
+
+    ν  largest with ∫ u y ≥ ν ∫ u²    input feedforward index (Bao & Lee 2007; Kottenstette et al. 2014)
+    ρ  largest with ∫ u y ≥ ρ ∫ y²    output feedback index
+    b  least device damping with which H(z), sampled and held, is passive    (Colgate & Schenkel 1997)
+
+ν and ρ take y·u for the power at the port: they mean something where input and
+output are velocity and force.  The last takes H from position to force.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from zwidth.device import Device
+from zwidth.environment.discretization import Discretization
+from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.errors import InputError
+from zwidth.passivity import limits
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.decision import decide
+from zwidth.passivity.index import Extraction, PassivityIndex
+from zwidth.passivity.port import Port, read_port
+from zwidth.passivity.positive_real import largest_level
+from zwidth.passivity.supremum import frequency, tightest
+from zwidth.quantity.glossary import GLOSSARY
+
+
+@dataclass(frozen=True)
+class SampledDamping:
+    """The damping that a device must have for H(z), sampled and held, to give out no energy.
+
+    Attributes
+    ----------
+    required
+        The least b that is proved [N·s/m; N·m·s/rad]; None if none is enough.
+    frequency
+        Where the criterion is tightest [Hz].
+    device
+        The device that was given; without one, one of no damping and no delay.
+    """
+
+    required: float | None
+    frequency: float
+    device: Device
+
+    @property
+    def margin(self) -> float | None:
+        """b − required of the device [N·s/m; N·m·s/rad]; None if none is enough."""
+        return None if self.required is None else float(self.device.exact("damping")) - self.required
+
+    def describe(self) -> str:
+        """The need in a line."""
+        if self.required is None:
+            return "no damping is enough"
+        unit = GLOSSARY["damping"].unit_for(self.device.motion)
+        return f"b ≥ {self.required:.9g} {unit}, tightest at {self.frequency:.6g} Hz"
+
+    def __repr__(self) -> str:
+        return f"<SampledDamping {self.describe()}>"
+
+
+@dataclass(frozen=True)
+class PassivityIndices:
+    """What `passivity_indices` found.
+
+    Attributes
+    ----------
+    input, output
+        The input feedforward index ν and the output feedback index ρ.
+    sampled_damping
+        What H(z) needs of a device; None where no sample period is known.
+    """
+
+    input: PassivityIndex
+    output: PassivityIndex
+    sampled_damping: SampledDamping | None
+
+    @property
+    def passive(self) -> bool:
+        """Whether the port is passive, ν ≥ 0, decided exactly; equality counts as passive."""
+        return self.input.at_least(0)
+
+    @property
+    def hidden_modes_decay(self) -> bool:
+        """False when a mode that cancels between poles and zeros does not decay: no index sees it."""
+        return self.input.port.hidden_modes_decay
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The proof that the port is passive; None if it is not."""
+        return self.input.certificate(0) if self.passive else None
+
+    @property
+    def witness(self) -> Extraction | None:
+        """A motion from rest that takes energy out; None if the port is passive, or none was found."""
+        return self.input.refute(0)
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The main numbers as (name, text) for a report."""
+        rows = [("input index", self.input.describe()), ("output index", self.output.describe())]
+        if self.sampled_damping is not None:
+            rows.append(("sampled and held", self.sampled_damping.describe()))
+        if not self.hidden_modes_decay:
+            rows.append(("hidden", "a cancelled mode does not decay"))
+        return rows
+
+    def __repr__(self) -> str:
+        rows = "; ".join(f"{name} {text}" for name, text in self.rows())
+        return f"<PassivityIndices {'passive' if self.passive else 'not passive'}: {rows}>"
+
+    def _repr_html_(self) -> str:
+        colour, word = ("#2a7d4f", "passive") if self.passive else ("#b3261e", "not passive")
+        rows = "".join(f"<tr><th align='left'>{k}</th><td align='left'>{v}</td></tr>" for k, v in self.rows())
+        return f"<div><b style='color:{colour}'>{word}</b><table>{rows}</table></div>"
+
+
+def passivity_indices(
+    system: Environment | Any,
+    device: Device | None = None,
+    discretization: Discretization | None = None,
+) -> PassivityIndices:
+    """Input and output passivity index of a linear system, exact, with frequency and evidence.
+
+    Parameters
+    ----------
+    system
+        One input and one output: a TransferFunction or StateSpace of python-control, a system of
+        scipy.signal, continuous or discrete; or an environment, for its H(z).
+    device
+        What H runs on: its rate and delay for `sampled_damping`.  Needed for that with a continuous
+        system or an environment; a discrete system has its own rate, and is taken without delay.
+    discretization
+        How a continuous system becomes H(z) on the device.
+
+    Raises
+    ------
+    InputError
+        If the system has several inputs or outputs, is discrete and not causal, of too high an order,
+        or does not say whether its time is continuous; if only one of device and discretization is
+        given for a continuous system.
+
+    References
+    ----------
+    Bao & Lee, Process Control: The Passive Systems Approach, 2007.  Kottenstette, McCourt, Xia,
+    Gupta & Antsaklis, Automatica 50(4), 2014.
+    """
+    port = read_port(system, None if device is None else device.exact("sample_period"))
+    return PassivityIndices(
+        PassivityIndex("input", port, largest_level(port)),
+        PassivityIndex("output", port.inverse(), _output(port)),
+        _sampled(system, port, device, discretization),
+    )
+
+
+def _output(port: Port) -> Any:
+    return None if port.is_zero else largest_level(port.inverse(), "zero")
+
+
+def _sampled(
+    system: Environment | Any, port: Port, device: Device | None, discretization: Discretization | None
+) -> SampledDamping | None:
+    if device is None:
+        if discretization is not None:
+            raise InputError("a discretization needs the device whose rate it is for; give device = …")
+        device = _bare(system)
+        if device is None:
+            return None
+    decision = decide(device, as_environment(system, discretization))
+    _, cosine = tightest(decision.loop)
+    return SampledDamping(limits.required_damping(decision), frequency(cosine, decision.loop.period), device)
+
+
+def _bare(system: Any) -> Device | None:
+    """A device of no damping at the rate that a discrete system says."""
+    dt = getattr(system, "dt", None)
+    if dt is None or dt is True or dt == 0:
+        return None
+    return Device(damping=0, sample_period=Fraction(repr(float(dt))))

@@ -1,0 +1,463 @@
+"""Passivity indices: closed forms, dense grids, python-control, the checker and motions replayed by scipy."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from fractions import Fraction
+from math import inf, isclose, pi, sqrt
+
+import mpmath
+import numpy as np
+import pytest
+import scipy.signal
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import zwidth as zw
+from zwidth.passivity import checker
+
+control = pytest.importorskip("control")
+
+s = control.tf("s")
+
+
+def bits(**fields):
+    """A row of the zoo: system, ν, frequency of ν [Hz], ρ, frequency of ρ [Hz]."""
+    return tuple(fields[k] for k in ("g", "nu", "nu_at", "rho", "rho_at"))
+
+
+ZOO = {
+    "lag": bits(g=3 / (s + 7), nu=0, nu_at=inf, rho=Fraction(7, 3), rho_at=None),
+    "integrator": bits(g=1 / s, nu=0, nu_at=None, rho=0, rho_at=None),
+    "lead": bits(g=(s + 2) / (s + 9), nu=Fraction(2, 9), nu_at=0, rho=1, rho_at=inf),
+    "phase lag": bits(g=(s + 9) / (s + 2), nu=1, nu_at=inf, rho=Fraction(2, 9), rho_at=0),
+    "mass, spring and damper": bits(
+        g=s / (0.3 * s**2 + 0.7 * s + 150), nu=0, nu_at=0, rho=Fraction(7, 10), rho_at=None
+    ),
+    "mass": bits(g=0.25 * s, nu=0, nu_at=None, rho=0, rho_at=None),
+    "resonator near the axis": bits(
+        g=s / (s**2 + 1e-9 * s + 1e6), nu=0, nu_at=0, rho=Fraction(1, 10**9), rho_at=None
+    ),
+    "lossless resonator": bits(g=5 * s / (s**2 + 1e6), nu=0, nu_at=None, rho=0, rho_at=None),
+    "all-pass": bits(g=(1 - 0.05 * s) / (1 + 0.05 * s), nu=-1, nu_at=inf, rho=-inf, rho_at=None),
+    "unstable": bits(g=2 / (s - 3), nu=-inf, nu_at=None, rho=Fraction(-3, 2), rho_at=None),
+    "negative integrator": bits(g=-1 / s, nu=-inf, nu_at=None, rho=-inf, rho_at=None),
+    "double integrator": bits(g=1 / s**2, nu=-inf, nu_at=None, rho=-inf, rho_at=None),
+    "negative double integrator": bits(g=-1 / s**2, nu=-inf, nu_at=None, rho=-inf, rho_at=None),
+    "static gain": bits(
+        g=control.tf([0.4], [1]), nu=Fraction(2, 5), nu_at=None, rho=Fraction(5, 2), rho_at=None
+    ),
+    "nothing": bits(g=control.tf([0], [1]), nu=0, nu_at=None, rho=inf, rho_at=None),
+    "one sample late": bits(g=control.tf([1], [1, 0], 0.02), nu=-1, nu_at=25, rho=-inf, rho_at=None),
+    "trapezoidal integrator": bits(g=control.tf([1, 1], [1, -1], 0.02), nu=0, nu_at=None, rho=0, rho_at=None),
+    "backward integrator": bits(
+        g=control.tf([0.02, 0], [1, -1], 0.02), nu=Fraction(1, 100), nu_at=None, rho=0, rho_at=0
+    ),
+    "mean of two": bits(g=control.tf([1, 1], [2, 0], 0.5), nu=0, nu_at=1, rho=1, rho_at=None),
+}
+
+
+def as_double(value):
+    """The double that is typed for it, or the nearest one below."""
+    double = float(value)
+    if abs(double) < inf and Fraction(repr(double)) > value:
+        return float(np.nextafter(double, -inf))
+    return double
+
+
+@pytest.mark.parametrize("name", ZOO)
+def test_closed_forms(name):
+    """Indices and the frequencies where they are reached, computed by hand."""
+    g, nu, nu_at, rho, rho_at = ZOO[name]
+    found = zw.passivity_indices(g)
+    for index, value, at in ((found.input, nu, nu_at), (found.output, rho, rho_at)):
+        assert index.value == as_double(value)
+        assert index.exact == value if abs(value) < inf else index.exact is None
+        assert index.frequency == (at if at is None else pytest.approx(at, rel=1e-12))
+    assert found.passive == (nu >= 0)
+
+
+def test_an_interior_minimum():
+    """G = (s + 3)/(s + 1)²: Re G = (3 − ω²)/(1 + ω²)² is least at ω² = 7, by calculus."""
+    found = zw.passivity_indices((s + 3) / (s + 1) ** 2).input
+    # Re G = (a + (2 − a) x)/(1 + x)² with x = ω²; its slope vanishes at x = (3a − 2)/(a − 2) = 7
+    assert found.exact == Fraction(3 - 7, 64)
+    assert isclose(found.frequency, sqrt(7) / (2 * pi), rel_tol=1e-15)
+
+
+def test_a_third_order_interior_minimum():
+    """An index that is not rational lies between its bounds, which mpmath's own minimum confirms."""
+    found = zw.passivity_indices(control.tf([1, 1, 5, 0.1], [1, 2, 3, 4])).output
+    low, high = found.bounds
+    with mpmath.workdps(60):
+
+        def real_part(omega):
+            z = mpmath.mpc(0, omega)
+            return mpmath.re((z**3 + 2 * z**2 + 3 * z + 4) / (z**3 + z**2 + 5 * z + mpmath.mpf(1) / 10))
+
+        omega = mpmath.findroot(lambda w: mpmath.diff(real_part, w), 1.59)
+        least = real_part(omega)
+        assert mpmath.mpf(low.numerator) / low.denominator <= least
+        assert abs(mpmath.mpf(high.numerator) / high.denominator - least) < 1e-40
+    assert high - low < Fraction(1, 10**20)
+    assert found.exact is None
+    assert isclose(found.frequency, float(omega) / (2 * pi), rel_tol=1e-12)
+
+
+systems = st.integers(0, 2**32 - 1)
+
+
+def random_passive(seed):
+    """A sum of damped resonators and a lag with positive weights, and a throughput."""
+    rng = np.random.default_rng(seed)
+    w, zeta, gain = 10 ** rng.uniform(-1, 1, 2), rng.uniform(0.05, 0.9, 2), rng.uniform(0.1, 2, 2)
+    parts = [g * s / (s**2 + 2 * z * v * s + v**2) for g, z, v in zip(gain, zeta, w, strict=True)]
+    return sum(parts, rng.uniform(0.1, 1) / (s + rng.uniform(0.2, 5)) + rng.uniform(0.05, 0.5))
+
+
+@settings(max_examples=25, deadline=None)
+@given(systems)
+def test_a_dense_grid_never_falls_below(seed):
+    """Re G and Re 1/G on 20001 frequencies: never below, and near it somewhere."""
+    g = random_passive(seed)
+    found = zw.passivity_indices(g)
+    omega = np.concatenate([[0], np.geomspace(1e-4, 1e5, 20001)])
+    response = np.polyval(g.num[0][0], 1j * omega) / np.polyval(g.den[0][0], 1j * omega)
+    for index, values in ((found.input, response.real), (found.output, (1 / response).real)):
+        assert values.min() >= index.value - 1e-9 * np.abs(values).max()
+        assert values.min() <= index.value + 1e-4 * abs(index.value) + 1e-9
+        assert index.certificate().verify()
+
+
+@settings(max_examples=12, deadline=None)
+@given(systems)
+def test_python_control_agrees_on_well_conditioned_systems(seed):
+    """Its linear matrix inequality gives the same numbers to its tolerance."""
+    pytest.importorskip("cvxopt")
+    g = random_passive(seed)
+    found = zw.passivity_indices(g)
+    assert found.passive
+    assert control.ispassive(g)
+    assert isclose(control.passivity.get_input_ff_index(g), found.input.value, rel_tol=1e-4, abs_tol=1e-5)
+    assert isclose(control.passivity.get_output_fb_index(g), found.output.value, rel_tol=1e-4, abs_tol=1e-5)
+
+
+HARD = {
+    "1/(s + 1) − 1e-9": (1 / (s + 1) - 1e-9, Fraction(-1, 10**9), -inf),
+    "static gain": (control.tf([2], [1]), 2, Fraction(1, 2)),
+    "negative static gain": (control.tf([-2], [1]), -2, Fraction(-1, 2)),
+    "improper": (s + 1, 1, 0),
+    "fast": (
+        control.ss(np.diag([-3e12, -2e12]), [[0], [1]], [[-1, 2]], [[0]]),
+        0,
+        Fraction(10**12),
+    ),
+    "fast lag": (2 / (s + 2e6), 0, Fraction(10**6)),
+}
+
+
+@pytest.mark.parametrize("name", HARD)
+def test_where_a_tolerance_decides_elsewhere(name):
+    """Small shortages, static gains, improper and badly scaled systems are decided as any other."""
+    g, nu, rho = HARD[name]
+    found = zw.passivity_indices(g)
+    assert (found.input.value, found.output.value) == (as_double(nu), as_double(rho))
+    assert found.passive == (nu >= 0)
+    evidence = found.certificate if found.passive else found.witness
+    assert evidence.verify()
+
+
+@pytest.mark.skipif(
+    control.__version__ != "0.10.2", reason="what this version answers is shown in the documentation"
+)
+def test_what_python_control_says_of_them():
+    """The documentation's table: a bool without a margin, exceptions, an index a million times too small."""
+    pytest.importorskip("cvxopt")
+    assert control.ispassive(HARD["1/(s + 1) − 1e-9"][0])
+    with pytest.raises(ValueError, match="concatenate"):
+        control.ispassive(HARD["static gain"][0])
+    with pytest.raises(ValueError, match="non-proper"):
+        control.ispassive(HARD["improper"][0])
+    with pytest.raises(ValueError, match="ill conditioned"):
+        control.passivity.get_input_ff_index(HARD["fast"][0])
+    assert isclose(control.passivity.get_output_fb_index(HARD["fast lag"][0]), 1, abs_tol=0.01)
+
+
+@pytest.mark.parametrize("name", [*ZOO, *HARD])
+def test_both_sides_of_an_index(name):
+    """The checker accepts the proof at the index and a motion just above it; nothing proves more."""
+    g = (ZOO.get(name) or HARD.get(name))[0]
+    found = zw.passivity_indices(g)
+    for index in (found.input, found.output):
+        if abs(index.value) < inf:
+            assert index.certificate().verify()
+            assert index.refute(index.value) is None
+            above = Fraction(repr(index.value)) * (1 + Fraction(1 if index.value > 0 else -1, 10**6))
+            above += Fraction(1, 10**6)
+            assert not index.at_least(above)
+            assert index.refute(above).verify()
+            with pytest.raises(zw.InputError, match="cannot be certified"):
+                index.certificate(above)
+        elif index.value < 0:
+            assert index.reason
+            assert index.refute().verify()
+            with pytest.raises(zw.InputError, match="nothing to certify"):
+                index.certificate()
+
+
+@pytest.mark.parametrize(
+    ("g", "kind"),
+    [
+        ((s + 3) / (s + 1) ** 2, "burst"),
+        (1 / (1 - 0.5 * s), "polynomial"),
+        ((s - 4) * (s + 5) / ((s - 2) * (s + 9)) + 3, "polynomial"),
+        (1 / (s - 1) + 2, "polynomial"),
+    ],
+)
+def test_a_motion_replayed_by_scipy(g, kind):
+    """lsim answers the input with the output that the motion says, and the integral is the share."""
+    motion = zw.passivity_indices(g).witness
+    assert motion.kind == kind
+    t, u, y = (np.array(x) for x in motion.signals(20001))
+    _, replayed, _ = scipy.signal.lsim((g.num[0][0], g.den[0][0]), u, t)
+    assert np.abs(replayed - y).max() < 1e-4 * np.abs(y).max()
+    share = -np.trapezoid(u * replayed, t) / np.trapezoid(u * u, t)
+    assert isclose(share, motion.share, rel_tol=1e-3)
+    assert share > 0
+
+
+@pytest.mark.parametrize(
+    "g",
+    [
+        control.tf([1], [1, 0], 0.01),
+        control.tf([1, -0.9], [1, -0.2], 0.01) - 1.6,
+        control.tf([-1, 0], [1, -1.2], 0.01),
+        control.tf([1, 1], [-1, 1], 0.01),
+    ],
+)
+def test_a_discrete_motion_replayed_by_scipy(g):
+    """lfilter answers the samples; more comes out than goes in."""
+    motion = zw.passivity_indices(g).witness
+    _, u, y = motion.signals()
+    num, den = g.num[0][0], g.den[0][0]
+    replayed = scipy.signal.lfilter([0] * (len(den) - len(num)) + list(num), den, u)
+    assert np.allclose(replayed, y, rtol=1e-9, atol=1e-9)
+    assert isclose(-np.dot(u, replayed) / np.dot(u, u), motion.share, rel_tol=1e-9)
+    assert motion.share > 0
+
+
+def test_slow_growth_is_caught_by_a_longer_polynomial():
+    """A pole pair at 0.07 ± 1.06j, with a real part on the axis that is above the level."""
+    index = zw.passivity_indices(control.tf([-4, 4], [4, 3, 4, 4])).input
+    assert "unstable pole at s = 0.0697809 ± 1.05796j" in index.reason
+    motion = index.refute(-3)
+    assert motion.kind == "polynomial"
+    assert motion.verify()
+
+
+def test_what_grows_slowly_has_no_motion_but_no_proof_either():
+    """A pole 1e-4 outside the circle with Re G > 0 on it: not passive, and not certified either way."""
+    found = zw.passivity_indices(control.tf([-1, -1], [1, -1.0001], 0.01) + 20001)
+    assert not found.passive
+    assert found.certificate is None
+    assert "unstable pole at z = 1.0001" in found.input.reason
+
+
+quarters = st.integers(1, 9).map(lambda k: k / 4)
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.lists(quarters, min_size=3, max_size=3),
+    st.lists(quarters, min_size=3, max_size=3),
+    st.integers(-16, 16),
+)
+def test_a_throughput_moves_the_input_index_and_no_more(num, den, eighths):
+    """ν(G + c) = ν(G) + c; the coefficients are short binary fractions, so that nothing is rounded."""
+    c = eighths / 8
+    moved = [a + c * b for a, b in zip(num, den, strict=True)]
+    first, second = (zw.passivity_indices(control.tf(n, den)).input.bounds for n in (num, moved))
+    assert first[0] + Fraction(c) <= second[1]
+    assert second[0] <= first[1] + Fraction(c)
+
+
+def test_the_output_index_is_that_of_the_inverse():
+    """ρ(G) = ν(1/G), also where G is unstable."""
+    for num, den in (([1, 4, 1], [2, 1, 9]), ([3, 1], [1, -2]), ([1], [1, 1, 1])):
+        g, inverse = (scipy.signal.TransferFunction(*p) for p in ((num, den), (den, num)))
+        assert zw.passivity_indices(g).output.bounds == zw.passivity_indices(inverse).input.bounds
+
+
+def test_feedback_of_the_output_index_is_at_the_limit():
+    """G/(1 − ρ G) is passive at ρ and not just above it."""
+    g = control.tf([1, 4], [1, 2])
+    rho = zw.passivity_indices(g).output.exact
+    assert rho == Fraction(1, 2)
+    assert zw.passivity_indices(control.feedback(g, 0.5, sign=1)).passive
+    assert not zw.passivity_indices(control.feedback(g, 0.5 + 1e-7, sign=1)).passive
+
+
+def test_every_kind_of_system_is_read():
+    """Transfer functions, state spaces and zeros–poles–gain models of both libraries are one system."""
+    num, den = [1, 3], [1, 3, 2]
+    same = [
+        control.tf(num, den),
+        control.ss([[0, 1], [-2, -3]], [[0], [1]], [[3, 1]], [[0]]),
+        scipy.signal.TransferFunction(num, den),
+        scipy.signal.StateSpace([[0, 1], [-2, -3]], [[0], [1]], [[3, 1]], [[0]]),
+        scipy.signal.ZerosPolesGain([-3], [-1, -2], 1),
+    ]
+    found = [zw.passivity_indices(g) for g in same]
+    assert {f.input.exact for f in found} == {Fraction(0)}
+    assert {f.output.exact for f in found} == {Fraction(0)}
+
+
+def test_a_hidden_mode_is_told():
+    """What cancels is not in the index; that it does not decay is said."""
+    found = zw.passivity_indices(control.tf([1, -1], [1, 0, -1]))
+    assert found.output.exact == 1
+    assert not found.hidden_modes_decay
+    assert "cancelled mode" in repr(found)
+    assert zw.passivity_indices(control.tf([1, 1], [1, 3, 2])).hidden_modes_decay
+
+
+def test_sampled_damping_is_that_of_the_criterion():
+    """H(z) = K + B (z − 1)/(T z) needs K T/2 + B; its own indices call it passive."""
+    wall = control.tf([150 + 200, -200], [1, 0], 0.001)
+    found = zw.passivity_indices(wall)
+    assert found.passive
+    assert found.sampled_damping.required == float(zw.closed_forms.kelvin_voigt_damping(150, "0.2", "0.001"))
+    assert isclose(found.sampled_damping.frequency, 500)
+    assert found.sampled_damping.margin == -0.275
+    device = zw.Device(damping="0.3", sample_period="0.001", delay="0.001")
+    late = zw.passivity_indices(wall, device)
+    assert late.sampled_damping.required == zw.check(device, wall).required_damping
+    assert late.sampled_damping.margin == 0.3 - late.sampled_damping.required
+
+
+@pytest.mark.parametrize("delay", [0, 1, 3])
+def test_sampled_damping_is_an_input_index(delay):
+    """Minus the input index of T z⁻ᵈ H/(z − 1): another polynomial, the same number."""
+    num, den = [90, -60, 5], [1, -0.5, 0.25, 0]
+    device = zw.Device(damping=0, sample_period="0.002", delay=Fraction(delay, 500))
+    law = control.tf(num, den, 0.002)
+    index = zw.passivity_indices(
+        control.tf([0.002 * c for c in num], np.polymul(den, [1, -1] + [0] * delay), 0.002)
+    ).input
+    need = zw.passivity_indices(law, device).sampled_damping
+    assert isclose(need.required, -index.value, rel_tol=1e-12)
+    assert isclose(need.frequency, index.frequency, rel_tol=1e-9, abs_tol=1e-9)
+
+
+def test_sampled_damping_of_a_continuous_law():
+    """A continuous system needs a device and a discretization; an environment brings its own."""
+    device = zw.Device(damping="0.3", rate=1000)
+    solid = scipy.signal.TransferFunction([0.2, 150], [1])
+    found = zw.passivity_indices(solid, device, "backward")
+    assert isclose(found.sampled_damping.required, 0.275, rel_tol=1e-12)
+    wall = zw.passivity_indices(zw.Wall(150, "0.2"), device)
+    assert wall.sampled_damping.required == found.sampled_damping.required
+    assert zw.passivity_indices(solid).sampled_damping is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((control.tf([1, 0, 0], [1, 2], 0.1),), "more zeros than poles"),
+        ((control.ss(-np.eye(2), np.eye(2), np.eye(2), np.zeros((2, 2))),), "several inputs"),
+        ((control.tf([1], [1, 1], None),), "dt=None"),
+        ((3.0,), "a port is a system"),
+        ((zw.Wall(100),), "give the device"),
+        ((control.tf([1], [1, 1]), None, "tustin"), "needs the device"),
+        ((control.tf([1], [1, 1]), zw.Device(damping=1, rate=1000)), "needs a discretization"),
+        ((scipy.signal.TransferFunction([1] + [0] * 130, [1, 2] + [0] * 128 + [1]),), "order 130"),
+    ],
+)
+def test_what_is_refused(arguments, message):
+    """Each refusal says what was given and what to try."""
+    with pytest.raises(zw.InputError, match=message):
+        zw.passivity_indices(*arguments)
+
+
+def tampered(document, path, value):
+    """The document with one entry changed."""
+    changed = deepcopy(document)
+    inner = changed
+    for key in path[:-1]:
+        inner = inner[key]
+    inner[path[-1]] = value
+    return changed
+
+
+def test_the_checker_refuses_a_false_proof():
+    """A higher level, another system, an unstable one, a wrong factor: none passes."""
+    index = zw.passivity_indices((s + 2) / (s + 9)).input
+    document = index.certificate().to_dict()
+    assert checker.verify(document).valid
+    changes = [
+        (("level",), "0.3"),
+        (("system", "denominator"), ["1", "-9"]),
+        (("system", "numerator"), ["1", "1"]),
+        (("system", "time"), "discrete"),
+        (("index",), "output"),
+        (("proof", "offset"), "-1"),
+        (("proof", "positivity", "factor"), ["-1", "3"]),
+    ]
+    for path, value in changes:
+        assert not checker.verify(tampered(document, path, value)).valid, path
+
+
+def test_the_checker_refuses_an_unstable_port_that_is_positive_on_the_axis():
+    """1/(1 − s) has Re > 0 on the axis: the sign alone is no proof."""
+    good = zw.passivity_indices(1 / (1 + s)).input.certificate(0).to_dict()
+    bad = tampered(good, ("system", "denominator"), ["-1", "1"])
+    answer = checker.verify(bad)
+    assert not answer.valid
+    assert "root lies outside" in answer.reason
+
+
+def test_the_checker_refuses_a_false_motion():
+    """A burst that is not smooth, one below the level, a polynomial not from rest, the wrong time."""
+    burst = zw.passivity_indices((s + 3) / (s + 1) ** 2).witness.to_dict()
+    grown = zw.passivity_indices(1 / (1 - s)).witness.to_dict()
+    false = [
+        tampered(burst, ("motion", "power"), "0"),
+        tampered(burst, ("motion", "step_rad_per_s"), "1" * 200),
+        tampered(burst, ("motion", "cycles"), "1"),
+        tampered(burst, ("level",), "-1"),
+        tampered(burst, ("system", "time"), "discrete"),
+        tampered(grown, ("motion", "lowest_power"), "0"),
+        tampered(grown, ("motion", "duration_s"), "-1"),
+        tampered(grown, ("motion", "kind"), "dance"),
+    ]
+    assert checker.verify(burst).valid
+    assert checker.verify(grown).valid
+    assert [checker.verify(document).valid for document in false] == [False] * len(false)
+
+
+def test_evidence_is_saved_and_verified_from_the_command_line(tmp_path, capsys):
+    """`zwidth verify` accepts both and says which index they speak of."""
+    from zwidth.cli.main import main
+
+    found = zw.passivity_indices((s + 3) / (s + 1) ** 2)
+    found.input.certificate().save(tmp_path / "proof.json")
+    found.witness.save(tmp_path / "motion.json")
+    for name, says in (
+        ("proof", "input index is at least -0.0625"),
+        ("motion", "input index is less than 0"),
+    ):
+        assert main(["verify", str(tmp_path / f"{name}.json")]) in (0, None)
+        assert says in capsys.readouterr().out
+
+
+def test_it_says_what_it_found():
+    """The representations name both indices with their frequency, and why one is infinite."""
+    found = zw.passivity_indices(1 / (s + 1) - 1e-9)
+    assert repr(found).startswith(
+        "<PassivityIndices not passive: input index ν = −1e−09 as the frequency grows"
+    )
+    assert "unstable zero at s = 1e+09" in found._repr_html_()
+    assert "comes out above the level" in repr(found.witness)
+    assert "burst" in found.witness._repr_html_()
+    assert repr(found.input).startswith("<PassivityIndex input ν")
+    assert found.input.describe() in found.input._repr_html_()
