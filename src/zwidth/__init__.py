@@ -26,13 +26,16 @@ if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.bench import LawComparison
     from zwidth.device import amplifier as amplifiers
+    from zwidth.device import arm as arms
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
+    from zwidth.environment.matrix_wall import MatrixWall
     from zwidth.identification import tissue
     from zwidth.identification.logs import Log, log_of, read_log
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
+    from zwidth.passivity.arms import Workspace, workspace
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
@@ -67,6 +70,7 @@ __all__ = [
     "Interval",
     "LawComparison",
     "Log",
+    "MatrixWall",
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
@@ -82,8 +86,10 @@ __all__ = [
     "Wall",
     "Window",
     "Witness",
+    "Workspace",
     "WorstHand",
     "amplifiers",
+    "arms",
     "catalogue",
     "check",
     "check_bounding",
@@ -110,6 +116,7 @@ __all__ = [
     "stable_virtual_masses",
     "tissue",
     "two_port",
+    "workspace",
     "worst_hand",
 ]
 
@@ -127,7 +134,10 @@ _LATER = {
     "Timing": "zwidth.loop.timing",
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
+    "MatrixWall": "zwidth.environment.matrix_wall",
+    "Workspace": "zwidth.passivity.arms",
     "amplifiers": "zwidth.device.amplifier",
+    "arms": "zwidth.device.arm",
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
@@ -149,6 +159,7 @@ _LATER = {
     "stable_virtual_masses": "zwidth.passivity.virtual_mass",
     "tissue": "zwidth.identification.tissue",
     "two_port": "zwidth.passivity.two_port",
+    "workspace": "zwidth.passivity.arms",
     "worst_hand": "zwidth.traces",
 }
 """Where a name is found when it is first used: the simulator's libraries take their time to load."""

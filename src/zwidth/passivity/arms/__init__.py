@@ -9,8 +9,8 @@ from zwidth.passivity.arms.joints import (
     sampled_jacobian_damping,
 )
 from zwidth.passivity.arms.need import WallNeed, damping_at, wall_need
+from zwidth.passivity.arms.region import Workspace, workspace
 from zwidth.passivity.arms.replay import ArmMotion
-from zwidth.passivity.arms.workspace import Workspace, workspace
 
 __all__ = [
     "ArmMotion",

@@ -130,10 +130,11 @@ def workspace(
     lacking = surplus(jacobians, arm.damping, total)
     margins = np.linalg.eigvalsh(lacking)[:, 0]
     loss = _loss(total, jacobians, sites.change[reached])
-    proved = margins > loss + _ROUNDING * max(arm.damping)
+    rounding = _ROUNDING * (max(arm.damping) + float(np.abs(lacking).max()))
+    proved = margins > loss + rounding
     columns = _columns(arm, wall, need.stiffness_share, need.bound, jacobians)
     counted = lacking - np.where(np.isfinite(loss), loss, 0.0)[:, None, None] * np.eye(m)
-    counted -= 2 * _ROUNDING * max(arm.damping) * np.eye(m)
+    counted -= 10 * rounding * np.eye(m)  # the damping that is added adds to the rounding too
     alone = single_additions(counted)
     columns["margin_in_joints"] = (margins, "N*m*s/rad", "smallest eigenvalue of damping less need")
     columns["addition_to_one"] = (alone.min(axis=-1), "N*m*s/rad", "smallest damping added to one joint")
