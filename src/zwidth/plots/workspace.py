@@ -118,7 +118,7 @@ def _coordinates(space: Workspace) -> tuple[Any, Any, tuple[str, str]]:
 def _colours(values: Any) -> dict[str, Any]:
     low, high = float(np.nanmin(values)), float(np.nanpercentile(values, 95))
     if low < 0:
-        return {"cmap": "RdBu", "norm": TwoSlopeNorm(0.0, low, max(high, -low * 1e-3))}
+        return {"cmap": "RdBu", "norm": TwoSlopeNorm(0.0, low, max(high, -low / 2))}
     return {"cmap": "viridis", "vmin": low, "vmax": max(high, low + 1e-300)}
 
 

@@ -88,7 +88,8 @@ class DescribedArm(Arm):
             pin.computeJointJacobians(self.model, data, pin.integrate(self.model, neutral, row))
             placed = pin.updateFramePlacement(self.model, data, number)
             positions[k] = placed.translation
-            jacobians[k] = pin.getFrameJacobian(self.model, data, number, pin.LOCAL_WORLD_ALIGNED)[:3]
+            full = pin.getFrameJacobian(self.model, data, number, pin.LOCAL_WORLD_ALIGNED)
+            jacobians[k] = full.reshape(6, -1)[:3]  # one joint alone comes as a plain vector
         return positions.reshape(*q.shape[:-1], 3), jacobians.reshape(*q.shape[:-1], 3, self.joint_count)
 
     def _change(self, halves: Array) -> float:

@@ -28,6 +28,8 @@ from zwidth.errors import InputError
 _NEWTON_STEPS = 60
 _REACHED = 1e-12
 """Of the largest angle error at which the forward problem is solved [rad]."""
+_LAYER = 1 / 400
+"""Half the thickness of a layer in space, of the width of the region."""
 _ANGLES = (1.03, 1.1, 1.3, 3.0)
 """How much more than to first order the angle of a leg may change in a cell; the best bound counts."""
 
@@ -90,7 +92,7 @@ class LeggedArm(Arm):
         Two legs in the plane, or three in space.
     lower, upper
         Opposite corners of the region of work [m]; in space the grid is a
-        layer one cell thick half way between the lower and the upper height.
+        thin layer half way between the lower and the upper height.
     damping, coulomb_friction, resolution, torque_limit, name
         As of `Arm`, of the motors' axes.
 
@@ -149,7 +151,7 @@ class LeggedArm(Arm):
         return _inverted(self.gradients(self.forward(joints)))
 
     def sites(self, points: int) -> Sites:
-        """Equal cells of the region, squares or cubes."""
+        """Equal cells of the region; in space, of one thin layer."""
         low, high = np.asarray(self.lower), np.asarray(self.upper)
         x, y = middles(low[0], high[0], points), middles(low[1], high[1], points)
         halves = [(high[k] - low[k]) / (2 * points) for k in (0, 1)]
@@ -157,7 +159,7 @@ class LeggedArm(Arm):
         coordinates = list(np.meshgrid(x, y, indexing="ij"))
         words = f"x from {low[0]:.4g} to {high[0]:.4g} m, y from {low[1]:.4g} to {high[1]:.4g} m"
         if len(low) == 3:
-            z, thick = (low[2] + high[2]) / 2, max(halves)
+            z, thick = (low[2] + high[2]) / 2, _LAYER * float(high[0] - low[0])
             coordinates.append(np.full_like(coordinates[0], z))
             halves.append(thick)
             words += f", z = {z:.4g} m ± {thick:.2g} m"

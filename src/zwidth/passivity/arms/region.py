@@ -12,7 +12,8 @@ that stays in proved cells.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from math import ceil
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -30,7 +31,7 @@ from zwidth.passivity.arms.joints import (
     single_additions,
     surplus,
 )
-from zwidth.passivity.arms.need import wall_matrices, wall_need
+from zwidth.passivity.arms.need import WallNeed, wall_matrices, wall_need
 from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ Array = npt.NDArray[np.float64]
 
 _ROUNDING = 1e-12
 """Of the damping: how far rounding may move an eigenvalue."""
+_FINE = 200
+"""Cells along each side on which the proof is made, at least, in one or two coordinates."""
 _TRIES = 20
 """Points from which a motion that takes energy out is sought, the worst first."""
 _SINGULAR = 1e-9
@@ -57,6 +60,12 @@ class Workspace:
         energy out, `motion`. "undecided": neither.
     claim
         In words, with what was assumed.
+    arm, wall
+        What was asked about.
+    sample_period
+        T [s].
+    delay_samples
+        d, whole samples from reading to force.
     data
         The map, an xarray Dataset over the cells; each variable has its unit in `attrs`.
     additions
@@ -118,42 +127,73 @@ def workspace(
     if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= 1000:
         raise InputError(f"points must be a whole number from 2 to 1000, got {points!r}")
     sites = arm.sites(points)
-    reached = np.isfinite(sites.jacobians).all(axis=(-1, -2))
+    n, m = sites.jacobians.shape[-2:]
+    reached = _reached(sites)
     if not reached.any():
         raise InputError(f"{arm.name} reaches no point of its region, {sites.region}; choose another one")
-    n, m = sites.jacobians.shape[-2:]
     if m > n and min(arm.damping) == 0:
         raise InputError("an arm with more joints than coordinates needs damping > 0 in each of them")
     need = wall_need(wall, period, samples, n)
-    jacobians = sites.jacobians[reached]
-    total = need.stiffness_share + need.bound
-    lacking = surplus(jacobians, arm.damping, total)
-    margins = np.linalg.eigvalsh(lacking)[:, 0]
-    loss = _loss(total, jacobians, sites.change[reached])
-    rounding = _ROUNDING * (max(arm.damping) + float(np.abs(lacking).max()))
-    proved = margins > loss + rounding
-    columns = _columns(arm, wall, need.stiffness_share, need.bound, jacobians)
-    counted = lacking - np.where(np.isfinite(loss), loss, 0.0)[:, None, None] * np.eye(m)
-    counted -= 10 * rounding * np.eye(m)  # the damping that is added adds to the rounding too
-    alone = single_additions(counted)
-    columns["margin_in_joints"] = (margins, "N*m*s/rad", "smallest eigenvalue of damping less need")
-    columns["addition_to_one"] = (alone.min(axis=-1), "N*m*s/rad", "smallest damping added to one joint")
-    columns["joint_to_damp"] = (_joint(alone), "1", "joint that needs it, from 1; 0: none, -1: one is not enough")
-    motion = _motion(arm, wall, period, samples, sites.joints[reached], margins)
-    outcome = "active" if motion is not None else "passive" if proved.all() else "undecided"
+    fine = arm.sites(points * _refinement(sites, points))
+    account = _account(arm, need.stiffness_share + need.bound, fine)
+    columns = _columns(arm, wall, need, sites.jacobians[reached])
+    tightest = _columns(arm, wall, need, fine.jacobians[account.reached])["largest_stiffness"][0].min()
+    motion = _motion(arm, wall, period, samples, fine.joints[account.reached], account.margins)
+    whole = np.zeros(account.reached.shape, dtype=bool)
+    whole[account.reached] = account.proved
+    outcome = "active" if motion is not None else "passive" if whole.all() else "undecided"
     return Workspace(
         outcome=outcome,
-        claim=_claim(outcome, sites, proved, margins, arm),
+        claim=_claim(outcome, fine, account, arm),
         arm=arm,
         wall=wall,
         sample_period=period,
         delay_samples=samples,
-        data=_dataset(sites, reached, proved, columns),
-        additions=tuple(float(v) for v in alone.max(axis=0)),
-        addition_to_all=max(0.0, -float(np.linalg.eigvalsh(counted)[:, 0].min())),
-        largest_stiffness=float(columns["largest_stiffness"][0].min()),
+        data=_dataset(sites, reached, _all_in_blocks(whole, reached.shape), columns),
+        additions=tuple(float(v) for v in single_additions(account.counted).max(axis=0)),
+        addition_to_all=max(0.0, -float(np.linalg.eigvalsh(account.counted)[:, 0].min())),
+        largest_stiffness=float(min(tightest, columns["largest_stiffness"][0].min())),
         motion=motion,
     )
+
+
+class _Account(NamedTuple):
+    """What the cells of a fine grid show."""
+
+    reached: npt.NDArray[np.bool_]
+    margins: Array
+    proved: npt.NDArray[np.bool_]
+    counted: Array  # δ_m − JᵀRJ, less what it may lose inside the cell
+
+
+def _account(arm: Arm, need: Array, sites: Sites) -> _Account:
+    reached = _reached(sites)
+    jacobians = sites.jacobians[reached]
+    lacking = surplus(jacobians, arm.damping, need)
+    margins = np.linalg.eigvalsh(lacking)[:, 0]
+    loss = _loss(need, jacobians, sites.change[reached])
+    rounding = _ROUNDING * (max(arm.damping) + float(np.abs(lacking).max()))
+    taken = np.where(np.isfinite(loss), loss, 0.0)
+    taken = taken + 10 * rounding  # damping that is added adds to the rounding too
+    counted = lacking - taken[:, None, None] * np.eye(lacking.shape[-1])
+    return _Account(reached, margins, margins > loss + rounding, counted)
+
+
+def _reached(sites: Sites) -> npt.NDArray[np.bool_]:
+    return np.asarray(np.isfinite(sites.jacobians).all(axis=(-1, -2)))
+
+
+def _refinement(sites: Sites, points: int) -> int:
+    """Into how many parts each side of a cell is cut for the proof."""
+    return max(1, ceil(_FINE / points)) if len(sites.axes) < 3 else 1
+
+
+def _all_in_blocks(fine: npt.NDArray[np.bool_], shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    """True where every part of a cell is."""
+    for axis, count in enumerate(shape):
+        split = (*fine.shape[:axis], count, -1, *fine.shape[axis + 1 :])
+        fine = fine.reshape(split).all(axis=axis + 1)
+    return fine
 
 
 def _timing(rate: float, delay: float) -> tuple[float, int]:
@@ -180,8 +220,11 @@ def _loss(need: Array, jacobians: Array, change: Array) -> Array:
 Column = tuple[Array, str, str]
 
 
-def _columns(arm: Arm, wall: Wall | MatrixWall, spring: Array, damper: Array, jacobians: Array) -> dict[str, Column]:
-    """What is mapped at the hand; in the directions U in which the arm can move."""
+def _columns(arm: Arm, wall: Wall | MatrixWall, need: WallNeed, jacobians: Array) -> dict[str, Column]:
+    """What is mapped; at the hand in the directions U in which the arm can move."""
+    spring, damper = need.stiffness_share, need.bound
+    lacking = surplus(jacobians, arm.damping, spring + damper)
+    alone = single_additions(lacking)
     frame, at_hand = _at_hand(jacobians, as_matrix(arm.damping))
     turned = np.swapaxes(frame, -1, -2)
     values, vectors = np.linalg.eigh(at_hand - turned @ (spring + damper) @ frame)
@@ -191,7 +234,12 @@ def _columns(arm: Arm, wall: Wall | MatrixWall, spring: Array, damper: Array, ja
     columns: dict[str, Column] = {
         "margin": (values[..., 0], "N*s/m", "damping at the hand beyond need, in the worst direction"),
         "largest_stiffness": (scale * float(np.linalg.norm(stiffness, 2)), "N/m", "stiffest passive wall here"),
-    }
+        "margin_in_joints": (
+            np.linalg.eigvalsh(lacking)[:, 0], "N*m*s/rad", "smallest eigenvalue of damping less need",
+        ),
+        "addition_to_one": (alone.min(axis=-1), "N*m*s/rad", "smallest damping added to one joint"),
+        "joint_to_damp": (_joint(alone), "1", "joint that needs it, from 1; 0: none, -1: one is not enough"),
+    }  # fmt: skip
     for name, component in zip("xyz", np.moveaxis(worst, -1, 0), strict=False):
         columns[f"direction_{name}"] = (component, "1", "unit vector of the worst direction")
     if arm.resolution:
@@ -242,19 +290,22 @@ def _motion(
     return None
 
 
-def _claim(outcome: str, sites: Sites, proved: Array, margins: Array, arm: Arm) -> str:
-    """One sentence on what holds, one on what is not counted."""
-    cells, good = len(proved), int(proved.sum())
+def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm) -> str:
+    """One sentence on what holds, others on what is not counted."""
+    part = 100 * account.proved.mean()
     if outcome == "passive":
         text = f"Passive for every motion of the hand with {sites.region}."
     elif outcome == "active":
         text = "At one point of this map a motion of the hand takes energy out."
-    elif (margins >= 0).all():
-        text = f"The condition holds at all {cells} points; {good} of {cells} cells are proved between them."
+    elif (account.margins >= 0).all():
+        text = f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
     else:
-        text = f"{good} of {cells} cells are proved; where the condition fails no motion was found to refute it."
-    outside = proved.size < sites.change.size
-    text += " Parts of the region are out of reach and are not meant." if outside else ""
+        text = (
+            f"{part:.4g} % of the region are proved; where the condition fails, no motion was found "
+            "that takes energy out."
+        )
+    if not account.reached.all():
+        text += " Parts of the region are out of reach; a smaller region may be proved."
     return text + (" Encoder steps are not counted." if any(arm.resolution) else "")
 
 
@@ -272,9 +323,7 @@ def _dataset(sites: Sites, reached: Array, proved: Array, columns: dict[str, Col
         name: (dims, full(values), {"units": unit, "long_name": words})
         for name, (values, unit, words) in columns.items()
     }
-    certain = np.zeros(reached.shape, dtype=bool)
-    certain[reached] = proved
-    variables["proved"] = (dims, certain, {"long_name": "the condition is proved in the whole cell"})
+    variables["proved"] = (dims, proved, {"long_name": "the condition is proved in the whole cell"})
     coordinates: dict[str, Any] = {a.name: (a.name, a.middles, {"units": a.unit}) for a in sites.axes}
     for name, values in zip("xyz", np.moveaxis(sites.positions, -1, 0), strict=False):
         if name not in coordinates:
