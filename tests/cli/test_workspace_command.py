@@ -83,7 +83,10 @@ def test_the_map_is_saved_and_drawn(run: Run, tmp_path: Path) -> None:
         (("phantom", "--joint-damping", "0.1", "--stiffness", "1"), "built in are"),
         (("missing.urdf", "--stiffness", "1"), "missing.urdf"),
         (("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--points", "2.5"), "whole number"),
-        (("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--delay", "0.3 ms"), "whole number of samples"),
+        (
+            ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--delay", "0.3 ms"),
+            "whole number of samples",
+        ),
     ],
 )
 def test_bad_input_is_one_line(run: Run, argv: tuple[str, ...], words: str) -> None:
@@ -103,15 +106,26 @@ def test_a_description_from_the_command_line(run: Run, tmp_path: Path) -> None:
         '<axis xyz="0 0 1"/><limit lower="0.2" upper="1.2" effort="1" velocity="1"/>'
         '<dynamics damping="0.02"/></joint>'
     )
-    tip = (
-        '<joint name="tip" type="fixed"><parent link="c"/><child link="d"/><origin xyz="0.1 0 0"/></joint>'
-    )
+    tip = '<joint name="tip" type="fixed"><parent link="c"/><child link="d"/><origin xyz="0.1 0 0"/></joint>'
     (tmp_path / "arm.urdf").write_text(
-        '<robot name="arm">' + "".join(link.format(n) for n in "abcd")
-        + joint.format("first", "a", "b", 0) + joint.format("second", "b", "c", 0.1) + tip + "</robot>"
+        '<robot name="arm">'
+        + "".join(link.format(n) for n in "abcd")
+        + joint.format("first", "a", "b", 0)
+        + joint.format("second", "b", "c", 0.1)
+        + tip
+        + "</robot>"
     )
     status, out, _ = run(
-        "workspace", "arm.urdf", "--stiffness", "200", "--hold", "second=0.5", "--points", "10", "--frame", "d"
+        "workspace",
+        "arm.urdf",
+        "--stiffness",
+        "200",
+        "--hold",
+        "second=0.5",
+        "--points",
+        "10",
+        "--frame",
+        "d",
     )
     assert status == 0
     assert "second held at 0.5" in " ".join(out.split())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,6 @@ from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
-    from rich.padding import Padding
     from rich.table import Table
 
     from zwidth.passivity.arms import Workspace
@@ -50,6 +49,11 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
         ("--virtual-damping", "VALUE", "of the wall, in every direction [N*s/m] (default: 0)"),
         ("--rate", "VALUE", f"samples per second [Hz] (default: {_RATE})"),
         ("--delay", "VALUE", "from reading to force, whole samples [s] (default: 0)"),
+        (
+            "--torque-held-up-to",
+            "FORCE",
+            "the torque is computed once a sample, for wall forces up to this [N]",
+        ),
         ("--points", "N", "cells along each side of the map (default: 100)"),
     ):
         parser.add_argument(option, metavar=metavar, action=Once, help=meaning)
@@ -68,6 +72,7 @@ def run_workspace(arguments: argparse.Namespace) -> int:
 
     if arguments.stiffness is None:
         raise InputError("which wall? Give its stiffness [N/m], for example --stiffness 500")
+    held = arguments.torque_held_up_to
     space = workspace(
         _arm(arguments),
         Wall(
@@ -77,6 +82,7 @@ def run_workspace(arguments: argparse.Namespace) -> int:
         rate=float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
         delay=float(parse_number(arguments.delay or "0", "s", "delay")),
         points=_whole(arguments.points or "100"),
+        torque_held_up_to=None if held is None else float(parse_number(held, "N", "torque_held_up_to")),
     )
     if save is not None:
         with writing(save):
@@ -151,40 +157,34 @@ def print_workspace(space: Workspace) -> None:
         badge = Text(f" {space.outcome.upper()} ", style=f"bold white on {COLOURS[space.outcome]}")
         head.add_row(badge, Text(space.claim, style="bold"))
         out.print(Padding(head, (0, 0, 1, 0)))
-        out.print(_grid(_numbers(space)))
-        if any(True for _ in _changes(space)):
-            section(out, "what to change", [_grid(_changes(space))])
+        out.print(Padding(_grid(_numbers(space)), (0, 0, 1, 0)))
+        changes = list(_changes(space))
+        section(out, "what to change", [_grid(changes)] if changes else [])
 
 
-def _grid(rows: Iterator[tuple[str, str]]) -> Padding:
-    from rich.padding import Padding
+def _grid(rows: Iterable[tuple[str, str]]) -> Table:
     from rich.table import Table
     from rich.text import Text
 
-    grid: Table = Table.grid(padding=(0, 2))
+    grid = Table.grid(padding=(0, 2))
     for name, text in rows:
         grid.add_row(Text(name, style="dim"), Text(text))
-    return Padding(grid, (0, 0, 1, 0))
+    return grid
 
 
 def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
     from zwidth.cli.numerals import shown
 
-    data = space.data
+    data, motion = space.data, space.motion
+    low, high = (shown(float(v), "N*s/m") for v in (data["margin"].min(), data["margin"].max()))
+    best = shown(float(data["largest_stiffness"].max()), "N/m")
     yield "arm", f"{space.arm.name}, {space.arm.joint_count} joints, {shown(1 / space.sample_period, 'Hz')}"
-    yield "margin", (
-        f"{shown(float(data['margin'].min()), 'N*s/m')} to {shown(float(data['margin'].max()), 'N*s/m')} at the hand"
-    )
-    yield "largest stiffness", (
-        f"{shown(space.largest_stiffness, 'N/m')} everywhere, "
-        f"{shown(float(data['largest_stiffness'].max()), 'N/m')} at the best point"
-    )
-    if space.motion is not None:
-        motion = space.motion
-        yield "motion", (
-            f"{len(motion.joints)} samples round the joints at "
-            f"{', '.join(f'{q:.4g}' for q in motion.joints.mean(axis=0))} take {shown(-motion.energy, 'J')} out"
-        )
+    yield "margin", f"{low} to {high} at the hand"
+    yield "largest stiffness", f"{shown(space.largest_stiffness, 'N/m')} everywhere, {best} at the best point"
+    if motion is not None:
+        middle = ", ".join(f"{q:.4g}" for q in motion.joints.mean(axis=0))
+        gain = shown(-motion.energy, "J")
+        yield "motion", f"{len(motion.joints)} samples round the joints at {middle} take {gain} out"
     if "resolution" in data:
         yield "encoder step", f"up to {shown(float(data['resolution'].max()), 'm')} at the hand"
     if "friction_margin" in data:
@@ -223,7 +223,11 @@ def _document(space: Workspace) -> dict[str, Any]:
         "proved_part": float(data["proved"].mean()),
         "motion": None
         if motion is None
-        else {"energy_J": motion.energy, "joints_rad": motion.joints.tolist(), "positions_m": motion.positions.tolist()},
+        else {
+            "energy_J": motion.energy,
+            "joints_rad": motion.joints.tolist(),
+            "positions_m": motion.positions.tolist(),
+        },
     }
 
 

@@ -49,9 +49,15 @@ class MatrixWall:
                 "stiffness must have no negative eigenvalue: a spring that pushes away from its rest "
                 "gives out energy without end"
             )
-        b = _symmetric(self.damping, "damping") if self.damping is not None else tuple((0.0,) * len(k) for _ in k)
+        b = (
+            _symmetric(self.damping, "damping")
+            if self.damping is not None
+            else tuple((0.0,) * len(k) for _ in k)
+        )
         if len(b) != len(k):
-            raise InputError(f"stiffness is {len(k)} × {len(k)} and damping {len(b)} × {len(b)}; both are n × n")
+            raise InputError(
+                f"stiffness is {len(k)} × {len(k)} and damping {len(b)} × {len(b)}; both are n × n"
+            )
         object.__setattr__(self, "stiffness", k)
         object.__setattr__(self, "damping", b)
 

@@ -82,7 +82,7 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str = "margin") -> No
     across, up, names = _coordinates(space)
     values = np.asarray(data.values, dtype=np.float64)
     # The cells of a chain are bent: their colours run from middle to middle.
-    shading = "nearest" if "x" in space.data.coords or names != ("x", "y") else "gouraud"
+    shading: Any = "nearest" if "x" in space.data.coords or names != ("x", "y") else "gouraud"
     colours = axes.pcolormesh(across, up, values, shading=shading, rasterized=True, **_colours(values))
     axes.figure.colorbar(colours, ax=axes, label=label)
     margin = space.data["margin"].values

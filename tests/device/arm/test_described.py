@@ -12,7 +12,7 @@ from zwidth.device.arm import PlanarChain, read_arm
 
 pytest.importorskip("pinocchio")
 
-LINK = '<link name="{}"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+LINK = '<link name="{}"/>'
 
 
 def _joint(name: str, parent: str, child: str, x: float, kind: str = "revolute", extra: str = "") -> str:
@@ -30,10 +30,12 @@ def urdf(tmp_path: Path) -> Path:
     """A two-link arm of 0.12 and 0.09 m."""
     path = tmp_path / "two.urdf"
     path.write_text(
-        '<robot name="two">' + "".join(LINK.format(n) for n in ("base", "upper", "lower", "tip"))
+        '<robot name="two">'
+        + "".join(LINK.format(n) for n in ("base", "upper", "lower", "tip"))
         + _joint("shoulder", "base", "upper", 0.0, extra=LIMIT.format(0.02))
         + _joint("elbow", "upper", "lower", 0.12, extra=LIMIT.format(0.01))
-        + _joint("hand", "lower", "tip", 0.09, "fixed") + "</robot>"
+        + _joint("hand", "lower", "tip", 0.09, "fixed")
+        + "</robot>"
     )
     return path
 
@@ -65,11 +67,13 @@ def test_sliding_joints_and_joints_that_are_held(tmp_path: Path) -> None:
     path = tmp_path / "rail.urdf"
     limit = '<limit lower="-0.1" upper="0.1" effort="5" velocity="1"/><dynamics damping="2"/>'
     path.write_text(
-        '<robot name="rail">' + "".join(LINK.format(n) for n in ("base", "car", "upper", "lower", "tip"))
+        '<robot name="rail">'
+        + "".join(LINK.format(n) for n in ("base", "car", "upper", "lower", "tip"))
         + _joint("rail", "base", "car", 0.0, "prismatic", limit)
         + _joint("shoulder", "car", "upper", 0.05, extra=LIMIT.format(0.02))
         + _joint("elbow", "upper", "lower", 0.12, extra=LIMIT.format(0.01))
-        + _joint("hand", "lower", "tip", 0.09, "fixed") + "</robot>"
+        + _joint("hand", "lower", "tip", 0.09, "fixed")
+        + "</robot>"
     )
     arm = read_arm(path, frame="tip", hold={"elbow": 0.7})
     sites = arm.sites(12)

@@ -42,9 +42,7 @@ def test_the_advice_is_enough(name: str) -> None:
     b = np.array(space.arm.damping)
     assert space.addition_to_all > 0
     changed = [b + space.addition_to_all]
-    changed += [
-        b + t * np.eye(len(b))[i] for i, t in enumerate(space.additions) if np.isfinite(t)
-    ]
+    changed += [b + t * np.eye(len(b))[i] for i, t in enumerate(space.additions) if np.isfinite(t)]
     for damping in changed:
         arm = built_in(name, damping=tuple(damping))
         assert zw.workspace(arm, space.wall, rate=1000, points=30).outcome == "passive"
@@ -147,11 +145,37 @@ def test_a_motion_is_counted_exactly() -> None:
     assert motion.loss == pytest.approx(2 * 0.2 / 0.001 * (2 * y) ** 2, rel=1e-6)
 
 
+def test_a_held_torque_asks_for_more() -> None:
+    """c = h F T/2 of every joint; with that much more damping the margin is what it was."""
+    arm = built_in("two-link", damping=(0.02, 0.012))
+    free = zw.workspace(arm, zw.Wall(300), rate=1000, points=20)
+    held = zw.workspace(arm, zw.Wall(300), rate=1000, points=20, torque_held_up_to=8)
+    price = np.linalg.eigvalsh([[0.2, 0.1], [0.1, 0.1]])[-1] * 8 * 0.001 / 2
+    assert held.largest_stiffness < free.largest_stiffness
+    more = arm.replace(damping=(0.02 + price, 0.012 + price))
+    repaid = zw.workspace(more, zw.Wall(300), rate=1000, points=20, torque_held_up_to=8)
+    assert repaid.largest_stiffness == pytest.approx(free.largest_stiffness)
+    assert "held over a period" in held.claim
+    assert "follow the arm" in free.claim
+
+
+def test_a_constant_force_gives_energy_where_the_torque_is_held() -> None:
+    """Round a circle in a constant push, Σ F·J(q_k)Δq_k is not zero; the price covers it."""
+    arm = built_in("two-link", damping=(0.02, 0.012))
+    turn = 2 * np.pi / 5 * np.arange(5)
+    for phase in (0.0, 1.0, 2.5):
+        path = np.array([0.8, 1.4]) + 0.02 * np.stack([np.cos(turn), np.sin(turn + phase)], axis=-1)
+        turned = np.roll(path, -1, axis=0) - path
+        for force in ([8.0, 0.0], [0.0, -8.0], [-5.0, 6.0]):
+            work = np.einsum("i,kij,kj->", force, arm.jacobian(path), turned)
+            assert abs(work) > 1e-9
+            assert arm.curvature is not None
+            assert abs(work) <= arm.curvature * np.linalg.norm(force) / 2 * (turned**2).sum()
+
+
 def test_the_map_is_labelled() -> None:
     """Units with every variable, and the columns that friction, encoder and motors add."""
-    arm = built_in(
-        "haply-2diy", damping=0.004, coulomb_friction=0.002, resolution=0.0013, torque_limit=0.1
-    )
+    arm = built_in("haply-2diy", damping=0.004, coulomb_friction=0.002, resolution=0.0013, torque_limit=0.1)
     data = zw.workspace(arm, zw.Wall(300), rate=1000, points=12).data
     assert data["margin"].dims == ("x", "y")
     assert {"resolution", "friction", "friction_margin", "force_limit"} <= set(data)
@@ -167,6 +191,8 @@ def test_the_map_is_labelled() -> None:
         ({"rate": 1000, "delay": 0.0005}, "whole number of samples"),
         ({"rate": 1000, "delay": -1}, "delay"),
         ({"rate": 1000, "points": 1}, "points"),
+        ({"rate": 1000, "torque_held_up_to": -1}, "largest force"),
+        ({"rate": 1000, "torque_held_up_to": 1, "delay": 0.001}, "without delay"),
     ],
 )
 def test_bad_input_has_one_clear_message(options: dict[str, Any], words: str) -> None:
@@ -183,5 +209,5 @@ def test_other_bad_input() -> None:
     with pytest.raises(zw.InputError, match="reaches no point"):
         zw.workspace(far, zw.Wall(100), rate=1000)
     loose = PlanarChain(links=(0.1,) * 3, damping=(0.1, 0, 0.1))
-    with pytest.raises(zw.InputError, match="in each of them"):
+    with pytest.raises(zw.InputError, match="damping in each of them"):
         zw.workspace(loose, zw.Wall(100), rate=1000, points=20)

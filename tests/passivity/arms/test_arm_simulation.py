@@ -1,4 +1,4 @@
-"""A two-link arm with mass, a held wall force and a hand: energy never comes out below the limit, and does above.
+"""A two-link arm with mass, a held wall force and a hand: below the limit no energy comes out, above it does.
 
 The equations of motion are integrated by scipy, with M(q), C(q, q̇) and the Jacobian at
 every instant; nothing of the code under test takes part, but its limit.
@@ -55,7 +55,7 @@ def _acceleration(q: Array, rates: Array, torque: Array) -> Array:
 
 
 def _energy(stiffness: float, reference: Reference, samples: int) -> tuple[float, float]:
-    """What the hand has put in at the end and the least that it ever had, from rest at the wall's rest [J]."""
+    """What the hand has put in at the end, and the least that it ever had, starting at rest [J]."""
     rest = _position(START)
 
     def flow(t: float, state: Array, wall: Array) -> Array:

@@ -97,6 +97,11 @@ class Arm(ABC):
     def jacobian(self, joints: npt.ArrayLike) -> Array:
         """J = ∂p/∂q, (…, m) → (…, n, m) [m/rad; 1]."""
 
+    @property
+    def curvature(self) -> float | None:
+        """h with |Σ ∂²p/∂q_i∂q_j w_i w_j| ≤ h |w|² everywhere [m/rad²]; None: no bound is known."""
+        return None
+
     @abstractmethod
     def sites(self, points: int) -> Sites:
         """The middles of about `points` × `points` cells that cover the region of this arm."""

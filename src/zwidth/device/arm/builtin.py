@@ -64,7 +64,7 @@ def _two_link() -> tuple[type[Arm], dict[str, Any]]:
 
 
 def _haply() -> tuple[type[Arm], dict[str, Any]]:
-    plane = {"out": (1.0, 0.0), "up": (0.0, 1.0), "link": 0.07, "rod": 0.09}
+    plane: dict[str, Any] = {"out": (1.0, 0.0), "up": (0.0, 1.0), "link": 0.07, "rod": 0.09}
     legs = (
         Leg(base=(-0.019, 0.0), bend=1, **plane),  # elbows outwards
         Leg(base=(0.019, 0.0), bend=-1, **plane),

@@ -94,20 +94,22 @@ class PlanarChain(Arm):
             q,
             self.forward(q),
             jacobians,
-            np.full(q.shape[:-1], chain_change(np.cumsum(self.links[::-1])[::-1], halves)),
+            np.full(q.shape[:-1], np.linalg.norm(self._rates() @ halves)),
             "; ".join(f"q{i + 1} from {a:.4g} to {b:.4g} rad" for i, (a, b) in enumerate(self.joint_range)),
         )
 
+    @property
+    def curvature(self) -> float:
+        """h [m/rad²]."""
+        return float(np.linalg.eigvalsh(self._rates())[-1])
+
+    def _rates(self) -> Array:
+        """|∂²p/∂q_i∂q_j| is not longer than the links beyond joint max(i, j)."""
+        beyond = np.cumsum(self.links[::-1])[::-1]
+        return np.asarray(np.minimum(beyond[:, None], beyond[None, :]))
+
     def _links(self, q: Array) -> Array:
         bearing = np.cumsum(q, axis=-1)
-        return np.stack([np.cos(bearing), np.sin(bearing)], axis=-1) * np.asarray(self.links)[:, None]
-
-
-def chain_change(reach: Array, halves: Array) -> float:
-    """A bound on ‖J(q) − J(q₀)‖₂ for |q_j − q₀_j| ≤ h_j in a chain of revolute joints.
-
-    Column i moves by no more than Σ_j r_max(i,j) h_j, with r_j the links beyond joint j.
-    """
-    m = len(reach)
-    columns = [sum(reach[max(i, j)] * halves[j] for j in range(m)) for i in range(m)]
-    return float(np.linalg.norm(columns))
+        return np.asarray(
+            np.stack([np.cos(bearing), np.sin(bearing)], axis=-1) * np.array(self.links)[:, None]
+        )

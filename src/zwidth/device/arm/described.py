@@ -53,6 +53,11 @@ class DescribedArm(Arm):
         """J (…, 3, m) [m/rad; 1], in the axes of the base."""
         return self._computed(joints)[1]
 
+    @property
+    def curvature(self) -> float:
+        """h [m/rad²]."""
+        return float(np.linalg.eigvalsh(self._rates()[0])[-1])
+
     def sites(self, points: int) -> Sites:
         """Equal cells of the two joints that move, the others held."""
         moving = [i for i, (low, high) in enumerate(self.joint_range) if high > low]
@@ -63,9 +68,7 @@ class DescribedArm(Arm):
         )
         q = np.empty((*[points] * len(moving), self.joint_count))
         q[...] = [low for low, _ in self.joint_range]
-        for axis, grid in zip(
-            moving, np.meshgrid(*(a.middles for a in axes), indexing="ij"), strict=True
-        ):
+        for axis, grid in zip(moving, np.meshgrid(*(a.middles for a in axes), indexing="ij"), strict=True):
             q[..., axis] = grid
         positions, jacobians = self._computed(q)
         halves = np.array([(high - low) / (2 * points) for low, high in self.joint_range])
@@ -73,7 +76,8 @@ class DescribedArm(Arm):
             f"{name} {f'from {low:.4g} to {high:.4g}' if high > low else f'held at {low:.4g}'}"
             for name, (low, high) in zip(names, self.joint_range, strict=True)
         ]
-        change = np.full(q.shape[:-1], self._change(halves))
+        rates, between = self._rates()
+        change = np.full(q.shape[:-1], np.linalg.norm(rates @ halves[between]))
         return Sites(axes, q, positions, jacobians, change, "; ".join(words))
 
     def _computed(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
@@ -92,9 +96,9 @@ class DescribedArm(Arm):
             jacobians[k] = full.reshape(6, -1)[:3]  # one joint alone comes as a plain vector
         return positions.reshape(*q.shape[:-1], 3), jacobians.reshape(*q.shape[:-1], 3, self.joint_count)
 
-    def _change(self, halves: Array) -> float:
-        """A bound on ‖J(q) − J(q₀)‖₂ in a cell: ∂²p/∂q_i∂q_j is not longer than what lies beyond both
-        joints where both turn, than 1 where one slides, and is 0 where both slide."""
+    def _rates(self) -> tuple[Array, list[int]]:
+        """Bounds on |∂²p/∂q_i∂q_j|: what lies beyond both joints where both turn, 1 where one slides, else 0;
+        and which joints lie between the base and the hand."""
         frame = self.model.frames[self.model.getFrameId(self.frame)]
         path, joint = [], frame.parentJoint
         while joint > 0:
@@ -112,8 +116,7 @@ class DescribedArm(Arm):
             sliding = _slides(self.model, i) + _slides(self.model, j)
             return min(beyond[i], beyond[j]) if sliding == 0 else float(sliding == 1)
 
-        columns = [sum(rate(i, j) * halves[j] for j in beyond) for i in beyond]
-        return float(np.linalg.norm(columns))
+        return np.array([[rate(i, j) for j in sorted(beyond)] for i in sorted(beyond)]), sorted(beyond)
 
 
 def read_arm(
@@ -178,14 +181,12 @@ def _model(path: Path) -> Any:
     build = _ENDINGS.get(path.suffix.lower())
     if build is None:
         raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
+    if not path.is_file():
+        raise InputError(f"there is no file {path}")
     try:
         import pinocchio as pin
     except ImportError:
-        raise InputError(
-            "reading robot descriptions needs pinocchio: pip install 'zwidth[arms]'"
-        ) from None
-    if not path.is_file():
-        raise InputError(f"there is no file {path}")
+        raise InputError("reading robot descriptions needs pinocchio: pip install 'zwidth[arms]'") from None
     try:
         model = getattr(pin, build)(str(path))
     except (ValueError, RuntimeError) as error:

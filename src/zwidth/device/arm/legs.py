@@ -172,7 +172,7 @@ class LeggedArm(Arm):
             parts = [gradient_change(leg, r, radius) for leg, r in zip(self.legs, rows, strict=True)]
             change = _inverse_change(jacobians, np.sqrt(sum(part**2 for part in parts)))
         angles = np.stack([r.angle for r in rows], axis=-1)
-        outside = ~np.isfinite(jacobians).all(axis=(-1, -2))
+        outside = np.asarray(~np.isfinite(jacobians).all(axis=(-1, -2)))
         positions = np.where(outside[..., None], np.nan, p)
         return Sites(axes, angles, positions, jacobians, np.where(outside, np.inf, change), words)
 
@@ -191,11 +191,7 @@ def posture(leg: Leg, p: Array) -> Posture:
         gamma = np.arccos((distance**2 + leg.link**2 - length**2) / (2 * distance * leg.link))
         angle = np.arctan2(high, along) + leg.bend * gamma
         dx, dy = along - leg.link * np.cos(angle), high - leg.link * np.sin(angle)
-        normal = (
-            dx[..., None] * out
-            + dy[..., None] * up
-            + (length * aside / root)[..., None] * normal_axis
-        )
+        normal = dx[..., None] * out + dy[..., None] * up + (length * aside / root)[..., None] * normal_axis
         lever = leg.link * (dy * np.cos(angle) - dx * np.sin(angle))
     return Posture(angle, normal, lever, aside, length)
 
@@ -237,7 +233,7 @@ def _inverse_change(jacobians: Array, change: Array) -> Array:
 
 def _inverted(matrices: Array) -> Array:
     """The inverses, NaN where a matrix is singular or not a number."""
-    good = np.isfinite(matrices).all(axis=(-1, -2))
+    good = np.asarray(np.isfinite(matrices).all(axis=(-1, -2)))
     good &= np.abs(np.linalg.det(np.where(good[..., None, None], matrices, 0.0))) > 0
     inverse = np.linalg.inv(np.where(good[..., None, None], matrices, np.eye(matrices.shape[-1])))
     return np.where(good[..., None, None], inverse, np.nan)

@@ -23,7 +23,9 @@ from zwidth.errors import InputError
 Array = npt.NDArray[np.float64]
 
 
-def end_effector_damping(jacobian: npt.ArrayLike, damping: npt.ArrayLike, as_published: bool = False) -> Array:
+def end_effector_damping(
+    jacobian: npt.ArrayLike, damping: npt.ArrayLike, as_published: bool = False
+) -> Array:
     """δ, the damping that a hand feels which moves the end, n × n [N·s/m].
 
     In directions in which the arm cannot move, δ is 0 here: the hand cannot move there either.
@@ -107,10 +109,10 @@ def end_effector_resolution(
     steps = np.asarray(jacobian) * np.asarray(resolution, dtype=np.float64)
     if direction is not None:
         u = np.asarray(direction, dtype=np.float64)
-        return np.abs(np.einsum("n,...nm->...m", u / np.linalg.norm(u), steps)).sum(axis=-1)
+        return np.asarray(np.abs(np.einsum("n,...nm->...m", u / np.linalg.norm(u), steps)).sum(axis=-1))
     m = steps.shape[-1]
     corners = np.array([(1.0, *signs) for signs in product((-1.0, 1.0), repeat=m - 1)])
-    return np.linalg.norm(steps @ corners.T, axis=-2).max(axis=-1)
+    return np.asarray(np.linalg.norm(steps @ corners.T, axis=-2).max(axis=-1))
 
 
 def end_effector_friction(
@@ -128,7 +130,7 @@ def end_effector_friction(
         u = np.asarray(direction, dtype=np.float64)
         lever = np.abs(np.einsum("n,...nm->...m", u / np.linalg.norm(u), j))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(lever > 0, f / lever, np.inf).min(axis=-1)
+        return np.asarray(np.where(lever > 0, f / lever, np.inf).min(axis=-1))
 
 
 def friction_surplus(jacobian: Array, stiffness: Array, friction: Array, resolution: Array) -> Array:
@@ -164,7 +166,7 @@ def sampled_jacobian_damping(curvature: float, largest_force: float, sample_peri
     Parameters
     ----------
     curvature
-        h: |u · ∂²p/∂q² [w, w]| ≤ h for unit vectors u, w [m/rad²]; for a planar chain Σ k l_k will do.
+        h, `Arm.curvature` [m/rad²].
     largest_force
         The largest force that the wall renders [N].
     sample_period

@@ -58,7 +58,9 @@ class WallNeed:
         return tuple(self.stiffness_share + share for share in self.damping_shares)
 
 
-def wall_need(wall: Wall | MatrixWall, sample_period: float, delay_samples: int = 0, size: int = 3) -> WallNeed:
+def wall_need(
+    wall: Wall | MatrixWall, sample_period: float, delay_samples: int = 0, size: int = 3
+) -> WallNeed:
     """The damping at the hand that a wall asks for.
 
     Parameters
@@ -115,6 +117,7 @@ def wall_matrices(wall: Wall | MatrixWall, size: int) -> tuple[Array, Array]:
     k, b = float(certain(wall.stiffness, "stiffness")), float(certain(wall.damping, "damping"))
     if wall.clamped and b:
         raise InputError(
-            "for arms a clamped wall has no virtual damping: its condition in several coordinates is not known"
+            "for arms a clamped wall has no virtual damping: "
+            "its condition in several coordinates is not known"
         )
     return k * np.eye(size), b * np.eye(size)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -24,20 +24,19 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.passivity.arms.joints import (
     as_matrix,
-    end_effector_friction,
-    end_effector_resolution,
-    friction_surplus,
-    largest_scale,
+    sampled_jacobian_damping,
     single_additions,
     surplus,
 )
-from zwidth.passivity.arms.need import WallNeed, wall_matrices, wall_need
+from zwidth.passivity.arms.mapped import columns_of, dataset
+from zwidth.passivity.arms.need import wall_need
 from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
 
 if TYPE_CHECKING:
     import xarray
 
 Array = npt.NDArray[np.float64]
+Truth = npt.NDArray[np.bool_]
 
 _ROUNDING = 1e-12
 """Of the damping: how far rounding may move an eigenvalue."""
@@ -45,8 +44,6 @@ _FINE = 200
 """Cells along each side on which the proof is made, at least, in one or two coordinates."""
 _TRIES = 20
 """Points from which a motion that takes energy out is sought, the worst first."""
-_SINGULAR = 1e-9
-"""Singular values of J below this part of the largest count as this: the damping there is as good as infinite."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,6 +97,7 @@ def workspace(
     rate: float,
     delay: float = 0.0,
     points: int = 100,
+    torque_held_up_to: float | None = None,
 ) -> Workspace:
     """Map over the workspace whether an arm renders a wall passively.
 
@@ -115,6 +113,10 @@ def workspace(
         From reading to force, a whole number of samples [s]; round up what is not.
     points
         Cells along each side of the map, from 2 to 1000.
+    torque_held_up_to
+        None: the force is held, and the torque J(q)ᵀF follows the arm within each period, as Miller and
+        others assume. A force ≥ 0 [N]: the torque J(q_k)ᵀF is held, and the wall renders no more than
+        this; for chains and descriptions, whose curvature is bounded, and without delay.
 
     Raises
     ------
@@ -131,25 +133,32 @@ def workspace(
     reached = _reached(sites)
     if not reached.any():
         raise InputError(f"{arm.name} reaches no point of its region, {sites.region}; choose another one")
-    if m > n and min(arm.damping) == 0:
-        raise InputError("an arm with more joints than coordinates needs damping > 0 in each of them")
     need = wall_need(wall, period, samples, n)
+    damping = as_matrix(arm.damping) - _held_torque(arm, period, samples, torque_held_up_to) * np.eye(m)
+    if m > n and np.linalg.eigvalsh(damping)[0] <= 0:
+        raise InputError(
+            "an arm with more joints than coordinates needs damping in each of them, "
+            "beyond what held torques ask for"
+        )
     fine = arm.sites(points * _refinement(sites, points))
-    account = _account(arm, need.stiffness_share + need.bound, fine)
-    columns = _columns(arm, wall, need, sites.jacobians[reached])
-    tightest = _columns(arm, wall, need, fine.jacobians[account.reached])["largest_stiffness"][0].min()
-    motion = _motion(arm, wall, period, samples, fine.joints[account.reached], account.margins)
+    account = _account(damping, need.stiffness_share + need.bound, fine)
+    columns = columns_of(arm, damping, wall, need, sites.jacobians[reached])
+    tightest = columns_of(arm, damping, wall, need, fine.jacobians[account.reached])["largest_stiffness"][
+        0
+    ].min()
+    held = torque_held_up_to is not None
+    motion = _motion(arm, wall, period, samples, fine.joints[account.reached], account.margins, held)
     whole = np.zeros(account.reached.shape, dtype=bool)
     whole[account.reached] = account.proved
     outcome = "active" if motion is not None else "passive" if whole.all() else "undecided"
     return Workspace(
         outcome=outcome,
-        claim=_claim(outcome, fine, account, arm),
+        claim=_claim(outcome, fine, account, arm, torque_held_up_to),
         arm=arm,
         wall=wall,
         sample_period=period,
         delay_samples=samples,
-        data=_dataset(sites, reached, _all_in_blocks(whole, reached.shape), columns),
+        data=dataset(sites, reached, _all_in_blocks(whole, reached.shape), columns),
         additions=tuple(float(v) for v in single_additions(account.counted).max(axis=0)),
         addition_to_all=max(0.0, -float(np.linalg.eigvalsh(account.counted)[:, 0].min())),
         largest_stiffness=float(min(tightest, columns["largest_stiffness"][0].min())),
@@ -160,26 +169,26 @@ def workspace(
 class _Account(NamedTuple):
     """What the cells of a fine grid show."""
 
-    reached: npt.NDArray[np.bool_]
+    reached: Truth
     margins: Array
-    proved: npt.NDArray[np.bool_]
+    proved: Truth
     counted: Array  # δ_m − JᵀRJ, less what it may lose inside the cell
 
 
-def _account(arm: Arm, need: Array, sites: Sites) -> _Account:
+def _account(damping: Array, need: Array, sites: Sites) -> _Account:
     reached = _reached(sites)
     jacobians = sites.jacobians[reached]
-    lacking = surplus(jacobians, arm.damping, need)
-    margins = np.linalg.eigvalsh(lacking)[:, 0]
+    lacking = surplus(jacobians, damping, need)
+    margins: Array = np.linalg.eigvalsh(lacking)[:, 0]
     loss = _loss(need, jacobians, sites.change[reached])
-    rounding = _ROUNDING * (max(arm.damping) + float(np.abs(lacking).max()))
+    rounding = _ROUNDING * (float(np.abs(damping).max()) + float(np.abs(lacking).max()))
     taken = np.where(np.isfinite(loss), loss, 0.0)
     taken = taken + 10 * rounding  # damping that is added adds to the rounding too
-    counted = lacking - taken[:, None, None] * np.eye(lacking.shape[-1])
+    counted = np.asarray(lacking - taken[:, None, None] * np.eye(lacking.shape[-1]))
     return _Account(reached, margins, margins > loss + rounding, counted)
 
 
-def _reached(sites: Sites) -> npt.NDArray[np.bool_]:
+def _reached(sites: Sites) -> Truth:
     return np.asarray(np.isfinite(sites.jacobians).all(axis=(-1, -2)))
 
 
@@ -188,11 +197,11 @@ def _refinement(sites: Sites, points: int) -> int:
     return max(1, ceil(_FINE / points)) if len(sites.axes) < 3 else 1
 
 
-def _all_in_blocks(fine: npt.NDArray[np.bool_], shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+def _all_in_blocks(fine: Truth, shape: tuple[int, ...]) -> Truth:
     """True where every part of a cell is."""
     for axis, count in enumerate(shape):
         split = (*fine.shape[:axis], count, -1, *fine.shape[axis + 1 :])
-        fine = fine.reshape(split).all(axis=axis + 1)
+        fine = np.asarray(fine.reshape(split).all(axis=axis + 1))
     return fine
 
 
@@ -210,6 +219,20 @@ def _timing(rate: float, delay: float) -> tuple[float, int]:
     return 1 / rate, samples
 
 
+def _held_torque(arm: Arm, period: float, samples: int, force: float | None) -> float:
+    """What a held torque asks of every joint [N·m·s/rad]."""
+    if force is None:
+        return 0.0
+    if not (isinstance(force, (int, float)) and 0 <= force < np.inf):
+        raise InputError(f"torque_held_up_to is the largest force of the wall, ≥ 0 N; got {force!r}")
+    if arm.curvature is None or samples:
+        raise InputError(
+            "a bound for held torques is known for chains and descriptions without delay; "
+            "compute the torque several times in each period, and leave torque_held_up_to out"
+        )
+    return sampled_jacobian_damping(arm.curvature, force, period)
+
+
 def _loss(need: Array, jacobians: Array, change: Array) -> Array:
     """How far the smallest eigenvalue may fall inside a cell."""
     size = np.linalg.norm(jacobians, ord=2, axis=(-2, -1))
@@ -217,80 +240,25 @@ def _loss(need: Array, jacobians: Array, change: Array) -> Array:
         return np.asarray(np.linalg.norm(need, 2) * (2 * size * change + change**2))
 
 
-Column = tuple[Array, str, str]
-
-
-def _columns(arm: Arm, wall: Wall | MatrixWall, need: WallNeed, jacobians: Array) -> dict[str, Column]:
-    """What is mapped; at the hand in the directions U in which the arm can move."""
-    spring, damper = need.stiffness_share, need.bound
-    lacking = surplus(jacobians, arm.damping, spring + damper)
-    alone = single_additions(lacking)
-    frame, at_hand = _at_hand(jacobians, as_matrix(arm.damping))
-    turned = np.swapaxes(frame, -1, -2)
-    values, vectors = np.linalg.eigh(at_hand - turned @ (spring + damper) @ frame)
-    worst = (frame @ vectors[..., :, :1])[..., 0]
-    stiffness = wall_matrices(wall, frame.shape[-2])[0]
-    scale = largest_scale(at_hand - turned @ damper @ frame, turned @ spring @ frame)
-    columns: dict[str, Column] = {
-        "margin": (values[..., 0], "N*s/m", "damping at the hand beyond need, in the worst direction"),
-        "largest_stiffness": (scale * float(np.linalg.norm(stiffness, 2)), "N/m", "stiffest passive wall here"),
-        "margin_in_joints": (
-            np.linalg.eigvalsh(lacking)[:, 0], "N*m*s/rad", "smallest eigenvalue of damping less need",
-        ),
-        "addition_to_one": (alone.min(axis=-1), "N*m*s/rad", "smallest damping added to one joint"),
-        "joint_to_damp": (_joint(alone), "1", "joint that needs it, from 1; 0: none, -1: one is not enough"),
-    }  # fmt: skip
-    for name, component in zip("xyz", np.moveaxis(worst, -1, 0), strict=False):
-        columns[f"direction_{name}"] = (component, "1", "unit vector of the worst direction")
-    if arm.resolution:
-        step = end_effector_resolution(jacobians, arm.resolution)
-        columns["resolution"] = (step, "m", "largest step of the reading at the hand")
-    if arm.coulomb_friction:
-        held = end_effector_friction(jacobians, arm.coulomb_friction)
-        columns["friction"] = (held, "N", "force that friction holds in every direction")
-    if arm.coulomb_friction and arm.resolution:
-        left = friction_surplus(
-            jacobians, stiffness, np.array(arm.coulomb_friction), np.array(arm.resolution)
-        )
-        columns["friction_margin"] = (left, "N*m", "Coulomb friction beyond what the encoder steps ask for")
-    if arm.torque_limit:
-        columns["force_limit"] = (
-            end_effector_friction(jacobians, arm.torque_limit), "N", "force that every direction gets",
-        )  # fmt: skip
-    return columns
-
-
-def _at_hand(jacobians: Array, damping: Array) -> tuple[Array, Array]:
-    """U (…, n, r) and δ in its axes (…, r, r), from J = U S Vᵀ: (S Vᵀ δ_m⁻¹ V S)⁻¹."""
-    u, s, vt = np.linalg.svd(jacobians, full_matrices=False)
-    s = np.maximum(s, _SINGULAR * s[..., :1])
-    v = np.swapaxes(vt, -1, -2)
-    if jacobians.shape[-1] <= jacobians.shape[-2]:
-        inner = vt @ damping @ v
-    else:
-        inner = np.linalg.inv(vt @ np.linalg.inv(damping) @ v)
-    return u, inner / (s[..., :, None] * s[..., None, :])
-
-
-def _joint(alone: Array) -> Array:
-    best = alone.argmin(axis=-1) + 1.0
-    least = alone.min(axis=-1)
-    return np.where(least == 0, 0.0, np.where(np.isfinite(least), best, -1.0))
-
-
 def _motion(
-    arm: Arm, wall: Wall | MatrixWall, period: float, samples: int, joints: Array, margins: Array
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    period: float,
+    samples: int,
+    joints: Array,
+    margins: Array,
+    torque_held: bool,
 ) -> ArmMotion | None:
     failing = np.argsort(margins)[: int((margins < 0).sum())]
     tried = failing[:: max(1, len(failing) // _TRIES)][:_TRIES]
     for k in tried:
-        motion = refuting_motion(arm, wall, period, samples, joints[k])
+        motion = refuting_motion(arm, wall, period, samples, joints[k], torque_held)
         if motion is not None:
             return motion
     return None
 
 
-def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm) -> str:
+def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm, held: float | None) -> str:
     """One sentence on what holds, others on what is not counted."""
     part = 100 * account.proved.mean()
     if outcome == "passive":
@@ -298,7 +266,9 @@ def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm) -> str:
     elif outcome == "active":
         text = "At one point of this map a motion of the hand takes energy out."
     elif (account.margins >= 0).all():
-        text = f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
+        text = (
+            f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
+        )
     else:
         text = (
             f"{part:.4g} % of the region are proved; where the condition fails, no motion was found "
@@ -306,26 +276,9 @@ def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm) -> str:
         )
     if not account.reached.all():
         text += " Parts of the region are out of reach; a smaller region may be proved."
+    text += (
+        " The torque is taken to follow the arm within a period."
+        if held is None
+        else f" The torque is held over a period, with wall forces up to {held:g} N."
+    )
     return text + (" Encoder steps are not counted." if any(arm.resolution) else "")
-
-
-def _dataset(sites: Sites, reached: Array, proved: Array, columns: dict[str, Column]) -> Any:
-    import xarray
-
-    dims = tuple(axis.name for axis in sites.axes)
-
-    def full(values: Array) -> Array:
-        whole = np.full(reached.shape, np.nan)
-        whole[reached] = values
-        return whole
-
-    variables: dict[str, Any] = {
-        name: (dims, full(values), {"units": unit, "long_name": words})
-        for name, (values, unit, words) in columns.items()
-    }
-    variables["proved"] = (dims, proved, {"long_name": "the condition is proved in the whole cell"})
-    coordinates: dict[str, Any] = {a.name: (a.name, a.middles, {"units": a.unit}) for a in sites.axes}
-    for name, values in zip("xyz", np.moveaxis(sites.positions, -1, 0), strict=False):
-        if name not in coordinates:
-            coordinates[f"hand_{name}"] = (dims, values, {"units": "m"})
-    return xarray.Dataset(variables, coordinates, {"region": sites.region})

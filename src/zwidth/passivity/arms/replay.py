@@ -4,9 +4,9 @@ The joints go round a small closed path, straight from sample to sample:
 
     q(k) = q₀ + ε Re(w e^{jkθ}),   θ = 2π/N
 
-The wall's force is held over each period and its torque is J(q)ᵀF all the time, so that its
-work is exactly F(k)·(p(q(k+1)) − p(q(k))); the joints lose Σ b_i Δq_i²/T + f_c,i |Δq_i|.  Nothing
-here is linearized.  A hand at the end can make this motion wherever it can hold every joint:
+Where the wall's force is held and its torque J(q)ᵀF follows the arm, its work over a period
+is exactly F(k)·(p(q(k+1)) − p(q(k))); where the torque is held it is F(k)·J(q(k)) Δq.  The
+joints lose Σ b_i Δq_i²/T + f_c,i |Δq_i|.  Nothing here is linearized.  A hand at the end can make this motion wherever it can hold every joint:
 where J has as many independent columns as there are joints.
 """
 
@@ -61,7 +61,12 @@ class ArmMotion:
 
 
 def replay_cycle(
-    arm: Arm, wall: Wall | MatrixWall, sample_period: float, delay_samples: int, joints: Array
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    sample_period: float,
+    delay_samples: int,
+    joints: Array,
+    torque_held: bool = False,
 ) -> ArmMotion:
     """The energy of a closed path of the joints q(k), N × m, gone round for ever."""
     p = arm.forward(joints)
@@ -71,6 +76,8 @@ def replay_cycle(
     before = np.roll(depth, delay_samples + 1, axis=0)
     force = read @ k + (read - before) / sample_period @ b
     moved, turned = np.roll(p, -1, axis=0) - p, np.roll(joints, -1, axis=0) - joints
+    if torque_held:
+        moved = np.einsum("kij,kj->ki", arm.jacobian(joints), turned)
     friction = np.asarray(arm.coulomb_friction or (0.0,) * joints.shape[-1])
     viscous = np.einsum("ki,ij,kj->", turned, as_matrix(arm.damping), turned) / sample_period
     return ArmMotion(
@@ -82,7 +89,12 @@ def replay_cycle(
 
 
 def refuting_motion(
-    arm: Arm, wall: Wall | MatrixWall, sample_period: float, delay_samples: int, at: Array
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    sample_period: float,
+    delay_samples: int,
+    at: Array,
+    torque_held: bool = False,
 ) -> ArmMotion | None:
     """A motion near the joints `at` that takes energy out; None where none was found."""
     jacobian = arm.jacobian(at)
@@ -93,7 +105,7 @@ def refuting_motion(
     turn = np.cos(2 * np.pi / samples * np.arange(samples))
     for amplitude in _AMPLITUDES:
         path = at + amplitude * turn[:, None] * shape
-        motion = replay_cycle(arm, wall, sample_period, delay_samples, path)
+        motion = replay_cycle(arm, wall, sample_period, delay_samples, path, torque_held)
         if not np.isfinite(motion.energy):
             return None
         if motion.energy < -1e-9 * (abs(motion.work) + motion.loss):
