@@ -119,7 +119,8 @@ def _arm(arguments: argparse.Namespace) -> Any:
     path = Path(arguments.arm)
     if not path.suffix:
         raise InputError(
-            f"there is no arm {arguments.arm[:40]!r}; built in are {', '.join(BUILT_IN)}, or name a .urdf file"
+            f"there is no arm {arguments.arm[:40]!r}; built in are {', '.join(BUILT_IN)}; "
+            "or name a .urdf file"
         )
     return read_arm(path, frame=arguments.frame, hold=_held(arguments.hold), **given)
 

@@ -43,7 +43,7 @@ def columns_of(
     stiffness = wall_matrices(wall, frame.shape[-2])[0]
     scale = largest_scale(at_hand - turned @ damper @ frame, turned @ spring @ frame)
     stiffest = scale * float(np.linalg.norm(stiffness, 2))
-    in_joints: Array = np.linalg.eigvalsh(lacking)[:, 0]
+    in_joints = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
     columns: dict[str, Column] = {
         "margin": (values[..., 0], "N*s/m", "damping at the hand beyond need, in the worst direction"),
         "largest_stiffness": (stiffest, "N/m", "stiffest passive wall here"),

@@ -179,7 +179,7 @@ def _account(damping: Array, need: Array, sites: Sites) -> _Account:
     reached = _reached(sites)
     jacobians = sites.jacobians[reached]
     lacking = surplus(jacobians, damping, need)
-    margins: Array = np.linalg.eigvalsh(lacking)[:, 0]
+    margins = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
     loss = _loss(need, jacobians, sites.change[reached])
     rounding = _ROUNDING * (float(np.abs(damping).max()) + float(np.abs(lacking).max()))
     taken = np.where(np.isfinite(loss), loss, 0.0)

@@ -6,7 +6,8 @@ The joints go round a small closed path, straight from sample to sample:
 
 Where the wall's force is held and its torque J(q)ᵀF follows the arm, its work over a period
 is exactly F(k)·(p(q(k+1)) − p(q(k))); where the torque is held it is F(k)·J(q(k)) Δq.  The
-joints lose Σ b_i Δq_i²/T + f_c,i |Δq_i|.  Nothing here is linearized.  A hand at the end can make this motion wherever it can hold every joint:
+joints lose Σ b_i Δq_i²/T + f_c,i |Δq_i|.  Nothing here is linearized.
+A hand at the end can make this motion wherever it can hold every joint:
 where J has as many independent columns as there are joints.
 """
 
