@@ -23,7 +23,8 @@ def test_the_colours_are_the_margins_at_the_places() -> None:
     figure, axes = plt.subplots()
     plots.draw_workspace(axes, space)
     mesh = axes.collections[0]
-    assert np.sort(mesh.get_array().ravel()) == pytest.approx(np.sort(space.data["margin"].values.ravel()))
+    drawn = np.sort(np.ma.getdata(mesh.get_array()).ravel())
+    assert drawn == pytest.approx(np.sort(space.data["margin"].values.ravel()))
     assert axes.get_xlabel() == "x [m]"
     plt.close(figure)
 

@@ -140,12 +140,16 @@ def workspace(
             "an arm with more joints than coordinates needs damping in each of them, "
             "beyond what held torques ask for"
         )
-    fine = arm.sites(points * _refinement(sites, points))
+    parts = _refinement(sites, points)
+    fine = sites if parts == 1 else arm.sites(points * parts)
     account = _account(damping, need.stiffness_share + need.bound, fine)
     columns = columns_of(arm, damping, wall, need, sites.jacobians[reached])
-    tightest = columns_of(arm, damping, wall, need, fine.jacobians[account.reached])["largest_stiffness"][
-        0
-    ].min()
+    stiffest = columns["largest_stiffness"][0]
+    if parts > 1:
+        between = columns_of(arm, damping, wall, need, fine.jacobians[account.reached])["largest_stiffness"][
+            0
+        ]
+        stiffest = np.append(stiffest, between)
     held = torque_held_up_to is not None
     motion = _motion(arm, wall, period, samples, fine.joints[account.reached], account.margins, held)
     whole = np.zeros(account.reached.shape, dtype=bool)
@@ -161,7 +165,7 @@ def workspace(
         data=dataset(sites, reached, _all_in_blocks(whole, reached.shape), columns),
         additions=tuple(float(v) for v in single_additions(account.counted).max(axis=0)),
         addition_to_all=max(0.0, -float(np.linalg.eigvalsh(account.counted)[:, 0].min())),
-        largest_stiffness=float(min(tightest, columns["largest_stiffness"][0].min())),
+        largest_stiffness=float(stiffest.min()),
         motion=motion,
     )
 
