@@ -96,6 +96,33 @@ def test_the_margin_is_that_at_the_hand() -> None:
         assert float(space.data["largest_stiffness"][cell]) == pytest.approx(2000 * (values[0] + 0.35))
 
 
+def test_a_wall_without_stiffness() -> None:
+    """A damper alone: any stiffness would do where it needs nothing, and none where it asks too much."""
+    arm = built_in("two-link", damping=(0.02, 0.012))
+    free = zw.workspace(arm, zw.Wall(0), rate=1000, points=20)
+    assert (free.outcome, free.largest_stiffness) == ("passive", np.inf)
+    damped = zw.workspace(arm, zw.Wall(0, 3), rate=1000, points=20)
+    assert (damped.outcome, damped.largest_stiffness) == ("active", 0)
+
+
+def test_the_reported_energy_is_that_of_the_reported_motion() -> None:
+    """Summed again from the positions, without the code that found it; delay and virtual damping included."""
+    arm = built_in("haply-2diy", damping=(0.003, 0.002))
+    for wall, delay in ((zw.Wall(900), 0), (zw.Wall(900, 0.1), 0), (zw.Wall(500), 2), (zw.Wall(300, 0.3), 1)):
+        motion = zw.workspace(arm, wall, rate=1000, points=20, delay=delay / 1000).motion
+        assert motion is not None
+        k, b, p, q = float(wall.stiffness), float(wall.damping), motion.positions, motion.joints  # type: ignore[arg-type]
+        assert arm.inverse(p) == pytest.approx(q, abs=1e-9)  # type: ignore[attr-defined]
+        total = 0.0
+        for i in range(len(p)):
+            read, before = p[i - delay], p[i - delay - 1]
+            moved, turned = p[(i + 1) % len(p)] - p[i], q[(i + 1) % len(p)] - q[i]
+            force = k * (read - p[0]) + b * (read - before) / 0.001
+            total += force @ moved + np.array([0.003, 0.002]) @ turned**2 / 0.001
+        assert total == pytest.approx(motion.energy, rel=1e-6)
+        assert total < 0
+
+
 def test_a_wall_with_one_normal_asks_for_less() -> None:
     """A plane wall k n nᵀ allows more than the wall that is stiff in every direction, and is refuted too."""
     arm = built_in("haply-2diy", damping=0.003)

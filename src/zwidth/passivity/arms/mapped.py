@@ -42,7 +42,8 @@ def columns_of(
     worst = (frame @ vectors[..., :, :1])[..., 0]
     stiffness = wall_matrices(wall, frame.shape[-2])[0]
     scale = largest_scale(at_hand - turned @ damper @ frame, turned @ spring @ frame)
-    stiffest = scale * float(np.linalg.norm(stiffness, 2))
+    largest = float(np.linalg.norm(stiffness, 2))
+    stiffest = np.where(np.isfinite(scale), scale, 0.0) * largest + np.where(np.isfinite(scale), 0.0, np.inf)
     in_joints = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
     columns: dict[str, Column] = {
         "margin": (values[..., 0], "N*s/m", "damping at the hand beyond need, in the worst direction"),
