@@ -96,6 +96,58 @@ def test_the_margin_is_that_at_the_hand() -> None:
         assert float(space.data["largest_stiffness"][cell]) == pytest.approx(2000 * (values[0] + 0.35))
 
 
+@pytest.mark.parametrize("delay", [0, 2])
+@pytest.mark.parametrize("damped", [False, True])
+def test_no_closed_path_in_a_proved_region_takes_energy_out(delay: int, damped: bool) -> None:
+    """Random and alternating paths of the joints, small and across the region, held torque included."""
+    rng = np.random.default_rng(delay + 10 * damped)
+    arm = built_in("two-link", damping=(0.02, 0.012))
+    root = rng.normal(size=(2, 2))
+    virtual = rng.normal(size=(2, 2)) * 0.02
+    k, b = root @ root.T, damped * (virtual + virtual.T)
+    start = zw.workspace(arm, zw.MatrixWall(k, b), rate=1000, delay=delay / 1000, points=20).largest_stiffness
+    k *= 0.95 * start / np.linalg.norm(k, 2)
+    wall = zw.MatrixWall(k, b)
+    assert zw.workspace(arm, wall, rate=1000, delay=delay / 1000, points=20).outcome == "passive"
+    assert isinstance(arm, PlanarChain)
+    low, high = np.array(arm.joint_range).T
+    least = np.inf
+    for _ in range(400):
+        middle, size = rng.uniform(low, high), 10 ** rng.uniform(-4, 0)
+        samples = int(rng.integers(2, 20))
+        shape = (
+            rng.normal(size=(samples, 2))
+            if rng.random() < 0.5
+            else rng.normal(size=2) * np.cos(2 * np.pi / samples * np.arange(samples))[:, None]
+        )
+        path = np.clip(middle + size * shape, low, high)
+        motion = replay_cycle(arm, wall, 0.001, delay, path)
+        assert motion.energy >= -1e-12 * motion.loss
+        if motion.loss:
+            least = min(least, motion.energy / motion.loss)
+    assert least < 0.6
+
+
+def test_no_closed_path_takes_energy_out_of_a_held_torque() -> None:
+    """With the forces that were counted, about a wall that pushes all the time."""
+    arm, rng = built_in("two-link", damping=(0.02, 0.012)), np.random.default_rng(3)
+    assert isinstance(arm, PlanarChain)
+    low, high = np.array(arm.joint_range).T
+    assert zw.workspace(arm, zw.Wall(200), rate=1000, points=20, torque_held_up_to=20).outcome == "passive"
+    for _ in range(300):
+        path = np.clip(
+            rng.uniform(low, high) + 10 ** rng.uniform(-4, -1) * rng.normal(size=(6, 2)), low, high
+        )
+        p, turned = arm.forward(path), np.roll(path, -1, axis=0) - path
+        force = 200 * (p - p[0])
+        push = rng.normal(size=2)
+        force = force + push / np.linalg.norm(push) * max(0.0, 20 - np.linalg.norm(force, axis=1).max())
+        if np.linalg.norm(force, axis=1).max() > 20:
+            continue
+        work = np.einsum("ki,kij,kj->", force, arm.jacobian(path), turned)
+        assert work + (np.array([0.02, 0.012]) * turned**2).sum() / 0.001 >= -1e-12
+
+
 def test_a_wall_without_stiffness() -> None:
     """A damper alone: any stiffness would do where it needs nothing, and none where it asks too much."""
     arm = built_in("two-link", damping=(0.02, 0.012))
