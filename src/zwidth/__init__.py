@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.bench import LawComparison
     from zwidth.device import amplifier as amplifiers
+    from zwidth.device import arm as arms
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
+    from zwidth.environment.matrix_wall import MatrixWall
     from zwidth.identification import tissue
     from zwidth.identification.device.identified import Identified
     from zwidth.identification.device.plan import Plan, plan_identification
@@ -37,6 +39,7 @@ if TYPE_CHECKING:
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
+    from zwidth.passivity.arms import Workspace, workspace
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
@@ -88,6 +91,7 @@ __all__ = [
     "Interval",
     "LawComparison",
     "Log",
+    "MatrixWall",
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
@@ -109,8 +113,10 @@ __all__ = [
     "Wall",
     "Window",
     "Witness",
+    "Workspace",
     "WorstHand",
     "amplifiers",
+    "arms",
     "catalogue",
     "check",
     "check_bounding",
@@ -148,6 +154,7 @@ __all__ = [
     "transformed_blocks",
     "transformed_condition",
     "two_port",
+    "workspace",
     "worst_hand",
 ]
 
@@ -168,6 +175,8 @@ _LATER = {
     "Timing": "zwidth.loop.timing",
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
+    "MatrixWall": "zwidth.environment.matrix_wall",
+    "Workspace": "zwidth.passivity.arms",
     "amplifiers": "zwidth.device.amplifier",
     "Indices": "zwidth.passivity.loop_transformation",
     "Slopes": "zwidth.passivity.loop_transformation",
@@ -181,6 +190,7 @@ _LATER = {
     "PassivityIndex": "zwidth.passivity.index",
     "PassivityIndices": "zwidth.passivity.indices",
     "passivity_indices": "zwidth.passivity.indices",
+    "arms": "zwidth.device.arm",
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
@@ -208,6 +218,7 @@ _LATER = {
     "stable_virtual_masses": "zwidth.passivity.virtual_mass",
     "tissue": "zwidth.identification.tissue",
     "two_port": "zwidth.passivity.two_port",
+    "workspace": "zwidth.passivity.arms",
     "worst_hand": "zwidth.traces",
 }
 """Where a name is found when it is first used: the simulator's libraries take their time to load."""

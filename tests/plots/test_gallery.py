@@ -34,6 +34,7 @@ NUMBERS = {
     "plot_staircase": "energy leaked by the hold: 1.5 mJ, 1.000000000000 of the formula",
     "plot_tracking_tissue": "found again 3.4 s after the change",
     "plot_velocity_filter": "N = 20: b ≥ 0.248 B, tightest at 35 Hz",
+    "plot_workspace": "1.54 mN·m·s/rad more in the first joint, or 1.36 in both",
     "plot_worst_case": "admissible speed at 770 N/m: 0.474 m/s",
 }
 

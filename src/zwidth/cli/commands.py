@@ -203,6 +203,18 @@ def _traces(arguments: argparse.Namespace) -> int:
     return run_traces(arguments)
 
 
+def _configure_workspace(parser: argparse.ArgumentParser) -> None:
+    from zwidth.cli.workspace import configure_workspace
+
+    configure_workspace(parser)
+
+
+def _workspace(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.workspace import run_workspace
+
+    return run_workspace(arguments)
+
+
 def _configure_plan(parser: argparse.ArgumentParser) -> None:
     from zwidth.cli.planning import configure_plan
 
@@ -278,6 +290,18 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth compare my-paddle.toml my-laws.toml --laws wall,virtual-damping",
             _configure_compare,
             _compare,
+        ),
+        "workspace": Command(
+            "where does an arm of several joints render a wall passively?",
+            "Map over the workspace of an arm whether the damping of its joints pays for a wall; prove it\n"
+            "between the points too, or show a motion that takes energy out; say which joint to damp.",
+            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided\n\n"
+            "examples:\n"
+            "  zwidth workspace haply-2diy --joint-damping 0.003 --stiffness 500 --plot map.png\n"
+            "  zwidth workspace two-link --joint-damping 0.02,0.01 --stiffness 500 --rate '2 kHz'\n"
+            "  zwidth workspace my-arm.urdf --stiffness 500",
+            _configure_workspace,
+            _workspace,
         ),
         "identify": Command(
             "mass, damping and friction of a device, from a log of its motion",

@@ -2,7 +2,8 @@
 
 Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
-`witness`, `worst_case`, `storage`, `cycle`, `check_figure` and `limit_figure`
+`witness`, `worst_case`, `storage`, `cycle`, `check_figure`, `limit_figure` and
+`workspace_figure`
 return a `matplotlib.figure.Figure` that belongs to no window; the `draw_…`
 functions draw on axes of your own, in the look of `LOOK` if your axes have it.
 """
@@ -17,6 +18,7 @@ from zwidth.plots.report import check_figure, save_check
 from zwidth.plots.storage import draw_storage, storage
 from zwidth.plots.style import LOOK
 from zwidth.plots.witness import draw_witness, witness
+from zwidth.plots.workspace import draw_workspace, save_workspace, workspace_figure
 from zwidth.plots.worst_case import draw_worst_case, worst_case
 
 __all__ = [
@@ -33,13 +35,16 @@ __all__ = [
     "draw_plane",
     "draw_storage",
     "draw_witness",
+    "draw_workspace",
     "draw_worst_case",
     "indices",
     "limit_figure",
     "plane",
     "save_check",
     "save_limit",
+    "save_workspace",
     "storage",
     "witness",
+    "workspace_figure",
     "worst_case",
 ]

@@ -1,0 +1,28 @@
+"""Devices with several joints: what damping a wall needs, what damping the joints give."""
+
+from zwidth.passivity.arms.joints import (
+    end_effector_damping,
+    end_effector_friction,
+    end_effector_inertia,
+    end_effector_resolution,
+    joint_margin,
+    sampled_jacobian_damping,
+)
+from zwidth.passivity.arms.need import WallNeed, damping_at, wall_need
+from zwidth.passivity.arms.region import Workspace, workspace
+from zwidth.passivity.arms.replay import ArmMotion
+
+__all__ = [
+    "ArmMotion",
+    "WallNeed",
+    "Workspace",
+    "damping_at",
+    "end_effector_damping",
+    "end_effector_friction",
+    "end_effector_inertia",
+    "end_effector_resolution",
+    "joint_margin",
+    "sampled_jacobian_damping",
+    "wall_need",
+    "workspace",
+]

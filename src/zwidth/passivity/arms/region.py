@@ -1,0 +1,288 @@
+"""Where in its workspace an arm renders a wall passively, and what to change where it does not.
+
+At each middle of a cell: does δ_m ⪰ Jᵀ R J hold, with what margin, in which direction does it fail?
+Between the middles J changes by no more than η, so the smallest eigenvalue falls by no more than
+
+    ‖R‖ (2 ‖J‖ η + η²)
+
+and a cell with more margin than that is proved as a whole.  The loop is passive for every motion
+that stays in proved cells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from zwidth.device.arm import Arm, Sites
+from zwidth.environment.matrix_wall import MatrixWall
+from zwidth.environment.wall import Wall
+from zwidth.errors import InputError
+from zwidth.passivity.arms.joints import (
+    as_matrix,
+    sampled_jacobian_damping,
+    single_additions,
+    surplus,
+)
+from zwidth.passivity.arms.mapped import columns_of, dataset
+from zwidth.passivity.arms.need import wall_need
+from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
+
+if TYPE_CHECKING:
+    import xarray
+
+Array = npt.NDArray[np.float64]
+Truth = npt.NDArray[np.bool_]
+
+_ROUNDING = 1e-12
+"""Of the damping: how far rounding may move an eigenvalue."""
+_FINE = 200
+"""Cells along each side on which the proof is made, at least, in one or two coordinates."""
+_TRIES = 20
+"""Points from which a motion that takes energy out is sought, the worst first."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Workspace:
+    """The answer for an arm: a verdict, the map, and what to change.
+
+    Parameters
+    ----------
+    outcome
+        "passive": every cell of the region is proved. "active": at one point a motion of the hand takes
+        energy out, `motion`. "undecided": neither.
+    claim
+        In words, with what was assumed.
+    arm, wall
+        What was asked about.
+    sample_period
+        T [s].
+    delay_samples
+        d, whole samples from reading to force.
+    data
+        The map, an xarray Dataset over the cells; each variable has its unit in `attrs`.
+    additions
+        The smallest damping that, given to one joint alone, proves the region; ∞ where none does
+        [N·m·s/rad].
+    addition_to_all
+        The smallest damping that, given to every joint, proves the region [N·m·s/rad].
+    largest_stiffness
+        The stiffest wall of this kind that holds at every point, in the largest stiffness of any
+        direction [N/m].
+    motion
+        What takes energy out, near the worst point, if one was found.
+    """
+
+    outcome: str
+    claim: str
+    arm: Arm
+    wall: Wall | MatrixWall
+    sample_period: float
+    delay_samples: int
+    data: xarray.Dataset
+    additions: tuple[float, ...]
+    addition_to_all: float
+    largest_stiffness: float
+    motion: ArmMotion | None
+
+
+def workspace(
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    *,
+    rate: float,
+    delay: float = 0.0,
+    points: int = 100,
+    torque_held_up_to: float | None = None,
+) -> Workspace:
+    """Map over the workspace whether an arm renders a wall passively.
+
+    Parameters
+    ----------
+    arm
+        `zwidth.arms.built_in`, `PlanarChain`, `LeggedArm`, or `read_arm` of a description.
+    wall
+        `Wall`, equally stiff in every direction (or a plane wall with any normal), or `MatrixWall`.
+    rate
+        Samples per second, > 0 [Hz].
+    delay
+        From reading to force, a whole number of samples [s]; round up what is not.
+    points
+        Cells along each side of the map, from 2 to 1000.
+    torque_held_up_to
+        None: the force is held, and the torque J(q)ᵀF follows the arm within each period, as Miller and
+        others assume. A force ≥ 0 [N]: the torque J(q_k)ᵀF is held, and the wall renders no more than
+        this; for chains and descriptions, whose curvature is bounded, and without delay.
+
+    Raises
+    ------
+    InputError
+        If a number is outside its bound, or the arm reaches no point of its region.
+    """
+    period, samples = _timing(rate, delay)
+    if not isinstance(arm, Arm):
+        raise InputError(f"the first argument is an arm, got {type(arm).__name__}")
+    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= 1000:
+        raise InputError(f"points must be a whole number from 2 to 1000, got {points!r}")
+    sites = arm.sites(points)
+    n, m = sites.jacobians.shape[-2:]
+    reached = _reached(sites)
+    if not reached.any():
+        raise InputError(f"{arm.name} reaches no point of its region, {sites.region}; choose another one")
+    need = wall_need(wall, period, samples, n)
+    damping = as_matrix(arm.damping) - _held_torque(arm, period, samples, torque_held_up_to) * np.eye(m)
+    if m > n and np.linalg.eigvalsh(damping)[0] <= 0:
+        raise InputError(
+            "an arm with more joints than coordinates needs damping in each of them, "
+            "beyond what held torques ask for"
+        )
+    parts = _refinement(sites, points)
+    fine = sites if parts == 1 else arm.sites(points * parts)
+    account = _account(damping, need.stiffness_share + need.bound, fine)
+    columns = columns_of(arm, damping, wall, need, sites.jacobians[reached])
+    stiffest = columns["largest_stiffness"][0]
+    if parts > 1:
+        between = columns_of(arm, damping, wall, need, fine.jacobians[account.reached])["largest_stiffness"][
+            0
+        ]
+        stiffest = np.append(stiffest, between)
+    held = torque_held_up_to is not None
+    motion = _motion(arm, wall, period, samples, fine.joints[account.reached], account.margins, held)
+    whole = np.zeros(account.reached.shape, dtype=bool)
+    whole[account.reached] = account.proved
+    outcome = "active" if motion is not None else "passive" if whole.all() else "undecided"
+    return Workspace(
+        outcome=outcome,
+        claim=_claim(outcome, fine, account, arm, torque_held_up_to),
+        arm=arm,
+        wall=wall,
+        sample_period=period,
+        delay_samples=samples,
+        data=dataset(sites, reached, _all_in_blocks(whole, reached.shape), columns),
+        additions=tuple(float(v) for v in single_additions(account.counted).max(axis=0)),
+        addition_to_all=max(0.0, -float(np.linalg.eigvalsh(account.counted)[:, 0].min())),
+        largest_stiffness=float(stiffest.min()),
+        motion=motion,
+    )
+
+
+class _Account(NamedTuple):
+    """What the cells of a fine grid show."""
+
+    reached: Truth
+    margins: Array
+    proved: Truth
+    counted: Array  # δ_m − JᵀRJ, less what it may lose inside the cell
+
+
+def _account(damping: Array, need: Array, sites: Sites) -> _Account:
+    reached = _reached(sites)
+    jacobians = sites.jacobians[reached]
+    lacking = surplus(jacobians, damping, need)
+    margins = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
+    loss = _loss(need, jacobians, sites.change[reached])
+    rounding = _ROUNDING * (float(np.abs(damping).max()) + float(np.abs(lacking).max()))
+    taken = np.where(np.isfinite(loss), loss, 0.0)
+    taken = taken + 10 * rounding  # damping that is added adds to the rounding too
+    counted = np.asarray(lacking - taken[:, None, None] * np.eye(lacking.shape[-1]))
+    return _Account(reached, margins, margins > loss + rounding, counted)
+
+
+def _reached(sites: Sites) -> Truth:
+    return np.asarray(np.isfinite(sites.jacobians).all(axis=(-1, -2)))
+
+
+def _refinement(sites: Sites, points: int) -> int:
+    """Into how many parts each side of a cell is cut for the proof."""
+    return max(1, ceil(_FINE / points)) if len(sites.axes) < 3 else 1
+
+
+def _all_in_blocks(fine: Truth, shape: tuple[int, ...]) -> Truth:
+    """True where every part of a cell is."""
+    for axis, count in enumerate(shape):
+        split = (*fine.shape[:axis], count, -1, *fine.shape[axis + 1 :])
+        fine = np.asarray(fine.reshape(split).all(axis=axis + 1))
+    return fine
+
+
+def _timing(rate: float, delay: float) -> tuple[float, int]:
+    if not (isinstance(rate, (int, float)) and 0 < rate < np.inf):
+        raise InputError(f"rate must be > 0 Hz, got {rate!r}")
+    if not (isinstance(delay, (int, float)) and 0 <= delay < np.inf):
+        raise InputError(f"delay must be ≥ 0 s, got {delay!r}")
+    samples = round(delay * rate)
+    if abs(delay * rate - samples) > 1e-9 * max(1, samples):
+        raise InputError(
+            f"for arms the delay is a whole number of samples, got {delay * rate:g}; "
+            "round it up: that is safe for springs"
+        )
+    return 1 / rate, samples
+
+
+def _held_torque(arm: Arm, period: float, samples: int, force: float | None) -> float:
+    """What a held torque asks of every joint [N·m·s/rad]."""
+    if force is None:
+        return 0.0
+    if not (isinstance(force, (int, float)) and 0 <= force < np.inf):
+        raise InputError(f"torque_held_up_to is the largest force of the wall, ≥ 0 N; got {force!r}")
+    if arm.curvature is None or samples:
+        raise InputError(
+            "a bound for held torques is known for chains and descriptions without delay; "
+            "compute the torque several times in each period, and leave torque_held_up_to out"
+        )
+    return sampled_jacobian_damping(arm.curvature, force, period)
+
+
+def _loss(need: Array, jacobians: Array, change: Array) -> Array:
+    """How far the smallest eigenvalue may fall inside a cell."""
+    size = np.linalg.norm(jacobians, ord=2, axis=(-2, -1))
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.linalg.norm(need, 2) * (2 * size * change + change**2))
+
+
+def _motion(
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    period: float,
+    samples: int,
+    joints: Array,
+    margins: Array,
+    torque_held: bool,
+) -> ArmMotion | None:
+    failing = np.argsort(margins)[: int((margins < 0).sum())]
+    tried = failing[:: max(1, len(failing) // _TRIES)][:_TRIES]
+    for k in tried:
+        motion = refuting_motion(arm, wall, period, samples, joints[k], torque_held)
+        if motion is not None:
+            return motion
+    return None
+
+
+def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm, held: float | None) -> str:
+    """One sentence on what holds, others on what is not counted."""
+    part = 100 * account.proved.mean()
+    if outcome == "passive":
+        text = f"Passive for every motion of the hand with {sites.region}."
+    elif outcome == "active":
+        text = "At one point of this map a motion of the hand takes energy out."
+    elif (account.margins >= 0).all():
+        text = (
+            f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
+        )
+    else:
+        text = (
+            f"{part:.4g} % of the region are proved; where the condition fails, no motion was found "
+            "that takes energy out."
+        )
+    if not account.reached.all():
+        text += " Parts of the region are out of reach; a smaller region may be proved."
+    text += (
+        " The torque is taken to follow the arm within a period."
+        if held is None
+        else f" The torque is held over a period, with wall forces up to {held:g} N."
+    )
+    return text + (" Encoder steps are not counted." if any(arm.resolution) else "")

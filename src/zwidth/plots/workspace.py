@@ -1,0 +1,135 @@
+"""The map of an arm's workspace: the margin, where it ends, and in which direction it is smallest."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
+
+from zwidth.errors import InputError
+from zwidth.passivity.arms import Workspace
+from zwidth.plots.files import save_figure
+from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, pretty
+
+_ARROWS = 14
+"""Marks of the worst direction along each side."""
+_WIDTH = 90
+
+
+def save_workspace(space: Workspace, path: str | Path, overwrite: bool = False) -> None:
+    """Write `workspace_figure` to a file; its ending, png, svg or pdf, says how.
+
+    Parameters
+    ----------
+    space
+        What `zwidth.workspace` returned.
+    path
+        The file to write.
+    overwrite
+        Replace a file that is already there.
+    """
+    save_figure(lambda: workspace_figure(space), path, overwrite)
+
+
+@rc_context(LOOK)
+def workspace_figure(space: Workspace, variable: str = "margin") -> Figure:
+    """One variable of the map, in colours; red where there is too little of it.
+
+    Parameters
+    ----------
+    space
+        What `zwidth.workspace` returned.
+    variable
+        A name in `space.data`. Default "margin".
+    """
+    figure = new_figure(6.4, 5.0)
+    axes = figure.add_subplot()
+    draw_workspace(axes, space, variable)
+    figure.suptitle(
+        fill(f"{space.arm.name}: {space.claim}", _WIDTH), x=0.01, ha="left", fontsize=10,
+        color=OUTCOME[space.outcome], parse_math=False,
+    )  # fmt: skip
+    return figure
+
+
+def draw_workspace(axes: Axes, space: Workspace, variable: str = "margin") -> None:
+    """Draw one variable of the map on axes of your own.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    space
+        What `zwidth.workspace` returned.
+    variable
+        A name in `space.data`.
+    """
+    if variable not in space.data:
+        raise InputError(f"the map has no {variable!r}; it has {', '.join(map(str, space.data))}")
+    data = space.data[variable]
+    label = f"{variable.replace('_', ' ')} [{pretty(data.attrs.get('units', '1'))}]"
+    if data.ndim == 1:
+        _line(axes, data, label)
+        return
+    if data.ndim > 2:
+        raise InputError("a map of more than two joints cannot be drawn; take a slice of `data`")
+    across, up, names = _coordinates(space)
+    values = np.asarray(data.values, dtype=np.float64)
+    # The cells of a chain are bent: their colours run from middle to middle.
+    shading: Any = "nearest" if "x" in space.data.coords or names != ("x", "y") else "gouraud"
+    colours = axes.pcolormesh(across, up, values, shading=shading, rasterized=True, **_colours(values))
+    axes.figure.colorbar(colours, ax=axes, label=label)
+    margin = space.data["margin"].values
+    if np.nanmin(margin) < 0 < np.nanmax(margin):
+        axes.contour(across, up, margin, levels=[0.0], colors=[BLACK], linewidths=1.5)
+        note(axes, "black: where the margin ends; strokes: the direction in which it is smallest")
+    if names == ("x", "y"):
+        _directions(axes, space, across, up)
+        axes.set_aspect("equal")
+    axes.set_xlabel(_axis(names[0]))
+    axes.set_ylabel(_axis(names[1]))
+
+
+def _line(axes: Axes, data: Any, label: str) -> None:
+    name = str(data.dims[0])
+    axes.plot(data[name], data.values, color=OUTCOME["passive"] if data.min() >= 0 else RED)
+    axes.axhline(0, color=GREY, linewidth=0.8)
+    axes.set_xlabel(_axis(name))
+    axes.set_ylabel(label)
+
+
+def _coordinates(space: Workspace) -> tuple[Any, Any, tuple[str, str]]:
+    """The plane of the hand where there is one, else that of the two joints."""
+    data = space.data
+    if "x" in data.coords:
+        return (*np.meshgrid(data["x"], data["y"], indexing="ij"), ("x", "y"))
+    if "hand_x" in data.coords and "hand_z" not in data.coords:
+        return data["hand_x"].values, data["hand_y"].values, ("x", "y")
+    first, second = (str(name) for name in data["margin"].dims)
+    return (*np.meshgrid(data[first], data[second], indexing="ij"), (first, second))
+
+
+def _colours(values: Any) -> dict[str, Any]:
+    low, high = float(np.nanmin(values)), float(np.nanpercentile(values, 95))
+    if low < 0:
+        return {"cmap": "RdBu", "norm": TwoSlopeNorm(0.0, low, max(high, -low / 2))}
+    return {"cmap": "viridis", "vmin": low, "vmax": max(high, low + 1e-300)}
+
+
+def _directions(axes: Axes, space: Workspace, across: Any, up: Any) -> None:
+    step = tuple(slice(n // (2 * _ARROWS), None, max(1, n // _ARROWS)) for n in across.shape)
+    u, v = space.data["direction_x"].values[step], space.data["direction_y"].values[step]
+    axes.quiver(
+        across[step], up[step], u, v, color=BLACK, alpha=0.5, pivot="mid", headwidth=0, headlength=0,
+        headaxislength=0, scale=2.2 * _ARROWS, width=0.0025,
+    )  # fmt: skip
+
+
+def _axis(name: str) -> str:
+    return f"{name} [m]" if name in ("x", "y") else f"joint {name} [rad]"

@@ -1,0 +1,123 @@
+"""Arms from URDF and MJCF are the arms that they describe."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.device.arm import PlanarChain, read_arm
+
+pytest.importorskip("pinocchio")
+
+LINK = '<link name="{}"/>'
+
+
+def _joint(name: str, parent: str, child: str, x: float, kind: str = "revolute", extra: str = "") -> str:
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="{x} 0 0"/><axis xyz="0 0 1"/>{extra}</joint>'
+    )
+
+
+LIMIT = '<limit lower="0.2" upper="2.4" effort="0.5" velocity="9"/><dynamics damping="{}" friction="0.002"/>'
+
+
+@pytest.fixture
+def urdf(tmp_path: Path) -> Path:
+    """A two-link arm of 0.12 and 0.09 m."""
+    path = tmp_path / "two.urdf"
+    path.write_text(
+        '<robot name="two">'
+        + "".join(LINK.format(n) for n in ("base", "upper", "lower", "tip"))
+        + _joint("shoulder", "base", "upper", 0.0, extra=LIMIT.format(0.02))
+        + _joint("elbow", "upper", "lower", 0.12, extra=LIMIT.format(0.01))
+        + _joint("hand", "lower", "tip", 0.09, "fixed")
+        + "</robot>"
+    )
+    return path
+
+
+def test_a_described_two_link_arm_is_the_closed_form(urdf: Path) -> None:
+    """Positions, Jacobians, friction and limits, and the same map."""
+    arm = read_arm(urdf, frame="tip")
+    assert (arm.damping, arm.coulomb_friction, arm.torque_limit) == ((0.02, 0.01), (0.002, 0.002), (0.5, 0.5))
+    plain = PlanarChain(links=(0.12, 0.09), damping=(0.02, 0.01), joint_range=((0.2, 2.4), (0.2, 2.4)))
+    q = np.random.default_rng(1).uniform(0.2, 2.4, (6, 2))
+    assert arm.forward(q)[..., :2] == pytest.approx(plain.forward(q), abs=1e-12)
+    assert arm.jacobian(q)[..., :2, :] == pytest.approx(plain.jacobian(q), abs=1e-12)
+    assert arm.jacobian(q)[..., 2, :] == pytest.approx(0)
+    described, closed = (zw.workspace(a, zw.Wall(400), rate=1000, points=15) for a in (arm, plain))
+    assert described.data["margin"].values == pytest.approx(closed.data["margin"].values, rel=1e-9)
+    assert (described.data["proved"].values == closed.data["proved"].values).all()
+    assert described.outcome == closed.outcome
+
+
+def test_the_bound_of_a_described_arm_holds_and_is_not_far_off(urdf: Path) -> None:
+    """The same as of the closed form, whose links it reads from the placements."""
+    arm = read_arm(urdf, frame="tip")
+    plain = PlanarChain(links=(0.12, 0.09), damping=(0.02, 0.01), joint_range=((0.2, 2.4), (0.2, 2.4)))
+    assert arm.sites(9).change == pytest.approx(plain.sites(9).change)
+
+
+def test_sliding_joints_and_joints_that_are_held(tmp_path: Path) -> None:
+    """A rail under two links: three joints, of which one is held; the bound covers random points."""
+    path = tmp_path / "rail.urdf"
+    limit = '<limit lower="-0.1" upper="0.1" effort="5" velocity="1"/><dynamics damping="2"/>'
+    path.write_text(
+        '<robot name="rail">'
+        + "".join(LINK.format(n) for n in ("base", "car", "upper", "lower", "tip"))
+        + _joint("rail", "base", "car", 0.0, "prismatic", limit)
+        + _joint("shoulder", "car", "upper", 0.05, extra=LIMIT.format(0.02))
+        + _joint("elbow", "upper", "lower", 0.12, extra=LIMIT.format(0.01))
+        + _joint("hand", "lower", "tip", 0.09, "fixed")
+        + "</robot>"
+    )
+    arm = read_arm(path, frame="tip", hold={"elbow": 0.7})
+    sites = arm.sites(12)
+    assert [axis.unit for axis in sites.axes] == ["m", "rad"]
+    assert sites.joints[..., 2] == pytest.approx(0.7)
+    rng = np.random.default_rng(5)
+    for _ in range(30):
+        place = tuple(rng.integers(12, size=2))
+        shift = rng.uniform(-1, 1, 2) * [0.2 / 24, 2.2 / 24]
+        there = arm.jacobian(sites.joints[place] + np.append(shift, 0))
+        assert np.linalg.norm(there - sites.jacobians[place], 2) <= sites.change[place]
+    with pytest.raises(zw.InputError, match="no joint 'wrist'"):
+        read_arm(path, hold={"wrist": 0})
+    with pytest.raises(zw.InputError, match="3 would move"):
+        read_arm(path, hold={})
+
+
+def test_mjcf_is_read_too(tmp_path: Path) -> None:
+    """One hinge; its damping is given by the caller."""
+    path = tmp_path / "one.xml"
+    path.write_text(
+        '<mujoco model="one"><worldbody><body name="arm" pos="0 0 0">'
+        '<joint name="hinge" type="hinge" axis="0 0 1" limited="true" range="-60 60"/>'
+        '<geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.01" mass="0.2"/>'
+        '<body name="tip" pos="0.3 0 0"><geom type="sphere" size="0.01" mass="0.01"/></body>'
+        "</body></worldbody></mujoco>"
+    )
+    arm = read_arm(path, frame="tip", damping=(0.05,))
+    assert arm.forward([0.5]) == pytest.approx([0.3 * np.cos(0.5), 0.3 * np.sin(0.5), 0], abs=1e-12)
+
+
+def test_what_cannot_be_read_is_said_in_one_message(tmp_path: Path, urdf: Path) -> None:
+    """No file, no XML, another ending, no damping, no such frame."""
+    broken = tmp_path / "broken.urdf"
+    broken.write_text("<robot")
+    undamped = tmp_path / "undamped.urdf"
+    undamped.write_text(urdf.read_text().replace("damping", "nothing"))
+    for path, words in (
+        (tmp_path / "none.urdf", "no file"),
+        (broken, "cannot be read"),
+        (tmp_path / "arm.step", "described in"),
+        (undamped, "any damping"),
+    ):
+        with pytest.raises(zw.InputError, match=words):
+            read_arm(path)
+    with pytest.raises(zw.InputError, match="no frame"):
+        read_arm(urdf, frame="hook")

@@ -1,0 +1,55 @@
+"""The map of a workspace as a picture: in the plane, along one joint, and what cannot be drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth import plots
+from zwidth.device.arm import PlanarChain, built_in
+
+
+def _space(name: str, stiffness: float) -> zw.Workspace:
+    return zw.workspace(built_in(name, damping=0.003), zw.Wall(stiffness), rate=1000, points=16)
+
+
+def test_the_colours_are_the_margins_at_the_places() -> None:
+    """What is drawn over x and y is what the map says."""
+    space = _space("haply-2diy", 800)
+    figure, axes = plt.subplots()
+    plots.draw_workspace(axes, space)
+    mesh = axes.collections[0]
+    drawn = np.sort(np.ma.getdata(mesh.get_array()).ravel())
+    assert drawn == pytest.approx(np.sort(space.data["margin"].values.ravel()))
+    assert axes.get_xlabel() == "x [m]"
+    plt.close(figure)
+
+
+@pytest.mark.parametrize("name", ["hapkit", "two-link", "falcon"])
+def test_every_arm_has_a_picture(name: str, tmp_path: Path) -> None:
+    """Also without a negative margin; the outcome stands in words, and files are not replaced unasked."""
+    path = tmp_path / "map.png"
+    plots.save_workspace(_space(name, 100), path)
+    assert path.stat().st_size > 5000
+    with pytest.raises(zw.InputError, match="exists"):
+        plots.save_workspace(_space(name, 100), path)
+
+
+def test_another_variable_can_be_drawn() -> None:
+    """By its name; one that the map lacks is refused with those that it has."""
+    space = _space("two-link", 100)
+    assert "largest stiffness" in plots.workspace_figure(space, "largest_stiffness").axes[1].get_ylabel()
+    with pytest.raises(zw.InputError, match="it has margin"):
+        plots.workspace_figure(space, "colour")
+
+
+def test_three_joints_are_not_drawn() -> None:
+    """A map over three coordinates has no picture."""
+    arm = PlanarChain(links=(0.1, 0.1, 0.1), damping=(0.1,) * 3)
+    space = zw.workspace(arm, zw.Wall(100), rate=1000, points=20)
+    with pytest.raises(zw.InputError, match="slice"):
+        plots.workspace_figure(space)
