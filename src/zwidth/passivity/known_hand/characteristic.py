@@ -71,8 +71,8 @@ def _open(plant: SampledPlant, below: Coefficients) -> Coefficients:
 
 def decays(polynomial: Coefficients) -> bool | None:
     """True if every root has |z| < 1 for every value in the balls, False if one has not, None if unknown."""
-    rows = _bilinear(polynomial)
-    sign = 1 if rows[-1] > 0 else -1
+    rows = bilinear(polynomial)
+    sign = 1 if polynomial[0] > 0 else -1  # that of the law's denominator: never in doubt
     upper, lower = ([sign * c for c in rows[start::2]] for start in (0, 1))
     while upper:
         if not upper[0] > 0:
@@ -87,8 +87,8 @@ def decays(polynomial: Coefficients) -> bool | None:
     return True
 
 
-def _bilinear(polynomial: Coefficients) -> Coefficients:
-    """Σ a_i (2w)ⁱ (1 − w)ⁿ⁻ⁱ, descending powers of w; Σ a_i ζⁱ with ζ = 2w/(1 − w)."""
+def bilinear(polynomial: Coefficients) -> Coefficients:
+    """Σ a_i (2w)ⁱ (1 − w)ⁿ⁻ⁱ, descending powers of w: Σ a_i ζⁱ times (1 − w)ⁿ, ζ = 2w/(1 − w)."""
     result: Coefficients = [polynomial[0]]  # Horner in 2w, the missing factors of 1 − w put in on the way
     power: Coefficients = [_beside(polynomial[0], Fraction(1))]
     one, two = power[0], 2 * power[0]

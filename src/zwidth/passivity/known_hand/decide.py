@@ -49,7 +49,7 @@ def decided(motion: Motion, polynomial: Polynomial, most: int = MOST_BOXES) -> F
             return Found("unstable", point)
         if tried + len(left) >= most:
             return Found("undecided")
-        left += _halves(box)
+        left += _halves(box, motion)
     return Found("stable")
 
 
@@ -74,11 +74,16 @@ def _middle(motion: Motion) -> Motion:
     return motion._replace(**{key: ((sum(ends) / 2),) * 2 for key, ends in _ranges(motion)})
 
 
-def _halves(motion: Motion) -> list[Motion]:
-    """The box cut in two across its side that is longest for its distance from 0."""
-    key, (low, high) = max(_ranges(motion), key=lambda item: (item[1][1] - item[1][0]) / (item[1][1] or 1))
+def _halves(box: Motion, whole: Motion) -> list[Motion]:
+    """The box cut in two across the side that is longest as a part of the whole."""
+
+    def share(item: tuple[str, tuple[Fraction, Fraction]]) -> Fraction:
+        low, high = getattr(whole, item[0])
+        return (item[1][1] - item[1][0]) / (high - low) if high > low else Fraction(0)
+
+    key, (low, high) = max(_ranges(box), key=share)
     half = (low + high) / 2
-    return [motion._replace(**{key: part}) for part in ((low, half), (half, high))]
+    return [box._replace(**{key: part}) for part in ((low, half), (half, high))]
 
 
 def _ranges(motion: Motion) -> list[tuple[str, tuple[Fraction, Fraction]]]:

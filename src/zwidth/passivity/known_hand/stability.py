@@ -6,6 +6,7 @@ exactly if all roots of its characteristic polynomial lie inside the unit circle
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import pi
@@ -18,16 +19,19 @@ from zwidth.environment import Wall
 from zwidth.environment.environment import Environment, certain
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
-from zwidth.passivity.boundary import COARSE, largest_holding
+from zwidth.passivity.boundary import largest_holding
 from zwidth.passivity.known_hand.characteristic import PRECISIONS, as_floats, family, of_law, precision
 from zwidth.passivity.known_hand.crossing import Plain, last_stable, plain
 from zwidth.passivity.known_hand.decide import Found, Outcome, corners, decided
 from zwidth.passivity.known_hand.hand import PassiveHand, as_hand
 from zwidth.passivity.known_hand.plant import Motion
-from zwidth.quantity.exact import ends
+from zwidth.quantity.exact import Exact, ends
 
-_BOXES_OF_A_SEARCH = 200
-"""Boxes for each stiffness that is tried while the largest one is sought."""
+_BOXES_OF_A_SEARCH = 1000
+"""Boxes for each stiffness that is tried while the largest one of intervals is sought."""
+
+_HALVINGS = 8
+"""Of the stiffness, in that search."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +52,7 @@ class Stability:
         Of that pole, 0 … 1/(2T) [Hz].
     max_stiffness
         The largest stable K of this wall, all else as given [N/m; N·m/rad]; None where no K is or the law is no wall.
-        For intervals it holds for every value in them.
+        For intervals the largest that was proved for every value in them, a little below the true one.
     limit_frequency
         With which the loop oscillates at that stiffness, for intervals at their worst corner [Hz]; None without one.
     assumptions
@@ -160,8 +164,21 @@ def _limit(motion: Motion, law: Environment) -> tuple[float | None, float | None
 
         return decided(motion, polynomial, _BOXES_OF_A_SEARCH).outcome == "stable"
 
-    found = largest_holding(holds, guess.stiffness, 1 if motion.is_certain else COARSE)
+    search = largest_holding if motion.is_certain else _largest_below
+    found = search(holds, guess.stiffness)
     return (found, guess.angle) if found else (None, None)
+
+
+def _largest_below(holds: Callable[[Fraction], bool], limit: float) -> float:
+    """The largest of 2⁻⁸, 2 · 2⁻⁸, … of a limit that holds, by halving; 0 if none does."""
+    low, high = 0, 1 << _HALVINGS
+    while high - low > 1:
+        middle = (low + high) // 2
+        if holds(Exact(limit * middle / (1 << _HALVINGS)).fraction):
+            low = middle
+        else:
+            high = middle
+    return limit * low / (1 << _HALVINGS)
 
 
 def _plain(motion: Motion, velocity: Any) -> Plain:
