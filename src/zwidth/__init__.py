@@ -32,10 +32,12 @@ if TYPE_CHECKING:
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
+    from zwidth.maps import stability_boundary, z_width, z_width_factors
     from zwidth.passivity import two_port
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
+    from zwidth.passivity.known_hand import PassiveHand, Stability, stability
     from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.passivity.virtual_mass import stable_virtual_masses
     from zwidth.passivity.worst_hand import Bracket, WorstHand
@@ -70,8 +72,10 @@ __all__ = [
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
+    "PassiveHand",
     "PulseTransferFunction",
     "RealHand",
+    "Stability",
     "StandardLinearSolid",
     "Timing",
     "TissueFit",
@@ -107,10 +111,14 @@ __all__ = [
     "simulate",
     "simulate_admittance",
     "simulate_batch",
+    "stability",
+    "stability_boundary",
     "stable_virtual_masses",
     "tissue",
     "two_port",
     "worst_hand",
+    "z_width",
+    "z_width_factors",
 ]
 
 _LATER = {
@@ -128,7 +136,13 @@ _LATER = {
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
     "amplifiers": "zwidth.device.amplifier",
+    "PassiveHand": "zwidth.passivity.known_hand",
     "RealHand": "zwidth.passivity.real_hand",
+    "Stability": "zwidth.passivity.known_hand",
+    "stability": "zwidth.passivity.known_hand",
+    "stability_boundary": "zwidth.maps",
+    "z_width": "zwidth.maps",
+    "z_width_factors": "zwidth.maps",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
     "read_log": "zwidth.identification.logs",

@@ -91,6 +91,17 @@ def specified(tables: Mapping[str, Table], overrides: Mapping[str, str] | None =
     return Specification(device, build_environment(environment_table, device.motion))
 
 
+def specified_device(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Device:
+    """The device of tables, with the command line's parameters.
+
+    Raises
+    ------
+    InputError
+        As `build_device`, or if there is none.
+    """
+    return build_device(_device_table(tables, overrides))
+
+
 def build_device(table: Table) -> Device:
     """The device that a table describes.
 

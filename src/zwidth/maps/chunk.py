@@ -60,11 +60,11 @@ def _speed(contact: Contact | None, k: Array, b: Array, passive: NDArray[np.bool
 def _stable(hand: HandPlan, k: Array, b: Array) -> NDArray[np.bool_]:
     """True where the loop with this hand is proved to decay."""
     out = np.empty((len(k), len(b)), dtype=np.uint8)
-    scratch = [np.zeros((2, len(hand.free) + 1)) for _ in range(2)]
-    decide_block(hand.free, hand.stiff, hand.damped, k, b, *scratch, out)
+    upper, lower = np.zeros((2, len(hand.free))), np.zeros((2, len(hand.free)))
+    decide_block(hand.free, hand.stiff, hand.damped, k, b, upper, lower, out)
     for i, j in np.argwhere(out == UNKNOWN):
         out[i, j] = _exactly(hand, float(k[i]), float(b[j]))
-    return out == STABLE
+    return np.asarray(out == STABLE)
 
 
 def _exactly(hand: HandPlan, k: float, b: float) -> bool:

@@ -8,7 +8,10 @@ only where |value| > e; the rest is left to exact arithmetic.
 
 from __future__ import annotations
 
-from zwidth.compiled import compiled
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.compiled import Array, compiled
 
 STABLE, UNSTABLE, UNKNOWN = 1, 0, 2
 """What is known of a cell."""
@@ -18,15 +21,18 @@ EPS = 4.5e-16
 
 
 @compiled
-def decide_block(free, stiff, damped, stiffness, damping, upper, lower, out):  # type: ignore[no-untyped-def]
-    """Fill out[i, j] for every K and B; `upper` and `lower` are scratch of two rows each, values and bounds."""
+def decide_block(
+    free: Array, stiff: Array, damped: Array, stiffness: Array, damping: Array,
+    upper: Array, lower: Array, out: NDArray[np.uint8],
+) -> None:  # fmt: skip
+    """Fill out[i, j] for every K and B; `upper` and `lower` are scratch: a row of values, a row of bounds."""
     for i in range(stiffness.size):
         for j in range(damping.size):
             out[i, j] = decide(free, stiff, damped, stiffness[i], damping[j], upper, lower)
 
 
 @compiled
-def decide(free, stiff, damped, k, b, upper, lower):  # type: ignore[no-untyped-def]
+def decide(free: Array, stiff: Array, damped: Array, k: float, b: float, upper: Array, lower: Array) -> int:
     """One wall: STABLE, UNSTABLE or UNKNOWN."""
     size = free.size
     count_upper, count_lower = (size + 1) // 2, size // 2

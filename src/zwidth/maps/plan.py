@@ -23,6 +23,7 @@ from zwidth.maps.request import Array, Request
 from zwidth.passivity.contact import damped_wall
 from zwidth.passivity.decision import decide
 from zwidth.passivity.known_hand.characteristic import Family, as_floats, bilinear, family, precision
+from zwidth.passivity.known_hand.crossing import last_stable, plain
 from zwidth.passivity.known_hand.plant import Coefficients, Motion
 from zwidth.passivity.known_hand.stability import motion_of
 from zwidth.quantity.exact import Exact
@@ -60,6 +61,8 @@ class Plan(NamedTuple):
     damping: Array
     passive: NDArray[np.int64]
     """For each B how many of the stiffnesses are passive, from the softest on."""
+    limit: Array
+    """For each B the largest passive stiffness, below 0 or NaN where none is."""
     contact: Contact | None
     hands: tuple[HandPlan, ...]
 
@@ -77,6 +80,7 @@ def plan(asked: Request) -> Plan:
         stiffness=k,
         damping=b,
         passive=np.array(passive, dtype=np.int64),
+        limit=np.array([float(limit) for limit in limits] or [np.nan] * len(b)),
         contact=None if contact is None else Contact(*(float(value) for value in contact)),
         hands=tuple(_hand(name, motion_of(asked.device, hand), velocity) for name, hand in asked.hands),
     )
@@ -99,6 +103,14 @@ def _contact(asked: Request, period: Fraction) -> tuple[Fraction, ...] | None:
     )
 
 
+def stable_limits(hand: HandPlan, damping: Array) -> Array:
+    """For each B the largest stiffness that is stable with a hand, NaN where none is; floats, for curves."""
+    with precision(_BITS):
+        polynomials = plain(family(hand.motion, hand.velocity))
+    found = [last_stable(polynomials, float(b)) for b in damping]
+    return np.array([np.nan if end is None else end.stiffness for end in found])
+
+
 def _positive(velocity: RationalFunction) -> RationalFunction:
     """The same function with a positive leading coefficient below: Routh's signs are then all +."""
     sign = 1 if velocity.denominator[0] > 0 else -1
@@ -114,8 +126,8 @@ def _limit(contact: tuple[Fraction, ...], b: Fraction) -> Fraction:
 
 def _hand(name: str, motion: Motion, velocity: RationalFunction) -> HandPlan:
     with precision(_BITS):
-        rows = [as_floats(part) for part in _in_w(family(motion, velocity))]
-    return HandPlan(name, *rows, motion, velocity)
+        free, stiff, damped = (as_floats(part) for part in _in_w(family(motion, velocity)))
+    return HandPlan(name, free, stiff, damped, motion, velocity)
 
 
 def _in_w(polynomials: Family) -> list[Coefficients]:

@@ -73,7 +73,11 @@ class Request:
         """The request as JSON holds it; exact numbers as text."""
         return {
             "device": {
-                **{key: str(value.fraction) for key, value in self.device.parameters().items() if isinstance(value, Exact)},
+                **{
+                    key: str(value.fraction)
+                    for key, value in self.device.parameters().items()
+                    if isinstance(value, Exact)
+                },
                 "motion": self.device.motion,
             },
             "stiffness": _axis(self.stiffness),
@@ -113,7 +117,9 @@ def request(
         If a range or a number of cells cannot be, a parameter is an interval, or the mass is unknown.
     """
     if not device.is_certain:
-        raise InputError("a map is of one device, and a parameter of this one is an interval; choose a value in it")
+        raise InputError(
+            "a map is of one device, and a parameter of this one is an interval; choose a value in it"
+        )
     named = standard_hands() if hands is None else dict(hands)
     known = tuple((name, as_hand(hand)) for name, hand in named.items())
     for name, hand in known:
@@ -126,14 +132,18 @@ def request(
     if k.low.fraction < 0:
         raise InputError(f"stiffness must be ≥ 0, got {k.low:g}: a negative spring pulls the hand in")
     if k.cells * b.cells > MOST_CELLS:
-        raise InputError(f"a map has at most {MOST_CELLS} cells, got {k.cells * b.cells}; a picture needs far fewer")
+        raise InputError(
+            f"a map has at most {MOST_CELLS} cells, got {k.cells * b.cells}; a picture needs far fewer"
+        )
     return Request(device, k, b, velocity, known)
 
 
 def _read_axis(name: str, ends: tuple[RealLike, RealLike], cells: int) -> Axis:
     low, high = (Exact(end) for end in ends)
     if low >= high:
-        raise InputError(f"{name} runs from its smaller to its larger end, got {low:g} … {high:g}; swap the ends")
+        raise InputError(
+            f"{name} runs from its smaller to its larger end, got {low:g} … {high:g}; swap the ends"
+        )
     if cells != int(cells) or cells < 1:
         raise InputError(f"cells along {name} must be a whole number ≥ 1, got {cells}")
     return Axis(low, high, int(cells))

@@ -7,7 +7,7 @@ chunk is whole, and one that is not marked is computed again, to the same bits.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,16 +15,14 @@ from zwidth.errors import InputError
 from zwidth.maps.chunk import Layers, Place
 from zwidth.maps.request import CHUNK, Request
 
-if TYPE_CHECKING:
-    import zarr
-
 FORMAT = "zwidth map 1"
 DIMENSIONS = ("stiffness", "virtual_damping")
 
 
 def layer_types(asked: Request) -> dict[str, str]:
     """The arrays of a map and the type of their numbers."""
-    return {"passive": "bool", "admissible_speed": "float64"} | {f"stable_{name}": "bool" for name, _ in asked.hands}
+    stable = {f"stable_{name}": "bool" for name, _ in asked.hands}
+    return {"passive": "bool", "admissible_speed": "float64"} | stable
 
 
 class Store:
@@ -33,6 +31,7 @@ class Store:
     def __init__(self, path: Path, asked: Request) -> None:
         self._group = _opened(path, asked)
         self._done: Any = self._group["done"]
+        self._names = list(layer_types(asked))
 
     @property
     def left(self) -> list[Place]:
@@ -48,11 +47,10 @@ class Store:
 
     def read(self) -> Layers:
         """All layers, whole."""
-        names = [name for name in self._group.array_keys() if name not in ("done", *DIMENSIONS)]
-        return {name: np.asarray(self._group[name]) for name in sorted(names)}
+        return {name: np.asarray(self._group[name]) for name in self._names}
 
 
-def _opened(path: Path, asked: Request) -> zarr.Group:
+def _opened(path: Path, asked: Request) -> Any:
     try:
         import zarr
     except ImportError:
@@ -68,21 +66,22 @@ def _opened(path: Path, asked: Request) -> zarr.Group:
         raise InputError(f"{path} cannot be written: {error.strerror or error}") from None
 
 
-def _resumed(zarr: Any, path: Path, asked: Request) -> zarr.Group:
+def _resumed(zarr: Any, path: Path, asked: Request) -> Any:
     try:
-        group: zarr.Group = zarr.open_group(path, mode="r+")
+        group = zarr.open_group(path, mode="r+")
         found = (group.attrs.get("format"), group.attrs.get("digest"))
     except (FileNotFoundError, NotADirectoryError, ValueError, KeyError):
         raise InputError(f"{path} exists and holds no map; choose another name or remove it first") from None
     if found != (FORMAT, asked.digest()):
         raise InputError(
-            f"{path} holds another map, or one that was stopped before it had begun; choose another name or remove it first"
+            f"{path} holds another map, or one that was stopped before it had begun; "
+            "choose another name or remove it first"
         )
     return group
 
 
-def _created(zarr: Any, path: Path, asked: Request) -> zarr.Group:
-    group: zarr.Group = zarr.open_group(path, mode="w")
+def _created(zarr: Any, path: Path, asked: Request) -> Any:
+    group = zarr.open_group(path, mode="w")
     shape = (asked.stiffness.cells, asked.virtual_damping.cells)
     for name, axis in zip(DIMENSIONS, (asked.stiffness, asked.virtual_damping), strict=True):
         coordinate = group.create_array(name, shape=(axis.cells,), dtype="float64", dimension_names=(name,))

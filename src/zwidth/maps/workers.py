@@ -35,21 +35,23 @@ def on_threads(ready: Plan, places: list[Place], workers: int | None) -> Finishe
 def on_cluster(ready: Plan, places: list[Place], address: str) -> Finished:
     """Each chunk as it is finished, on the workers of the Dask scheduler at an address."""
     try:
-        from distributed import Client, as_completed
+        import distributed
     except ImportError:
         raise InputError(
             'a cluster needs Dask, which is not installed: pip install "zwidth[maps]"; '
             "without an address the map is computed on this machine"
         ) from None
+    dask: Any = distributed
     try:
-        client: Any = Client(address, timeout=_PATIENCE)
+        client: Any = dask.Client(address, timeout=_PATIENCE)
     except (OSError, ValueError, ImportError) as error:
         raise InputError(
-            f"no Dask scheduler answers at {address}: {str(error).splitlines()[0]}; start one with dask scheduler"
+            f"no Dask scheduler answers at {address}: {str(error).splitlines()[0]}; "
+            "start one with dask scheduler"
         ) from None
     with client:
         shared = client.scatter(ready, broadcast=True)
         futures = {client.submit(compute, shared, place, pure=False): place for place in places}
-        for future, layers in as_completed(futures, with_results=True):
+        for future, layers in dask.as_completed(futures, with_results=True):
             yield futures[future], layers
             future.release()

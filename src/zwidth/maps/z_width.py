@@ -22,7 +22,7 @@ from zwidth.device import Device
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.maps.chunk import Layers, Place
-from zwidth.maps.plan import plan
+from zwidth.maps.plan import Plan, plan, stable_limits
 from zwidth.maps.request import Request, request
 from zwidth.maps.store import FORMAT, Store, layer_types
 from zwidth.maps.workers import on_cluster, on_threads
@@ -69,7 +69,7 @@ def z_width(
     speed
         Up to which a hand must not gain energy for a wall to count as `quiet` [m/s; rad/s].
     path
-        Directory of a zarr store that chunks are written to as they finish; one that was begun is gone on with.
+        Directory of a zarr store, written chunk by chunk; one that was begun is gone on with.
     address
         Of a Dask scheduler whose workers compute the chunks, "tcp://…". Default: threads of this process.
     workers
@@ -80,8 +80,10 @@ def z_width(
     Returns
     -------
     xarray.Dataset
-        Over (stiffness, virtual_damping): `passive`, `quiet`, `admissible_speed` and `stable_NAME` of each hand; of each
-        region its `area` and its `largest_stiffness`; `free_mass`, `free_damping` and `free_friction` of the lower end.
+        Over (stiffness, virtual_damping): `passive`, `quiet`, `admissible_speed` and `stable_NAME` of each
+        hand. Over virtual_damping the curves where they end, `limit_passive` and `limit_NAME`, NaN where
+        nothing is stable. Of each region its `area` and its `largest_stiffness`, by counting cells.
+        `free_mass`, `free_damping` and `free_friction`, the lower end.
 
     Raises
     ------
@@ -93,14 +95,19 @@ def z_width(
         raise InputError(f"workers must be ≥ 1, got {workers}: someone has to compute")
     if not speed > 0:
         raise InputError(f"speed must be > 0, got {speed}: a hand at rest gains nothing from any wall")
-    layers = _computed(asked, None if path is None else Path(path), address, workers, progress)
-    return _dataset(asked, layers, speed)
+    ready = plan(asked)
+    layers = _computed(asked, ready, None if path is None else Path(path), address, workers, progress)
+    return _dataset(asked, ready, layers, speed)
 
 
 def _computed(
-    asked: Request, path: Path | None, address: str | None, workers: int | None, progress: Progress
+    asked: Request,
+    ready: Plan,
+    path: Path | None,
+    address: str | None,
+    workers: int | None,
+    progress: Progress,
 ) -> Layers:
-    ready = plan(asked)
     keep: Any = _Memory(asked) if path is None else Store(path, asked)
     places = keep.left
     total = asked.chunks[0] * asked.chunks[1]
@@ -117,7 +124,9 @@ class _Memory:
 
     def __init__(self, asked: Request) -> None:
         shape = (asked.stiffness.cells, asked.virtual_damping.cells)
-        self._layers: Layers = {name: np.zeros(shape, dtype=kind) for name, kind in layer_types(asked).items()}
+        self._layers: Layers = {
+            name: np.zeros(shape, dtype=kind) for name, kind in layer_types(asked).items()
+        }
         self.left = [Place(i, j) for i in range(asked.chunks[0]) for j in range(asked.chunks[1])]
 
     def write(self, place: Place, layers: Layers) -> None:
@@ -128,7 +137,7 @@ class _Memory:
         return self._layers
 
 
-def _dataset(asked: Request, layers: Layers, speed: float) -> xr.Dataset:
+def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Dataset:
     motion = asked.device.motion
     axes = {
         "stiffness": asked.stiffness.values,
@@ -139,18 +148,31 @@ def _dataset(asked: Request, layers: Layers, speed: float) -> xr.Dataset:
         for name, values in axes.items()
     }
     dims = tuple(axes)
-    variables: dict[str, Any] = {name: (dims, values, dict(_MEANINGS.get(name, {}))) for name, values in layers.items()}
+    variables: dict[str, Any] = {
+        name: (dims, values, dict(_MEANINGS.get(name, {}))) for name, values in layers.items()
+    }
     variables["admissible_speed"][2]["units"] = "rad/s" if motion == "rotary" else "m/s"
     variables["quiet"] = (dims, layers["admissible_speed"] >= speed, {"speed": speed})
+    variables["limit_passive"] = (dims[1], ready.limit)
+    for hand in ready.hands:
+        variables[f"limit_{hand.name}"] = (dims[1], stable_limits(hand, ready.damping))
     names = ["passive", "quiet", *(f"stable_{name}" for name, _ in asked.hands)]
     cell = asked.stiffness.width * asked.virtual_damping.width
     masks = [np.asarray(variables[name][1]) for name in names]
     units = [GLOSSARY[name].unit_for(motion) for name in axes]
-    variables["area"] = ("region", [mask.sum() * cell for mask in masks], {"units": f"({units[0]})*({units[1]})"})
+    variables["area"] = (
+        "region",
+        [mask.sum() * cell for mask in masks],
+        {"units": f"({units[0]})*({units[1]})"},
+    )
     variables["largest_stiffness"] = (
         "region", [_largest(mask, axes["stiffness"]) for mask in masks], {"units": units[0]},
     )  # fmt: skip
-    for name, key in (("free_mass", "mass"), ("free_damping", "damping"), ("free_friction", "coulomb_friction")):
+    for name, key in (
+        ("free_mass", "mass"),
+        ("free_damping", "damping"),
+        ("free_friction", "coulomb_friction"),
+    ):
         variables[name] = ((), float(asked.device.exact(key)), {"units": GLOSSARY[key].unit_for(motion)})
     attrs = {
         "format": FORMAT,

@@ -2,8 +2,8 @@
 
 Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
-`witness`, `worst_case`, `storage`, `cycle`, `check_figure` and `limit_figure`
-return a `matplotlib.figure.Figure` that belongs to no window; the `draw_…`
+`witness`, `worst_case`, `storage`, `cycle`, `check_figure`, `limit_figure` and
+`z_width_figure` return a `matplotlib.figure.Figure` that belongs to no window; the `draw_…`
 functions draw on axes of your own, in the look of `LOOK` if your axes have it.
 """
 
@@ -17,6 +17,7 @@ from zwidth.plots.storage import draw_storage, storage
 from zwidth.plots.style import LOOK
 from zwidth.plots.witness import draw_witness, witness
 from zwidth.plots.worst_case import draw_worst_case, worst_case
+from zwidth.plots.z_width import draw_z_width, save_z_width, z_width_figure
 
 __all__ = [
     "LOOK",
@@ -32,11 +33,14 @@ __all__ = [
     "draw_storage",
     "draw_witness",
     "draw_worst_case",
+    "draw_z_width",
     "limit_figure",
     "plane",
     "save_check",
     "save_limit",
+    "save_z_width",
     "storage",
     "witness",
     "worst_case",
+    "z_width_figure",
 ]

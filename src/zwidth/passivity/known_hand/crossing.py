@@ -66,7 +66,7 @@ def plain(polynomials: Family) -> Plain:
 
 
 def last_stable(polynomials: Plain, damping: float) -> Crossing | None:
-    """The upper end of the last band of stable stiffnesses ≥ 0 at one virtual damping; None if there is no band."""
+    """The upper end of the last band of stable stiffnesses ≥ 0 at one virtual damping; None without one."""
     found = sorted(c for c in crossings(polynomials, damping) if c.stiffness > 0)
     edges = [0.0, *(c.stiffness for c in found)]
     for k in range(len(found) - 1, -1, -1):
@@ -108,9 +108,7 @@ def line(polynomials: Plain, angle: float, damping: Array) -> Curve:
     free, stiff, damped = (float(np.polyval(p, np.cos(angle) - 1)) for p in polynomials)
     nowhere = abs(stiff) <= 1e-9 * float(np.abs(polynomials.stiff).max())
     stiffness = np.full(len(damping), np.nan) if nowhere else -(free + damping * damped) / stiff
-    return Curve(
-        np.full(len(damping), angle), stiffness, damping, _bounding(polynomials, stiffness, damping)
-    )
+    return Curve(np.full(len(damping), angle), stiffness, damping, _bounding(polynomials, stiffness, damping))
 
 
 def _zeta(angles: Array) -> NDArray[np.complex128]:

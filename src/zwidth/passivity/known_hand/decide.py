@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from zwidth.passivity.known_hand.characteristic import PRECISIONS, decays, precision
-from zwidth.passivity.known_hand.plant import Coefficients, Motion
+from zwidth.passivity.known_hand.plant import Coefficients, Motion, Range
 
 Outcome = Literal["stable", "unstable", "undecided"]
 
@@ -66,25 +66,33 @@ def corners(motion: Motion) -> list[Motion]:
     """The certain motions at the corners of the box."""
     found = [motion]
     for key, ends in _ranges(motion):
-        found = [corner._replace(**{key: (end, end)}) for corner in found for end in dict.fromkeys(ends)]
+        found = [_with(corner, key, (end, end)) for corner in found for end in dict.fromkeys(ends)]
     return found
 
 
+def _with(motion: Motion, key: str, ends: Range) -> Motion:
+    changed: dict[str, Any] = {key: ends}
+    return motion._replace(**changed)
+
+
 def _middle(motion: Motion) -> Motion:
-    return motion._replace(**{key: ((sum(ends) / 2),) * 2 for key, ends in _ranges(motion)})
+    point = motion
+    for key, (low, high) in _ranges(motion):
+        point = _with(point, key, ((low + high) / 2, (low + high) / 2))
+    return point
 
 
 def _halves(box: Motion, whole: Motion) -> list[Motion]:
     """The box cut in two across the side that is longest as a part of the whole."""
 
-    def share(item: tuple[str, tuple[Fraction, Fraction]]) -> Fraction:
+    def share(item: tuple[str, Range]) -> Fraction:
         low, high = getattr(whole, item[0])
         return (item[1][1] - item[1][0]) / (high - low) if high > low else Fraction(0)
 
     key, (low, high) = max(_ranges(box), key=share)
     half = (low + high) / 2
-    return [box._replace(**{key: part}) for part in ((low, half), (half, high))]
+    return [_with(box, key, part) for part in ((low, half), (half, high))]
 
 
-def _ranges(motion: Motion) -> list[tuple[str, tuple[Fraction, Fraction]]]:
+def _ranges(motion: Motion) -> list[tuple[str, Range]]:
     return [("mass", motion.mass), ("damping", motion.damping), ("stiffness", motion.stiffness)]

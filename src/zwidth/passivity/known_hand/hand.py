@@ -45,7 +45,8 @@ class PassiveHand:
             number = as_parameter(value)
             if ends(number)[0] < 0:
                 raise InputError(
-                    f"{name} of a hand must be ≥ 0, got {number}: a passive hand has no energy of its own to give"
+                    f"{name} of a hand must be ≥ 0, got {number}: "
+                    "a passive hand has no energy of its own to give"
                 )
             object.__setattr__(self, name, number)
 

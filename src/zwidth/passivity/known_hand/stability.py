@@ -51,14 +51,14 @@ class Stability:
     frequency
         Of that pole, 0 … 1/(2T) [Hz].
     max_stiffness
-        The largest stable K of this wall, all else as given [N/m; N·m/rad]; None where no K is or the law is no wall.
-        For intervals the largest that was proved for every value in them, a little below the true one.
+        The largest stable K of this wall, all else as given [N/m; N·m/rad]; None where no K is or the law is
+        no wall. For intervals the largest that was proved for every value in them, below the true one.
     limit_frequency
-        With which the loop oscillates at that stiffness, for intervals at their worst corner [Hz]; None without one.
+        With which the loop oscillates at that stiffness, for intervals at their worst corner [Hz].
     assumptions
         What the claim rests on.
     culprit
-        Total mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand with which an unstable loop grows.
+        Mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand together that do not decay.
     """
 
     outcome: Outcome
@@ -132,7 +132,8 @@ def motion_of(device: Device, hand: PassiveHand) -> Motion:
             "stability with a known hand depends on the mass of the device, and it is unknown; give mass"
         )
     mass, damping = (
-        _sum(ends(own), ends(added)) for own, added in ((device.mass, hand.mass), (device.damping, hand.damping))
+        _sum(ends(own), ends(added))
+        for own, added in ((device.mass, hand.mass), (device.damping, hand.damping))
     )
     return Motion(mass, damping, ends(hand.stiffness), device.exact("sample_period"), device.exact("delay"))
 
