@@ -255,7 +255,9 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
     assert not missing
 
 
-@pytest.mark.parametrize("command", ["check", "limit", "simulate", "compare", "traces", "devices", "verify"])
+@pytest.mark.parametrize(
+    "command", ["check", "limit", "map", "simulate", "compare", "traces", "devices", "verify"]
+)
 def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:
     """What `--help` offers, the page explains."""
     page = _command_line_page()

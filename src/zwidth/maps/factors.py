@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import combinations, product
+from math import fsum
 from typing import Any
 
 import numpy as np
@@ -116,5 +117,6 @@ def _effects(areas: Any) -> tuple[list[str], Any]:
             for axis in term:
                 weights = weights * sign.reshape([-1 if k == axis else 1 for k in range(4)])
             names.append(" × ".join(FACTORS[axis] for axis in term))
-            effects.append(np.einsum("abcd,abcdr->r", weights, areas) / 8)
+            signed = (weights[..., None] * areas).reshape(16, -1)
+            effects.append([fsum(runs) / 8 for runs in signed.T])  # what cancels is 0, not rounding
     return names, np.array(effects)
