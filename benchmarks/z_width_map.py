@@ -70,14 +70,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         stored = seconds(lambda: mapped(Path(folder) / "map.zarr"))
     rival = seconds(with_control)
-    each, theirs = memory / (3 * CELLS**2), rival / FEW**2
-    print(
-        f"zwidth, {CELLS} x {CELLS} cells, 3 hands      {memory:8.2f} s   {each * 1e9:10.0f} ns per cell and hand"
-    )
-    print(f"the same to a zarr store             {stored:8.2f} s")
-    print(
-        f"python-control, {FEW} x {FEW} cells, 1 hand  {rival:8.2f} s   {theirs * 1e9:10.0f} ns per cell and hand"
-    )
+    each, theirs = memory / (3 * CELLS**2) * 1e9, rival / FEW**2 * 1e9
+    print(f"zwidth, {CELLS} x {CELLS} cells, 3 hands    {memory:6.2f} s {each:8.0f} ns per cell and hand")
+    print(f"the same to a zarr store           {stored:6.2f} s")
+    print(f"python-control, {FEW} x {FEW} cells, 1 hand  {rival:6.2f} s {theirs:8.0f} ns per cell and hand")
     print(f"ratio {theirs / each:.0f}; cells where they differ: {differ} of {FEW**2}")
 
 

@@ -18,14 +18,14 @@ def legend(axes: object) -> list[str]:
 
 def test_regions_curves_and_free_air() -> None:
     """The map, a close-up of what is passive in it, and the lower end of the Z-width under it."""
-    found = zw.z_width(PADDLE, (0, 30000), (0, 90), (300, 900))
+    found = zw.z_width(PADDLE, (0, 30000), (0, 90), (900, 3000))
     whole, near = plots.z_width_figure(found).axes
     assert legend(whole) == [
         "no hand up to 0.5 m/s gains", "passive with every hand",
         "no hand: stable below", "finger: stable below", "dowel: stable below",
     ]  # fmt: skip
     curves = [line for line in whole.lines if len(line.get_xdata())]
-    assert (curves[0].get_ydata() == found["limit_none"].values).sum() > 500
+    assert (curves[0].get_ydata() == found["limit_none"].values).sum() > 2000
     assert whole.get_xlim() == pytest.approx((0, 90))
     assert near.get_xlim()[1] < 9
     assert any("0.036 kg" in text.get_text() for text in whole.texts)
@@ -37,6 +37,13 @@ def test_no_close_up_where_the_map_is_one() -> None:
     (axes,) = plots.z_width_figure(found).axes
     assert "finger: stable everywhere here" in legend(axes)
     assert not [line for line in axes.lines if np.size(line.get_xdata())]
+
+
+def test_a_close_up_needs_cells() -> None:
+    """Where a passive wall is a cell or two, no picture is made of them."""
+    found = zw.z_width(PADDLE, (0, 3000), (0, 5), (50, 50))
+    assert found["passive"].any()
+    assert len(plots.z_width_figure(found).axes) == 1
 
 
 def test_speeds_are_written_on_their_contours() -> None:

@@ -44,6 +44,9 @@ if TYPE_CHECKING:
 _SPEEDS = (0.1, 0.2, 0.5, 1, 2, 5, 10)
 """Whose contours are drawn [m/s; rad/s]."""
 
+_SEEN = 10
+"""Cells along each axis that a region needs for a close-up: fewer would show the cells and not the region."""
+
 _HAND_COLOURS = (BLUE, RED, PURPLE, ORANGE, BLACK)
 _LINES = ("-", "--", "-.", ":", (0, (1, 3)))
 
@@ -114,9 +117,12 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
         ("quiet", SKY, 0.35, f"no hand up to {speed} gains"),
         ("passive", GREEN, 0.55, "passive with every hand"),
     ):
-        shown = np.ma.masked_less(found[name].values.astype(float), 0.5)
+        shown = np.ma.masked_equal(found[name].values.astype(np.uint8), 0)
         if shown.count():
-            axes.pcolormesh(b, k, shown, cmap=ListedColormap([colour]), alpha=alpha, lw=0, rasterized=True)
+            axes.imshow(
+                shown, cmap=ListedColormap([colour]), alpha=alpha, extent=(b[0], b[-1], k[0], k[-1]),
+                origin="lower", aspect="auto", interpolation="nearest",
+            )  # fmt: skip
             axes.fill_between([], [], color=colour, alpha=alpha, lw=0, label=text)
     hands = [str(name).removeprefix("stable_") for name in found.data_vars if str(name).startswith("stable_")]
     for place, name in enumerate(hands):
@@ -169,12 +175,14 @@ def _speeds(axes: Axes, found: xr.Dataset) -> None:
 
 
 def _corner(found: xr.Dataset) -> xr.Dataset | None:
-    """The part with passive and quiet walls, if it is a small part of the map."""
+    """The part with passive and quiet walls, if it is a small part of the map and has cells enough to see."""
     held = (found["passive"] | found["quiet"]).values
     if not held.any():
         return None
     rows, columns = (int(np.flatnonzero(held.any(axis=along))[-1]) for along in (1, 0))
     if 2 * rows > held.shape[0] and 2 * columns > held.shape[1]:
+        return None
+    if min(rows, columns) < _SEEN:
         return None
     return found.isel(
         stiffness=slice(0, max(4, int(rows * 1.25) + 2)),
