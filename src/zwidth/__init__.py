@@ -28,7 +28,11 @@ if TYPE_CHECKING:
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
     from zwidth.identification import tissue
-    from zwidth.identification.logs import Log, log_of, read_log
+    from zwidth.identification.device.identified import Identified
+    from zwidth.identification.device.plan import Plan, plan_identification
+    from zwidth.identification.device.published import Published, identify_published
+    from zwidth.identification.finger import IdentifiedFinger, identify_finger
+    from zwidth.identification.logs import Log, join_logs, log_of, read_log
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
@@ -44,6 +48,7 @@ if TYPE_CHECKING:
     from zwidth.rendering.rendered import render
     from zwidth.traces import (
         compare_traces,
+        identify,
         load_trace,
         passive_limit,
         simulate,
@@ -65,6 +70,8 @@ __all__ = [
     "FrictionModel",
     "GeneralizedMaxwell",
     "HuntCrossley",
+    "Identified",
+    "IdentifiedFinger",
     "InputError",
     "Interval",
     "LawComparison",
@@ -73,6 +80,8 @@ __all__ = [
     "NonlinearSpring",
     "OnePole",
     "PassiveHand",
+    "Plan",
+    "Published",
     "PulseTransferFunction",
     "RealHand",
     "Stability",
@@ -98,10 +107,15 @@ __all__ = [
     "coupling_condition",
     "design_coupling",
     "fit_tissue",
+    "identify",
+    "identify_finger",
+    "identify_published",
+    "join_logs",
     "load_trace",
     "log_of",
     "operators",
     "passive_limit",
+    "plan_identification",
     "quantization",
     "read_log",
     "render",
@@ -131,7 +145,10 @@ _LATER = {
     "Log": "zwidth.identification.logs",
     "compare": "zwidth.traces",
     "HuntCrossley": "zwidth.environment",
+    "IdentifiedFinger": "zwidth.identification.finger",
     "NonlinearSpring": "zwidth.environment",
+    "Plan": "zwidth.identification.device.plan",
+    "Published": "zwidth.identification.device.published",
     "Timing": "zwidth.loop.timing",
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
@@ -154,9 +171,15 @@ _LATER = {
     "coupling_condition": "zwidth.passivity.coupling",
     "design_coupling": "zwidth.passivity.coupling_design",
     "fit_tissue": "zwidth.identification.tissue",
+    "identify_finger": "zwidth.identification.finger",
+    "identify_published": "zwidth.identification.device.published",
+    "join_logs": "zwidth.identification.logs",
+    "Identified": "zwidth.identification.device.identified",
+    "identify": "zwidth.traces",
     "load_trace": "zwidth.traces",
     "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",
+    "plan_identification": "zwidth.identification.device.plan",
     "simulate": "zwidth.traces",
     "simulate_admittance": "zwidth.loop.admittance",
     "simulate_batch": "zwidth.traces",
