@@ -17,6 +17,7 @@ from zwidth.maps.chunk import Place, compute
 from zwidth.maps.kernel import STABLE, UNKNOWN, UNSTABLE, decide
 from zwidth.maps.plan import plan
 from zwidth.maps.request import CHUNK, request
+from zwidth.maps.store import FORMAT
 from zwidth.operator import Dowel, Finger
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -130,7 +131,14 @@ def test_the_kernel_never_believes_a_sign_that_rounding_made() -> None:
         assert limit is not None
         answers = {
             off: decide(
-                hand.free, hand.stiff, hand.damped, limit * (1 + off), b, np.zeros((2, 9)), np.zeros((2, 9))
+                hand.free,
+                hand.stiff,
+                hand.damped,
+                limit * (1 + off),
+                b,
+                hand.slack,
+                np.zeros((2, 9)),
+                np.zeros((2, 9)),
             )
             for off in (-1e-9, -1e-16, 0.0, 1e-16, 1e-9)
         }
@@ -216,6 +224,16 @@ def test_a_map_killed_twice_loses_nothing(tmp_path: Path) -> None:
     found = zw.z_width(PADDLE, *WIDE, cells=(500, 500), path=path, progress=lambda n, total: left.append(n))
     assert 0 < len(left) <= 16 - 7
     assert same(found, zw.z_width(PADDLE, *WIDE, cells=(500, 500)))
+
+
+def test_a_store_stopped_before_its_arrays_were_there(tmp_path: Path) -> None:
+    """A group that says which map was begun, and nothing else: it is begun again."""
+    zarr = pytest.importorskip("zarr")
+    asked = request(PADDLE, *WIDE, (5, 5), None, None)
+    path = tmp_path / "map.zarr"
+    zarr.create_group(path, attributes={"format": FORMAT, "begun": asked.digest()})
+    found = zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    assert same(found, zw.z_width(PADDLE, *WIDE, cells=(5, 5)))
 
 
 def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:

@@ -61,7 +61,7 @@ def _stable(hand: HandPlan, k: Array, b: Array) -> NDArray[np.bool_]:
     """True where the loop with this hand is proved to decay."""
     out = np.empty((len(k), len(b)), dtype=np.uint8)
     upper, lower = np.zeros((2, len(hand.free))), np.zeros((2, len(hand.free)))
-    decide_block(hand.free, hand.stiff, hand.damped, k, b, upper, lower, out)
+    decide_block(hand.free, hand.stiff, hand.damped, k, b, hand.slack, upper, lower, out)
     for i, j in np.argwhere(out == UNKNOWN):
         out[i, j] = _exactly(hand, float(k[i]), float(b[j]))
     return np.asarray(out == STABLE)

@@ -1,6 +1,8 @@
 """Routh's test for a block of walls, each answer with a bound on its rounding.
 
-    c(w) = c_0 + K c_K + B c_B,   coefficients as doubles, each within half a unit of the last place
+    c(w) = c_0 + K c_K + B c_B
+
+The coefficients are doubles within a unit of the last place of the true ones, or within `slack`.
 
 Every number carries a bound e on how far it may be from the true one.  A sign is believed
 only where |value| > e; the rest is left to exact arithmetic.
@@ -23,23 +25,25 @@ EPS = 4.5e-16
 @compiled
 def decide_block(
     free: Array, stiff: Array, damped: Array, stiffness: Array, damping: Array,
-    upper: Array, lower: Array, out: NDArray[np.uint8],
+    slack: float, upper: Array, lower: Array, out: NDArray[np.uint8],
 ) -> None:  # fmt: skip
     """Fill out[i, j] for every K and B; `upper` and `lower` are scratch: a row of values, a row of bounds."""
     for i in range(stiffness.size):
         for j in range(damping.size):
-            out[i, j] = decide(free, stiff, damped, stiffness[i], damping[j], upper, lower)
+            out[i, j] = decide(free, stiff, damped, stiffness[i], damping[j], slack, upper, lower)
 
 
 @compiled
-def decide(free: Array, stiff: Array, damped: Array, k: float, b: float, upper: Array, lower: Array) -> int:
+def decide(
+    free: Array, stiff: Array, damped: Array, k: float, b: float, slack: float, upper: Array, lower: Array
+) -> int:
     """One wall: STABLE, UNSTABLE or UNKNOWN."""
     size = free.size
     count_upper, count_lower = (size + 1) // 2, size // 2
     for n in range(size):
         x, y = k * stiff[n], b * damped[n]
         value = free[n] + x + y
-        bound = 2.0 * EPS * (abs(free[n]) + abs(x) + abs(y))
+        bound = 2.0 * EPS * (abs(free[n]) + abs(x) + abs(y)) + slack * (1.0 + abs(k) + abs(b))
         row = upper if n % 2 == 0 else lower
         row[0, n // 2] = value
         row[1, n // 2] = bound

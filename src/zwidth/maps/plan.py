@@ -39,6 +39,8 @@ class HandPlan(NamedTuple):
     free: Array
     stiff: Array
     damped: Array
+    slack: float
+    """How far a coefficient may be from the true one beyond its rounding: the radius of its ball."""
     motion: Motion
     velocity: RationalFunction
 
@@ -126,8 +128,15 @@ def _limit(contact: tuple[Fraction, ...], b: Fraction) -> Fraction:
 
 def _hand(name: str, motion: Motion, velocity: RationalFunction) -> HandPlan:
     with precision(_BITS):
-        free, stiff, damped = (as_floats(part) for part in _in_w(family(motion, velocity)))
-    return HandPlan(name, free, stiff, damped, motion, velocity)
+        parts = _in_w(family(motion, velocity))
+        free, stiff, damped = (as_floats(part) for part in parts)
+        slack = max(_radius(c) for part in parts for c in part)
+    return HandPlan(name, free, stiff, damped, slack, motion, velocity)
+
+
+def _radius(coefficient: Any) -> float:
+    """Of its ball, and a little more."""
+    return 0.0 if isinstance(coefficient, Fraction) else 1.01 * float(coefficient.rad())
 
 
 def _in_w(polynomials: Family) -> list[Coefficients]:

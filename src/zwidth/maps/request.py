@@ -23,7 +23,7 @@ from zwidth.operator import Dowel, Finger
 from zwidth.passivity.known_hand import PassiveHand
 from zwidth.passivity.known_hand.hand import as_hand
 from zwidth.passivity.known_hand.stability import motion_of
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact, RealLike, ends
 
 Array = NDArray[np.float64]
 
@@ -82,8 +82,14 @@ class Request:
             },
             "stiffness": _axis(self.stiffness),
             "virtual_damping": _axis(self.virtual_damping),
-            "velocity_filter": repr(self.velocity_filter),
-            "hands": {name: repr(hand) for name, hand in self.hands},
+            "velocity_filter": [
+                [str(c) for c in part]
+                for part in self.velocity_filter.transfer(self.device.exact("sample_period"))
+            ],
+            "hands": {
+                name: [str(ends(value)[0]) for value in (hand.mass, hand.stiffness, hand.damping)]
+                for name, hand in self.hands
+            },
             "chunk": CHUNK,
         }
 
@@ -138,8 +144,8 @@ def request(
     return Request(device, k, b, velocity, known)
 
 
-def _read_axis(name: str, ends: tuple[RealLike, RealLike], cells: int) -> Axis:
-    low, high = (Exact(end) for end in ends)
+def _read_axis(name: str, both: tuple[RealLike, RealLike], cells: int) -> Axis:
+    low, high = (Exact(end) for end in both)
     if low >= high:
         raise InputError(
             f"{name} runs from its smaller to its larger end, got {low:g} … {high:g}; swap the ends"

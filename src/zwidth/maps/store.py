@@ -69,19 +69,20 @@ def _opened(path: Path, asked: Request) -> Any:
 def _resumed(zarr: Any, path: Path, asked: Request) -> Any:
     try:
         group = zarr.open_group(path, mode="r+")
-        found = (group.attrs.get("format"), group.attrs.get("digest"))
+        found, begun = (group.attrs.get("format"), group.attrs.get("digest")), group.attrs.get("begun")
     except (FileNotFoundError, NotADirectoryError, ValueError, KeyError):
         raise InputError(f"{path} exists and holds no map; choose another name or remove it first") from None
+    if found == (FORMAT, None) and begun == asked.digest():
+        return _created(zarr, path, asked)  # stopped before all its arrays were there
     if found != (FORMAT, asked.digest()):
         raise InputError(
-            f"{path} holds another map, or one that was stopped before it had begun; "
-            "choose another name or remove it first"
+            f"{path} holds another map, or one of another version; choose another name or remove it first"
         )
     return group
 
 
 def _created(zarr: Any, path: Path, asked: Request) -> Any:
-    group = zarr.open_group(path, mode="w")
+    group = zarr.create_group(path, overwrite=True, attributes={"format": FORMAT, "begun": asked.digest()})
     shape = (asked.stiffness.cells, asked.virtual_damping.cells)
     for name, axis in zip(DIMENSIONS, (asked.stiffness, asked.virtual_damping), strict=True):
         coordinate = group.create_array(name, shape=(axis.cells,), dtype="float64", dimension_names=(name,))
@@ -95,5 +96,5 @@ def _created(zarr: Any, path: Path, asked: Request) -> Any:
         dimension_names=("stiffness_chunk", "virtual_damping_chunk"),
     )  # fmt: skip
     # last: a group with a digest has all its arrays
-    group.attrs.update({"format": FORMAT, "digest": asked.digest(), "request": asked.describe()})
+    group.attrs.update({"digest": asked.digest(), "request": asked.describe()})
     return group
