@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
+    from zwidth.maps import stability_boundary, z_width, z_width_factors
     from zwidth.passivity import two_port
     from zwidth.passivity.arms import Workspace, workspace
     from zwidth.passivity.bounding import Bounding, check_bounding
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
     from zwidth.passivity.index import Extraction, PassivityIndex
     from zwidth.passivity.indices import PassivityIndices, passivity_indices
+    from zwidth.passivity.known_hand import PassiveHand, Stability, stability
     from zwidth.passivity.loop_transformation import (
         Indices,
         Slopes,
@@ -95,6 +97,7 @@ __all__ = [
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
+    "PassiveHand",
     "PassivityIndex",
     "PassivityIndices",
     "Plan",
@@ -102,6 +105,7 @@ __all__ = [
     "PulseTransferFunction",
     "RealHand",
     "Slopes",
+    "Stability",
     "StandardLinearSolid",
     "Timing",
     "TissueFit",
@@ -149,6 +153,8 @@ __all__ = [
     "simulate",
     "simulate_admittance",
     "simulate_batch",
+    "stability",
+    "stability_boundary",
     "stable_virtual_masses",
     "tissue",
     "transformed_blocks",
@@ -156,6 +162,8 @@ __all__ = [
     "two_port",
     "workspace",
     "worst_hand",
+    "z_width",
+    "z_width_factors",
 ]
 
 _LATER = {
@@ -191,7 +199,13 @@ _LATER = {
     "PassivityIndices": "zwidth.passivity.indices",
     "passivity_indices": "zwidth.passivity.indices",
     "arms": "zwidth.device.arm",
+    "PassiveHand": "zwidth.passivity.known_hand",
     "RealHand": "zwidth.passivity.real_hand",
+    "Stability": "zwidth.passivity.known_hand",
+    "stability": "zwidth.passivity.known_hand",
+    "stability_boundary": "zwidth.maps",
+    "z_width": "zwidth.maps",
+    "z_width_factors": "zwidth.maps",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
     "read_log": "zwidth.identification.logs",

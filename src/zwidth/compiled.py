@@ -31,6 +31,7 @@ _TOGETHER = (
     ("passivity/worst_hand",),
     ("passivity/checker",),
     ("identification/tissue",),
+    ("maps",),
 )
 """Chapters whose functions call each other."""
 

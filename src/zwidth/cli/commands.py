@@ -155,6 +155,18 @@ def _limit(arguments: argparse.Namespace) -> int:
     return run_limit(arguments)
 
 
+def _configure_map(parser: argparse.ArgumentParser) -> None:
+    from zwidth.cli.map import configure_map
+
+    configure_map(parser)
+
+
+def _map(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.map import run_map
+
+    return run_map(arguments)
+
+
 def _configure_identify(parser: argparse.ArgumentParser) -> None:
     from zwidth.cli.identification import configure_identify
 
@@ -256,6 +268,20 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth limit my-wheel.toml my-wall.toml --parameter rate -o limit.json",
             _configure_limit,
             _limit,
+        ),
+        "map": Command(
+            "which walls can this device render?",
+            "Map the Z-width: over stiffness and virtual damping, which walls are passive with every hand,\n"
+            "which are so up to a speed of the hand, and which are stable with hands that are known.",
+            "A plain number is SI. The map in a directory is written as it goes; a stopped one goes on when\n"
+            "the same command is given again.\n\n"
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth map haptic-paddle --stiffness 0:3000 --damping 0:5 --plot map.png\n"
+            "  zwidth map haptic-paddle --stiffness 0:30000 --damping 0:90 --cells 1000x1000 -o map.zarr\n"
+            "  zwidth map haptic-paddle --stiffness 0:3000 --damping 0:5 -o map.zarr --address tcp://cluster:8786",
+            _configure_map,
+            _map,
         ),
         "simulate": Command(
             "what happens when a hand touches the wall?",

@@ -21,6 +21,14 @@ def warn_of_compiling_the_game() -> None:
         _say("compiling the game of the worst hand")
 
 
+def warn_of_compiling_the_map() -> None:
+    """Say that the kernel of the map is being compiled, where it has not been yet."""
+    from zwidth.compiled import is_compiled
+
+    if not is_compiled("maps"):
+        _say("compiling the map")
+
+
 def warn_of_compiling_the_estimates() -> None:
     """Say that the identification of devices is being compiled, where it has not been yet."""
     from zwidth.compiled import is_compiled

@@ -102,6 +102,17 @@ def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> 
     return build_device(_device_table(read_tables(sources, ("device",)), overrides))
 
 
+def specified_device(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Device:
+    """The device of tables, with the command line's parameters.
+
+    Raises
+    ------
+    InputError
+        As `build_device`, or if there is none.
+    """
+    return build_device(_device_table(tables, overrides))
+
+
 def build_device(table: Table) -> Device:
     """The device that a table describes.
 

@@ -2,9 +2,9 @@
 
 Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
-`witness`, `worst_case`, `storage`, `cycle`, `check_figure`, `limit_figure` and
-`workspace_figure`
-return a `matplotlib.figure.Figure` that belongs to no window; the `draw_…`
+`witness`, `worst_case`, `storage`, `cycle`, `indices`, `check_figure`,
+`limit_figure`, `workspace_figure` and `z_width_figure` return a
+`matplotlib.figure.Figure` that belongs to no window; the `draw_…`
 functions draw on axes of your own, in the look of `LOOK` if your axes have it.
 """
 
@@ -20,6 +20,7 @@ from zwidth.plots.style import LOOK
 from zwidth.plots.witness import draw_witness, witness
 from zwidth.plots.workspace import draw_workspace, save_workspace, workspace_figure
 from zwidth.plots.worst_case import draw_worst_case, worst_case
+from zwidth.plots.z_width import draw_z_width, save_z_width, z_width_figure
 
 __all__ = [
     "LOOK",
@@ -37,14 +38,17 @@ __all__ = [
     "draw_witness",
     "draw_workspace",
     "draw_worst_case",
+    "draw_z_width",
     "indices",
     "limit_figure",
     "plane",
     "save_check",
     "save_limit",
     "save_workspace",
+    "save_z_width",
     "storage",
     "witness",
     "workspace_figure",
     "worst_case",
+    "z_width_figure",
 ]

@@ -1,0 +1,203 @@
+"""The command `map`: the Z-width of a device, cell by cell."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from zwidth.cli.options import Once, Parameter, add_all, device_parameters, given
+from zwidth.cli.output import PICTURES, check_new, print_json, quiet_pipe, writing
+from zwidth.cli.specification import read_tables, specified_device
+from zwidth.cli.table import quoted, suggestion
+from zwidth.errors import InputError
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse_number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from zwidth.device import Device
+
+_DEVICE_DAMPING = "device_damping"
+"""The option for b of the device: `--damping` is the range of B here."""
+
+
+def configure_map(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth map`."""
+    parser.usage = (
+        "%(prog)s [SOURCE] --stiffness LOW:HIGH --damping LOW:HIGH [--cells NxM] [--hands NAMES] "
+        "[--PARAMETER VALUE ...] [--json] [--plot FILE] [-o DIRECTORY] [--force]"
+    )
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="device of the catalogue, or TOML file with a [device] table",
+    )
+    walls = parser.add_argument_group("walls")
+    for option, metavar, meaning in (
+        ("--stiffness", "LOW:HIGH", "range of K [N/m; rotary N*m/rad]"),
+        ("--damping", "LOW:HIGH", "range of the virtual damping B [N*s/m; rotary N*m*s/rad]"),
+        ("--cells", "NxM", "how many along K and along B (default: 200x200)"),
+        ("--velocity-filter", "FILTER", "backward-difference, window N, one-pole τ or f, filter"),
+        ("--hands", "NAMES", "known hands, of none, finger, dowel, with commas between (default: all)"),
+        ("--speed", "SPEED", "up to which a hand must not gain for a wall to count as quiet (default: 0.5)"),
+    ):
+        walls.add_argument(option, metavar=metavar, action=Once, help=meaning)
+    output = parser.add_argument_group("output")
+    for option, metavar, meaning in (
+        ("--workers", "N", "threads (default: one for each processor)"),
+        ("--address", "ADDRESS", "of a Dask scheduler, tcp://…, whose workers compute instead"),
+        ("--plot", "FILE", "save the plot: .png, .svg or .pdf"),
+    ):
+        output.add_argument(option, metavar=metavar, action=Once, help=meaning)
+    output.add_argument("--json", action="store_true", help="print the summary as JSON, units in the keys")
+    output.add_argument(
+        "-o",
+        "--save",
+        metavar="DIRECTORY",
+        action=Once,
+        help="zarr store, written as it goes; one that was begun is gone on with",
+    )
+    output.add_argument("--force", action="store_true", help="replace a plot that exists")
+    add_all(parser.add_argument_group("device", "override what SOURCE says, or replace it"), _parameters())
+
+
+def run_map(arguments: argparse.Namespace) -> int:
+    """`zwidth map`: 0."""
+    from zwidth.cli.patience import warn_of_compiling_the_map
+    from zwidth.maps import z_width
+
+    plot = None if arguments.plot is None else Path(arguments.plot)
+    if plot is not None:
+        if plot.suffix.lower() not in PICTURES:
+            raise InputError(f"--plot: the file must end in {', '.join(PICTURES)}, got {str(plot)!r}")
+        check_new(plot, arguments.force)
+    device = _device(arguments)
+    options = _options(arguments, device.motion)
+    warn_of_compiling_the_map()
+    found = z_width(device, **options)
+    if plot is not None:
+        from zwidth.plots import save_z_width  # matplotlib takes its time
+
+        with writing(plot):
+            save_z_width(found, plot, overwrite=True)
+    if arguments.json:
+        print_json(_json(found))
+    else:
+        with quiet_pipe():
+            print(_report(found))
+    return 0
+
+
+def _parameters() -> list[Parameter]:
+    """The options of a device, its damping under a name of its own."""
+    return [p if p.key != "damping" else p._replace(key=_DEVICE_DAMPING) for p in device_parameters()]
+
+
+def _device(arguments: argparse.Namespace) -> Device:
+    typed = given(arguments, [p.key for p in _parameters()])
+    overrides = {key.removeprefix("device_"): value for key, value in typed.items()}
+    return specified_device(read_tables(arguments.sources, ("device",)), overrides)
+
+
+def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
+    """The map as `z_width` takes it."""
+    from zwidth.cli.values import velocity_filter
+    from zwidth.maps.request import standard_hands
+
+    options: dict[str, Any] = {
+        "stiffness": _range(arguments.stiffness, "stiffness", "stiffness", motion),
+        "virtual_damping": _range(arguments.damping, "damping", "virtual_damping", motion),
+        "path": arguments.save,
+        "address": arguments.address,
+    }
+    if arguments.cells is not None:
+        options["cells"] = _cells(arguments.cells)
+    if arguments.velocity_filter is not None:
+        options["velocity_filter"] = velocity_filter(arguments.velocity_filter)
+    if arguments.hands is not None:
+        known, names = standard_hands(), [name.strip() for name in arguments.hands.split(",")]
+        for name in names:
+            if name not in known:
+                raise InputError(f"there is no hand {quoted(name)}; {suggestion(name, list(known))}")
+        options["hands"] = {name: known[name] for name in names}
+    if arguments.speed is not None:
+        options["speed"] = float(
+            parse_number(arguments.speed, "rad/s" if motion == "rotary" else "m/s", "speed")
+        )
+    if arguments.workers is not None:
+        options["workers"] = _whole(arguments.workers, "--workers")
+    return options
+
+
+def _range(typed: str | None, option: str, quantity: str, motion: str) -> tuple[Any, Any]:
+    if typed is None:
+        raise InputError(f"--{option} LOW:HIGH is missing: the range of the map, such as 0:3000")
+    low, colon, high = typed.partition(":")
+    if not colon:
+        raise InputError(f"--{option} is a range, LOW:HIGH, got {quoted(typed)}")
+    unit = GLOSSARY[quantity].unit_for(motion)
+    return parse_number(low.strip(), unit, option), parse_number(high.strip(), unit, option)
+
+
+def _cells(typed: str) -> tuple[int, int]:
+    along_k, cross, along_b = typed.lower().replace("×", "x").partition("x")
+    if not cross:
+        raise InputError(f"--cells is written NxM, such as 200x200, got {quoted(typed)}")
+    return _whole(along_k, "--cells"), _whole(along_b, "--cells")
+
+
+def _whole(typed: str, option: str) -> int:
+    try:
+        return int(typed)
+    except ValueError:
+        raise InputError(f"{option} takes whole numbers, got {quoted(typed)}") from None
+
+
+def _report(found: xr.Dataset) -> str:
+    """The regions, widest claim first, and what is felt in free air."""
+    unit = found["largest_stiffness"].attrs["units"]
+    lines = [f"{'region':<28}{'largest K [' + unit + ']':>24}{'area of the map':>18}"]
+    cells = found["passive"].size
+    for name in found["region"].values:
+        one = found.sel(region=name)
+        share = int(found[str(name)].values.sum()) / cells
+        lines.append(f"{_region(str(name), found):<28}{float(one['largest_stiffness']):>24.6g}{share:>18.1%}")
+    free = [
+        f"{float(found[key]):g} {found[key].attrs['units']}"
+        for key in ("free_mass", "free_damping", "free_friction")
+    ]
+    lines.append(f"free air: {', '.join(free)}")
+    return "\n".join(lines)
+
+
+def _region(name: str, found: xr.Dataset) -> str:
+    if name == "passive":
+        return "passive, every hand"
+    if name == "quiet":
+        return f"no gain up to {found['quiet'].attrs['speed']:g} {found['admissible_speed'].attrs['units']}"
+    hand = name.removeprefix("stable_")
+    return "stable, no hand" if hand == "none" else f"stable, {hand}"
+
+
+def _json(found: xr.Dataset) -> str:
+    """The regions and the free device, units in the keys."""
+    from zwidth.passivity.document import to_json, unit_suffix
+
+    unit = unit_suffix(found["largest_stiffness"].attrs["units"])
+    regions = {
+        str(name): {
+            f"largest_stiffness_{unit}": float(found.sel(region=name)["largest_stiffness"]),
+            "cells": int(found[str(name)].values.sum()),
+        }
+        for name in found["region"].values
+    }
+    free = {
+        f"{key}_{unit_suffix(found[key].attrs['units'])}": float(found[key])
+        for key in ("free_mass", "free_damping", "free_friction")
+    }
+    return to_json(
+        {"device": found.attrs["device"], "cells": found["passive"].size, "regions": regions, **free}
+    )

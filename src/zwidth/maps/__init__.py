@@ -1,0 +1,7 @@
+"""Maps over parameters: which walls a device can render, and what makes them many."""
+
+from zwidth.maps.boundary import stability_boundary
+from zwidth.maps.factors import z_width_factors
+from zwidth.maps.run import z_width
+
+__all__ = ["stability_boundary", "z_width", "z_width_factors"]

@@ -1,0 +1,73 @@
+"""One chunk of a map: every cell decided, by floats with bounds where they suffice, else exactly."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.maps.kernel import STABLE, UNKNOWN, decide_block
+from zwidth.maps.plan import Contact, HandPlan, Plan
+from zwidth.maps.request import CHUNK, Array
+from zwidth.passivity.known_hand.characteristic import family
+from zwidth.passivity.known_hand.decide import decided
+from zwidth.quantity.exact import Exact
+
+_SHY = 1e-14
+"""By how much every number of the admissible speed is taken to its safe side: more than its rounding."""
+
+
+class Place(NamedTuple):
+    """Which chunk, counted along K and along B."""
+
+    row: int
+    column: int
+
+    @property
+    def cells(self) -> tuple[slice, slice]:
+        """Its cells in the whole map."""
+        return tuple(slice(n * CHUNK, (n + 1) * CHUNK) for n in self)  # type: ignore[return-value]
+
+
+Layers = dict[str, NDArray[Any]]
+
+
+def compute(ready: Plan, place: Place) -> Layers:
+    """Every layer of one chunk, by the name of its array."""
+    rows, columns = place.cells
+    k, b = ready.stiffness[rows], ready.damping[columns]
+    indices = np.arange(len(ready.stiffness))[rows]
+    passive = indices[:, None] < ready.passive[columns][None, :]
+    layers: Layers = {"passive": passive, "admissible_speed": _speed(ready.contact, k, b, passive)}
+    layers.update((f"stable_{hand.name}", _stable(hand, k, b)) for hand in ready.hands)
+    return layers
+
+
+def _speed(contact: Contact | None, k: Array, b: Array, passive: NDArray[np.bool_]) -> Array:
+    """(f_c − F)/(b_need − b), rounded to the safe side; inf where passive, 0 where small motions gain."""
+    if contact is None:
+        return np.zeros(passive.shape)
+    stiff, damped = k[:, None] * (1 + _SHY), np.abs(b)[None, :] * (1 + _SHY)
+    friction = (stiff + contact.variation * damped) * contact.half_step * (1 + _SHY)
+    surplus = contact.friction * (1 - _SHY) - friction
+    deficit = (contact.hold * stiff + contact.gain * damped) * (1 + _SHY) - contact.damping * (1 - _SHY)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        speed = np.where((surplus > 0) & (deficit > 0), surplus / deficit * (1 - _SHY), 0.0)
+    return np.where(passive, np.inf, speed)
+
+
+def _stable(hand: HandPlan, k: Array, b: Array) -> NDArray[np.bool_]:
+    """True where the loop with this hand is proved to decay."""
+    out = np.empty((len(k), len(b)), dtype=np.uint8)
+    upper, lower = np.zeros((2, len(hand.free))), np.zeros((2, len(hand.free)))
+    decide_block(hand.free, hand.stiff, hand.damped, k, b, hand.slack, upper, lower, out)
+    for i, j in np.argwhere(out == UNKNOWN):
+        out[i, j] = _exactly(hand, float(k[i]), float(b[j]))
+    return np.asarray(out == STABLE)
+
+
+def _exactly(hand: HandPlan, k: float, b: float) -> bool:
+    stiffness, damping = Exact(k).fraction, Exact(b).fraction
+    found = decided(hand.motion, lambda motion: family(motion, hand.velocity).at(stiffness, damping))
+    return found.outcome == "stable"

@@ -1,0 +1,146 @@
+"""A request made ready: all that a chunk needs, computed once and the same for every worker.
+
+    passive          K ≤ K_max(B), the smaller of  2 (b − g|B|)/((2d + 1) T)  and  2 f_c/Δ − v|B|/T
+    admissible speed (f_c − F)/(b_need − b),  F = (K + v|B|/T) Δ/2,  b_need = (2d + 1) K T/2 + g|B|
+
+with g = Σ|w_j| and v = T ‖h_v‖₁ of the velocity estimate: the two conditions for contact made and
+broken, and what is left of them for a hand of bounded speed (docs: contact made and broken).
+K_max is rational, so that a cell is passive by an exact comparison.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.environment import Wall
+from zwidth.environment.environment import RationalFunction
+from zwidth.maps.request import Array, Request
+from zwidth.passivity.contact import damped_wall
+from zwidth.passivity.decision import decide
+from zwidth.passivity.known_hand.characteristic import Family, as_floats, bilinear, family, precision
+from zwidth.passivity.known_hand.crossing import last_stable, plain
+from zwidth.passivity.known_hand.plant import Coefficients, Motion
+from zwidth.passivity.known_hand.stability import motion_of
+from zwidth.quantity.exact import Exact
+
+_BITS = 192
+"""Of the coefficients before they are rounded to doubles."""
+
+
+class HandPlan(NamedTuple):
+    """One hand: its polynomials in w as doubles, and what an exact decision starts from."""
+
+    name: str
+    free: Array
+    stiff: Array
+    damped: Array
+    slack: float
+    """How far a coefficient may be from the true one beyond its rounding: the radius of its ball."""
+    motion: Motion
+    velocity: RationalFunction
+
+
+class Contact(NamedTuple):
+    """The two conditions for contact made and broken as numbers: see above."""
+
+    hold: float
+    gain: float
+    variation: float
+    damping: float
+    friction: float
+    half_step: float
+
+
+class Plan(NamedTuple):
+    """What a chunk is computed from."""
+
+    stiffness: Array
+    damping: Array
+    passive: NDArray[np.int64]
+    """For each B how many of the stiffnesses are passive, from the softest on."""
+    limit: Array
+    """For each B the largest passive stiffness, below 0 or NaN where none is."""
+    contact: Contact | None
+    hands: tuple[HandPlan, ...]
+
+
+def plan(asked: Request) -> Plan:
+    """All that does not depend on the chunk."""
+    period = asked.device.exact("sample_period")
+    k, b = asked.stiffness.values, asked.virtual_damping.values
+    contact = _contact(asked, period)
+    softest_first = [Exact(value).fraction for value in k]
+    limits = [_limit(contact, abs(Exact(value).fraction)) for value in b] if contact else []
+    passive = [bisect_right(softest_first, limit) for limit in limits] if contact else [0] * len(b)
+    velocity = _positive(asked.velocity_filter.transfer(period))
+    return Plan(
+        stiffness=k,
+        damping=b,
+        passive=np.array(passive, dtype=np.int64),
+        limit=np.array([float(limit) for limit in limits] or [np.nan] * len(b)),
+        contact=None if contact is None else Contact(*(float(value) for value in contact)),
+        hands=tuple(_hand(name, motion_of(asked.device, hand), velocity) for name, hand in asked.hands),
+    )
+
+
+def _contact(asked: Request, period: Fraction) -> tuple[Fraction, ...] | None:
+    """The numbers of `Contact`, exact; None where no condition covers the loop."""
+    device = asked.device
+    wall = Wall(1, 1, velocity_filter=asked.velocity_filter)
+    unit, whole = damped_wall(wall, period), device.exact("delay") / period
+    if unit is None or decide(device, wall).contact_damping is None:
+        return None
+    return (
+        (2 * whole + 1) * period / 2,
+        unit.estimate.gain,
+        unit.estimate.variation / period,
+        device.exact("damping"),
+        device.exact("coulomb_friction"),
+        device.exact("resolution") / 2,
+    )
+
+
+def stable_limits(hand: HandPlan, damping: Array) -> Array:
+    """For each B the largest stiffness that is stable with a hand, NaN where none is; floats, for curves."""
+    with precision(_BITS):
+        polynomials = plain(family(hand.motion, hand.velocity))
+    found = [last_stable(polynomials, float(b)) for b in damping]
+    return np.array([np.nan if end is None else end.stiffness for end in found])
+
+
+def _positive(velocity: RationalFunction) -> RationalFunction:
+    """The same function with a positive leading coefficient below: Routh's signs are then all +."""
+    sign = 1 if velocity.denominator[0] > 0 else -1
+    return RationalFunction(*(tuple(sign * c for c in part) for part in velocity))
+
+
+def _limit(contact: tuple[Fraction, ...], b: Fraction) -> Fraction:
+    """K_max for one |B|; below 0 where no stiffness will do."""
+    hold, gain, variation, damping, friction, half_step = contact
+    viscous = (damping - gain * b) / hold
+    return viscous if half_step == 0 else min(viscous, friction / half_step - variation * b)
+
+
+def _hand(name: str, motion: Motion, velocity: RationalFunction) -> HandPlan:
+    with precision(_BITS):
+        parts = _in_w(family(motion, velocity))
+        free, stiff, damped = (as_floats(part) for part in parts)
+        slack = max(_radius(c) for part in parts for c in part)
+    return HandPlan(name, free, stiff, damped, slack, motion, velocity)
+
+
+def _radius(coefficient: Any) -> float:
+    """Of its ball, and a little more."""
+    return 0.0 if isinstance(coefficient, Fraction) else 1.01 * float(coefficient.rad())
+
+
+def _in_w(polynomials: Family) -> list[Coefficients]:
+    """The three polynomials in w, all with the degree of the first."""
+    size = len(polynomials.free)
+    padded: list[Any] = [[*([0 * part[0]] * (size - len(part))), *part] for part in polynomials]
+    return [bilinear(part) for part in padded]

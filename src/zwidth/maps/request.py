@@ -1,0 +1,155 @@
+"""What a map is of: a device, a grid of walls, the hands that are known.
+
+A cell stands for the wall at its middle, (K, B) = low + (i + ½)(high − low)/n, as the double nearest to it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.device import Device
+from zwidth.environment import BackwardDifference, Wall
+from zwidth.environment.velocity import VelocityEstimator
+from zwidth.errors import InputError
+from zwidth.operator import Dowel, Finger
+from zwidth.passivity.known_hand import PassiveHand
+from zwidth.passivity.known_hand.hand import as_hand
+from zwidth.passivity.known_hand.stability import motion_of
+from zwidth.quantity.exact import Exact, RealLike, ends
+
+Array = NDArray[np.float64]
+
+MOST_CELLS = 100_000_000
+"""Of one map; more are a mistake in the numbers."""
+
+CHUNK = 128
+"""Cells along one side of what is computed and stored at a time."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """The middles of n equal cells from `low` to `high`."""
+
+    low: Exact
+    high: Exact
+    cells: int
+
+    @property
+    def values(self) -> Array:
+        """The middles, each the nearest double."""
+        step = (self.high.fraction - self.low.fraction) / self.cells
+        return np.array([float(self.low.fraction + step * (i + Fraction(1, 2))) for i in range(self.cells)])
+
+    @property
+    def width(self) -> float:
+        """Of one cell."""
+        return (float(self.high) - float(self.low)) / self.cells
+
+
+@dataclass(frozen=True)
+class Request:
+    """All that the bits of a map depend on."""
+
+    device: Device
+    stiffness: Axis
+    virtual_damping: Axis
+    velocity_filter: VelocityEstimator
+    hands: tuple[tuple[str, PassiveHand], ...]
+
+    @property
+    def chunks(self) -> tuple[int, int]:
+        """How many chunks there are along K and along B."""
+        return -(-self.stiffness.cells // CHUNK), -(-self.virtual_damping.cells // CHUNK)
+
+    def describe(self) -> dict[str, Any]:
+        """The request as JSON holds it; exact numbers as text."""
+        return {
+            "device": {
+                **{
+                    key: str(value.fraction)
+                    for key, value in self.device.parameters().items()
+                    if isinstance(value, Exact)
+                },
+                "motion": self.device.motion,
+            },
+            "stiffness": _axis(self.stiffness),
+            "virtual_damping": _axis(self.virtual_damping),
+            "velocity_filter": [
+                [str(c) for c in part]
+                for part in self.velocity_filter.transfer(self.device.exact("sample_period"))
+            ],
+            "hands": {
+                name: [str(ends(value)[0]) for value in (hand.mass, hand.stiffness, hand.damping)]
+                for name, hand in self.hands
+            },
+            "chunk": CHUNK,
+        }
+
+    def digest(self) -> str:
+        """A name for the request: another one has another."""
+        return hashlib.sha256(json.dumps(self.describe(), sort_keys=True).encode()).hexdigest()
+
+
+def _axis(axis: Axis) -> list[str]:
+    return [str(axis.low.fraction), str(axis.high.fraction), str(axis.cells)]
+
+
+def standard_hands() -> dict[str, Any]:
+    """No hand, a finger and a wooden dowel, by name."""
+    return {"none": None, "finger": Finger(), "dowel": Dowel(force=1)}
+
+
+def request(
+    device: Device,
+    stiffness: tuple[RealLike, RealLike],
+    virtual_damping: tuple[RealLike, RealLike],
+    cells: tuple[int, int],
+    velocity_filter: VelocityEstimator | None,
+    hands: Mapping[str, Any] | None,
+) -> Request:
+    """Read what `z_width` is given.
+
+    Raises
+    ------
+    InputError
+        If a range or a number of cells cannot be, a parameter is an interval, or the mass is unknown.
+    """
+    if not device.is_certain:
+        raise InputError(
+            "a map is of one device, and a parameter of this one is an interval; choose a value in it"
+        )
+    named = standard_hands() if hands is None else dict(hands)
+    known = tuple((name, as_hand(hand)) for name, hand in named.items())
+    for name, hand in known:
+        if not motion_of(device, hand).is_certain:
+            raise InputError(f"hand {name}: a map needs one value of each number; stability covers intervals")
+    velocity = BackwardDifference() if velocity_filter is None else velocity_filter
+    Wall(1, 1, velocity_filter=velocity)  # says what is wrong with it
+    k = _read_axis("stiffness", stiffness, cells[0])
+    b = _read_axis("virtual_damping", virtual_damping, cells[1])
+    if k.low.fraction < 0:
+        raise InputError(f"stiffness must be ≥ 0, got {k.low:g}: a negative spring pulls the hand in")
+    if k.cells * b.cells > MOST_CELLS:
+        raise InputError(
+            f"a map has at most {MOST_CELLS} cells, got {k.cells * b.cells}; a picture needs far fewer"
+        )
+    return Request(device, k, b, velocity, known)
+
+
+def _read_axis(name: str, both: tuple[RealLike, RealLike], cells: int) -> Axis:
+    low, high = (Exact(end) for end in both)
+    if low >= high:
+        raise InputError(
+            f"{name} runs from its smaller to its larger end, got {low:g} … {high:g}; swap the ends"
+        )
+    if cells != int(cells) or cells < 1:
+        raise InputError(f"cells along {name} must be a whole number ≥ 1, got {cells}")
+    return Axis(low, high, int(cells))

@@ -1,0 +1,100 @@
+"""A map in a zarr store, written chunk by chunk, so that it can be stopped at any moment and gone on with.
+
+A chunk's layers are written first and its mark in `done` last.  Whatever kills the process, a marked
+chunk is whole, and one that is not marked is computed again, to the same bits.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from zwidth.errors import InputError
+from zwidth.maps.chunk import Layers, Place
+from zwidth.maps.request import CHUNK, Request
+
+FORMAT = "zwidth map 1"
+DIMENSIONS = ("stiffness", "virtual_damping")
+
+
+def layer_types(asked: Request) -> dict[str, str]:
+    """The arrays of a map and the type of their numbers."""
+    stable = {f"stable_{name}": "bool" for name, _ in asked.hands}
+    return {"passive": "bool", "admissible_speed": "float64"} | stable
+
+
+class Store:
+    """The arrays of one map on disk."""
+
+    def __init__(self, path: Path, asked: Request) -> None:
+        self._group = _opened(path, asked)
+        self._done: Any = self._group["done"]
+        self._names = list(layer_types(asked))
+
+    @property
+    def left(self) -> list[Place]:
+        """The chunks that are not yet there."""
+        return [Place(int(i), int(j)) for i, j in np.argwhere(self._done[:] == 0)]
+
+    def write(self, place: Place, layers: Layers) -> None:
+        """Keep a chunk, and then say that it is there."""
+        for name, values in layers.items():
+            array: Any = self._group[name]
+            array[place.cells] = values
+        self._done[place.row, place.column] = 1
+
+    def read(self) -> Layers:
+        """All layers, whole."""
+        return {name: np.asarray(self._group[name]) for name in self._names}
+
+
+def _opened(path: Path, asked: Request) -> Any:
+    try:
+        import zarr
+    except ImportError:
+        raise InputError(
+            'a map on disk needs zarr, which is not installed: pip install "zwidth[maps]"; '
+            "without a file the map is computed all the same"
+        ) from None
+    try:
+        if path.exists() and any(path.iterdir()):
+            return _resumed(zarr, path, asked)
+        return _created(zarr, path, asked)
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror or error}") from None
+
+
+def _resumed(zarr: Any, path: Path, asked: Request) -> Any:
+    try:
+        group = zarr.open_group(path, mode="r+")
+        found, begun = (group.attrs.get("format"), group.attrs.get("digest")), group.attrs.get("begun")
+    except (FileNotFoundError, NotADirectoryError, ValueError, KeyError):
+        raise InputError(f"{path} exists and holds no map; choose another name or remove it first") from None
+    if found == (FORMAT, None) and begun == asked.digest():
+        return _created(zarr, path, asked)  # stopped before all its arrays were there
+    if found != (FORMAT, asked.digest()):
+        raise InputError(
+            f"{path} holds another map, or one of another version; choose another name or remove it first"
+        )
+    return group
+
+
+def _created(zarr: Any, path: Path, asked: Request) -> Any:
+    group = zarr.create_group(path, overwrite=True, attributes={"format": FORMAT, "begun": asked.digest()})
+    shape = (asked.stiffness.cells, asked.virtual_damping.cells)
+    for name, axis in zip(DIMENSIONS, (asked.stiffness, asked.virtual_damping), strict=True):
+        coordinate = group.create_array(name, shape=(axis.cells,), dtype="float64", dimension_names=(name,))
+        coordinate[:] = axis.values
+    for name, kind in layer_types(asked).items():
+        group.create_array(
+            name, shape=shape, dtype=kind, chunks=(CHUNK, CHUNK), fill_value=0, dimension_names=DIMENSIONS
+        )
+    group.create_array(
+        "done", shape=asked.chunks, dtype="uint8", chunks=(1, 1), fill_value=0,
+        dimension_names=("stiffness_chunk", "virtual_damping_chunk"),
+    )  # fmt: skip
+    # last: a group with a digest has all its arrays
+    group.attrs.update({"digest": asked.digest(), "request": asked.describe()})
+    return group

@@ -1,0 +1,194 @@
+"""The Z-width of a device: which walls (K, B) it can render, cell by cell.
+
+    passive            b ≥ (2d + 1) K T/2 + |B| Σ|w_j|   and   f_c ≥ (K + |B| ‖h_v‖₁) Δ/2
+    admissible speed   of hands from which such a wall keeps its energy although it is not passive
+    stable with a hand all poles of device, hand and wall inside the unit circle
+
+The upper end of the Z-width is the stiffest of these walls; the lower end is what the device
+itself lets one feel in free air: its inertia, damping and friction (Colgate & Brown 1994).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from zwidth.device import Device
+from zwidth.environment.velocity import VelocityEstimator
+from zwidth.errors import InputError
+from zwidth.maps.chunk import Layers, Place
+from zwidth.maps.plan import Plan, plan, stable_limits
+from zwidth.maps.request import Request, request
+from zwidth.maps.store import FORMAT, Store, layer_types
+from zwidth.maps.workers import on_cluster, on_threads
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.glossary import GLOSSARY
+
+Progress = Callable[[int, int], None]
+
+SPEED = 0.5
+"""Of a hand that is quick but not violent [m/s; rad/s]."""
+
+
+def z_width(
+    device: Device,
+    stiffness: tuple[RealLike, RealLike],
+    virtual_damping: tuple[RealLike, RealLike],
+    cells: tuple[int, int] = (200, 200),
+    *,
+    velocity_filter: VelocityEstimator | None = None,
+    hands: Mapping[str, Any] | None = None,
+    speed: float = SPEED,
+    path: str | PathLike[str] | None = None,
+    address: str | None = None,
+    workers: int | None = None,
+    progress: Progress = lambda done, total: None,
+) -> xr.Dataset:
+    """Map the walls that a device can render over stiffness and virtual damping.
+
+    A cell stands for the wall at its middle.  `passive` and `stable_…` are True only where proved, by exact
+    comparison or in balls that hold the true numbers; `admissible_speed` is rounded down.
+
+    Parameters
+    ----------
+    device
+        Certain values, with a mass.
+    stiffness, virtual_damping
+        Ends of the ranges of K ≥ 0 [N/m; N·m/rad] and B [N·s/m; N·m·s/rad].
+    cells
+        How many along K and along B.
+    velocity_filter
+        Of the walls, as for `Wall`. Default: the backward difference.
+    hands
+        Known hands by name, as for `stability`. Default: "none", "finger" and "dowel".
+    speed
+        Up to which a hand must not gain energy for a wall to count as `quiet` [m/s; rad/s].
+    path
+        Directory of a zarr store, written chunk by chunk; one that was begun is gone on with.
+    address
+        Of a Dask scheduler whose workers compute the chunks, "tcp://…". Default: threads of this process.
+    workers
+        How many threads. Default: one for each processor.
+    progress
+        Is told how many chunks are done, and of how many.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (stiffness, virtual_damping): `passive`, `quiet`, `admissible_speed` and `stable_NAME` of each
+        hand. Over virtual_damping the curves where they end, `limit_passive` and `limit_NAME`, NaN where
+        nothing is stable. Of each region its `area` and its `largest_stiffness`, by counting cells.
+        `free_mass`, `free_damping` and `free_friction`, the lower end.
+
+    Raises
+    ------
+    InputError
+        If a range, a hand or the device is not one; or the store or the cluster cannot be used.
+    """
+    asked = request(device, stiffness, virtual_damping, cells, velocity_filter, hands)
+    if workers is not None and workers < 1:
+        raise InputError(f"workers must be ≥ 1, got {workers}: someone has to compute")
+    if not speed > 0:
+        raise InputError(f"speed must be > 0, got {speed}: a hand at rest gains nothing from any wall")
+    ready = plan(asked)
+    layers = _computed(asked, ready, None if path is None else Path(path), address, workers, progress)
+    return _dataset(asked, ready, layers, speed)
+
+
+def _computed(
+    asked: Request,
+    ready: Plan,
+    path: Path | None,
+    address: str | None,
+    workers: int | None,
+    progress: Progress,
+) -> Layers:
+    keep: Any = _Memory(asked) if path is None else Store(path, asked)
+    places = keep.left
+    total = asked.chunks[0] * asked.chunks[1]
+    finished = on_threads(ready, places, workers) if address is None else on_cluster(ready, places, address)
+    for count, (place, layers) in enumerate(finished, start=total - len(places) + 1):
+        keep.write(place, layers)
+        progress(count, total)
+    whole: Layers = keep.read()
+    return whole
+
+
+class _Memory:
+    """The arrays of one map without a file."""
+
+    def __init__(self, asked: Request) -> None:
+        shape = (asked.stiffness.cells, asked.virtual_damping.cells)
+        self._layers: Layers = {
+            name: np.zeros(shape, dtype=kind) for name, kind in layer_types(asked).items()
+        }
+        self.left = [Place(i, j) for i in range(asked.chunks[0]) for j in range(asked.chunks[1])]
+
+    def write(self, place: Place, layers: Layers) -> None:
+        for name, values in layers.items():
+            self._layers[name][place.cells] = values
+
+    def read(self) -> Layers:
+        return self._layers
+
+
+def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Dataset:
+    motion = asked.device.motion
+    axes = {
+        "stiffness": asked.stiffness.values,
+        "virtual_damping": asked.virtual_damping.values,
+    }
+    coordinates = {
+        name: (name, values, {"units": GLOSSARY[name].unit_for(motion), "long_name": GLOSSARY[name].meaning})
+        for name, values in axes.items()
+    }
+    dims = tuple(axes)
+    variables: dict[str, Any] = {
+        name: (dims, values, dict(_MEANINGS.get(name, {}))) for name, values in layers.items()
+    }
+    variables["admissible_speed"][2]["units"] = "rad/s" if motion == "rotary" else "m/s"
+    variables["quiet"] = (dims, layers["admissible_speed"] >= speed, {"speed": speed})
+    variables["limit_passive"] = (dims[1], ready.limit)
+    for hand in ready.hands:
+        variables[f"limit_{hand.name}"] = (dims[1], stable_limits(hand, ready.damping))
+    names = ["passive", "quiet", *(f"stable_{name}" for name, _ in asked.hands)]
+    cell = asked.stiffness.width * asked.virtual_damping.width
+    masks = [np.asarray(variables[name][1]) for name in names]
+    units = [GLOSSARY[name].unit_for(motion) for name in axes]
+    variables["area"] = (
+        "region",
+        [mask.sum() * cell for mask in masks],
+        {"units": f"({units[0]})*({units[1]})"},
+    )
+    variables["largest_stiffness"] = (
+        "region", [_largest(mask, axes["stiffness"]) for mask in masks], {"units": units[0]},
+    )  # fmt: skip
+    for name, key in (
+        ("free_mass", "mass"),
+        ("free_damping", "damping"),
+        ("free_friction", "coulomb_friction"),
+    ):
+        variables[name] = ((), float(asked.device.exact(key)), {"units": GLOSSARY[key].unit_for(motion)})
+    attrs = {
+        "format": FORMAT,
+        "device": asked.device.name,
+        "motion": motion,
+        "velocity_filter": asked.velocity_filter.describe(),
+    }
+    return xr.Dataset(variables, {**coordinates, "region": names}, attrs)
+
+
+def _largest(mask: Any, stiffness: Any) -> float:
+    rows = np.flatnonzero(mask.any(axis=1))
+    return float(stiffness[rows[-1]]) if len(rows) else 0.0
+
+
+_MEANINGS = {
+    "passive": {"long_name": "no hand takes energy out, contact made and broken"},
+    "admissible_speed": {"long_name": "no hand up to this speed takes energy out"},
+}

@@ -1,0 +1,218 @@
+"""Is a hand that is known at rest against the wall, or does the loop shake it?
+
+Device, hand and wall in sustained contact are one linear system, sampled exactly; it decays
+exactly if all roots of its characteristic polynomial lie inside the unit circle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from zwidth.device import Device
+from zwidth.environment import Wall
+from zwidth.environment.environment import Environment, certain
+from zwidth.environment.transfer_function import as_environment
+from zwidth.errors import InputError
+from zwidth.passivity.boundary import largest_holding
+from zwidth.passivity.known_hand.characteristic import PRECISIONS, as_floats, family, of_law, precision
+from zwidth.passivity.known_hand.crossing import Plain, last_stable, plain
+from zwidth.passivity.known_hand.decide import Found, Outcome, corners, decided
+from zwidth.passivity.known_hand.hand import PassiveHand, as_hand
+from zwidth.passivity.known_hand.plant import Motion
+from zwidth.quantity.exact import Exact, ends
+
+_BOXES_OF_A_SEARCH = 1000
+"""Boxes for each stiffness that is tried while the largest one of intervals is sought."""
+
+_HALVINGS = 8
+"""Of the stiffness, in that search."""
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Whether the loop with a known hand decays, and how far it is from not doing so.
+
+    Parameters
+    ----------
+    outcome
+        "stable", "unstable" or "undecided"; for intervals "stable" holds for every value in them and
+        "unstable" for some.
+    claim
+        The same in a sentence.
+    spectral_radius
+        The largest modulus of a pole in z, for intervals the largest at their corners; what is left of a
+        deviation after one sample.
+    frequency
+        Of that pole, 0 … 1/(2T) [Hz].
+    max_stiffness
+        The largest stable K of this wall, all else as given [N/m; N·m/rad]; None where no K is or the law is
+        no wall. For intervals the largest that was proved for every value in them, below the true one.
+    limit_frequency
+        With which the loop oscillates at that stiffness, for intervals at their worst corner [Hz].
+    assumptions
+        What the claim rests on.
+    culprit
+        Mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand together that do not decay.
+    """
+
+    outcome: Outcome
+    claim: str
+    spectral_radius: float
+    frequency: float
+    max_stiffness: float | None
+    limit_frequency: float | None
+    assumptions: tuple[str, ...]
+    culprit: tuple[float, float, float] | None = None
+
+    @property
+    def margin(self) -> float:
+        """1 − spectral radius: > 0 for a loop that decays."""
+        return 1 - self.spectral_radius
+
+    def __str__(self) -> str:
+        return f"{self.outcome}: {self.claim}"
+
+
+def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stability:
+    """Whether device, known hand and wall come to rest in sustained contact.
+
+    ``(m + m_h) ẍ + (b + c) ẋ + k x = −f``,  f = H(z) x sampled, delayed and held.  Decided exactly: in
+    rational arithmetic without spring and damper, else in balls that hold the true coefficients.  A passive
+    loop is stable with every passive hand; this one answers for loops that are not passive.
+
+    Parameters
+    ----------
+    device
+        With a mass; mass and damping may be intervals. Coulomb friction and encoder are left out.
+    wall
+        A `Wall` or any other linear environment, certain.
+    hand
+        None, a `PassiveHand`, whose numbers may be intervals, or a linear operator such as `Finger()`.
+
+    Raises
+    ------
+    InputError
+        If the mass is unknown, another parameter is an interval, or the hand or the environment is none.
+    """
+    law = as_environment(wall)
+    holding = as_hand(hand)
+    motion = motion_of(device, holding)
+    transfer = law.pulse_transfer_function(motion.period)
+    found = decided(motion, lambda box: of_law(box, transfer))
+    worst = max((_poles(corner, transfer) for corner in corners(motion)), key=lambda z: abs(z))
+    largest, limit = _limit(motion, law)
+    return Stability(
+        outcome=found.outcome,
+        claim=_claim(found),
+        spectral_radius=float(abs(worst)),
+        frequency=_hertz(float(abs(np.angle(worst))), motion),
+        max_stiffness=largest,
+        limit_frequency=None if limit is None else _hertz(limit, motion),
+        assumptions=_assumptions(device, holding, law),
+        culprit=_culprit(found),
+    )
+
+
+def motion_of(device: Device, hand: PassiveHand) -> Motion:
+    """Device and hand together, as `plant` takes them.
+
+    Raises
+    ------
+    InputError
+        If the mass is unknown, or period or delay is an interval.
+    """
+    if device.mass is None:
+        raise InputError(
+            "stability with a known hand depends on the mass of the device, and it is unknown; give mass"
+        )
+    mass, damping = (
+        _sum(ends(own), ends(added))
+        for own, added in ((device.mass, hand.mass), (device.damping, hand.damping))
+    )
+    return Motion(mass, damping, ends(hand.stiffness), device.exact("sample_period"), device.exact("delay"))
+
+
+def _sum(a: tuple[Fraction, Fraction], b: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
+    return a[0] + b[0], a[1] + b[1]
+
+
+def _poles(corner: Motion, transfer: Any) -> complex:
+    with precision(PRECISIONS[0]):
+        roots = 1 + np.roots(as_floats(of_law(corner, transfer)))
+    return complex(roots[np.abs(roots).argmax()])
+
+
+def _limit(motion: Motion, law: Environment) -> tuple[float | None, float | None]:
+    """The largest stable stiffness of a wall and the angle of its poles there."""
+    if not isinstance(law, Wall):
+        return None, None
+    damping = certain(law.damping, "damping")
+    velocity = law.velocity_filter.transfer(motion.period)
+    ends_of_bands = [last_stable(_plain(corner, velocity), float(damping)) for corner in corners(motion)]
+    if any(end is None for end in ends_of_bands):
+        return None, None
+    guess = min(end for end in ends_of_bands if end is not None)
+
+    def holds(k: Fraction) -> bool:
+        def polynomial(box: Motion) -> Any:
+            return family(box, velocity).at(k, damping)
+
+        return decided(motion, polynomial, _BOXES_OF_A_SEARCH).outcome == "stable"
+
+    search = largest_holding if motion.is_certain else _largest_below
+    found = search(holds, guess.stiffness)
+    return (found, guess.angle) if found else (None, None)
+
+
+def _largest_below(holds: Callable[[Fraction], bool], limit: float) -> float:
+    """The largest of 2⁻⁸, 2 · 2⁻⁸, … of a limit that holds, by halving; 0 if none does."""
+    low, high = 0, 1 << _HALVINGS
+    while high - low > 1:
+        middle = (low + high) // 2
+        if holds(Exact(limit * middle / (1 << _HALVINGS)).fraction):
+            low = middle
+        else:
+            high = middle
+    return limit * low / (1 << _HALVINGS)
+
+
+def _plain(motion: Motion, velocity: Any) -> Plain:
+    with precision(PRECISIONS[0]):
+        return plain(family(motion, velocity))
+
+
+def _hertz(angle: float, motion: Motion) -> float:
+    return angle / (2 * pi * float(motion.period))
+
+
+def _culprit(found: Found) -> tuple[float, float, float] | None:
+    if found.culprit is None:
+        return None
+    mass, damping, stiffness = (float(low) for low, _ in found.culprit[:3])
+    return mass, damping, stiffness
+
+
+def _claim(found: Found) -> str:
+    if found.outcome == "stable":
+        return "device and hand come to rest against this wall, after every small disturbance"
+    if found.outcome == "unstable":
+        return "a disturbance does not die out: the hand is shaken, or left to drift"
+    return "some values in the intervals are so near the limit that they were not decided"
+
+
+def _assumptions(device: Device, hand: PassiveHand, law: Environment) -> tuple[str, ...]:
+    first = "contact is kept" if law.unilateral else "the law is linear"
+    notes = [f"{first}, and the hand is {hand.describe()}"]
+    if law.clamped:
+        notes.append("the wall is not asked to pull: the disturbance is small against the pressing force")
+    if ends(device.coulomb_friction)[1] or ends(device.resolution)[1]:
+        notes.append("Coulomb friction and encoder steps are left out: near rest they decide what is felt")
+    if law.coefficients_rounded:
+        notes.append("the coefficients of H(z) are the doubles nearest to the true ones")
+    return tuple(notes)

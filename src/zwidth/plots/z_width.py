@@ -1,0 +1,198 @@
+"""The plane of walls: what is passive, what is quiet, what is stable in which hand.
+
+Regions are those of the map; the boundary of each is drawn and named, so that no meaning
+hangs on a colour.
+"""
+
+from __future__ import annotations
+
+from math import log10
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+
+from zwidth.errors import InputError
+from zwidth.plots.files import save_figure
+from zwidth.plots.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    LOOK,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    label,
+    new_figure,
+    note,
+    number,
+    pretty,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_SPEEDS = (0.1, 0.2, 0.5, 1, 2, 5, 10)
+"""Whose contours are drawn [m/s; rad/s]."""
+
+_SEEN = 10
+"""Cells along each axis that a region needs for a close-up: fewer would show the cells and not the region."""
+
+_HAND_COLOURS = (BLUE, RED, PURPLE, ORANGE, BLACK)
+_LINES = ("-", "--", "-.", ":", (0, (1, 3)))
+
+
+def save_z_width(found: xr.Dataset, path: str | Path, overwrite: bool = False) -> None:
+    """Write `z_width_figure` to a file; its ending, png, svg or pdf, says how.
+
+    Parameters
+    ----------
+    found
+        What `zwidth.z_width` returned.
+    path
+        The file to write.
+    overwrite
+        Replace a file that is already there.
+
+    Raises
+    ------
+    InputError
+        As `save_check`, or if `found` is no map.
+    """
+    save_figure(lambda: z_width_figure(found), path, overwrite)
+
+
+@rc_context(LOOK)
+def z_width_figure(found: xr.Dataset) -> Figure:
+    """The map on axes B and K, beside a close-up of what is passive and quiet where that is small.
+
+    Parameters
+    ----------
+    found
+        What `zwidth.z_width` returned.
+
+    Raises
+    ------
+    InputError
+        If it is no map.
+    """
+    if "passive" not in found or "admissible_speed" not in found:
+        raise InputError("this is no Z-width map: z_width makes one")
+    near = _corner(found)
+    figure = new_figure(10.4 if near is not None else 6.0, 4.6)
+    axes = figure.subplots(1, 2 if near is not None else 1, squeeze=False)[0]
+    draw_z_width(axes[0], found)
+    axes[0].set_title(f"{found.attrs['device']}: stable with a known hand", parse_math=False)
+    note(axes[0], _free(found))
+    if near is not None:
+        draw_z_width(axes[1], near)
+        _speeds(axes[1], near)
+        axes[1].set_title("close-up: how fast a hand may be before it gains energy")
+    return figure
+
+
+def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
+    """The same on given axes, the whole map and no close-up.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    found
+        What `zwidth.z_width` returned.
+    """
+    motion = found.attrs["motion"]
+    b, k = (_edges(found[name].values) for name in ("virtual_damping", "stiffness"))
+    speed = f"{number(found['quiet'].attrs['speed'])} {pretty(found['admissible_speed'].attrs['units'])}"
+    for name, colour, alpha, text in (
+        ("quiet", SKY, 0.35, f"no hand up to {speed} gains"),
+        ("passive", GREEN, 0.55, "passive with every hand"),
+    ):
+        shown = np.ma.masked_equal(found[name].values.astype(np.uint8), 0)
+        if shown.count():
+            axes.imshow(
+                shown, cmap=ListedColormap([colour]), alpha=alpha, extent=(b[0], b[-1], k[0], k[-1]),
+                origin="lower", aspect="auto", interpolation="nearest",
+            )  # fmt: skip
+            axes.fill_between([], [], color=colour, alpha=alpha, lw=0, label=text)
+    hands = [str(name).removeprefix("stable_") for name in found.data_vars if str(name).startswith("stable_")]
+    for place, name in enumerate(hands):
+        _outline(axes, found, name, place)
+    axes.set_xlim(b[0], b[-1])
+    axes.set_ylim(k[0], k[-1])
+    axes.set_xlabel(label("virtual_damping", motion))
+    axes.set_ylabel(label("stiffness", motion))
+    axes.legend(loc="upper right", frameon=True, framealpha=0.85, edgecolor="none")
+
+
+def _edges(middles: Array) -> Array:
+    """The edges of equal cells from their middles."""
+    half = (middles[1] - middles[0]) / 2 if len(middles) > 1 else 0.5
+    return np.append(middles - half, middles[-1] + half)
+
+
+def _outline(axes: Axes, found: xr.Dataset, name: str, place: int) -> None:
+    """The stiffest walls that are stable in one hand."""
+    values = found[f"stable_{name}"].values
+    text = "no hand" if name == "none" else name
+    colour, style = _HAND_COLOURS[place % 5], _LINES[place % 5]
+    if values.all() or not values.any():
+        everywhere = "everywhere" if values.any() else "nowhere"
+        axes.plot([], [], color=GREY, ls=style, label=f"{text}: stable {everywhere} here")
+        return
+    axes.plot(
+        found["virtual_damping"], found[f"limit_{name}"], color=colour, ls=style, lw=1.6,
+        label=f"{text}: stable below",
+    )  # fmt: skip
+
+
+def _speeds(axes: Axes, found: xr.Dataset) -> None:
+    """Contours of the admissible speed, each with its value."""
+    values = found["admissible_speed"].values
+    shown = np.log10(np.where(np.isfinite(values) & (values > 0), values, np.nan))
+    inside = [
+        level
+        for level in _SPEEDS
+        if np.nanmin(shown, initial=9) < log10(level) < np.nanmax(shown, initial=-9)
+    ]
+    if not inside or min(shown.shape) < 2:
+        return
+    drawn = axes.contour(
+        found["virtual_damping"], found["stiffness"], shown, levels=[log10(level) for level in inside],
+        colors=[GREY], linewidths=0.7, linestyles="-",
+    )  # fmt: skip
+    unit = pretty(found["admissible_speed"].attrs["units"])
+    axes.clabel(drawn, fontsize=7.5, fmt=lambda level: f"{number(10**level)} {unit}")
+
+
+def _corner(found: xr.Dataset) -> xr.Dataset | None:
+    """The part with passive and quiet walls, if it is a small part of the map and has cells enough to see."""
+    held = (found["passive"] | found["quiet"]).values
+    if not held.any():
+        return None
+    rows, columns = (int(np.flatnonzero(held.any(axis=along))[-1]) for along in (1, 0))
+    if 2 * rows > held.shape[0] and 2 * columns > held.shape[1]:
+        return None
+    if min(rows, columns) < _SEEN:
+        return None
+    return found.isel(
+        stiffness=slice(0, max(4, int(rows * 1.25) + 2)),
+        virtual_damping=slice(0, max(4, int(columns * 1.25) + 2)),
+    )
+
+
+def _free(found: xr.Dataset) -> str:
+    parts = [
+        f"{number(float(found[name]))} {pretty(found[name].attrs['units'])}"
+        for name in ("free_mass", "free_damping", "free_friction")
+    ]
+    return f"Felt in free air: {', '.join(parts)}."

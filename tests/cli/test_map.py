@@ -1,0 +1,92 @@
+"""`zwidth map`: report, JSON, picture and store, and one clear line on bad input."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import zwidth as zw
+from zwidth.cli.main import main
+
+MAP = ("map", "haptic-paddle", "--stiffness", "0:600", "--damping", "0:0.3")
+
+
+def test_the_report_and_the_json_say_the_same(capsys: pytest.CaptureFixture[str]) -> None:
+    """As `zw.z_width` has it: 2b/T less half a cell, and the device in free air."""
+    assert main(MAP) == 0
+    report = capsys.readouterr().out
+    assert main((*MAP, "--json")) == 0
+    document = json.loads(capsys.readouterr().out)
+    found = zw.z_width(zw.catalogue.device("haptic-paddle"), (0, 600), (0, "0.3"))
+    assert document["regions"]["passive"] == {
+        "largest_stiffness_N_per_m": found["largest_stiffness"].sel(region="passive").item(),
+        "cells": int(found["passive"].sum()),
+    }
+    assert "passive, every hand" in report
+    assert "298.5" in report
+    assert "free air: 0.036 kg, 0.15 N*s/m, 0.12 N" in report
+
+
+def test_options_reach_the_map(capsys: pytest.CaptureFixture[str]) -> None:
+    """Units, cells, a filter, a hand, a speed, the damping of the device itself."""
+    status = main(
+        ("map", "haptic-paddle", "--stiffness", "0:0.6 kN/m", "--damping", "-0.1:0.3", "--cells", "30x20",
+         "--velocity-filter", "one-pole 30 ms", "--hands", "finger", "--speed", "1 m/s", "--json",
+         "--device-damping", "0.3", "--rate", "2 kHz", "--workers", "1")
+    )  # fmt: skip
+    assert status == 0
+    document = json.loads(capsys.readouterr().out)
+    found = zw.z_width(
+        zw.catalogue.device("haptic-paddle", damping=0.3, rate=2000), (0, 600), ("-0.1", "0.3"), (30, 20),
+        velocity_filter=zw.OnePole(0.03), hands={"finger": zw.operators.Finger()}, speed=1,
+    )  # fmt: skip
+    assert document["cells"] == 600
+    assert set(document["regions"]) == {"passive", "quiet", "stable_finger"}
+    for name, region in document["regions"].items():
+        assert region["cells"] == int(found[name].sum())
+    assert document["free_damping_N_s_per_m"] == 0.3
+
+
+def test_a_store_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Both are written; the picture is not replaced without --force, the store is gone on with."""
+    command = (
+        *MAP,
+        "--cells",
+        "40x40",
+        "-o",
+        str(tmp_path / "map.zarr"),
+        "--plot",
+        str(tmp_path / "map.png"),
+    )
+    assert main(command) == 0
+    first = capsys.readouterr().out
+    assert (tmp_path / "map.png").stat().st_size > 10_000
+    assert main(command) == 2
+    assert "exists" in capsys.readouterr().err
+    assert main((*command, "--force")) == 0
+    assert capsys.readouterr().out == first
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("map", "haptic-paddle", "--damping", "0:1"), "--stiffness LOW:HIGH is missing"),
+        (("map", "haptic-paddle", "--stiffness", "300", "--damping", "0:1"), "--stiffness is a range"),
+        ((*MAP, "--cells", "40"), "--cells is written NxM"),
+        ((*MAP, "--cells", "40xmany"), "whole numbers"),
+        ((*MAP, "--hands", "fingr"), "did you mean"),
+        ((*MAP, "--plot", "map.gif"), "must end in"),
+        (("map", "--stiffness", "0:1", "--damping", "0:1"), "no device is given"),
+        ((*MAP, "--velocity-filter", "wavelet"), "no type"),
+    ],
+)
+def test_bad_input_is_one_line(
+    arguments: tuple[str, ...], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Status 2 and what to write instead."""
+    assert main(arguments) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1

@@ -1,0 +1,288 @@
+"""The Z-width map: each layer against another road, stores that are killed and gone on with, clusters."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import zwidth as zw
+from zwidth.maps.chunk import Place, compute
+from zwidth.maps.kernel import STABLE, UNKNOWN, UNSTABLE, decide
+from zwidth.maps.plan import plan
+from zwidth.maps.request import CHUNK, request
+from zwidth.maps.store import FORMAT
+from zwidth.operator import Dowel, Finger
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+WIDE = ((0, 30000), (0, 90))
+LAYERS = ("passive", "quiet", "admissible_speed", "stable_none", "stable_finger", "stable_dowel")
+
+
+def same(a: xr.Dataset, b: xr.Dataset) -> bool:
+    """Every layer has the same bytes."""
+    return all(a[name].values.tobytes() == b[name].values.tobytes() for name in LAYERS)
+
+
+def test_stable_cells_are_those_that_stability_proves() -> None:
+    """On a coarse grid every cell of every hand is as `zw.stability` says, one by one."""
+    found = zw.z_width(PADDLE, *WIDE, cells=(9, 11))
+    hands = {"none": None, "finger": Finger(), "dowel": Dowel(force=1)}
+    for name, hand in hands.items():
+        for k in found["stiffness"].values:
+            for b in found["virtual_damping"].values:
+                expected = zw.stability(PADDLE, zw.Wall(k, b), hand).outcome == "stable"
+                assert bool(found[f"stable_{name}"].sel(stiffness=k, virtual_damping=b)) == expected
+
+
+@pytest.mark.parametrize("delay", ["0", "0.0004", "0.002"])
+def test_stable_cells_end_at_the_boundary(delay: str) -> None:
+    """At each virtual damping the last stable cell is the last one below the curve."""
+    device = PADDLE.replace(delay=delay)
+    found = zw.z_width(device, *WIDE, cells=(300, 40))
+    k = found["stiffness"].values
+    for name in ("none", "finger", "dowel"):
+        for j, limit in enumerate(found[f"limit_{name}"].values):
+            count = 0 if np.isnan(limit) else int((k < limit).sum())
+            assert found[f"stable_{name}"].values[:, j].sum() == count
+
+
+def test_passive_cells_are_those_that_check_proves() -> None:
+    """Near both edges of the passive region, each cell as `zw.check` says; both kinds occur."""
+    found = zw.z_width(PADDLE, (0, 360), (-0.2, 0.2), cells=(12, 10))
+    outcomes = set()
+    for k in found["stiffness"].values:
+        for b in found["virtual_damping"].values:
+            mine = bool(found["passive"].sel(stiffness=k, virtual_damping=b))
+            assert not mine or zw.check(PADDLE, zw.Wall(k, b)).outcome == "passive"
+            # without delay the condition for contact made and broken is also necessary for B ≥ 0
+            assert b < 0 or mine == (k * 0.0005 + b <= 0.15)
+            outcomes.add(mine)
+    assert outcomes == {True, False}
+
+
+def test_a_cell_exactly_on_the_limit_is_passive_and_the_next_double_is_not() -> None:
+    """K = 2b/T = 300 N/m at B = 0 is met exactly, although 0.15 is no double."""
+    on = zw.z_width(PADDLE, (299, 301), ("-0.1", "0.1"), cells=(1, 1))
+    above = zw.z_width(PADDLE, (299, "301.0000000000002"), ("-0.1", "0.1"), cells=(1, 1))
+    assert on["stiffness"].item() == 300
+    assert above["stiffness"].item() > 300
+    assert on["virtual_damping"].item() == 0
+    assert bool(on["passive"])
+    assert not bool(above["passive"])
+
+
+def test_the_encoder_limits_what_is_passive() -> None:
+    """With a coarse encoder f_c ≥ (K/2 + B/T) Δ binds: K = 2f_c/Δ − 2B/T."""
+    coarse = PADDLE.replace(resolution="0.001")
+    found = zw.z_width(coarse, (0, 300), (0, "0.12"), cells=(150, 60))
+    k, b = found["stiffness"].values[:, None], found["virtual_damping"].values[None, :]
+    expected = (k * 0.0005 + b <= 0.15) & ((k / 2 + b * 1000) * 0.001 <= 0.12)
+    assert (found["passive"].values == expected).all()
+    assert 0 < expected.sum() < (k * 0.0005 + b <= 0.15).sum()
+
+
+def test_the_admissible_speed_of_a_spring_is_that_of_the_plane() -> None:
+    """v = (2f_c − KΔ)/(KT − 2b), never above it, and within 1e-12."""
+    found = zw.z_width(PADDLE, (0, 20000), ("-1e-12", "1e-12"), cells=(40, 1))
+    seen = set()
+    for k, speed in zip(found["stiffness"].values, found["admissible_speed"].values[:, 0], strict=True):
+        exact = float(zw.quantization.admissible_speed(PADDLE, k))
+        assert speed <= exact
+        assert speed == exact or speed == pytest.approx(exact, rel=1e-11)
+        seen.add("inf" if speed == np.inf else "0" if speed == 0 else "finite")
+    assert seen == {"inf", "finite", "0"}
+
+
+def test_no_fast_motion_below_the_admissible_speed_gains_energy() -> None:
+    """A thousand motions of 60 samples, random and to and fro, at that speed; at 30 times it some gain."""
+    k, b = 500.0, 0.08
+    found = zw.z_width(PADDLE, (k - 1, k + 1), (b - 0.01, b + 0.01), cells=(1, 1))
+    speed = found["admissible_speed"].item()
+    assert 0.5 < speed < 10
+    period, friction, drag, count = 1e-3, 0.12, 0.15, 22.4e-6
+    rng = np.random.default_rng(2)
+    for factor, gains in ((1.0, False), (30.0, True)):
+        moves = rng.choice([-1.0, 1.0, 0.5, -0.5], (1000, 60)) * speed * period * factor
+        moves[:500, 1::2] = -moves[:500, 0::2]
+        x = np.concatenate([np.full((1000, 2), -1e-6), np.zeros((1000, 60))], axis=1)
+        work = np.zeros(1000)
+        for n in range(60):
+            q, before = (np.floor(x[:, n + 1 - late] / count) * count for late in (0, 1))
+            force = np.where(q > 0, k * q + b * (q - before) / period, 0.0)
+            move = moves[:, n]
+            work += force * move + friction * np.abs(move) + drag * move**2 / period
+            x[:, n + 2] = x[:, n + 1] + move
+        assert (work.min() < 0) == gains
+
+
+def test_the_kernel_never_believes_a_sign_that_rounding_made() -> None:
+    """Within 1e-13 of the boundary it leaves the cell to exact arithmetic; 1e-9 away it decides rightly."""
+    ready = plan(request(PADDLE, *WIDE, (10, 10), None, {"finger": Finger()}))
+    hand = ready.hands[0]
+    for b in (1.0, 20.0, 60.0):
+        limit = zw.stability(PADDLE, zw.Wall(10, b), Finger()).max_stiffness
+        assert limit is not None
+        answers = {
+            off: decide(
+                hand.free,
+                hand.stiff,
+                hand.damped,
+                limit * (1 + off),
+                b,
+                hand.slack,
+                np.zeros((2, 9)),
+                np.zeros((2, 9)),
+            )
+            for off in (-1e-9, -1e-16, 0.0, 1e-16, 1e-9)
+        }
+        assert answers[-1e-9] == STABLE
+        assert answers[1e-9] == UNSTABLE
+        assert answers[0.0] == UNKNOWN
+
+
+def test_a_delay_of_part_of_a_sample_is_not_called_passive() -> None:
+    """No condition for contact made and broken covers it; stability is decided all the same."""
+    found = zw.z_width(PADDLE.replace(delay="0.0005"), (0, 300), (0, 1), cells=(5, 5))
+    assert not found["passive"].any()
+    assert (found["admissible_speed"] == 0).all()
+    assert found["stable_finger"].any()
+    assert np.isnan(found["limit_passive"]).all()
+
+
+def test_regions_and_free_air() -> None:
+    """The passive area is the triangle ½ (2b/T) b, to a cell; the lower end is the device itself."""
+    found = zw.z_width(PADDLE, (0, 600), (0, "0.3"), cells=(400, 400))
+    assert found["area"].sel(region="passive").item() == pytest.approx(0.5 * 300 * 0.15, rel=0.01)
+    assert found["largest_stiffness"].sel(region="passive").item() == pytest.approx(300, abs=2)
+    assert (found["free_mass"], found["free_damping"], found["free_friction"]) == (0.036, 0.15, 0.12)
+    assert found["quiet"].values[found["passive"].values].all()
+
+
+def test_threads_do_not_change_a_bit() -> None:
+    """One thread or four."""
+    one, four = (zw.z_width(PADDLE, *WIDE, cells=(300, 300), workers=n) for n in (1, 4))
+    assert same(one, four)
+
+
+def test_a_store_is_gone_on_with(tmp_path: Path) -> None:
+    """The chunks that are there are not computed again; the layers are those of a map in memory."""
+    cells, path = (300, 300), tmp_path / "map.zarr"
+    told: list[int] = []
+
+    def stop(done: int, total: int) -> None:
+        told.append(done)
+        if done == 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        zw.z_width(PADDLE, *WIDE, cells=cells, path=path, progress=stop, workers=1)
+    again: list[int] = []
+    found = zw.z_width(PADDLE, *WIDE, cells=cells, path=path, progress=lambda done, total: again.append(done))
+    assert told == [1, 2, 3, 4]
+    assert again == [5, 6, 7, 8, 9]
+    assert same(found, zw.z_width(PADDLE, *WIDE, cells=cells))
+    opened = xr.open_zarr(path, consolidated=False)
+    assert (opened["passive"].values == found["passive"].values).all()
+
+
+SLOW = """
+import sys, time
+import zwidth as zw
+
+def slowly(done, total):
+    print(done, flush=True)
+    time.sleep(0.2)
+
+device, walls = zw.catalogue.device("haptic-paddle"), ((0, 30000), (0, 90))
+zw.z_width(device, *walls, cells=(500, 500), path=sys.argv[1], progress=slowly)
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="there is no SIGKILL here")
+def test_a_map_killed_twice_loses_nothing(tmp_path: Path) -> None:
+    """SIGKILL at chunk 3, and again at chunk 7: what was done stays, and the end is the same to the bit."""
+    path = tmp_path / "killed.zarr"
+    for at in (3, 7):
+        process = subprocess.Popen([sys.executable, "-c", SLOW, str(path)], stdout=subprocess.PIPE, text=True)
+        assert process.stdout is not None
+        for line in process.stdout:
+            if int(line) >= at:
+                os.kill(process.pid, signal.SIGKILL)
+                break
+        assert process.wait() == -signal.SIGKILL
+        process.stdout.close()
+        done = xr.open_zarr(path, consolidated=False)["done"].values
+        assert at <= done.sum() < 16
+    left: list[int] = []
+    found = zw.z_width(PADDLE, *WIDE, cells=(500, 500), path=path, progress=lambda n, total: left.append(n))
+    assert 0 < len(left) <= 16 - 7
+    assert same(found, zw.z_width(PADDLE, *WIDE, cells=(500, 500)))
+
+
+def test_a_store_stopped_before_its_arrays_were_there(tmp_path: Path) -> None:
+    """A group that says which map was begun, and nothing else: it is begun again."""
+    zarr = pytest.importorskip("zarr")
+    asked = request(PADDLE, *WIDE, (5, 5), None, None)
+    path = tmp_path / "map.zarr"
+    zarr.create_group(path, attributes={"format": FORMAT, "begun": asked.digest()})
+    found = zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    assert same(found, zw.z_width(PADDLE, *WIDE, cells=(5, 5)))
+
+
+def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:
+    """Another range, or a directory with something else in it; neither is touched."""
+    path = tmp_path / "map.zarr"
+    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    with pytest.raises(zw.InputError, match="holds another map"):
+        zw.z_width(PADDLE, (0, 1), (0, 1), cells=(5, 5), path=path)
+    (tmp_path / "else").mkdir()
+    (tmp_path / "else" / "notes.txt").write_text("mine")
+    with pytest.raises(zw.InputError, match="holds"):
+        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=tmp_path / "else")
+    assert (tmp_path / "else" / "notes.txt").read_text() == "mine"
+
+
+def test_a_cluster_gives_the_same_bits() -> None:
+    """Two workers, each a process of its own, against the threads of this one."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, scheduler_port=0
+    ) as cluster:
+        there = zw.z_width(PADDLE, *WIDE, cells=(300, 300), address=cluster.scheduler_address)
+    assert same(there, zw.z_width(PADDLE, *WIDE, cells=(300, 300)))
+
+
+def test_chunks_tile_the_map() -> None:
+    """The last chunk is the rest: no cell twice, none missing."""
+    asked = request(PADDLE, *WIDE, (CHUNK + 3, 5), None, {"none": None})
+    ready = plan(asked)
+    assert asked.chunks == (2, 1)
+    assert [compute(ready, Place(i, 0))["passive"].shape for i in (0, 1)] == [(CHUNK, 5), (3, 5)]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"stiffness": (10, 0)}, "smaller to its larger end"),
+        ({"stiffness": (-1, 5)}, "pulls the hand in"),
+        ({"cells": (0, 5)}, "whole number ≥ 1"),
+        ({"cells": (100000, 100000)}, "at most"),
+        ({"hands": {"soft": zw.PassiveHand(mass=(0, 1))}}, "hand soft"),
+        ({"device": PADDLE.replace(damping=(0.1, 0.2))}, "interval"),
+        ({"device": zw.Device(damping=1, rate=1000)}, "mass"),
+        ({"workers": 0}, "workers"),
+        ({"speed": 0}, "speed"),
+    ],
+)
+def test_what_cannot_be_mapped(change: dict[str, object], message: str) -> None:
+    """One clear message each."""
+    given = {"device": PADDLE, "stiffness": (0, 10), "virtual_damping": (0, 1), "cells": (3, 3), **change}
+    with pytest.raises(zw.InputError, match=message):
+        zw.z_width(**given)

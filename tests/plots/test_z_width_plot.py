@@ -1,0 +1,59 @@
+"""The picture of a Z-width map, read back from its artists."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth import plots
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+
+
+def legend(axes: object) -> list[str]:
+    """The words of the legend."""
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+def test_regions_curves_and_free_air() -> None:
+    """The map, a close-up of what is passive in it, and the lower end of the Z-width under it."""
+    found = zw.z_width(PADDLE, (0, 30000), (0, 90), (900, 3000))
+    whole, near = plots.z_width_figure(found).axes
+    assert legend(whole) == [
+        "no hand up to 0.5 m/s gains", "passive with every hand",
+        "no hand: stable below", "finger: stable below", "dowel: stable below",
+    ]  # fmt: skip
+    curves = [line for line in whole.lines if len(line.get_xdata())]
+    assert (curves[0].get_ydata() == found["limit_none"].values).sum() > 2000
+    assert whole.get_xlim() == pytest.approx((0, 90))
+    assert near.get_xlim()[1] < 9
+    assert any("0.036 kg" in text.get_text() for text in whole.texts)
+
+
+def test_no_close_up_where_the_map_is_one() -> None:
+    """Passive walls fill the picture: one pair of axes; a hand that is stable everywhere has no curve."""
+    found = zw.z_width(PADDLE, (0, 300), (0, "0.15"), (40, 40))
+    (axes,) = plots.z_width_figure(found).axes
+    assert "finger: stable everywhere here" in legend(axes)
+    assert not [line for line in axes.lines if np.size(line.get_xdata())]
+
+
+def test_a_close_up_needs_cells() -> None:
+    """Where a passive wall is a cell or two, no picture is made of them."""
+    found = zw.z_width(PADDLE, (0, 3000), (0, 5), (50, 50))
+    assert found["passive"].any()
+    assert len(plots.z_width_figure(found).axes) == 1
+
+
+def test_speeds_are_written_on_their_contours() -> None:
+    """In the close-up the contour of 1 m/s says so."""
+    found = zw.z_width(PADDLE, (0, 3000), (0, 5), (300, 300))
+    _, near = plots.z_width_figure(found).axes
+    assert "1 m/s" in {text.get_text() for text in near.texts}
+
+
+def test_only_maps_are_drawn() -> None:
+    """A boundary is no map."""
+    with pytest.raises(zw.InputError, match="no Z-width map"):
+        plots.z_width_figure(zw.stability_boundary(PADDLE, points=5))
