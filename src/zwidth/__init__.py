@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.passivity import two_port
+    from zwidth.passivity.absolute import AbsoluteStability, absolute_stability
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "AbsoluteStability",
     "BackwardDifference",
     "Bounding",
     "Bracket",
@@ -83,6 +85,7 @@ __all__ = [
     "Window",
     "Witness",
     "WorstHand",
+    "absolute_stability",
     "amplifiers",
     "catalogue",
     "check",
@@ -114,6 +117,8 @@ __all__ = [
 ]
 
 _LATER = {
+    "AbsoluteStability": "zwidth.passivity.absolute",
+    "absolute_stability": "zwidth.passivity.absolute",
     "Bounding": "zwidth.passivity.bounding",
     "check_bounding": "zwidth.passivity.bounding",
     "Bracket": "zwidth.passivity.worst_hand",

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from zwidth.passivity.absolute.plant import Plant
-from zwidth.passivity.absolute.search import _angles
+from zwidth.passivity.absolute.search import frequencies
 
 
 class LinearLimit(NamedTuple):
@@ -26,13 +26,13 @@ def linear_limit(plant: Plant) -> LinearLimit:
     """The smallest slope with a closed-loop pole on the unit circle."""
 
     def imaginary(angle: float) -> float:
-        return float(plant.response(np.array([angle]))[0].imag)
+        return plant.response_at(angle).imag
 
-    angles = _angles(plant)[1:-1]
+    angles = frequencies(plant)[1:-1]
     sides = plant.response(angles).imag
     places = np.flatnonzero(np.sign(sides[:-1]) * np.sign(sides[1:]) < 0)
     crossings = [brentq(imaginary, angles[i], angles[i + 1], xtol=1e-15) for i in places]
     candidates = np.array([0.0, *crossings, np.pi])
     values = plant.response(candidates).real
-    slopes = [(-1 / g, float(a)) for g, a in zip(values, candidates, strict=True) if g < 0]
+    slopes = [(float(-1 / g), float(a)) for g, a in zip(values, candidates, strict=True) if g < 0]
     return LinearLimit(*min(slopes, default=(inf, 0.0)))

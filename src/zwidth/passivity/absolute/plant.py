@@ -52,6 +52,10 @@ class Plant:
         z = np.exp(1j * angles)
         return np.polyval(self.numerator, z) / np.polyval(self.denominator, z)
 
+    def response_at(self, angle: float) -> complex:
+        """G(e^{jθ}) at one θ."""
+        return complex(self.response(np.array([angle]))[0])
+
 
 def given_plant(system: PulseTransferFunction) -> Plant:
     """G(z) as typed: stable and strictly proper.

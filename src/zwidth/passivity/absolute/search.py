@@ -55,7 +55,7 @@ def largest_slope(plant: Plant, criterion: Criterion, reach: int, most: float) -
 class _Search:
     def __init__(self, plant: Plant, terms: tuple[Term, ...]) -> None:
         self.terms = terms
-        self.angles = _angles(plant)
+        self.angles = frequencies(plant)
         self.response = plant.response(self.angles)
         self.chosen = set(range(0, len(self.angles), _COARSE)) | {len(self.angles) - 1}
 
@@ -101,7 +101,7 @@ def _valleys(total: Array, level: float) -> list[int]:
     return [int(i) for i in np.flatnonzero(dips)]
 
 
-def _angles(plant: Plant) -> Array:
+def frequencies(plant: Plant) -> Array:
     """Even, even in the logarithm, and close about every pole near the circle."""
     even = np.linspace(0.0, np.pi, _FINE)
     low = np.pi * np.logspace(-6, 0, _FINE // 2)
