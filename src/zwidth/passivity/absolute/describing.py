@@ -6,8 +6,8 @@
     mean      x̄ = −G(1) (K a/π)(sin β − β cos β)
     gap       g = a [cos β − G(1) (K/π)(sin β − β cos β)]
 
-A heuristic: it neglects every harmonic and that a sampled motion meets the surface at samples only.  It bounds
-nothing, from above or below.
+A heuristic: it neglects every harmonic, and that a sampled motion meets the surface at samples only.  It
+bounds nothing, from above or below.
 """
 
 from __future__ import annotations

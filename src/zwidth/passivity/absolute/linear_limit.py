@@ -1,6 +1,6 @@
-"""The slope at which a linear spring in the place of the wall makes the loop unstable: no wall can be proved beyond.
+"""The slope at which a linear spring in the place of the wall makes the loop unstable: no proof goes beyond.
 
-    K = −1 / G(e^{jθ}) where G is real and < 0, the smallest over θ in [0, π]
+K = −1 / G(e^{jθ}) where G is real and < 0, the smallest over θ in [0, π]
 """
 
 from __future__ import annotations

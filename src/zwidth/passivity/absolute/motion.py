@@ -21,12 +21,15 @@ from zwidth.passivity.checker.absolute_plant import read_plant
 
 _STARTS = 36
 _SETTLING = 6000
-_CANDIDATES = 24
+_CANDIDATES = 10
 _CORRECTIONS = 40
+_HALVINGS = 14
 _PRECISION = 256
-_RUNS = 3
+_RUNS = 4
 _LARGEST = 1e6
-_FACTORS = (1.001, 1.002, 1.005, 1.01, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0, 5.5, 6.0, 7.0, 8.0, 10.0)
+_LOST = 1e300
+_NEAR = (1.001, 1.002, 1.005, 1.01, 1.02, 1.05, 1.12, 1.25, 1.5)
+_FACTORS = (*_NEAR, 1.75, 2.0, 2.5, 3.0, 4.0, 5.0, 5.5, 6.0, 7.0, 8.0, 10.0)
 _SMALLEST = 1e-6
 """Of |gap|: a smaller swing is rest."""
 
@@ -36,9 +39,9 @@ Array = NDArray[np.float64]
 class PeriodicMotion(NamedTuple):
     """A motion that repeats itself for ever, without any force from outside.
 
-    `positions` are from where the hand rests without a wall; the wall begins at `gap`. `growth` is the largest
-    factor by which a small deviation grows in one period: below 1 the motion attracts. `basin` is the share of
-    the simulated starts that did not come to rest.
+    `positions` are from where the hand rests without a wall; the wall begins at `gap`. `growth` is the
+    largest factor by which a small deviation grows in one period: below 1 the motion attracts. `basin` is the
+    share of the simulated starts that did not come to rest.
     """
 
     slope: float
@@ -63,7 +66,7 @@ class PeriodicMotion(NamedTuple):
         return max(self.positions) - min(self.positions)
 
 
-def periodic_motion(plant: Plant, slope: float, gap: float, longest: int = 240) -> PeriodicMotion | None:
+def periodic_motion(plant: Plant, slope: float, gap: float, longest: int = 120) -> PeriodicMotion | None:
     """A periodic motion of at most `longest` samples, its pattern certain; None if none was found.
 
     Parameters
@@ -97,7 +100,7 @@ def periodic_motion(plant: Plant, slope: float, gap: float, longest: int = 240) 
     return found
 
 
-def smallest_motion(plant: Plant, low: float, gap: float, longest: int = 240) -> PeriodicMotion | None:
+def smallest_motion(plant: Plant, low: float, gap: float, longest: int = 120) -> PeriodicMotion | None:
     """The periodic motion of the smallest slope found, a few slopes from `low` up to ten times as much tried.
 
     Not the smallest there is: between those slopes, and with longer periods, there are others.
@@ -105,8 +108,29 @@ def smallest_motion(plant: Plant, low: float, gap: float, longest: int = 240) ->
     for factor in _FACTORS:
         found = periodic_motion(plant, low * factor, gap, longest)
         if found is not None:
-            return found
+            return _softened(plant, found, low)
     return None
+
+
+def _softened(plant: Plant, motion: PeriodicMotion, low: float) -> PeriodicMotion:
+    """The same motion, followed to the smallest slope down to which it exists."""
+    best = motion
+    for _ in range(_HALVINGS):
+        slope = (low + best.slope) / 2
+        positions = _corrected(plant, slope, motion.gap, np.array(best.positions))
+        if positions is None or not _moves(plant, slope, motion.gap, positions):
+            low = slope
+            continue
+        growth = _growth(plant, slope, positions > motion.gap)
+        best = motion._replace(slope=slope, positions=tuple(positions.tolist()), growth=growth)
+    return best
+
+
+def _moves(plant: Plant, slope: float, gap: float, positions: Array) -> bool:
+    """True for a motion, not rest, whose pattern is certain."""
+    if np.ptp(positions) <= _SMALLEST * abs(gap):
+        return False
+    return _is_certain(plant, slope, gap, positions > gap)
 
 
 def _simulated(plant: Plant, slope: float, gap: float) -> list[Array]:
@@ -125,7 +149,7 @@ def _simulated(plant: Plant, slope: float, gap: float) -> list[Array]:
         for j in range(_SETTLING):
             kept[j] = (c @ state)[0]
             state = a @ state - b @ (slope * np.maximum(kept[j] - gap, 0.0))[None, :]
-    kept = np.nan_to_num(kept[-_SETTLING // 4 :], nan=np.inf)
+    kept = np.nan_to_num(kept[-_SETTLING // 4 :], nan=_LOST, posinf=_LOST, neginf=-_LOST)
     return [kept[:, i] for i in range(_STARTS)]
 
 
@@ -141,7 +165,9 @@ def _corrected(plant: Plant, slope: float, gap: float, positions: Array) -> Arra
     kernel = np.fft.ifft(plant.response(angles)).real
     moved = kernel[(np.arange(n)[:, None] - np.arange(n)[None, :]) % n]
     inside = positions > gap
-    for _ in range(_CORRECTIONS):
+    tried: set[bytes] = set()
+    while inside.tobytes() not in tried and len(tried) < _CORRECTIONS:
+        tried.add(inside.tobytes())
         force = moved * (slope * inside)
         try:
             positions = np.linalg.solve(np.eye(n) + force, gap * force.sum(axis=1))
@@ -154,14 +180,15 @@ def _corrected(plant: Plant, slope: float, gap: float, positions: Array) -> Arra
 
 
 def _is_certain(plant: Plant, slope: float, gap: float, inside: NDArray[np.bool_]) -> bool:
-    """D x + K N s (x − g) = 0 around the period, solved in balls: every sample is on its side of the surface."""
+    """D x + K N s (x − g) = 0 around the period, solved in balls: every sample on its side of the surface."""
     enclosed = read_plant(plant.source)
     n = len(inside)
     saved = ctx.prec
     try:
         ctx.prec = _PRECISION
         top, bottom = (
-            [arb(_ball(m), _ball(r)) for m, r in zip(part.middle, part.radius, strict=True)] for part in enclosed
+            [arb(_ball(m), _ball(r)) for m, r in zip(part.middle, part.radius, strict=True)]
+            for part in enclosed
         )
         rows = [[arb(0)] * n for _ in range(n)]
         right = [arb(0) for _ in range(n)]

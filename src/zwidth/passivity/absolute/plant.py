@@ -1,4 +1,4 @@
-"""The linear part of the loop, seen from the wall: what the wall's force does to the position it is computed from.
+"""The linear part of the loop, seen from the wall: what its force does to the position it is computed from.
 
     x = −G f,    f = φ(x)
 
@@ -50,7 +50,8 @@ class Plant:
     def response(self, angles: NDArray[np.float64]) -> NDArray[np.complex128]:
         """G(e^{jθ})."""
         z = np.exp(1j * angles)
-        return np.polyval(self.numerator, z) / np.polyval(self.denominator, z)
+        found: NDArray[np.complex128] = np.polyval(self.numerator + 0j, z) / np.polyval(self.denominator, z)
+        return found
 
     def response_at(self, angle: float) -> complex:
         """G(e^{jθ}) at one θ."""
@@ -70,7 +71,7 @@ def given_plant(system: PulseTransferFunction) -> Plant:
         top = top[1:]
     if not top or len(top) >= len(bottom):
         raise InputError(
-            "G(z) must have fewer zeros than poles: else force and position of one sample depend on each other"
+            "G(z) must have fewer zeros than poles: else force and position of a sample depend on each other"
         )
     scale = np.lcm.reduce([int(c.denominator) for c in bottom])
     if not is_schur([int(c * int(scale)) for c in reversed(bottom)]):

@@ -1,4 +1,4 @@
-"""From weights to a certificate: rounded to rationals, proved exactly, the slope lowered until the proof holds."""
+"""From weights to a certificate: rounded to rationals, proved exactly, the slope lowered until that holds."""
 
 from __future__ import annotations
 

@@ -60,9 +60,7 @@ def _velocity(device: Device, hand: LinearHand, motion: PeriodicMotion) -> float
     period = float(device.exact("sample_period"))
     late, part = divmod(float(device.exact("delay")) / period, 1.0)
     whole, rest = expm(flow * period), expm(flow * period * (1 - part))
-    new, old = (
-        motion.slope * max(motion.positions[-int(late) - i] - motion.gap, 0.0) for i in (0, 1)
-    )
+    new, old = (motion.slope * max(motion.positions[-int(late) - i] - motion.gap, 0.0) for i in (0, 1))
     pushed = rest[0, 2] * new + (whole[0, 2] - rest[0, 2]) * old
     first, second = motion.positions[:2]
     return float((second - whole[0, 0] * first - pushed) / whole[0, 1])

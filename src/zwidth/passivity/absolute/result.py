@@ -22,7 +22,7 @@ from zwidth.passivity.document import to_json
 from zwidth.quantity.exact import Exact
 
 _MOST = 1e9
-"""Times the smallest scale of G: where a linear spring never makes it unstable, slopes are sought up to here."""
+"""Over |G(1)|: slopes are sought up to here where a linear spring never makes the loop unstable."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ class AbsoluteStability:
     linear_limit
         K at which a linear spring vibrates, and θ = ωT of the vibration: no slope beyond it can be proved.
     pressing, resting
-        The periodic motion of the smallest slope found with a one-sided wall, for a hand that presses (it rests
-        inside the surface) and for one that rests off the wall; None where none was found.
+        The periodic motion of the smallest slope found with a one-sided wall, for a hand that presses (it
+        rests inside the surface) and for one that rests off the wall; None where none was found.
     plant
         G, rounded.
     """
@@ -155,7 +155,9 @@ def _plant(plant: PulseTransferFunction | Device, hand: LinearHand | Operator | 
         raise InputError("which hand? For every passive hand at once see zw.check; here it is a known one")
     found = touched_plant(plant, hand)
     if (hand.hand if isinstance(hand, Operator) else hand).stiffness <= 0:
-        raise InputError("the hand needs a spring, stiffness > 0: else the device may rest anywhere off the wall")
+        raise InputError(
+            "the hand needs a spring, stiffness > 0: else the device rests anywhere off the wall"
+        )
     return found
 
 

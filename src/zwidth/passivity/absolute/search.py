@@ -88,7 +88,9 @@ def _programme(table: Array) -> tuple[float, NDArray[np.float64] | None]:
     total = np.append(np.ones(size), 0.0)[None, :]
     limits = [(0, None)] * size + [(None, None)]
     bound = np.hstack([-table, np.ones((rows, 1))])
-    result = linprog(cost, A_ub=bound, b_ub=np.zeros(rows), A_eq=total, b_eq=[1.0], bounds=limits, method="highs")
+    result = linprog(
+        cost, A_ub=bound, b_ub=np.zeros(rows), A_eq=total, b_eq=[1.0], bounds=limits, method="highs"
+    )
     if not result.success:
         return 0.0, None
     return -result.fun, np.maximum(result.x[:-1], 0.0)

@@ -14,7 +14,7 @@ A sum of them with weights ≥ 0, the circle's > 0, that is > 0 at every frequen
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,7 +51,7 @@ def columns(terms: tuple[Term, ...], response: NDArray[np.complex128], angles: A
     """The value of every term at every frequency."""
     z, loop = np.exp(1j * angles), 1 + slope * response
 
-    def value(term: Term) -> Array:
+    def value(term: Term) -> Any:
         if term.kind == "circle":
             return loop.real
         if term.kind == "convexity":

@@ -60,7 +60,9 @@ def _touched(loop: Mapping[str, Any]) -> Plant:
     mass, b, hand_mass, c, k, period, delay = (_quantity(loop, name) for name in names)
     total, damping = mass + hand_mass, b + c
     if min(mass, damping, k, period) <= 0 or min(b, c, hand_mass, delay) < 0:
-        raise Invalid("m, b + c, k and T must be > 0, and b, c, m_h and the delay ≥ 0: else G(z) is not stable")
+        raise Invalid(
+            "m, b + c, k and T must be > 0, and b, c, m_h and the delay ≥ 0: else G(z) is not stable"
+        )
     whole, part = delay // period, delay / period % 1
     if whole > MOST_COEFFICIENTS // 2:
         raise Invalid("the delay is too many samples long")
@@ -103,9 +105,7 @@ def _exponential(spring: Fraction, loss: Fraction, s: Fraction) -> tuple[list[_B
     term = [list(row) for row in rows]
     for n in range(1, TERMS):
         step = s / n
-        term = [
-            [-spring * row[1] * step, (row[0] - loss * row[1]) * step, row[1] * step] for row in term
-        ]
+        term = [[-spring * row[1] * step, (row[0] - loss * row[1]) * step, row[1] * step] for row in term]
         rows = [[x + y for x, y in zip(r, t, strict=True)] for r, t in zip(rows, term, strict=True)]
     rest = Fraction(norm**TERMS) / factorial(TERMS) / (1 - norm / TERMS) + Fraction(1, GRID)
     ball = [[(Fraction(round(x * GRID), GRID), rest) for x in row] for row in rows]
