@@ -46,7 +46,10 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """ "spring", "contact", "linear", "quantized", "delays" or "force bounding"; of several the first."""
+        """ "spring", "contact", "linear", "quantized", "delays", "force bounding" or "absolute stability".
+
+        Of several the first.
+        """
         return str(self.documents[0]["kind"])
 
     @property

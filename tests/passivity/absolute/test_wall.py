@@ -137,6 +137,13 @@ def test_saved_and_verified(result, tmp_path):
     assert not verify_document(read_document(path)).valid
 
 
+@pytest.mark.parametrize(("slope", "gap", "longest"), [(0.0, 1.0, 10), (9.0, 0.0, 10), (9.0, 1.0, 1)])
+def test_motions_of_nothing_are_refused(result, slope, gap, longest):
+    """A slope of 0, a wall at the anchor or a period of one sample are refused."""
+    with pytest.raises(zw.InputError, match="must be > 0"):
+        periodic_motion(result.plant, slope, gap, longest)
+
+
 @pytest.mark.parametrize(
     ("plant", "hand", "words"),
     [

@@ -1,39 +1,33 @@
-"""Motions that a one-sided wall sustains: periodic, each sample inside or outside, solved and not simulated.
+"""Motions that a one-sided wall sustains: periodic, and found by solving, not by waiting.
 
     f = K max(x − g, 0),    x(j) = −Σ G_n(j − i) f(i),    i, j over one period of n samples
 
-For a given pattern of samples inside this is linear in x.  The pattern is guessed from simulated motions and
-corrected until the solution has the pattern it was computed for (Newton's method for a piecewise linear
-equation).  Then it is solved once more with error bounds, and the signs of all x − g are certain.
+The pattern of samples inside is guessed, from simulated motions and from the simplest patterns, and corrected
+until the solution has the pattern it was computed for; see `orbit`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from flint import arb, arb_mat, ctx, fmpq
-from numpy.typing import NDArray
-from scipy.signal import tf2ss
 
+from zwidth.errors import InputError
+from zwidth.passivity.absolute.orbit import Array, corrected, growth_of, is_certain, returns, simulated
 from zwidth.passivity.absolute.plant import Plant
-from zwidth.passivity.checker.absolute_plant import read_plant
 
-_STARTS = 36
-_SETTLING = 6000
-_CANDIDATES = 10
-_CORRECTIONS = 40
-_HALVINGS = 14
-_PRECISION = 256
 _RUNS = 4
+_SHORT = 14
+"""Periods up to which every pattern with one touch is tried."""
+
 _LARGEST = 1e6
-_LOST = 1e300
+_SMALLEST = 1e-6
+"""Of |gap|: a smaller swing is rest, larger positions are on their way to infinity."""
+
 _NEAR = (1.001, 1.002, 1.005, 1.01, 1.02, 1.05, 1.12, 1.25, 1.5)
 _FACTORS = (*_NEAR, 1.75, 2.0, 2.5, 3.0, 4.0, 5.0, 5.5, 6.0, 7.0, 8.0, 10.0)
-_SMALLEST = 1e-6
-"""Of |gap|: a smaller swing is rest."""
-
-Array = NDArray[np.float64]
+_HALVINGS = 14
 
 
 class PeriodicMotion(NamedTuple):
@@ -69,6 +63,8 @@ class PeriodicMotion(NamedTuple):
 def periodic_motion(plant: Plant, slope: float, gap: float, longest: int = 120) -> PeriodicMotion | None:
     """A periodic motion of at most `longest` samples, its pattern certain; None if none was found.
 
+    One that attracts is preferred.
+
     Parameters
     ----------
     plant
@@ -78,32 +74,40 @@ def periodic_motion(plant: Plant, slope: float, gap: float, longest: int = 120) 
     gap
         From where the hand rests to the surface, ≠ 0; < 0 for a hand that presses.
     longest
-        Longest period tried [samples].
+        Longest period tried [samples], 2 … 1000.
+
+    Raises
+    ------
+    InputError
+        If a number is out of its bound.
     """
-    runs = _simulated(plant, slope, gap)
+    if not slope > 0 or gap == 0 or not 2 <= longest <= 1000:
+        raise InputError(
+            f"slope must be > 0, gap not 0 and longest 2 … 1000, got {slope:g}, {gap:g} and {longest}: "
+            "a wall at the anchor itself has motions of every size or none"
+        )
+    runs = simulated(plant, slope, gap)
     alive = [run for run in runs if np.ptp(run) > _SMALLEST * abs(gap)]
-    finite = [run for run in alive if np.abs(run).max() < _LARGEST * abs(gap)]
     found: PeriodicMotion | None = None
-    for run in finite[:: max(1, len(finite) // _RUNS)]:
-        for period in _returns(run, longest):
-            positions = _corrected(plant, slope, gap, run[-period:])
-            if positions is None or np.ptp(positions) <= _SMALLEST * abs(gap):
-                continue
-            growth = _growth(plant, slope, positions > gap)
-            if found is not None and growth >= min(found.growth, 1.0):
-                continue
-            if _is_certain(plant, slope, gap, positions > gap):
-                share = len(alive) / len(runs)
-                found = PeriodicMotion(slope, gap, tuple(positions.tolist()), growth, share)
-                if growth < 1:
-                    return found
+    for guess in _guesses(alive, gap, longest):
+        positions = corrected(plant, slope, gap, guess)
+        if positions is None or np.ptp(positions) <= _SMALLEST * abs(gap):
+            continue
+        growth = growth_of(plant, slope, positions > gap)
+        if found is not None and growth >= min(found.growth, 1.0):
+            continue
+        if is_certain(plant, slope, gap, positions > gap):
+            share = len(alive) / len(runs)
+            found = PeriodicMotion(slope, gap, tuple(positions.tolist()), growth, share)
+            if growth < 1:
+                break
     return found
 
 
 def smallest_motion(plant: Plant, low: float, gap: float, longest: int = 120) -> PeriodicMotion | None:
     """The periodic motion of the smallest slope found, a few slopes from `low` up to ten times as much tried.
 
-    Not the smallest there is: between those slopes, and with longer periods, there are others.
+    Not the smallest there is: between those slopes, and with other patterns, there may be others.
     """
     for factor in _FACTORS:
         found = periodic_motion(plant, low * factor, gap, longest)
@@ -112,111 +116,30 @@ def smallest_motion(plant: Plant, low: float, gap: float, longest: int = 120) ->
     return None
 
 
+def _guesses(runs: list[Array], gap: float, longest: int) -> Iterator[Array]:
+    """One period each: ends of simulated motions, then one touch of every length."""
+    finite = [run for run in runs if np.abs(run).max() < _LARGEST * abs(gap)]
+    for run in finite[:: max(1, len(finite) // _RUNS)]:
+        for period in returns(run, longest):
+            yield run[-period:]
+    for period in range(2, min(_SHORT, longest) + 1):
+        for touches in range(1, period):
+            yield np.where(np.arange(period) < touches, gap + 1.0, gap - 1.0)
+
+
 def _softened(plant: Plant, motion: PeriodicMotion, low: float) -> PeriodicMotion:
     """The same motion, followed to the smallest slope down to which it exists."""
-    best = motion
+    best, gap = motion, motion.gap
     for _ in range(_HALVINGS):
         slope = (low + best.slope) / 2
-        positions = _corrected(plant, slope, motion.gap, np.array(best.positions))
-        if positions is None or not _moves(plant, slope, motion.gap, positions):
+        positions = corrected(plant, slope, gap, np.array(best.positions))
+        if positions is None or np.ptp(positions) <= _SMALLEST * abs(gap):
             low = slope
-            continue
-        growth = _growth(plant, slope, positions > motion.gap)
-        best = motion._replace(slope=slope, positions=tuple(positions.tolist()), growth=growth)
-    return best
-
-
-def _moves(plant: Plant, slope: float, gap: float, positions: Array) -> bool:
-    """True for a motion, not rest, whose pattern is certain."""
-    if np.ptp(positions) <= _SMALLEST * abs(gap):
-        return False
-    return _is_certain(plant, slope, gap, positions > gap)
-
-
-def _simulated(plant: Plant, slope: float, gap: float) -> list[Array]:
-    """The last samples of motions from starts all around."""
-    a, b, c, _ = tf2ss(plant.numerator, plant.denominator)
-    rng = np.random.default_rng(0)
-    state = rng.normal(size=(len(a), _STARTS))
-    reach = np.zeros(_STARTS)
-    free = state.copy()
-    for _ in range(200):  # the scale of a start is how far it would swing without a wall
-        reach = np.maximum(reach, np.abs(c @ free)[0])
-        free = a @ free
-    state *= abs(gap) * np.logspace(0.2, 3.5, _STARTS) / reach
-    kept = np.empty((_SETTLING, _STARTS))
-    with np.errstate(over="ignore", invalid="ignore"):
-        for j in range(_SETTLING):
-            kept[j] = (c @ state)[0]
-            state = a @ state - b @ (slope * np.maximum(kept[j] - gap, 0.0))[None, :]
-    kept = np.nan_to_num(kept[-_SETTLING // 4 :], nan=_LOST, posinf=_LOST, neginf=-_LOST)
-    return [kept[:, i] for i in range(_STARTS)]
-
-
-def _returns(run: Array, longest: int) -> list[int]:
-    """Periods after which the run nearly repeats, the best first."""
-    errors = {n: float(np.abs(run[n:] - run[:-n]).max()) for n in range(2, longest + 1)}
-    return sorted(errors, key=errors.__getitem__)[:_CANDIDATES]
-
-
-def _corrected(plant: Plant, slope: float, gap: float, positions: Array) -> Array | None:
-    n = len(positions)
-    angles = 2 * np.pi * np.arange(n) / n
-    kernel = np.fft.ifft(plant.response(angles)).real
-    moved = kernel[(np.arange(n)[:, None] - np.arange(n)[None, :]) % n]
-    inside = positions > gap
-    tried: set[bytes] = set()
-    while inside.tobytes() not in tried and len(tried) < _CORRECTIONS:
-        tried.add(inside.tobytes())
-        force = moved * (slope * inside)
-        try:
-            positions = np.linalg.solve(np.eye(n) + force, gap * force.sum(axis=1))
-        except np.linalg.LinAlgError:
-            return None
-        if ((positions > gap) == inside).all():
-            return positions
-        inside = positions > gap
-    return None
-
-
-def _is_certain(plant: Plant, slope: float, gap: float, inside: NDArray[np.bool_]) -> bool:
-    """D x + K N s (x − g) = 0 around the period, solved in balls: every sample on its side of the surface."""
-    enclosed = read_plant(plant.source)
-    n = len(inside)
-    saved = ctx.prec
-    try:
-        ctx.prec = _PRECISION
-        top, bottom = (
-            [arb(_ball(m), _ball(r)) for m, r in zip(part.middle, part.radius, strict=True)]
-            for part in enclosed
-        )
-        rows = [[arb(0)] * n for _ in range(n)]
-        right = [arb(0) for _ in range(n)]
-        stiff, far = arb(slope), arb(gap)
-        for j in range(n):
-            for lead, own in enumerate(bottom):
-                rows[j][(j + lead) % n] += own
-            for lead, own in enumerate(top):
-                i = (j + lead) % n
-                if inside[i]:
-                    rows[j][i] += stiff * own
-                    right[j] += stiff * own * far
-        try:
-            found = arb_mat(rows).solve(arb_mat([[x] for x in right]))
-        except ZeroDivisionError:
-            return False
-        return all(bool(found[j, 0] > far if inside[j] else found[j, 0] < far) for j in range(n))
-    finally:
-        ctx.prec = saved
-
-
-def _ball(value: object) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))  # type: ignore[attr-defined]
-
-
-def _growth(plant: Plant, slope: float, inside: NDArray[np.bool_]) -> float:
-    a, b, c, _ = tf2ss(plant.numerator, plant.denominator)
-    total = np.eye(len(a))
-    for touches in inside:
-        total = (a - slope * b @ c if touches else a) @ total
-    return float(np.abs(np.linalg.eigvals(total)).max())
+        elif is_certain(plant, slope, gap, positions > gap):
+            growth = growth_of(plant, slope, positions > gap)
+            best = motion._replace(slope=slope, positions=tuple(positions.tolist()), growth=growth)
+        else:
+            low = slope
+    runs = simulated(plant, best.slope, gap)
+    moving = sum(bool(np.ptp(run) > _SMALLEST * abs(gap)) for run in runs)
+    return best._replace(basin=moving / len(runs))

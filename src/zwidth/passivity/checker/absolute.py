@@ -5,9 +5,9 @@
     M = m₀ − Σ h_i z⁻ⁱ,  Σ|h_i| < m₀,  h_i ≥ 0 unless φ is odd;  q₁, q₂ ≥ 0;  G stable, strictly proper
 
 Each of the three terms belongs to a sum over the motion that φ does not let below 0: Zames and Falb, the
-convexity of Φ = ∫φ, and its slope.  Times |D|² the left side is a cosine polynomial, Σ c_j cos jθ; with |cos jθ| ≤ 1 the
-error bounds of its coefficients are taken off, and what is left is a polynomial in cos θ, > 0 on [−1, 1] by
-Bernstein coefficients.
+convexity of Φ = ∫φ, and its slope.  Times |D|² the left side is a cosine polynomial, Σ c_j cos jθ.  With
+|cos jθ| ≤ 1 the error bounds of its coefficients are taken off, and what is left is a polynomial in cos θ,
+> 0 on [−1, 1] by Bernstein coefficients.
 """
 
 from __future__ import annotations

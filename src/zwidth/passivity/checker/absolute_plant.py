@@ -19,8 +19,9 @@ from math import factorial
 from typing import Any, NamedTuple
 
 from .proofs import _inside_unit_circle
-from .reading import MOST_COEFFICIENTS, Invalid, get, number, numbers
+from .reading import Invalid, get, number, numbers
 
+MOST_ORDER = 300
 TERMS = 160
 LARGEST_NORM = 30
 GRID = 1 << 256
@@ -47,7 +48,7 @@ def read_plant(document: Mapping[str, Any]) -> Plant:
 
 
 def _given(plant: Mapping[str, Any]) -> Plant:
-    top, bottom = (numbers(get(plant, name), MOST_COEFFICIENTS) for name in ("numerator", "denominator"))
+    top, bottom = (numbers(get(plant, name), MOST_ORDER) for name in ("numerator", "denominator"))
     if not top or not bottom or bottom[0] == 0 or len(top) >= len(bottom):
         raise Invalid("G(z) must be strictly proper")
     if not _inside_unit_circle(bottom):
@@ -64,7 +65,7 @@ def _touched(loop: Mapping[str, Any]) -> Plant:
             "m, b + c, k and T must be > 0, and b, c, m_h and the delay ≥ 0: else G(z) is not stable"
         )
     whole, part = delay // period, delay / period % 1
-    if whole > MOST_COEFFICIENTS // 2:
+    if whole > MOST_ORDER:
         raise Invalid("the delay is too many samples long")
     spring, loss = k * period**2 / total, damping * period / total
     (state, force), (_, late) = (_exponential(spring, loss, s) for s in (Fraction(1), 1 - part))
