@@ -80,6 +80,7 @@ def test_a_one_sided_wall_just_above_what_is_proved_for_it_vibrates():
     result = zw.absolute_stability(zw.PulseTransferFunction(*PLANTS[6]))
     motion = result.pressing
     assert motion.period == 3
+    assert motion.slope == pytest.approx(175 / 192, rel=1e-6)  # x = −½, −¼ − K, −⅛ − 0.96 K with g = −1
     assert motion.growth < 1
     assert float(result.largest) < motion.slope < float(result.largest) * 1.01 < result.linear_limit.slope
     # replayed by its difference equation: x(j) = 0.5 x(j−1) − 2 f(j−1) − 0.92 f(j−2)
