@@ -24,10 +24,10 @@ import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
 from scipy import stats
-from zwidth.identification.device.published import identify_published
 
 import zwidth as zw
 from zwidth.identification.device.identify import identify
+from zwidth.identification.device.published import identify_published
 from zwidth.identification.logs import log_of, read_log
 
 TRUE = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12}

@@ -21,7 +21,7 @@ from zwidth.passivity import checker
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src" / "zwidth"
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-RESULTS = {"FrictionModel", "InputError", "Log", "Verdict", "Witness"}
+RESULTS = {"FrictionModel", "Identified", "InputError", "Log", "Verdict", "Witness"}
 """Classes that zwidth makes and a person only reads."""
 
 CLASSES = [name for name in zw.__all__ if inspect.isclass(getattr(zw, name)) and name not in RESULTS]
@@ -196,7 +196,9 @@ def test_the_quickstart_example_says_what_comes_out(tmp_path: Path, monkeypatch:
     assert Path("wall.json").exists()
 
 
-@pytest.mark.parametrize("page", ["docs/quickstart.md", "docs/specification.md", "docs/laws.md"])
+@pytest.mark.parametrize(
+    "page", ["docs/quickstart.md", "docs/specification.md", "docs/laws.md", "docs/identification.md"]
+)
 def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> None:
     """Every TOML block with tables in the docs is a valid specification; one without is a velocity filter."""
     from zwidth.cli.laws import with_laws
@@ -255,7 +257,9 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
     assert not missing
 
 
-@pytest.mark.parametrize("command", ["check", "limit", "simulate", "compare", "traces", "devices", "verify"])
+@pytest.mark.parametrize(
+    "command", ["check", "limit", "simulate", "compare", "identify", "plan", "traces", "devices", "verify"]
+)
 def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:
     """What `--help` offers, the page explains."""
     page = _command_line_page()

@@ -28,7 +28,11 @@ if TYPE_CHECKING:
     from zwidth.device import amplifier as amplifiers
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
     from zwidth.identification import tissue
-    from zwidth.identification.logs import Log, log_of, read_log
+    from zwidth.identification.device.identified import Identified
+    from zwidth.identification.device.plan import Plan, plan_identification
+    from zwidth.identification.device.published import Published, identify_published
+    from zwidth.identification.finger import IdentifiedFinger, identify_finger
+    from zwidth.identification.logs import Log, join_logs, log_of, read_log
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
@@ -37,12 +41,23 @@ if TYPE_CHECKING:
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
+    from zwidth.passivity.loop_transformation import (
+        Indices,
+        Slopes,
+        TransformedCondition,
+        delay_sum,
+        loop_storage,
+        required_damping_by_slopes,
+        transformed_blocks,
+        transformed_condition,
+    )
     from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.passivity.virtual_mass import stable_virtual_masses
     from zwidth.passivity.worst_hand import Bracket, WorstHand
     from zwidth.rendering.rendered import render
     from zwidth.traces import (
         compare_traces,
+        identify,
         load_trace,
         passive_limit,
         simulate,
@@ -65,6 +80,9 @@ __all__ = [
     "FrictionModel",
     "GeneralizedMaxwell",
     "HuntCrossley",
+    "Identified",
+    "IdentifiedFinger",
+    "Indices",
     "InputError",
     "Interval",
     "LawComparison",
@@ -72,11 +90,15 @@ __all__ = [
     "Maxwell",
     "NonlinearSpring",
     "OnePole",
+    "Plan",
+    "Published",
     "PulseTransferFunction",
     "RealHand",
+    "Slopes",
     "StandardLinearSolid",
     "Timing",
     "TissueFit",
+    "TransformedCondition",
     "VelocityFilter",
     "Verdict",
     "VirtualBody",
@@ -95,23 +117,33 @@ __all__ = [
     "compare_tissues",
     "compare_traces",
     "coupling_condition",
+    "delay_sum",
     "design_coupling",
     "fit_tissue",
+    "identify",
+    "identify_finger",
+    "identify_published",
+    "join_logs",
     "load_trace",
     "log_of",
+    "loop_storage",
     "operators",
     "passive_limit",
+    "plan_identification",
     "quantization",
     "read_log",
     "render",
     "rendering",
     "replay",
+    "required_damping_by_slopes",
     "rotary",
     "simulate",
     "simulate_admittance",
     "simulate_batch",
     "stable_virtual_masses",
     "tissue",
+    "transformed_blocks",
+    "transformed_condition",
     "two_port",
     "worst_hand",
 ]
@@ -128,11 +160,22 @@ _LATER = {
     "Log": "zwidth.identification.logs",
     "compare": "zwidth.traces",
     "HuntCrossley": "zwidth.environment",
+    "IdentifiedFinger": "zwidth.identification.finger",
     "NonlinearSpring": "zwidth.environment",
+    "Plan": "zwidth.identification.device.plan",
+    "Published": "zwidth.identification.device.published",
     "Timing": "zwidth.loop.timing",
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
     "amplifiers": "zwidth.device.amplifier",
+    "Indices": "zwidth.passivity.loop_transformation",
+    "Slopes": "zwidth.passivity.loop_transformation",
+    "TransformedCondition": "zwidth.passivity.loop_transformation",
+    "delay_sum": "zwidth.passivity.loop_transformation",
+    "loop_storage": "zwidth.passivity.loop_transformation",
+    "required_damping_by_slopes": "zwidth.passivity.loop_transformation",
+    "transformed_blocks": "zwidth.passivity.loop_transformation",
+    "transformed_condition": "zwidth.passivity.loop_transformation",
     "RealHand": "zwidth.passivity.real_hand",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
@@ -145,9 +188,15 @@ _LATER = {
     "coupling_condition": "zwidth.passivity.coupling",
     "design_coupling": "zwidth.passivity.coupling_design",
     "fit_tissue": "zwidth.identification.tissue",
+    "identify_finger": "zwidth.identification.finger",
+    "identify_published": "zwidth.identification.device.published",
+    "join_logs": "zwidth.identification.logs",
+    "Identified": "zwidth.identification.device.identified",
+    "identify": "zwidth.traces",
     "load_trace": "zwidth.traces",
     "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",
+    "plan_identification": "zwidth.identification.device.plan",
     "simulate": "zwidth.traces",
     "simulate_admittance": "zwidth.loop.admittance",
     "simulate_batch": "zwidth.traces",

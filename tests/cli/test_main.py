@@ -173,7 +173,7 @@ def test_a_name_is_text_and_never_markup(run: Run) -> None:
 @pytest.mark.parametrize(
     ("argv", "parts"),
     [
-        ((), ("which command", "check, limit, simulate, traces, compare, devices, verify")),
+        ((), ("which command", "check, limit, simulate, traces, compare, identify, plan, devices, verify")),
         (("chek",), ("no command", "check")),
         (("check", "haptic-paddle", "--stifness", "3"), ("--stifness", "did you mean --stiffness")),
         (("check", "haptic-paddle", "--coulomb_friction=3"), ("did you mean --coulomb-friction",)),

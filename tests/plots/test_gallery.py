@@ -21,6 +21,7 @@ NUMBERS = {
     "plot_damped_wall_map": "friction: 8 of 8 brackets lie within 1 % of σ = ½ + β_v",
     "plot_delay": "with 0.3 ms: 174.2 N/m; rounded up to 1 ms: 100 N/m",
     "plot_how_stiff": "largest passive stiffness at 1 kHz: 300 N/m",
+    "plot_identify_a_device": "means over pulses: 299 to 316; differentiated: 327 to 616",
     "plot_laws": "wall 18.5 mJ at 99%, virtual-damping 0 mJ at 99%, virtual-coupling 4.78 mJ at 33%",
     "plot_motorized_guide": "measured over passive, Kelvin-Voigt without damping: 9.9",
     "plot_paddle_experiments": "10 of 11 statements agree; the other is the boundary at 90 N/m",

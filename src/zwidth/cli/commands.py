@@ -63,7 +63,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     loop = load(arguments.sources, overrides(arguments))
-    verdict = _decided(loop)
+    verdict = decided(loop)
     if save is not None:
         with writing(save):
             verdict.save(save)
@@ -81,7 +81,7 @@ def _check(arguments: argparse.Namespace) -> int:
     return STATUS[verdict.outcome]
 
 
-def _decided(loop: Specification) -> Verdict:
+def decided(loop: Specification) -> Verdict:
     """What `zwidth.check` says, with a word to people who wait for the game."""
     from zwidth.passivity.check import check_by_closed_forms
     from zwidth.passivity.game import has_gap, with_game
@@ -155,6 +155,18 @@ def _limit(arguments: argparse.Namespace) -> int:
     return run_limit(arguments)
 
 
+def _configure_identify(parser: argparse.ArgumentParser) -> None:
+    from zwidth.cli.identification import configure_identify
+
+    configure_identify(parser)
+
+
+def _identify(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.identification import run_identify
+
+    return run_identify(arguments)
+
+
 def _configure_compare(parser: argparse.ArgumentParser) -> None:
     from zwidth.cli.comparison import configure_compare
 
@@ -189,6 +201,18 @@ def _traces(arguments: argparse.Namespace) -> int:
     from zwidth.cli.simulation import run_traces
 
     return run_traces(arguments)
+
+
+def _configure_plan(parser: argparse.ArgumentParser) -> None:
+    from zwidth.cli.planning import configure_plan
+
+    configure_plan(parser)
+
+
+def _plan(arguments: argparse.Namespace) -> int:
+    from zwidth.cli.planning import run_plan
+
+    return run_plan(arguments)
 
 
 COMMANDS: Mapping[str, Command] = MappingProxyType(
@@ -254,6 +278,33 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth compare my-paddle.toml my-laws.toml --laws wall,virtual-damping",
             _configure_compare,
             _compare,
+        ),
+        "identify": Command(
+            "mass, damping and friction of a device, from a log of its motion",
+            "Identify a device from a log of position and force: numbers with intervals, the stiffest wall\n"
+            "they allow, and for how much of what the data allow an environment is passive.",
+            "A log is text, Parquet, HDF5, NetCDF, MATLAB, a ROS bag or a trace. Columns whose names are\n"
+            "not recognised are named: --column position=enc --unit position=counts.\n\n"
+            "exit status: 0 identified, 2 bad input; with an environment that of zwidth check at the stated\n"
+            "confidence: 0 passive, 1 active, 3 undecided\n\n"
+            "examples:\n"
+            "  zwidth identify session.csv -o my-device.toml --plot fig.png\n"
+            "  zwidth identify session.csv --column position=enc --unit position=counts "
+            "--resolution '22.4 um' --stiffness 250\n"
+            "  zwidth identify swing.csv --mass '36 g'",
+            _configure_identify,
+            _identify,
+        ),
+        "plan": Command(
+            "how to move a device by hand so that its limit becomes known",
+            "Plan the experiment for zwidth identify: which strokes, how many, how long, and when to stop.",
+            "The guess of the device may be rough: after each run the data decide.\n\n"
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth plan haptic-paddle --force-noise '0.1 N'\n"
+            "  zwidth plan my-device.toml --force-noise '0.02 N' --length '10 cm' --precision 0.02",
+            _configure_plan,
+            _plan,
         ),
         "devices": Command(
             "the catalogue of real devices, each value with its source",

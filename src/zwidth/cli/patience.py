@@ -21,6 +21,14 @@ def warn_of_compiling_the_game() -> None:
         _say("compiling the game of the worst hand")
 
 
+def warn_of_compiling_the_estimates() -> None:
+    """Say that the identification of devices is being compiled, where it has not been yet."""
+    from zwidth.compiled import is_compiled
+
+    if not is_compiled("identification/device"):
+        _say("compiling the estimates")
+
+
 def _say(what: str) -> None:
     if sys.stderr is not None:
         print(f"zwidth: {what}, once; this takes some seconds", file=sys.stderr)

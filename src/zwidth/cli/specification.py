@@ -86,9 +86,20 @@ def specified(tables: Mapping[str, Table], overrides: Mapping[str, str] | None =
     device_names = {key: value for key, value in names.items() if key in DEVICE_KEYS}
     environment_names = {key: value for key, value in names.items() if key not in DEVICE_KEYS}
     device_table = _device_table(tables, device_names)
-    environment_table = _environment_table(tables, environment_names)
+    environment = environment_table(tables, environment_names)
     device = build_device(device_table)
-    return Specification(device, build_environment(environment_table, device.motion))
+    return Specification(device, build_environment(environment, device.motion))
+
+
+def load_device(sources: Sequence[Path | str], overrides: Mapping[str, str]) -> Device:
+    """The device alone: files with a [device] or a name in the catalogue, then the command line's parameters.
+
+    Raises
+    ------
+    InputError
+        As `load`; if a file has an environment, which would be ignored.
+    """
+    return build_device(_device_table(read_tables(sources, ("device",)), overrides))
 
 
 def build_device(table: Table) -> Device:
@@ -252,7 +263,14 @@ def _device_table(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> 
     return table
 
 
-def _environment_table(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Table:
+def environment_table(tables: Mapping[str, Table], overrides: Mapping[str, str]) -> Table:
+    """The table of the environment, with the command line's parameters in it.
+
+    Raises
+    ------
+    InputError
+        If there is none, or a parameter that no environment has.
+    """
     table = tables.get("environment")
     known = option_keys()
     if table is None:

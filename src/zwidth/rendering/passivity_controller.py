@@ -28,7 +28,8 @@ from zwidth.rendering.stage import Stage, Surroundings, positive
 
 PASSIVITY_CONTROLLER = 1.0
 
-_PERIOD, _DAMPING, _FORCE, _FLOOR, _PUBLISHED, _FRICTION, _DRAG, _REFERENCE, _RESETS, _CEILING, _KEPT = range(11)
+_PERIOD, _DAMPING, _FORCE, _FLOOR, _PUBLISHED = range(5)
+_FRICTION, _DRAG, _REFERENCE, _RESETS, _CEILING, _KEPT = range(5, 11)
 _BEFORE, _ENERGY, _ADDED, _MOVED = range(4)
 
 UNLIMITED = 1e300

@@ -3,7 +3,7 @@
 from zwidth.traces.accessor import TraceAccessor
 from zwidth.traces.comparison import Comparison, compare_traces
 from zwidth.traces.files import load_trace, save_trace
-from zwidth.traces.run import compare, passive_limit, simulate, simulate_batch, worst_hand
+from zwidth.traces.run import compare, identify, passive_limit, simulate, simulate_batch, worst_hand
 from zwidth.traces.sound import save_sound
 
 __all__ = [
@@ -11,6 +11,7 @@ __all__ = [
     "TraceAccessor",
     "compare",
     "compare_traces",
+    "identify",
     "load_trace",
     "passive_limit",
     "save_sound",

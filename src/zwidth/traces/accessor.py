@@ -44,7 +44,7 @@ class TraceAccessor:
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """Position, force and energy against time, as the papers draw them; saved if a path is given."""
         from zwidth.plots.trace import trace_figure  # matplotlib takes its time
-        from zwidth.traces.files import writing_whole
+        from zwidth.writing import writing_whole
 
         figure = trace_figure(self._trace)
         if path is not None:

@@ -114,7 +114,7 @@ class Comparison:
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """All traces in one figure; saved if a path is given."""
         from zwidth.plots.trace import comparison_figure  # matplotlib takes its time
-        from zwidth.traces.files import writing_whole
+        from zwidth.writing import writing_whole
 
         figure = comparison_figure(self.traces)
         if path is not None:

@@ -3,17 +3,12 @@
 NetCDF keeps units and names as attributes.  Parquet and CSV carry the unit in
 the name of each column, `position_m`, and the attributes of the trace as JSON:
 Parquet in the metadata of its schema, CSV in its first line after a `#`.
-
-A file is written beside its place under another name and put there when it is
-whole: a full disk or a Ctrl-C leaves neither half a file nor the loss of an old one.
 """
 
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +18,7 @@ import xarray as xr
 
 from zwidth.errors import InputError
 from zwidth.loop.trace import FORMAT, UNITS, VARIABLES
+from zwidth.writing import check_target, first_line, writing_whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -74,48 +70,9 @@ def load_trace(path: str | PathLike[str]) -> xr.Dataset:
     except InputError:
         raise
     except Exception as error:  # what the libraries raise on foreign bytes is not documented
-        raise InputError(f"{source} holds no trace that can be read: {_first_line(error)}") from None
+        raise InputError(f"{source} holds no trace that can be read: {first_line(error)}") from None
     _refuse_foreign(trace, str(source))
     return trace
-
-
-def check_target(path: Path, force: bool) -> None:
-    """Refuse a place where nothing can be written, or a file would be lost.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
-    if path.is_dir():
-        raise InputError(f"{path} is a directory; name a file")
-    if path.exists() and not force:
-        raise InputError(f"{path} exists; choose another name, or give force=True to replace it")
-    if not path.parent.is_dir():
-        raise InputError(f"{path} cannot be written: there is no directory {path.parent}")
-
-
-@contextmanager
-def writing_whole(path: Path) -> Iterator[Path]:
-    """A name to write to; what is there at the end takes the place of `path`.
-
-    Raises
-    ------
-    InputError
-        If writing fails for a reason of the disk; nothing is then left behind.
-    """
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        yield unfinished
-        with open(unfinished, "rb+") as file:
-            os.fsync(file.fileno())  # a full disk may show only here
-        os.replace(unfinished, path)
-    except OSError as error:
-        reason = error.strerror or _first_line(error)
-        raise InputError(f"{path} cannot be written: {reason}; nothing was left there") from None
-    finally:
-        with suppress(OSError):
-            unfinished.unlink()
 
 
 def column_name(variable: str, unit: str) -> str:
@@ -226,7 +183,3 @@ def _read_csv(path: Path) -> xr.Dataset:
     if rows.shape[1] != len(header):
         raise InputError(f"{path} is not whole: {len(header)} names for {rows.shape[1]} columns")
     return _from_columns(dict(zip(header, rows.T, strict=True)), attributes, path)
-
-
-def _first_line(error: BaseException) -> str:
-    return (str(error) or type(error).__name__).splitlines()[0][:200]

@@ -8,6 +8,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
 from zwidth.bench import bench as _bench
+from zwidth.identification import recording as _recording
 from zwidth.loop import batch as _batch
 from zwidth.loop import simulate as _simulate
 from zwidth.passivity.worst_hand import hand as _hand
@@ -55,3 +56,4 @@ simulate = _with_bar(_simulate.simulate, "samples")
 simulate_batch = _with_bar(_batch.simulate_batch, "loops")
 compare = _with_bar(_bench.compare, "laws")
 passive_limit = _with_bar(_limit.passive_limit, "loops")
+identify = _with_bar(_recording.identify, "samples")

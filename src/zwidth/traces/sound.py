@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.traces.files import check_target, writing_whole
+from zwidth.writing import check_target, writing_whole
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -35,7 +35,8 @@ def findings(
         yield Finding(
             kind="bent friction",
             text=f"friction is not f_c + b |v|: a term c v |v| with c = {bent.value('quadratic'):.3g} "
-            f"{units_of(found.motion)['quadratic']} is seen; look at the friction curve",
+            f"{units_of(found.motion)['quadratic']} is seen; what is proved rests on the "
+            "largest model below the friction curve",
         )
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from scipy import stats
@@ -11,11 +13,16 @@ from scipy import stats
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.identification.device.table import as_html, as_text, source_name
 from zwidth.identification.logs import Finding
 from zwidth.quantity.exact import Interval
+from zwidth.writing import check_target, writing_whole
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
+
+    from zwidth.device.friction import FrictionCurve
 
 MOST_CONFIDENCE = 0.999999
 """Beyond it the tails of Student's t say nothing about real data."""
@@ -114,6 +121,9 @@ class Identified:
     def device(self, confidence: float | None = 0.99, **others: Any) -> Device:
         """A device whose b and f_c are at least as large as stated, with this confidence for both together.
 
+        Where friction was found not to be f_c + b |v|, their lower ends are those of the model below the
+        friction curve that proves the stiffest wall: the fitted line lies above friction somewhere.
+
         Parameters
         ----------
         confidence
@@ -124,8 +134,13 @@ class Identified:
         Raises
         ------
         InputError
-            If the confidence is no such number.
+            If the confidence is no such number, or Coulomb friction is seen that was not fitted.
         """
+        if self.shows("wrong model"):
+            raise InputError(
+                "these numbers are of a mass and a damper, and Coulomb friction is seen: no device has them, "
+                'and walls that they allow take energy out; identify with model="Coulomb and viscous"'
+            )
         given: dict[str, Any] = {
             "sample_period": self.sample_period,
             "resolution": self.resolution,
@@ -137,7 +152,18 @@ class Identified:
         for name in ("mass", "damping", "coulomb_friction"):
             if name in self.estimates:
                 given[name] = _parameter(self.estimates[name], confidence)
+        if self.shows("bent friction"):
+            below = self.friction_curve(0.5 if confidence is None else confidence)
+            for name, low in below.best(self.sample_period, self.resolution)._asdict().items():
+                high = max(float(low), self.estimates[name].value)
+                given[name] = low if confidence is None else Interval(float(low), high)
+        if isinstance(given.get("mass"), Interval) and given["mass"].low <= 0:
+            del given["mass"]  # the data do not rule out 0, which no device has; no criterion needs it
         return Device(**{**given, **others})
+
+    def shows(self, kind: str) -> bool:
+        """True where there is a finding of this kind."""
+        return any(finding.kind == kind for finding in self.findings)
 
     def confidence(self, environment: Environment | Any, **others: Any) -> float:
         """For how much of what the data allow the loop is passive, at least: 0 to 0.999999.
@@ -158,6 +184,103 @@ class Identified:
             return check_by_closed_forms(device, environment).outcome == "passive"
 
         return _largest(passive)
+
+    def friction_curve(self, confidence: float = 0.95, bins: int = 8) -> FrictionCurve:
+        """A friction curve below the data, for friction that is not f_c + b |v|.
+
+        Its points are lower bounds of the mean friction in bins of speed, at the mean speed of
+        each; one at rest, by an upper bound of the slope over the slower half of the pulses; and one
+        at the largest speed, by a lower bound of it over the quicker half.  `FrictionCurve.best`
+        finds the model f_c + b |v| below it that proves the stiffest wall.
+        Assumed are, beside `FrictionCurve.assumption`: the mass; the same friction in both
+        directions; that within a bin friction is nearly a straight line of speed; and that beyond the
+        largest speed it rises as over the quicker half at least.
+
+        Parameters
+        ----------
+        confidence
+            How often all the bounds hold together, between 0 and 1.
+        bins
+            How many bins of speed, 2 or more, each with as many pulses.
+
+        Raises
+        ------
+        InputError
+            If one of the two is no such number, or the strokes are too few.
+        """
+        from zwidth.identification.device.curve import curve_below
+
+        return curve_below(self.points, confidence, bins)
+
+    def to_toml(self, confidence: float | None = 0.99, **others: Any) -> str:
+        """The device as a specification that `zwidth check` reads; comments say where numbers come from.
+
+        Parameters
+        ----------
+        confidence, others
+            As for `device`.
+        """
+        from zwidth.identification.device.specification import to_toml
+
+        given = {"name": f"identified from {source_name(self)}", **others}
+        return to_toml(self, self.device(confidence, **given), confidence)
+
+    def save(
+        self,
+        path: str | PathLike[str],
+        confidence: float | None = 0.99,
+        *,
+        force: bool = False,
+        **others: Any,
+    ) -> None:
+        """Save `to_toml`, whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file, my-device.toml.
+        confidence, others
+            As for `device`.
+        force
+            Replace a file that exists.
+
+        Raises
+        ------
+        InputError
+            If the file exists, or cannot be written.
+        """
+        text, target = self.to_toml(confidence, **others), Path(path)
+        check_target(target, force)
+        with writing_whole(target) as unfinished:
+            unfinished.write_text(text, encoding="utf-8")
+
+    def plot(self, path: str | PathLike[str] | None = None, *, force: bool = False) -> Figure:
+        """Friction against speed, what is left over, data against model; saved where a path is given.
+
+        Parameters
+        ----------
+        path
+            Ends in .png, .svg or .pdf.
+        force
+            Replace a file that exists.
+        """
+        from zwidth.identification.device.picture import identification_figure, save_identification
+
+        if path is not None:
+            save_identification(self, Path(path), overwrite=force)
+        return identification_figure(self)
+
+    def to_dict(self, confidence: float = 0.99) -> dict[str, Any]:
+        """Everything but the points, units in the keys, as `zwidth identify --json` prints it."""
+        from zwidth.identification.device.document import to_dict
+
+        return to_dict(self, confidence)
+
+    def __repr__(self) -> str:
+        return as_text(self)
+
+    def _repr_html_(self) -> str:
+        return as_html(self)
 
 
 def _parameter(estimate: Estimate, confidence: float | None) -> float | Interval:

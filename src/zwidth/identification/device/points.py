@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,11 +12,23 @@ from zwidth.identification.device.moments import REGRESSORS, halves, line
 
 if TYPE_CHECKING:
     import xarray as xr
+    from numpy.typing import NDArray
 
     from zwidth.identification.device.regression import Regression
 
 MOST = 50_000
 """Pulses that are kept."""
+
+_ABOUT = {
+    "force": ("force", "force, without its zero"),
+    "friction": ("force", "friction"),
+    "residual": ("force", "left over"),
+    "speed": ("speed", "velocity"),
+    "time": ("s", "time in the piece"),
+    "stroke": ("1", "number of the stroke"),
+    "piece": ("1", "number of the piece"),
+}
+"""What is told of each pulse: its unit or the kind of it, its name."""
 
 
 class Points:
@@ -36,35 +48,41 @@ class Points:
         self._seen += 1
 
     def dataset(self, fit: Regression, mass: float | None, motion: str) -> xr.Dataset:
-        """Speed, friction, and what the fit leaves, along `pulse`."""
+        """Force, friction and what the fit leaves, along `pulse`; with speed, time, stroke and piece."""
         import xarray as xr
 
-        speeds, frictions, lefts, times = [], [], [], []
-        for rows, basis in self._kept:
+        found: dict[str, list[NDArray[Any]]] = {key: [] for key in _ABOUT}
+        strokes = 0
+        for piece, (rows, basis) in enumerate(self._kept):
             even, odd = halves(rows)
             columns = (even + odd) / 2
-            explained = sum(fit.value(name) * columns[:, REGRESSORS.index(name)] for name in fit.names)
+            terms = {name: fit.value(name) * columns[:, REGRESSORS.index(name)] for name in fit.names}
             if mass is not None:
-                explained = explained + mass * columns[:, 0]
+                terms["mass"] = mass * columns[:, 0]
+            explained = sum(terms.values(), np.zeros(len(rows)))
             left = columns[:, -1] - explained
             left = left - basis @ (basis.T @ left)
-            friction = sum(
-                fit.value(name) * columns[:, REGRESSORS.index(name)]
-                for name in ("damping", "coulomb_friction")
-                if name in fit.names
+            _, stroke = np.unique(rows[:, pulses.STROKE], return_inverse=True)
+            found["force"].append(explained + left)
+            found["friction"].append(
+                sum((terms[n] for n in ("damping", "coulomb_friction") if n in terms), left)
             )
-            speeds.append(columns[:, 1])
-            frictions.append(friction + left)
-            lefts.append(left)
-            times.append(rows[:, pulses.TIME])
-        speed, force = ("rad/s", "N*m") if motion == "rotary" else ("m/s", "N")
-        return xr.Dataset(
-            {
-                "friction": ("pulse", np.concatenate(frictions), {"units": force, "long_name": "friction"}),
-                "residual": ("pulse", np.concatenate(lefts), {"units": force, "long_name": "left over"}),
-            },
-            coords={
-                "speed": ("pulse", np.concatenate(speeds), {"units": speed, "long_name": "velocity"}),
-                "time": ("pulse", np.concatenate(times), {"units": "s", "long_name": "time in the piece"}),
-            },
-        )
+            found["residual"].append(left)
+            found["speed"].append(columns[:, 1])
+            found["time"].append(rows[:, pulses.TIME])
+            found["stroke"].append(stroke + strokes)
+            found["piece"].append(np.full(len(rows), piece))
+            strokes += int(stroke[-1]) + 1
+        units = {
+            "force": "N*m" if motion == "rotary" else "N",
+            "speed": "rad/s" if motion == "rotary" else "m/s",
+        }
+        data = {
+            key: (
+                "pulse",
+                np.concatenate(parts),
+                {"units": units.get(_ABOUT[key][0], _ABOUT[key][0]), "long_name": _ABOUT[key][1]},
+            )
+            for key, parts in found.items()
+        }
+        return xr.Dataset(data).set_coords(["speed", "time", "stroke", "piece"])

@@ -12,6 +12,7 @@ import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.identification.device.identify import identify
 from zwidth.identification.logs import log_of
+from zwidth.quantity.exact import ends
 
 TRUE = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12}
 
@@ -127,6 +128,31 @@ def test_bent_friction_is_flagged(recording):
     v = recording.true_velocity
     bent = identify(_log(recording, hand_force=recording.hand_force + 0.3 * v * np.abs(v)))
     assert "bent friction" in [finding.kind for finding in bent.findings]
+
+
+def test_nothing_is_proved_from_the_wrong_model(recording):
+    """A mass and a damper, where Coulomb friction is seen, make no device: 2b/T would not be passive."""
+    viscous = identify(_log(recording), model="viscous")
+    for refused in (viscous.device, viscous.to_toml, lambda: viscous.confidence(zw.Wall(stiffness=1))):
+        with pytest.raises(InputError, match="mass and a damper"):
+            refused()
+
+
+@pytest.mark.parametrize("shape", ["square", "saturating"])
+def test_what_is_proved_of_bent_friction_lies_below_it(recording, shape):
+    """The device's f_c + b |v| is below the true friction at every speed that was seen."""
+    v = recording.true_velocity
+    speed = np.linspace(0, np.abs(v).max(), 200)
+    more = {
+        "square": lambda s: 0.3 * s * s,
+        "saturating": lambda s: -0.06 * np.minimum(s, 1.0) ** 2,
+    }[shape]
+    bent = identify(_log(recording, hand_force=recording.hand_force + np.sign(v) * more(np.abs(v))))
+    device = bent.device(0.99)
+    low = [float(ends(getattr(device, name))[0]) for name in ("coulomb_friction", "damping")]
+    assert (low[0] + low[1] * speed <= 0.12 + 0.15 * speed + more(speed)).all()
+    assert low[0] > 0
+    assert low[1] > 0
 
 
 def test_asymmetry_looks_like_the_zero_of_the_sensor(recording, found):

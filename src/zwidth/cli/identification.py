@@ -1,0 +1,289 @@
+"""The command `identify`: a device from a log of its motion."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from zwidth.cli.options import BEHIND, Once, add_all, environment_parameters, given
+from zwidth.cli.output import print_json, targets, writing
+from zwidth.cli.table import quoted, suggestion
+from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    from zwidth.environment import Environment
+    from zwidth.identification.device.identified import Identified
+    from zwidth.identification.logs import Log
+    from zwidth.passivity.verdict import Verdict
+
+QUANTITIES = ("time", "position", "hand_force", "actuator_force")
+"""What a column may hold."""
+
+ZEROS = ("drifts", "constant", "exact")
+MODELS = {"coulomb-viscous": "Coulomb and viscous", "viscous": "viscous"}
+
+_PAIRS = (
+    ("--column", "columns", "QUANTITY=NAME", f"column of {', '.join(QUANTITIES)}; NAME none leaves it out"),
+    ("--unit", "units", "QUANTITY=UNIT", "unit of a column where neither file nor name states it"),
+    ("--scale", "scale", "QUANTITY=FACTOR", "what a number in a column stands for: hand_force='2 N/V'"),
+)
+"""Options that may come several times: name, argument of `read_log`, what stands for the value, help."""
+
+_READING = (
+    ("--rate", "sample_rate", "1/T", "samples per second, where the log has no time [Hz]"),
+    ("--sample-period", "sample_period", "T", "time between two samples, instead [s]"),
+    ("--resolution", "resolution", "Δ", "one encoder count [m; rotary rad]"),
+    ("--counts-per-turn", "counts_per_turn", "N", "encoder counts in one turn, instead"),
+    ("--motion", "motion", "MOTION", "linear or rotary, where the unit of the position does not say it"),
+)
+"""Options of how to read: the same."""
+
+
+class Result(NamedTuple):
+    """What a log says, and of one environment."""
+
+    log: Log
+    identified: Identified
+    confidence: float
+    others: Mapping[str, Any]
+    environment: Environment | None
+    passive_for: float | None
+    verdict: Verdict | None
+
+
+def configure_identify(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth identify`."""
+    parser.usage = (
+        "%(prog)s LOG [LOG ...] [SOURCE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] "
+        "[--PARAMETER VALUE ...] [--json] [--plot FILE] [-o FILE] [--force]"
+    )
+    parser.add_argument("log", metavar="LOG", help="what the device recorded, in a file of any format")
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="further logs of the same device; a TOML file with an [environment] table to check",
+    )
+    reading = parser.add_argument_group("log")
+    for option, name, metavar, meaning in _PAIRS:
+        reading.add_argument(
+            option, dest=name, metavar=metavar, action="append", help=f"{meaning} (repeatable)"
+        )
+    for option, name, metavar, meaning in _READING:
+        reading.add_argument(option, dest=name, metavar=metavar, action=Once, help=meaning)
+    device = parser.add_argument_group("device")
+    for option, metavar, meaning in (
+        ("--mass", "m", "where it is known; needed where the log has no force [kg; rotary kg*m^2]"),
+        ("--delay", "τ", "from a sample to the actuator force computed from it [s]"),
+        (
+            "--zero",
+            "KIND",
+            f"of the force: {', '.join(ZEROS)} (default: drifts where a hand's force is logged)",
+        ),
+        ("--model", "MODEL", f"{' or '.join(MODELS)} (default: {next(iter(MODELS))})"),
+        ("--confidence", "RATIO", "of the intervals that are checked and saved (default: 99%)"),
+    ):
+        device.add_argument(option, metavar=metavar, action=Once, help=meaning.replace("%", "%%"))
+    output = parser.add_argument_group("output")
+    output.add_argument("--json", action="store_true", help="print the numbers as JSON, units in the keys")
+    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plot: .png, .svg or .pdf")
+    output.add_argument(
+        "-o", "--save", metavar="FILE", action=Once, help="save the device as TOML, for zwidth check"
+    )
+    output.add_argument("--force", action="store_true", help="replace files that exist")
+    environment = parser.add_argument_group("environment", "what to check the device with, at once")
+    for parameter in environment_parameters():
+        add_all(environment, (parameter, _behind(parameter)))
+
+
+def _behind(parameter: Any) -> Any:
+    return parameter._replace(key=BEHIND + parameter.key, help=argparse.SUPPRESS)
+
+
+def run_identify(arguments: argparse.Namespace) -> int:
+    """`zwidth identify`: 0; with an environment that of `zwidth check`, "undecided" of a wrong model."""
+    from zwidth.cli.commands import STATUS
+
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    if save is not None and save.suffix.lower() != ".toml":
+        raise InputError(f"--save: a device is saved as TOML, my-device.toml; got {quoted(save.name)}")
+    confidence = _confidence(arguments.confidence)
+    found = _found(arguments, confidence)
+    if save is not None:
+        found.identified.save(save, confidence, force=True, **found.others)
+    if plot is not None:
+        from zwidth.identification.device.picture import save_identification  # matplotlib takes its time
+
+        with writing(plot):
+            save_identification(found.identified, plot, overwrite=True)
+    if arguments.json:
+        print_json(_json(found))
+    else:
+        from zwidth.cli.identification_report import print_identified
+
+        print_identified(found, [path for path in (save, plot) if path is not None])
+    if found.environment is None:
+        return 0
+    return STATUS["undecided" if found.verdict is None else found.verdict.outcome]
+
+
+def _found(arguments: argparse.Namespace, confidence: float) -> Result:
+    from zwidth.cli.patience import warn_of_compiling_the_estimates
+    from zwidth.identification.logs import join_logs
+    from zwidth.identification.recording import identify, log_from
+    from zwidth.traces.progress import progress_bar
+
+    options = _options(arguments)
+    environment_of = _environment(arguments)
+    warn_of_compiling_the_estimates()
+    with _as_options():
+        reading = _reading(arguments)
+        logs = [log_from(Path(name), **reading) for name in (arguments.log, *_further_logs(arguments))]
+        log = logs[0] if len(logs) == 1 else join_logs(logs)
+        environment = environment_of(log.motion)
+        with progress_bar("samples") as progress:
+            identified = identify(log, **options, progress=progress)
+    others = {"delay": options["delay"]} if "delay" in options else {}
+    if environment is None:
+        return Result(log, identified, confidence, others, None, None, None)
+    if identified.shows("wrong model"):
+        return Result(log, identified, confidence, others, environment, None, None)
+    from zwidth.cli.commands import decided
+    from zwidth.cli.specification import Specification
+
+    verdict = decided(Specification(identified.device(confidence, **others), environment))
+    passive_for = identified.confidence(environment, **others)
+    return Result(log, identified, confidence, others, environment, passive_for, verdict)
+
+
+def _further_logs(arguments: argparse.Namespace) -> list[str]:
+    """What stands behind the first log and is no specification."""
+    return [name for name in arguments.sources if not name.lower().endswith(".toml")]
+
+
+def _reading(arguments: argparse.Namespace) -> dict[str, Any]:
+    """How to read the log, as `read_log` takes it."""
+    reading: dict[str, Any] = {}
+    for option, name, _, _ in _PAIRS:
+        pairs = dict(_pair(option, typed) for typed in getattr(arguments, name) or ())
+        if len(pairs) < len(getattr(arguments, name) or ()):
+            raise InputError(f"{option} names a quantity twice; which one is meant?")
+        if name == "columns":
+            pairs = {key: None if value == "none" else value for key, value in pairs.items()}
+        if pairs:
+            reading[name] = pairs
+    for _, name, _, _ in _READING:
+        if getattr(arguments, name) is not None:
+            reading[name] = getattr(arguments, name)
+    if reading.get("motion", "linear") not in ("linear", "rotary"):
+        raise InputError(f"--motion is linear or rotary, got {quoted(reading['motion'])}")
+    return reading
+
+
+def _pair(option: str, typed: str) -> tuple[str, Any]:
+    key, sign, value = typed.partition("=")
+    name = key.strip().replace("-", "_")
+    if not sign or not value:
+        raise InputError(f"{option} is written {option} position=VALUE, got {quoted(typed)}")
+    if name not in QUANTITIES:
+        raise InputError(f"{option}: there is no quantity {quoted(key)}; {suggestion(name, QUANTITIES)}")
+    return name, value
+
+
+def _options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The estimate as `identify` takes it."""
+    options = {name: getattr(arguments, name) for name in ("mass", "delay") if getattr(arguments, name)}
+    if arguments.zero is not None:
+        if arguments.zero not in ZEROS:
+            raise InputError(f"--zero is {', '.join(ZEROS)}; got {quoted(arguments.zero)}")
+        options["zero"] = arguments.zero
+    if arguments.model is not None:
+        if arguments.model not in MODELS:
+            raise InputError(f"--model is {' or '.join(MODELS)}; got {quoted(arguments.model)}")
+        options["model"] = MODELS[arguments.model]
+    return options
+
+
+def _confidence(typed: str | None) -> float:
+    """0.99 from "99%", "99 %" or "0.99"."""
+    from zwidth.identification.device.identified import MOST_CONFIDENCE
+    from zwidth.quantity.units import parse_number
+
+    if typed is None:
+        return 0.99
+    bare = typed.strip().removesuffix("%")
+    number = float(parse_number(bare, "1", "confidence")) / (100 if bare != typed.strip() else 1)
+    if not 0 < number <= MOST_CONFIDENCE:
+        raise InputError(
+            f"--confidence must be > 0 and ≤ {100 * MOST_CONFIDENCE:.4f}%, got {quoted(typed)}: it is how "
+            "often the stated intervals hold the truth; 99% is usual"
+        )
+    return number
+
+
+def _environment(arguments: argparse.Namespace) -> Any:
+    """What makes the environment to check, once the motion is known; None of it where none was given."""
+    from zwidth.cli.environments import build_environment
+    from zwidth.cli.specification import environment_table, read_tables
+
+    keys = [p.key for p in environment_parameters()]
+    words = given(arguments, (*keys, *(BEHIND + key for key in keys)))
+    further = _further_logs(arguments)
+    tables = read_tables([name for name in arguments.sources if name not in further])
+    if "device" in tables:
+        raise InputError(
+            f"{tables['device'].label} gives a device, and here the device comes from the log; "
+            "leave an [environment] alone in the file"
+        )
+    if not words and not tables:
+        return lambda motion: None
+    table = environment_table(tables, words)
+    return lambda motion: build_environment(table, motion)
+
+
+_PYTHON = re.compile(r"(columns|units|scale)=\{[\"'](\w+)[\"']: (?:\"([^\"]*)\"|(None|…))\}")
+_NAMES = {"columns": "--column", "units": "--unit", "scale": "--scale"}
+
+
+@contextmanager
+def _as_options() -> Iterator[None]:
+    """What to try, in messages, as it is typed here."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(_PYTHON.sub(_as_option, _plain_options(str(error)))) from None
+
+
+def _as_option(found: re.Match[str]) -> str:
+    name, quantity, value, other = found.groups()
+    value = value if value is not None else {"None": "none"}.get(other, "…")
+    written = f"'{quantity}={value}'" if " " in value else f"{quantity}={value}"
+    return f"{_NAMES[name]} {written}"
+
+
+def _plain_options(text: str) -> str:
+    text = text.replace("sample_rate or sample_period", "--rate or --sample-period")
+    text = re.sub(r'\bresolution=("[^"]*")', r"--resolution \1", text)
+    return re.sub(r"\bcounts_per_turn=(\d+)", r"--counts-per-turn \1", text)
+
+
+def _json(found: Result) -> str:
+    from zwidth.passivity.document import to_json
+
+    document = {
+        **found.identified.to_dict(found.confidence),
+        "log": {
+            "samples": found.log.samples,
+            "runs": found.log.runs,
+            "duration_s": found.log.duration,
+            "channels": list(found.log.channels),
+        },
+    }
+    if found.verdict is not None:
+        document["passive_for"] = found.passive_for
+        document["check"] = found.verdict.to_dict()
+    return to_json(document)

@@ -1,0 +1,73 @@
+"""The command `plan`: how to move a device by hand so that its limit becomes known."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from zwidth.cli.options import Once, add_all, device_parameters, given
+from zwidth.cli.output import quiet_pipe
+from zwidth.cli.specification import load_device
+from zwidth.errors import InputError
+from zwidth.quantity.units import parse_number
+
+_OPTIONS = (
+    ("--force-noise", "σ", "standard deviation of the load cell per sample [N; rotary N*m]"),
+    ("--length", "L", "of a stroke, as long as the workspace allows [m; rotary rad] (default: 6 cm)"),
+    ("--slow", "TIME", "of a slow stroke [s] (default: 1)"),
+    ("--fast", "TIME", "of the fastest stroke that a person can make [s] (default: 0.25)"),
+    ("--precision", "PART", "half-width of the interval, in parts of the value (default: 0.05)"),
+    ("--confidence", "PART", "of that interval (default: 0.95)"),
+)
+
+
+def configure_plan(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth plan`."""
+    parser.usage = (
+        "%(prog)s [SOURCE ...] --force-noise NOISE [--length L] [--slow TIME] [--PARAMETER VALUE ...]"
+    )
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="device of the catalogue, or TOML file with a [device] table: the guess",
+    )
+    experiment = parser.add_argument_group("experiment")
+    for option, metavar, meaning in _OPTIONS:
+        experiment.add_argument(option, metavar=metavar, action=Once, help=meaning)
+    device = parser.add_argument_group("device", "override what SOURCE says, or replace it")
+    add_all(device, device_parameters())
+
+
+def run_plan(arguments: argparse.Namespace) -> int:
+    """`zwidth plan`: 0."""
+    from zwidth.identification.device.plan import plan_identification
+
+    device = load_device(arguments.sources, given(arguments, [p.key for p in device_parameters()]))
+    plan = plan_identification(device, **_numbers(arguments, device.motion))
+    with quiet_pipe():
+        print(plan)
+    return 0
+
+
+def _numbers(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
+    turn = motion == "rotary"
+    units = {
+        "force_noise": "N*m" if turn else "N",
+        "length": "rad" if turn else "m",
+        "slow": "s",
+        "fast": "s",
+        "precision": "1",
+        "confidence": "1",
+    }
+    typed = {name: getattr(arguments, name) for name in units}
+    if typed["force_noise"] is None:
+        raise InputError(
+            "the noise of the force is needed: --force-noise '0.1 N', the standard deviation of the load "
+            "cell at rest"
+        )
+    if turn and typed["length"] is None:
+        raise InputError("the length of a stroke is needed: --length '90 deg', as far as the device turns")
+    return {
+        name: float(parse_number(text, units[name], name)) for name, text in typed.items() if text is not None
+    }

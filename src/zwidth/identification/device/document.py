@@ -1,0 +1,66 @@
+"""An identified device as a document: every number with its unit in the key."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from zwidth.identification.device.limits import advice, limits
+from zwidth.passivity.document import unit_suffix
+from zwidth.quantity.glossary import GLOSSARY
+
+if TYPE_CHECKING:
+    from zwidth.identification.device.identified import Estimate, Identified
+
+FORMAT = "zwidth identification 1"
+
+_QUANTITY = {"spring": "stiffness", "force_lag": "delay"}
+"""Whose unit is meant, where the name is not in the glossary."""
+
+
+def to_dict(identified: Identified, confidence: float) -> dict[str, Any]:
+    """See `Identified.to_dict`."""
+
+    def key(name: str, quantity: str | None = None) -> str:
+        unit = GLOSSARY[quantity or _QUANTITY.get(name, name)].unit_for(identified.motion)
+        return f"{name}_{unit_suffix(unit)}"
+
+    document: dict[str, Any] = {
+        "format": FORMAT,
+        "source": identified.source,
+        "motion": identified.motion,
+        key("sample_period"): identified.sample_period,
+        key("resolution"): identified.resolution,
+        "confidence": confidence,
+    }
+    if identified.mass is not None:
+        document[key("given_mass", "mass")] = identified.mass
+    for name, estimate in identified.estimates.items():
+        document[key(name)] = _estimate(estimate, confidence)
+    for limit in limits(identified):
+        low, high = limit.interval(confidence)
+        document[key(f"stiffest_by_{limit.parameter}", "stiffness")] = {
+            "value": limit.value,
+            "interval": [low, high],
+        }
+    return {
+        **document,
+        "explained": identified.explained,
+        key("force_noise", "force"): identified.force_noise,
+        key("offset", "force"): identified.offset,
+        key("viscous_alone", "damping"): identified.viscous_alone,
+        "pulse_length_s": identified.pulse_length,
+        "strokes": identified.strokes,
+        "pulses": identified.pulses,
+        "findings": [{"kind": f.kind, "text": f.text} for f in identified.findings],
+        "advice": list(advice(identified, confidence)),
+    }
+
+
+def _estimate(estimate: Estimate, confidence: float) -> dict[str, Any]:
+    return {
+        "value": estimate.value,
+        "standard_error": estimate.error,
+        "shift": estimate.shift,
+        "degrees_of_freedom": estimate.degrees,
+        "interval": list(estimate.interval(confidence)),
+    }

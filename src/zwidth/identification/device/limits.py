@@ -1,0 +1,105 @@
+"""What identified numbers allow a spring wall: K ≤ 2 b/T, and at rest K ≤ 2 f_c/Δ.
+
+Abbott & Okamura (2005), equations 21 and 25.  Both are linear in what was identified, so that
+their intervals are those of b and f_c, times 2/T and 2/Δ.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from zwidth.identification.device.identified import Estimate, Identified
+
+NARROW = 3.0
+"""Ratio of quick to slow speeds (upper to lower tenth) below which b and f_c are hard to tell apart."""
+
+
+class Limit(NamedTuple):
+    """A bound of the stiffness, from one parameter.
+
+    Parameters
+    ----------
+    parameter
+        "damping" or "coulomb_friction".
+    symbol
+        2b/T or 2f_c/Δ.
+    factor
+        By which the parameter becomes a stiffness; inf where Δ is 0.
+    estimate
+        Of the parameter.
+    """
+
+    parameter: str
+    symbol: str
+    factor: float
+    estimate: Estimate
+
+    @property
+    def value(self) -> float:
+        """The best guess [N/m; N·m/rad]."""
+        return self.factor * self.estimate.value
+
+    def interval(self, confidence: float) -> tuple[float, float]:
+        """Where the truth is, this often; what is negative allows no stiffness [N/m; N·m/rad]."""
+        low, high = (max(end, 0.0) for end in self.estimate.interval(confidence))
+        return self.factor * low, self.factor * high
+
+
+def limits(identified: Identified) -> tuple[Limit, ...]:
+    """Both bounds, where the parameters were identified and the encoder has a step."""
+    found = []
+    if "damping" in identified.estimates:
+        factor = 2 / identified.sample_period
+        found.append(Limit("damping", "2b/T", factor, identified.estimates["damping"]))
+    if "coulomb_friction" in identified.estimates and identified.resolution > 0:
+        factor = 2 / identified.resolution
+        found.append(Limit("coulomb_friction", "2f_c/Δ", factor, identified.estimates["coulomb_friction"]))
+    return tuple(found)
+
+
+def advice(identified: Identified, confidence: float) -> tuple[str, ...]:
+    """Which number limits the stiffest wall, and how to know it better."""
+    if identified.shows("wrong model"):
+        return ("fit Coulomb friction too: these numbers are of another model than the device",)
+    found = limits(identified)
+    binding = min(found, key=lambda limit: limit.interval(confidence)[0])
+    name = {"damping": "damping", "coulomb_friction": "Coulomb friction"}[binding.parameter]
+    unit = "N·m/rad" if identified.motion == "rotary" else "N/m"
+    low, _ = binding.interval(confidence)
+    lines = [f"{name} limits the wall: {binding.symbol} ≥ {low:.4g} {unit} at {percent(confidence)}"]
+    longer = _times_longer(binding.estimate, confidence)
+    if longer < inf:
+        lines.append(
+            f"a log {longer:.2g} times as long would halve the interval of {name}, "
+            "which narrows as 1/√duration"
+        )
+    else:
+        lines.append(
+            f"a longer log would not halve the interval of {name}: half of it and more is what means over "
+            f"{1e3 * identified.pulse_length:.3g} ms may be off; smoother, longer strokes allow longer ones"
+        )
+    slow, quick = np.quantile(np.abs(identified.points["speed"].values), [0.1, 0.9])
+    if quick < NARROW * slow:
+        speed = "rad/s" if identified.motion == "rotary" else "m/s"
+        lines.append(
+            f"most of the motion is between {slow:.2g} and {quick:.2g} {speed}: slower and quicker strokes "
+            "tell damping and Coulomb friction apart"
+        )
+    return tuple(lines)
+
+
+def percent(confidence: float) -> str:
+    """0.99 as "99 %", never more than it is."""
+    return f"{int(confidence * 1e6 + 1e-6) / 1e4:.6g} %"
+
+
+def _times_longer(estimate: Estimate, confidence: float) -> float:
+    """n for which reach/√n + shift is half of what reach + shift is."""
+    _, high = estimate.interval(confidence)
+    whole = high - estimate.value
+    rest = whole / 2 - estimate.shift
+    return float(((whole - estimate.shift) / rest) ** 2) if rest > 0 else inf

@@ -1,0 +1,119 @@
+"""An identified device as a table: in a terminal, and in a notebook."""
+
+from __future__ import annotations
+
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from zwidth.identification.device.limits import limits, percent
+
+if TYPE_CHECKING:
+    from zwidth.identification.device.identified import Identified
+
+SYMBOLS = {
+    "mass": "m",
+    "damping": "b",
+    "coulomb_friction": "f_c",
+    "spring": "k",
+    "force_lag": "τ_f",
+}
+"""Of what may have been identified, in this order."""
+
+NAMES = {
+    "mass": "mass",
+    "damping": "damping",
+    "coulomb_friction": "Coulomb friction",
+    "spring": "a spring, or gravity on an arc",
+    "force_lag": "force recorded late by",
+    "2b/T": "wall by damping",
+    "2f_c/Δ": "wall by Coulomb friction",
+}
+
+
+class Row(NamedTuple):
+    """A number as people read it."""
+
+    symbol: str
+    name: str
+    value: str
+    interval: str
+    unit: str
+
+
+def rows(identified: Identified, confidence: float = 0.95) -> list[Row]:
+    """The parameters, and what they allow."""
+    table = []
+    if identified.mass is not None:
+        unit = "kg m²" if identified.motion == "rotary" else "kg"
+        table.append(Row("m", NAMES["mass"], f"{identified.mass:.4g}", "as given", _pretty(unit)))
+    for key, symbol in SYMBOLS.items():
+        if key in identified.estimates:
+            estimate = identified.estimates[key]
+            low, high = estimate.interval(confidence)
+            table.append(_row(symbol, NAMES[key], estimate.value, low, high, estimate.unit))
+    stiffness = "N·m/rad" if identified.motion == "rotary" else "N/m"
+    for limit in limits(identified):
+        low, high = limit.interval(confidence)
+        table.append(_row(limit.symbol, NAMES[limit.symbol], limit.value, low, high, stiffness))
+    return table
+
+
+def facts(identified: Identified) -> str:
+    """What the numbers rest on, in a line."""
+    turn = identified.motion == "rotary"
+    force, length = ("N·m", "rad") if turn else ("N", "m")
+    return (
+        f"r² = {identified.explained:.4f}, noise {identified.force_noise:.3g} {force} per sample, offset "
+        f"{identified.offset:.3g} {force}; {identified.strokes} strokes, {identified.pulses} means over "
+        f"{1e3 * identified.pulse_length:.3g} ms; T = {identified.sample_period:.6g} s, "
+        f"Δ = {identified.resolution:.6g} {length}"
+    )
+
+
+def title(identified: Identified) -> str:
+    """Where the numbers come from."""
+    return f"device identified from {source_name(identified)}"
+
+
+def source_name(identified: Identified) -> str:
+    """The log's name without its folders, on one line."""
+    name = Path(identified.source).name or identified.source
+    return "".join(c if c.isprintable() else "?" for c in name)
+
+
+def as_text(identified: Identified, confidence: float = 0.95) -> str:
+    """The table in columns."""
+    table = [("", "", "best guess", percent(confidence), ""), *rows(identified, confidence)]
+    widths = [max(len(row[i]) for row in table) for i in range(5)]
+    lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in table]
+    findings = [f"· {finding}" for finding in identified.findings]
+    return "\n".join([title(identified), "", *lines, "", facts(identified), *findings])
+
+
+def as_html(identified: Identified, confidence: float = 0.95) -> str:
+    """The same for a notebook."""
+    head = ("", "", "best guess", percent(confidence), "")
+    body = "".join(_html(row, "td") for row in rows(identified, confidence))
+    findings = "".join(f"<li>{escape(str(finding))}</li>" for finding in identified.findings)
+    return (
+        f"<div><table><caption>{escape(title(identified))}</caption>{_html(head, 'th')}{body}</table>"
+        f"<p>{escape(facts(identified))}</p><ul>{findings}</ul></div>"
+    )
+
+
+def _html(cells: tuple[str, ...], tag: str) -> str:
+    return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+
+
+def _row(symbol: str, name: str, value: float, low: float, high: float, unit: str) -> Row:
+    return Row(symbol, name, _number(value), f"{_number(low)} … {_number(high)}", _pretty(unit))
+
+
+def _number(value: float) -> str:
+    """Four digits; whole numbers where there are more before the point."""
+    return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.4g}"
+
+
+def _pretty(unit: str) -> str:
+    return unit.replace(" ", "·")

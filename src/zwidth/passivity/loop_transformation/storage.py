@@ -1,0 +1,123 @@
+"""The storage of Lemma 2 along a motion: what device, hold and delay together hold, at every sample.
+
+    W(k) = ¼ Σ_{i=1}^{d+1} u(k−i)ᵀ Λ⁻¹ u(k−i) + V(k)/T
+    y(k) = v̄(k) + ½ Λ⁻¹ [u(k) − u(k−d−1)],     v̄(k) = [x(k+1) − x(k)]/T
+    W(k+1) − W(k) = yᵀu − yᵀΛy + h(k) − slack(k)
+    slack(k) = (1/T)∫ vᵀδv dt − v̄ᵀΛv̄
+
+u(k) is the force commanded at the end of sample k, for that is when y(k) is known; it is held over sample
+k + d + 1.  V is the energy of the device, h the mean power of the hand.  If the device dissipates at least
+vᵀΛv, the slack is ≥ 0, whatever u does: that is Lemma 2 (Miller, Colgate & Freeman).  For a constant δ = Λ it
+is (1/T)∫ (v − v̄)ᵀδ(v − v̄) dt: the lemma loses only the change of velocity within a sample.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def loop_storage(
+    inputs: ArrayLike,
+    positions: ArrayLike,
+    energies: ArrayLike,
+    damping: ArrayLike,
+    sample_period: float,
+    delay: int = 0,
+    hand_work: ArrayLike | None = None,
+) -> xr.Dataset:
+    """W of Lemma 2 along a motion of any device, and what enters and leaves in each sample.
+
+    Parameters
+    ----------
+    inputs
+        u(k), one row of joints or axes a sample, n of them [N; N·m]; before the first, u = 0.
+    positions
+        x(0) … x(n), one row more [m; rad].
+    energies
+        V(0) … V(n): kinetic and potential energy of the device, and of the hand if it is in the loop [J].
+    damping
+        Λ: a number or a symmetric positive definite matrix [N·s/m; N·m·s/rad].
+    sample_period
+        T > 0 [s].
+    delay
+        d ≥ 0 samples: u(k) is held over the sample k + d + 1.
+    hand_work
+        What a hand outside puts in during each sample, ∫ f_hᵀ v dt [J]. Default 0.
+
+    Returns
+    -------
+    xr.Dataset
+        Over `edge` 0 … n: `storage` W [W]; over `sample` 0 … n−1: `supply` yᵀu, `dissipation` yᵀΛy, `hand`,
+        `slack` = supply − dissipation + hand − [W(k+1) − W(k)], all [W].
+
+    Raises
+    ------
+    InputError
+        If the shapes do not match, T ≤ 0, d is no whole number ≥ 0, or Λ is not positive definite.
+    """
+    u, x, v = _arrays(inputs, positions, energies)
+    inverse = np.linalg.inv(matrix := _matrix(damping, u.shape[1]))
+    if not sample_period > 0 or not isinstance(delay, int) or delay < 0:
+        raise InputError(
+            f"sample_period must be > 0 and delay a whole number of samples ≥ 0, got {sample_period} "
+            f"and {delay}: the storage holds one force for each sample it waits"
+        )
+    hand = np.zeros(len(u)) if hand_work is None else np.asarray(hand_work, dtype=np.float64) / sample_period
+    if hand.shape != (len(u),):
+        raise InputError(f"hand_work has one number for each of {len(u)} samples, got shape {hand.shape}")
+    past = np.vstack([np.zeros((delay + 1, u.shape[1])), u])
+    waiting = np.einsum("ki,ij,kj->k", past, inverse, past) / 4
+    storage = np.convolve(waiting, np.ones(delay + 1), "valid") + v / sample_period
+    y = np.diff(x, axis=0) / sample_period + (u - past[: len(u)]) @ inverse / 2
+    supply, loss = np.einsum("ki,ki->k", y, u), np.einsum("ki,ij,kj->k", y, matrix, y)
+    return _dataset(storage, supply, loss, hand)
+
+
+def _arrays(inputs: ArrayLike, positions: ArrayLike, energies: ArrayLike) -> tuple[Floats, Floats, Floats]:
+    u, x = (np.asarray(a, dtype=np.float64) for a in (inputs, positions))
+    v = np.asarray(energies, dtype=np.float64)
+    u, x = (a[:, None] if a.ndim == 1 else a for a in (u, x))
+    if u.ndim != 2 or x.shape != (len(u) + 1, u.shape[1]) or v.shape != (len(u) + 1,):
+        raise InputError(
+            "n inputs go with n + 1 positions of as many joints and n + 1 energies; got shapes "
+            f"{u.shape}, {x.shape} and {v.shape}"
+        )
+    return u, x, v
+
+
+def _matrix(damping: ArrayLike, joints: int) -> Floats:
+    """Λ as a matrix."""
+    given = np.asarray(damping, dtype=np.float64)
+    matrix = given * np.eye(joints) if given.ndim == 0 else given
+    if matrix.shape != (joints, joints) or not np.array_equal(matrix, matrix.T):
+        raise InputError(f"damping is a number or a symmetric matrix of {joints} × {joints}, got {damping!r}")
+    if not np.linalg.eigvalsh(matrix)[0] > 0:
+        raise InputError(
+            f"damping must be positive definite, got {damping!r}: nothing pays for the hold without it"
+        )
+    return matrix
+
+
+def _dataset(storage: Floats, supply: Floats, loss: Floats, hand: Floats) -> xr.Dataset:
+    import xarray as xr
+
+    unit = {"unit": "W"}
+    return xr.Dataset(
+        {
+            "storage": ("edge", storage, unit),
+            "supply": ("sample", supply, unit),
+            "dissipation": ("sample", loss, unit),
+            "hand": ("sample", hand, unit),
+            "slack": ("sample", supply - loss + hand - np.diff(storage), unit),
+        }
+    )
