@@ -90,7 +90,7 @@ def _claim(part: Part) -> str:
         return reason
     if _is_bounded(part.evidence):
         return f"No hand within these bounds takes energy out of the loop below, proved: {reason}"
-    if _kinds(part.evidence) == {"absolute stability"}:
+    if "absolute stability" in _kinds(part.evidence):
         return f"Proved: {reason}"
     return f"The loop below is passive, proved: {reason}"
 

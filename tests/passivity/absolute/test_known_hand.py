@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
+from zwidth.cli.main import main
 from zwidth.operator.operator import LinearHand
 from zwidth.passivity.absolute import (
     describing_guess,
@@ -135,6 +136,24 @@ def test_saved_and_verified(result, tmp_path):
     data["certificate"]["corners"][0]["slope"] = "400"
     path.write_text(json.dumps(data))
     assert not verify_document(read_document(path)).valid
+
+
+def test_a_rotary_device_is_the_linear_one_in_other_units(result, tmp_path):
+    """The same numbers in kg·m², N·m·s/rad and N·m/rad give the same slopes, and a file that verifies."""
+    turned = zw.absolute_stability(device(motion="rotary"), HAND, motions=False)
+    assert [row.slope for row in turned.proved] == [row.slope for row in result.proved]
+    turned.save(tmp_path / "knob.json")
+    assert verify_document(read_document(tmp_path / "knob.json")).valid
+
+
+def test_the_command_line_does_not_call_it_passive(result, tmp_path, capsys):
+    """`zwidth verify` says that the loop comes to rest, with the slope, and says nothing of passivity."""
+    result.proved[0].certificate.save(tmp_path / "circle.json")
+    assert main(["verify", str(tmp_path / "circle.json")]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "166.1" in told
+    assert "to rest" in told
+    assert "passive" not in told
 
 
 @pytest.mark.parametrize(("slope", "gap", "longest"), [(0.0, 1.0, 10), (9.0, 0.0, 10), (9.0, 1.0, 1)])

@@ -116,7 +116,7 @@ def absolute_stability(
         A device of certain numbers without Coulomb friction and encoder counts; or G(z), from the wall's
         force to −x, stable and strictly proper.
     hand
-        With a device: mass, spring and damper to a resting anchor, as ``LinearHand(mass, stiffness,
+        With a device: mass, spring and damper to a resting anchor, as ``operators.LinearHand(mass, stiffness,
         damping)`` or an operator with such a hand.  The anchor may be anywhere.
     reach
         Farthest tap of the Zames–Falb multipliers, 1 … 100 samples before and after.
