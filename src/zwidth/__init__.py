@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from zwidth.loop.timing import Timing
     from zwidth.maps import stability_boundary, z_width, z_width_factors
     from zwidth.passivity import two_port
+    from zwidth.passivity.absolute import AbsoluteStability, absolute_stability
     from zwidth.passivity.arms import Workspace, workspace
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
@@ -72,6 +73,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "AbsoluteStability",
     "BackwardDifference",
     "Bounding",
     "Bracket",
@@ -119,6 +121,7 @@ __all__ = [
     "Witness",
     "Workspace",
     "WorstHand",
+    "absolute_stability",
     "amplifiers",
     "arms",
     "catalogue",
@@ -167,6 +170,8 @@ __all__ = [
 ]
 
 _LATER = {
+    "AbsoluteStability": "zwidth.passivity.absolute",
+    "absolute_stability": "zwidth.passivity.absolute",
     "Bounding": "zwidth.passivity.bounding",
     "check_bounding": "zwidth.passivity.bounding",
     "Bracket": "zwidth.passivity.worst_hand",

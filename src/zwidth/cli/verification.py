@@ -90,9 +90,18 @@ def _claim(part: Part) -> str:
         return reason
     if _is_bounded(part.evidence):
         return f"No hand within these bounds takes energy out of the loop below, proved: {reason}"
-    if part.evidence.get("kind") == "positive real":
+    if "positive real" in _kinds(part.evidence):
         return f"Of the port below, proved: {reason}"
+    if "absolute stability" in _kinds(part.evidence):
+        return f"Proved: {reason}"
     return f"The loop below is passive, proved: {reason}"
+
+
+def _kinds(evidence: Mapping[str, object]) -> set[object]:
+    """The kind of a proof, or those of its corners."""
+    corners = evidence.get("corners")
+    parts = corners if isinstance(corners, list) else [evidence]
+    return {part.get("kind") for part in parts if isinstance(part, Mapping)}
 
 
 def _rows(part: Part) -> Iterator[tuple[str, str]]:

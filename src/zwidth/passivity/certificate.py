@@ -46,7 +46,7 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """ "spring", "contact", "linear", "quantized", "delays", "force bounding" or "positive real"."""
+        """Of the first document: "spring", "contact", "linear", "positive real", "absolute stability", …"""
         return str(self.documents[0]["kind"])
 
     @property

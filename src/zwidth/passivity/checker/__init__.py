@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from .absolute import absolute
 from .contact_motion import contact_motion_energy
 from .contact_proof import contact
 from .force_bounding import force_bounding
@@ -30,6 +31,7 @@ __all__ = ["Verification", "verify"]
 
 _KINDS = {
     **PROOFS,
+    "absolute stability": absolute,
     "contact": contact,
     "force bounding": force_bounding,
     "positive real": positive_real,
