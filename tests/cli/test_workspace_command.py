@@ -32,7 +32,7 @@ def test_a_wall_that_holds_everywhere(run: Run) -> None:
     status, out, _ = run(*HAPLY, "--stiffness", "300")
     words = " ".join(out.split())
     assert status == 0
-    assert "PASSIVE Passive for every motion of the hand with x from -0.05 to 0.05 m" in words
+    assert "THEOREM No motion of the hand takes energy out with x from -0.05 to 0.05 m" in words
     assert "what to change" not in words
     assert "Encoder steps are not counted." in words
 

@@ -29,7 +29,7 @@ from zwidth.quantity.glossary import GLOSSARY
 if TYPE_CHECKING:
     from zwidth.passivity.real_hand import RealHand
 
-COLOURS = {"passive": "green", "active": "red", "undecided": "yellow"}
+COLOURS = {"passive": "green", "theorem": "blue", "active": "red", "undecided": "yellow"}
 _WIDEST = 100
 _LONGEST_BAR = 34
 _INTERVALS = "holds for every value"

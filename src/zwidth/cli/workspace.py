@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from zwidth.passivity.arms import Workspace
 
-STATUS = {"passive": 0, "active": 1, "undecided": 3}
+STATUS = {"theorem": 0, "active": 1, "undecided": 3}
 _RATE = "1 kHz"
 
 _JOINT_OPTIONS = (

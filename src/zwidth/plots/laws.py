@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, OUTCOME, new_figure
+from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, new_figure
 
 _SHOWN = 0.12
 """Time of a tap that is drawn [s]."""
@@ -25,7 +25,6 @@ _ROW = 0.62
 """Part of a row that the median of the largest forces fills."""
 
 _MARKS = {"passive": "o", "theorem": "s", "active": "X", "undecided": "D"}
-_COLOURS = {**OUTCOME, "theorem": BLUE}
 _GUIDE = "#dddddd"
 
 
@@ -54,7 +53,7 @@ def laws_figure(comparison: Any) -> Figure:
     felt.set_yticks(range(len(names)), names)
     felt.set_ylim(len(names) - 0.4, -0.9)
     handles = [
-        felt.plot([], [], mark, color=_COLOURS[status], label=status)[0] for status, mark in _MARKS.items()
+        felt.plot([], [], mark, color=OUTCOME[status], label=status)[0] for status, mark in _MARKS.items()
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
@@ -89,7 +88,7 @@ def _dots(axes: Axes, scores: Any, values: NDArray[np.float64], start: float) ->
     """A dot in each row, by what is known of the law, on a line that leads there."""
     for row, (value, status) in enumerate(zip(values, scores["status"].values, strict=True)):
         axes.plot([start, value], [row, row], color=_GUIDE, lw=1.0, zorder=1)
-        axes.plot(value, row, _MARKS[str(status)], color=_COLOURS[str(status)], ms=7, mew=0, clip_on=False)
+        axes.plot(value, row, _MARKS[str(status)], color=OUTCOME[str(status)], ms=7, mew=0, clip_on=False)
 
 
 def _taps(axes: Axes, comparison: Any, names: list[str]) -> None:
@@ -105,7 +104,7 @@ def _taps(axes: Axes, comparison: Any, names: list[str]) -> None:
         force = trace["actuator_force"].values[shown] / newton
         axes.axhline(row + 0.3, color=_GUIDE, lw=0.6)
         drawn = row + 0.3 - np.clip(force, -0.3, 0.95)
-        axes.plot((time[shown] - start) * 1e3, drawn, color=_COLOURS[status], lw=1.0)
+        axes.plot((time[shown] - start) * 1e3, drawn, color=OUTCOME[status], lw=1.0)
         if force.size and force.max() > 0.95:
             axes.annotate(
                 f"{force.max() * newton:.3g} N",

@@ -21,7 +21,7 @@ BLACK, GREY = "#222222", "#777777"
 BLUE, SKY = "#0072B2", "#56B4E9"
 GREEN, ORANGE, RED, PURPLE = "#009E73", "#E69F00", "#D55E00", "#CC79A7"
 
-OUTCOME = {"passive": GREEN, "active": RED, "undecided": "#8A6D00"}
+OUTCOME = {"passive": GREEN, "theorem": BLUE, "active": RED, "undecided": "#8A6D00"}
 """Colour of each outcome; the word always stands beside it."""
 
 LOOK: Any = {

@@ -53,8 +53,9 @@ class Workspace:
     Parameters
     ----------
     outcome
-        "passive": every cell of the region is proved. "active": at one point a motion of the hand takes
-        energy out, `motion`. "undecided": neither.
+        "theorem": the condition of a proof on paper holds in every cell of the region, reckoned in doubles
+        with room for rounding; there is no certificate that a checker could read. "active": at one point
+        a motion of the hand takes energy out, `motion`. "undecided": neither.
     claim
         In words, with what was assumed.
     arm, wall
@@ -154,7 +155,7 @@ def workspace(
     motion = _motion(arm, wall, period, samples, fine.joints[account.reached], account.margins, held)
     whole = np.zeros(account.reached.shape, dtype=bool)
     whole[account.reached] = account.proved
-    outcome = "active" if motion is not None else "passive" if whole.all() else "undecided"
+    outcome = "active" if motion is not None else "theorem" if whole.all() else "undecided"
     return Workspace(
         outcome=outcome,
         claim=_claim(outcome, fine, account, arm, torque_held_up_to),
@@ -265,8 +266,8 @@ def _motion(
 def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm, held: float | None) -> str:
     """One sentence on what holds, others on what is not counted."""
     part = 100 * account.proved.mean()
-    if outcome == "passive":
-        text = f"Passive for every motion of the hand with {sites.region}."
+    if outcome == "theorem":
+        text = f"No motion of the hand takes energy out with {sites.region}, by a proof on paper."
     elif outcome == "active":
         text = "At one point of this map a motion of the hand takes energy out."
     elif (account.margins >= 0).all():
