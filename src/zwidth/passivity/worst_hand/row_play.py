@@ -17,7 +17,7 @@ import numpy as np
 from zwidth.compiled import compiled
 from zwidth.passivity.worst_hand.board import Integers
 from zwidth.passivity.worst_hand.row_board import RowBoard
-from zwidth.passivity.worst_hand.solve import THREADS, Played
+from zwidth.passivity.worst_hand.solve import THREADS, Played, threads_for
 from zwidth.passivity.worst_hand.sweep import cycle
 
 _LOOK = 4
@@ -36,7 +36,7 @@ def play_row(
     parts = np.linspace(0, len(value), THREADS * 4 + 1).astype(int)
     tables = board.table.successors, board.forces, board.costs, board.knots
     rounds = 0
-    with ThreadPoolExecutor(THREADS) as pool:
+    with ThreadPoolExecutor(threads_for(value)) as pool:
         while time.monotonic() < deadline:
             rounds += 1
             jobs = [

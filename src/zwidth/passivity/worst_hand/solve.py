@@ -24,6 +24,10 @@ from zwidth.passivity.worst_hand.sweep import cycle, sweep
 
 THREADS = min(os.cpu_count() or 1, 8)
 
+ALONE = 100_000
+"""States up to which one thread plays: several improve the same values in an order of their own, and then the
+same game may end in another motion each time."""
+
 _LOOK = 4
 """Rounds between two searches for a cycle: a search costs less than a round."""
 
@@ -85,7 +89,7 @@ def play(
     choice = np.full(value.shape, -1, np.int64)
     card = OnCard(board, value, choice) if on == "gpu" else None
     rounds = 0
-    with ThreadPoolExecutor(THREADS) as pool:
+    with ThreadPoolExecutor(threads_for(value)) as pool:
         while time.monotonic() < deadline:
             rounds += 1
             improved = _round(pool, board, value, choice) if card is None else card.round()
@@ -100,6 +104,11 @@ def play(
                 if moves:
                     return Played(board, None, moves, rounds)
     return Played(board, None, (), rounds)
+
+
+def threads_for(value: Integers) -> int:
+    """How many threads play a board."""
+    return 1 if value.size <= ALONE else THREADS
 
 
 def _round(pool: ThreadPoolExecutor, board: Board, value: Integers, choice: Integers) -> int:
