@@ -81,8 +81,8 @@ class PassivityIndices:
 
     @property
     def passive(self) -> bool:
-        """Whether the port is passive, ν ≥ 0, decided exactly; equality counts as passive."""
-        return self.input.at_least(0)
+        """Whether ν ≥ 0, which is passive, and the checker accepts the proof; equality counts."""
+        return self.input.at_least(0) and bool(self.input.certificate(0).verify())
 
     @property
     def hidden_modes_decay(self) -> bool:
@@ -108,12 +108,18 @@ class PassivityIndices:
             rows.append(("hidden", "a cancelled mode does not decay"))
         return rows
 
+    def _said(self) -> str:
+        if self.passive:
+            return "passive"
+        return "undecided" if self.input.at_least(0) else "not passive"
+
     def __repr__(self) -> str:
         rows = "; ".join(f"{name} {text}" for name, text in self.rows())
-        return f"<PassivityIndices {'passive' if self.passive else 'not passive'}: {rows}>"
+        return f"<PassivityIndices {self._said()}: {rows}>"
 
     def _repr_html_(self) -> str:
-        colour, word = ("#2a7d4f", "passive") if self.passive else ("#b3261e", "not passive")
+        word = self._said()
+        colour = {"passive": "#2a7d4f", "undecided": "#8a6d00", "not passive": "#b3261e"}[word]
         rows = "".join(f"<tr><th align='left'>{k}</th><td align='left'>{v}</td></tr>" for k, v in self.rows())
         return f"<div><b style='color:{colour}'>{word}</b><table>{rows}</table></div>"
 

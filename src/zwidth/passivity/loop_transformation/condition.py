@@ -84,7 +84,7 @@ class TransformedCondition:
         ]
 
     def __repr__(self) -> str:
-        says = "passive for the whole class" if self.holds else "no promise"
+        says = "holds for the whole class, by a proof on paper" if self.holds else "no promise"
         return f"<TransformedCondition {says}: {'; '.join(f'{k} {v}' for k, v in self.rows())}>"
 
 

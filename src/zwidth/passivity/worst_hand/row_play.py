@@ -18,7 +18,7 @@ from zwidth.compiled import compiled
 from zwidth.passivity.worst_hand.board import Integers
 from zwidth.passivity.worst_hand.row_board import RowBoard
 from zwidth.passivity.worst_hand.solve import THREADS, Played, threads_for
-from zwidth.passivity.worst_hand.sweep import cycle
+from zwidth.passivity.worst_hand.sweep import best_cycle
 
 _LOOK = 4
 """Rounds between two searches for a cycle."""
@@ -98,14 +98,8 @@ def sweep_row(
 
 def _gaining(board: RowBoard, choice: Integers) -> tuple[tuple[int, int], ...]:
     """The moves of a cycle among the best moves, if there is one."""
-    flat = choice.reshape(-1)
-    start = cycle(flat, np.zeros(flat.size, np.int64))
-    if start < 0:
-        return ()
-    moves, at = [], start
-    while True:
+    moves = []
+    for at in best_cycle(choice):
         state, knot = divmod(at, choice.shape[1])
         moves.append((int(board.table.counts[state]) * board.steps + int(board.knots[knot]), state))
-        at = int(flat[at])
-        if at == start:
-            return tuple(moves)
+    return tuple(moves)

@@ -20,7 +20,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.worst_hand.board import Board, Integers
 from zwidth.passivity.worst_hand.gpu import OnCard
 from zwidth.passivity.worst_hand.parts import sweep_parts
-from zwidth.passivity.worst_hand.sweep import cycle, sweep
+from zwidth.passivity.worst_hand.sweep import best_cycle, sweep
 
 THREADS = min(os.cpu_count() or 1, 8)
 
@@ -129,15 +129,9 @@ def _round(pool: ThreadPoolExecutor, board: Board, value: Integers, choice: Inte
 
 def _gaining(board: Board, choice: Integers) -> tuple[tuple[int, int], ...]:
     """The moves of a cycle among the best moves, if there is one."""
-    flat = choice.reshape(-1)
-    start = cycle(flat, np.zeros(flat.size, np.int64))
-    if start < 0:
-        return ()
-    moves, at = [], start
-    while True:
-        cell, _, knot = np.unravel_index(at, choice.shape)
+    moves = []
+    for state in best_cycle(choice):
+        cell, _, knot = np.unravel_index(state, choice.shape)
         count = int(cell) + board.domain.lowest
         moves.append((count * board.steps + int(board.knots[knot]), count))
-        at = int(flat[at])
-        if at == start:
-            return tuple(moves)
+    return tuple(moves)

@@ -238,6 +238,19 @@ def improve(
     return improved
 
 
+def best_cycle(choice: Integers) -> list[int]:
+    """The states of a cycle among the best moves, as flat indices; empty if there is none."""
+    flat = choice.reshape(-1)
+    start = cycle(flat, np.zeros(flat.size, np.int64))
+    if start < 0:
+        return []
+    states, at = [start], int(flat[start])
+    while at != start:
+        states.append(at)
+        at = int(flat[at])
+    return states
+
+
 @compiled
 def cycle(choice: Integers, mark: Integers) -> int:
     """A state on a cycle of chosen moves, or −1; `choice` and the scratch `mark` (zeros) are flat."""
