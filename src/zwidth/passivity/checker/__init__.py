@@ -23,9 +23,11 @@ from .motions import motion_energy, stored_at_start
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
+from .rest import instability, stability
 from .row_motion import row_motion_energy
 from .storage_proof import storage
 from .storage_row import storage_of_row
+from .vibration import vibration
 
 __all__ = ["Verification", "verify"]
 
@@ -34,9 +36,12 @@ _KINDS = {
     "absolute stability": absolute,
     "contact": contact,
     "force bounding": force_bounding,
+    "instability": instability,
     "positive real": positive_real,
+    "stability": stability,
     "storage": storage,
     "row storage": storage_of_row,
+    "vibration": vibration,
 }
 
 
