@@ -78,7 +78,8 @@ def _deviation(inverse: list[list[float]], matrix: _Matrix) -> list[list[int]]:
         for j in range(len(matrix)):
             total = zero
             for weight, line in zip(weights, matrix, strict=True):
-                total = total + line[j].times(weight)
+                if line[j].sign != 0:
+                    total = total + line[j].times(weight)
             middle = total.middle - (1 << 2 * bits if i == j else 0)
             bounds.append(-(-(abs(middle) + total.reach) >> bits))
         out.append(bounds)

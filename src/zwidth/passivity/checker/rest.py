@@ -21,6 +21,7 @@ from .schur_cohn import decays
 
 MOST_ORDER = 300
 MOST_BOXES = 4000
+MOST_HALVINGS = 45
 MOST_EFFORT = 5_000_000
 BOX_BITS = 128
 PRECISIONS = (128, 512, 2048)
@@ -119,14 +120,14 @@ def _covered(loop: _Loop) -> int:
     """In how many boxes no root was found to meet the circle."""
     order = len(loop.below) + 1 + int(loop.motion.late) + (loop.motion.late % 1 > 0)
     most = min(MOST_BOXES, MOST_EFFORT // order**3)
-    left, tried, shown = [loop.motion], 0, 0
+    left, tried, shown = [(loop.motion, 0)], 0, 0
     while left:
-        box = left.pop()
+        box, halved = left.pop()
         tried += 1
-        if tried > most:
-            raise Invalid(f"that every value comes to rest was not confirmed in {most} boxes")
+        if tried > most or halved > MOST_HALVINGS:
+            raise Invalid(f"that every value comes to rest was not confirmed in {tried} boxes")
         if never_crosses(_characteristic(loop._replace(motion=box), BOX_BITS)):
             shown += 1
         else:
-            left += box.halves(loop.motion)
+            left += [(half, halved + 1) for half in box.halves(loop.motion)]
     return shown
