@@ -51,7 +51,7 @@ def touched() -> dict:
     ("off", "valid"), [(Fraction(1, 10**60), True), (-Fraction(1, 10**60), False), (0, False)]
 )
 def test_the_slope_at_which_a_motion_of_three_samples_appears(off: Fraction, valid: bool) -> None:
-    """Plant 6: 10⁻⁶⁰ above 175/192 a pair of motions begins, one and two samples inside; not at it or below."""
+    """Plant 6: 10⁻⁶⁰ above 175/192 there are two motions, one and two samples inside; not at it or below."""
     for second in (False, True):
         doc = six(slope=str(LIMIT + off), inside=[True, second, False])
         assert checker.verify(doc).valid == valid

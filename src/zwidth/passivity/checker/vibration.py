@@ -33,7 +33,8 @@ class _Wall(NamedTuple):
 
 def vibration(document: Mapping[str, Any]) -> str:
     wall = _wall(document)
-    if not any(_is_certain(*_plant(document, bits), wall, bits) for bits in PRECISIONS):
+    answers = (_repeats(*_plant(document, bits), wall, bits) for bits in PRECISIONS)
+    if not next((answer for answer in answers if answer is not None), False):
         raise Invalid("the motion with this pattern is not one of the wall")
     return (
         f"a one-sided wall of slope {float(wall.slope):.9g}, {float(wall.gap):.9g} off the hand's rest, "
@@ -83,19 +84,19 @@ def _touched(loop: Any) -> Motion:
     return motion
 
 
-def _is_certain(above: list[Enclosed], below: list[Enclosed], wall: _Wall, bits: int) -> bool:
+def _repeats(above: list[Enclosed], below: list[Enclosed], wall: _Wall, bits: int) -> bool | None:
+    """True where every sample is certainly on its side, False where one is not, None where it is open."""
     rows = _positions(above, below, wall, bits)
     start = _solved(rows, len(below), len(wall.inside))
     if start is None:
-        return False
-    gap = known(wall.gap, bits)
+        return None
+    gap, sides = known(wall.gap, bits), list[bool | None]()
     for row, inside in zip(rows, wall.inside, strict=False):
         off = row[-1] - gap
         for weight, x in zip(row, start, strict=False):
             off = off + weight * x
-        if off.sign != (1 if inside else -1):
-            return False
-    return True
+        sides.append(None if off.sign is None else (off.sign > 0) == inside and off.sign != 0)
+    return False if False in sides else None if None in sides else True
 
 
 def _positions(above: list[Enclosed], below: list[Enclosed], wall: _Wall, bits: int) -> list[_Row]:
