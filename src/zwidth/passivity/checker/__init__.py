@@ -1,10 +1,10 @@
 """The independent checker: re-proves a certificate, recomputes a witness.
 
-Written from the mathematics alone, with other algorithms than the prover's:
-Chebyshev sums for the criterion, Bernstein coefficients for its sign, Routh's table
-for stability, Schur and Cohn's recursion where a hand is known, a plain recursion for
-the energy of a motion, every move one by one for a storage function.  The standard library does for all but the last, whose many
-moves need numpy and numba.  It imports nothing else of zwidth, on purpose: keep it so.
+Written from the mathematics alone, with other algorithms than the prover's: Chebyshev sums for the criterion,
+Bernstein coefficients for its sign, Routh's table for stability, Schur and Cohn's recursion where a hand is
+known, a plain recursion for the energy of a motion, every move one by one for a storage function.  The
+standard library does for all but the last, whose many moves need numpy and numba.  It imports nothing else of
+zwidth, on purpose: keep it so.
 
 Everything is exact, or enclosed where e^A comes in: numbers are integers, or text such as "3/20" and "0.15".
 """
