@@ -39,6 +39,7 @@ class PeriodicMotion(NamedTuple):
     `positions` are from where the hand rests without a wall; the wall begins at `gap`. `growth` is the
     largest factor by which a small deviation grows in one period: below 1 the motion attracts. `basin` is the
     share of the simulated starts that did not come to rest; `source` says of which plant it is a motion.
+    ``certificate`` lets the independent checker solve for it.
     """
 
     slope: float

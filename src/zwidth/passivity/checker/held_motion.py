@@ -128,20 +128,20 @@ def sampled_free(motion: Motion) -> Sampled:
 def _pushed(spring: Enclosed, loss: Enclosed, tau: Fraction, bits: int) -> tuple[Enclosed, Enclosed]:
     """γ₁ and γ₂ after a part τ of a sample."""
     largest = spring.middle + spring.reach + loss.middle + loss.reach
-    norm = max(Fraction(1), Fraction(-(-largest * 64 >> bits), 64))
+    norm = max(1, -(-largest >> bits))
     if norm > LARGEST_NORM:
         raise Invalid("device and hand move too far within one sample for the series")
-    fine = bits + 3 * int(norm)  # its terms are as large as e^norm
-    one, step = 1 << fine, known(tau, fine)
+    fine = bits + 3 * norm  # its terms are as large as e^norm
+    step = known(tau, fine)
     damped = loss.in_bits(fine) * step
     bent = spring.in_bits(fine) * step * step
     before, term = Enclosed(fine, 0), step
     speed, way = term, term.over(2)
-    count, left = 1, norm
-    while count < 2 * norm + 2 or left * one > 1:
+    count, left = 1, norm << fine  # Nⁿ/n!, rounded up
+    while count < 2 * norm or left > 1:
         before, term = term, (damped * term + (bent * before).over(count)).over(count + 1).times(-1)
         count += 1
-        left = left * norm / count
+        left = left * norm // count + 1
         speed, way = speed + term, way + term.over(count + 1)
-    rest = left * norm / (count + 1) / (1 - norm / (count + 1))
+    rest = Fraction(left, 1 << fine)  # N < n/2: what follows is less than the last term
     return (way * step).widened(rest).in_bits(bits), speed.widened(rest).in_bits(bits)
