@@ -40,7 +40,5 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         record(Path("paddle.csv"))
-        main(
-            ("identify", "paddle.csv", "--resolution", "22.4 um", "--stiffness", "250")
-            + ("--plot", str(picture), "--force")
-        )
+        command = "identify paddle.csv --resolution 22.4um --stiffness 250 --force --plot"
+        main((*command.split(), str(picture)))

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
-    from zwidth.maps import stability_boundary, z_width, z_width_certificate, z_width_factors
+    from zwidth.maps import robust_boundary, stability_boundary, z_width, z_width_certificate, z_width_factors
     from zwidth.passivity import two_port
     from zwidth.passivity.absolute import AbsoluteStability, absolute_stability
     from zwidth.passivity.active_hand import ToleratedActivity, tolerated_activity
@@ -154,6 +154,7 @@ __all__ = [
     "rendering",
     "replay",
     "required_damping_by_slopes",
+    "robust_boundary",
     "rotary",
     "simulate",
     "simulate_admittance",
@@ -212,6 +213,7 @@ _LATER = {
     "RealHand": "zwidth.passivity.real_hand",
     "Stability": "zwidth.passivity.known_hand",
     "stability": "zwidth.passivity.known_hand",
+    "robust_boundary": "zwidth.maps",
     "stability_boundary": "zwidth.maps",
     "z_width": "zwidth.maps",
     "z_width_certificate": "zwidth.maps",

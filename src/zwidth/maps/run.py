@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 
 from zwidth.maps import certificates as _certificates
+from zwidth.maps import robust as _robust
 from zwidth.maps import z_width as _map
 from zwidth.passivity.certificate import Certificate
 from zwidth.traces.progress import progress_bar
@@ -20,6 +21,15 @@ def z_width(*args: Any, **kwargs: Any) -> xr.Dataset:
         return _map.z_width(*args, **kwargs)
     with progress_bar("chunks") as progress:
         return _map.z_width(*args, progress=progress, **kwargs)
+
+
+@wraps(_robust.robust_boundary)
+def robust_boundary(*args: Any, **kwargs: Any) -> xr.Dataset:
+    """As in `maps.robust`, with a bar of the points."""
+    if "progress" in kwargs:
+        return _robust.robust_boundary(*args, **kwargs)
+    with progress_bar("points") as progress:
+        return _robust.robust_boundary(*args, progress=progress, **kwargs)
 
 
 @wraps(_certificates.z_width_certificate)

@@ -29,9 +29,6 @@ from zwidth.passivity.known_hand.plant import Motion
 from zwidth.passivity.known_hand.proof import evidence
 from zwidth.quantity.exact import Exact, ends
 
-_BOXES_OF_A_SEARCH = 1000
-"""Boxes for each stiffness that is tried while the largest one of intervals is sought."""
-
 _HALVINGS = 8
 """Of the stiffness, in that search."""
 
@@ -115,11 +112,9 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
     holding = as_hand(hand)
     motion = motion_of(device, holding)
     transfer = law.pulse_transfer_function(motion.period)
-    found, certificate = _checked(
-        decided(motion, lambda box: of_law(box, transfer)), motion, transfer, device.motion
-    )
+    found, certificate = _checked(motion, transfer, device.motion)
     worst = max((_poles(corner, transfer) for corner in corners(motion)), key=lambda z: abs(z))
-    largest, limit = _limit(motion, law)
+    largest, limit = largest_stable(motion, law, device.motion)
     return Stability(
         outcome=found.outcome,
         claim=_claim(found),
@@ -133,10 +128,9 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
     )
 
 
-def _checked(
-    found: Found, motion: Motion, transfer: RationalFunction, units: str
-) -> tuple[Found, Certificate | None]:
+def _checked(motion: Motion, transfer: RationalFunction, units: str) -> tuple[Found, Certificate | None]:
     """An outcome with a certificate that the independent checker accepts; undecided without one."""
+    found = decided(motion, lambda point: of_law(point, transfer))
     document = evidence(found, motion, transfer, units)
     certificate = None if document is None else Certificate((document,))
     if certificate is None or not certificate.verify():
@@ -173,8 +167,11 @@ def _poles(corner: Motion, transfer: Any) -> complex:
     return complex(roots[np.abs(roots).argmax()])
 
 
-def _limit(motion: Motion, law: Environment) -> tuple[float | None, float | None]:
-    """The largest stable stiffness of a wall and the angle of its poles there."""
+def largest_stable(motion: Motion, law: Environment, units: str) -> tuple[float | None, float | None]:
+    """The largest stable stiffness of a wall and the angle ωT of its poles there; None where there is none.
+
+    For intervals the largest that the independent checker accepts for every value in them.
+    """
     if not isinstance(law, Wall):
         return None, None
     damping = certain(law.damping, "damping")
@@ -185,26 +182,31 @@ def _limit(motion: Motion, law: Environment) -> tuple[float | None, float | None
     guess = min(end for end in ends_of_bands if end is not None)
 
     def holds(k: Fraction) -> bool:
-        def polynomial(box: Motion) -> Any:
-            return family(box, velocity).at(k, damping)
+        return decided(motion, lambda point: family(point, velocity).at(k, damping)).outcome == "stable"
 
-        return decided(motion, polynomial, _BOXES_OF_A_SEARCH).outcome == "stable"
+    def holds_in_the_box(k: Fraction) -> bool:
+        transfer = law.replace(stiffness=Exact(k)).pulse_transfer_function(motion.period)
+        return _checked(motion, transfer, units)[0].outcome == "stable"
 
-    search = largest_holding if motion.is_certain else _largest_below
-    found = search(holds, guess.stiffness)
+    if motion.is_certain:
+        found = largest_holding(holds, guess.stiffness)
+    else:
+        found = _largest_below(holds_in_the_box, guess.stiffness)
     return (found, guess.angle) if found else (None, None)
 
 
 def _largest_below(holds: Callable[[Fraction], bool], limit: float) -> float:
-    """The largest of 2⁻⁸, 2 · 2⁻⁸, … of a limit that holds, by halving; 0 if none does."""
-    low, high = 0, 1 << _HALVINGS
+    """The largest of 2⁻⁸, 2 · 2⁻⁸, … of a limit that holds, sought from the limit down; 0 if none does."""
+    whole = 1 << _HALVINGS
+    low, high = 0, whole
+    step = 1
     while high - low > 1:
-        middle = (low + high) // 2
-        if holds(Exact(limit * middle / (1 << _HALVINGS)).fraction):
-            low = middle
+        tried = max(low + 1, whole - step) if not low else (low + high) // 2
+        if holds(Exact(limit * tried / whole).fraction):
+            low = tried
         else:
-            high = middle
-    return limit * low / (1 << _HALVINGS)
+            high, step = tried, 2 * step
+    return limit * low / whole
 
 
 def _plain(motion: Motion, velocity: Any) -> Plain:
