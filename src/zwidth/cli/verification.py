@@ -94,6 +94,8 @@ def _claim(part: Part) -> str:
         return f"Of the port below, proved: {reason}"
     if "absolute stability" in _kinds(part.evidence):
         return f"Proved: {reason}"
+    if "arm" in _kinds(part.evidence):
+        return f"The arm below is passive, proved: {reason}"
     return f"The loop below is passive, proved: {reason}"
 
 

@@ -16,6 +16,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from .absolute import absolute
+from .arm import arm
 from .contact_motion import contact_motion_energy
 from .contact_proof import contact
 from .force_bounding import force_bounding
@@ -32,6 +33,7 @@ __all__ = ["Verification", "verify"]
 _KINDS = {
     **PROOFS,
     "absolute stability": absolute,
+    "arm": arm,
     "contact": contact,
     "force bounding": force_bounding,
     "positive real": positive_real,
