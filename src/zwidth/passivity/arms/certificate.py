@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import combinations
 from typing import Any
 
+import flint
 import numpy as np
 import numpy.typing as npt
 
@@ -32,8 +34,8 @@ _MARGIN = 1e-12
 """Of the largest entry: what is added so that rounded matrices are ⪰ 0 to the last digit."""
 _SAME = 1e-9
 """Of the largest entry: how far the document's matrix may be from the arm's, in doubles."""
-_CURVED = 1e-9
-"""Of the curvature, which is an eigenvalue in doubles."""
+_CURVED = 2e-6
+"""Of the curvature: the checker's lengths are longer by a millionth, and an eigenvalue is rounded."""
 
 
 def arm_certificate(
@@ -136,13 +138,24 @@ def _wall_document(wall: Wall | MatrixWall, delay_samples: int, size: int) -> di
         stiffness, damping, bound = (_scalar(x, size) for x in (spring, damper, abs(damper)))
     else:
         k, b = wall_matrices(wall, size)
-        stiffness = _matrix(_raised(k) if np.linalg.eigvalsh(k)[0] < _MARGIN * np.abs(k).max() else k)
+        stiffness = _matrix(k if _is_semidefinite(k) else _raised(k))
         damping, bound = _matrix(b), _matrix(_raised(wall_need(wall, 1.0, delay_samples, size).bound))
     return {
         "stiffness_N_per_m": stiffness,
         "virtual_damping_N_s_per_m": damping,
         "damping_bound_N_s_per_m": bound,
     }
+
+
+def _is_semidefinite(matrix: Array) -> bool:
+    """True when no principal minor of the decimals is negative."""
+    exact = [[flint.fmpq(*_exact(x).as_integer_ratio()) for x in row] for row in matrix]
+    places = range(len(matrix))
+    return all(
+        flint.fmpq_mat([[exact[i][k] for k in chosen] for i in chosen]).det() >= 0
+        for size in places
+        for chosen in combinations(places, size + 1)
+    )
 
 
 def _raised(matrix: Array) -> Array:

@@ -12,6 +12,7 @@ leading minors are, by fraction-free elimination in whole numbers.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from itertools import product
 from math import isqrt
@@ -35,9 +36,9 @@ def positive_in(box: Cell, matrix: Function) -> int:
     if moving > MOST_MOVING:
         raise Invalid(f"more than {MOST_MOVING} coordinates move")
     most = MOST_WORK // ((1 + moving) * len(box) ** 2)
-    waiting, done = [box], 0
+    waiting, done = deque([box]), 0  # the large ones first: they find soonest what fails
     while waiting:
-        cell = waiting.pop()
+        cell = waiting.popleft()
         split = _part_to_halve(cell, matrix)
         if split is None:
             done += 1

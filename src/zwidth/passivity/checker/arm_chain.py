@@ -57,7 +57,7 @@ def _joint(entry: Mapping[str, Any]) -> Joint:
     rotation = [vector(row, 3) for row in rows]
     for i, a in enumerate(rotation):
         for j, b in enumerate(rotation):
-            if abs(sum(x * y for x, y in zip(a, b, strict=True)) - (i == j)) > NEARLY:
+            if abs(sum((x * y for x, y in zip(a, b, strict=True)), Fraction(-(i == j)))) > NEARLY:
                 raise Invalid("a rotation is not one")
     unit, per = ("m", "N_s_per_m") if slides else ("rad", "N_m_s_per_rad")
     low, high = number(get(entry, f"low_{unit}")), number(get(entry, f"high_{unit}"))

@@ -17,6 +17,7 @@ from .reading import Invalid
 
 BITS = 80
 ONE = 1 << BITS
+LARGEST = 1 << 64
 LARGEST_ANGLE = 64 * ONE
 TERMS = 400
 
@@ -25,6 +26,8 @@ ZERO: Range = (0, 0)
 
 
 def enclosed(x: Fraction) -> Range:
+    if abs(x) > LARGEST:
+        raise Invalid("a number is too large")
     return floor(x * ONE), ceil(x * ONE)
 
 
