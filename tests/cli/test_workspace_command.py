@@ -71,6 +71,8 @@ def test_the_certificate_is_saved_and_verified(run: Run, tmp_path: Path) -> None
     assert status == 0
     assert "VALID The arm below is passive, proved: no motion of the hand" in words
     assert "read without encoder steps; the torque follows the arm" in words
+    assert "stiffness [[300, 0], [0, 300]] N/m" in words
+    assert "link 0.07 m, rod 0.09 m" in words
     text = (tmp_path / "proof.json").read_text(encoding="utf-8")
     found = json.loads(text)
     assert (found["outcome"], found["certificate"]["kind"]) == ("passive", "arm")

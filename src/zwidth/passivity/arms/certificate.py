@@ -32,6 +32,8 @@ Array = npt.NDArray[np.float64]
 
 _MARGIN = 1e-12
 """Of the largest entry: what is added so that rounded matrices are ⪰ 0 to the last digit."""
+_POINTS = 8
+"""Of the arm, at which the document's matrix is compared with the arm's own."""
 _SAME = 1e-9
 """Of the largest entry: how far the document's matrix may be from the arm's, in doubles."""
 _CURVED = 2e-6
@@ -71,7 +73,8 @@ def _is_of(
     own = range(count) if at_hand else [at.joint for at in arm.placements()[0]]  # type: ignore[attr-defined]
     places = (sites.positions if at_hand else sites.joints[..., own]).reshape(-1, len(own))
     damping = as_matrix(arm.damping)
-    for place, jacobian in zip(places, sites.jacobians.reshape(-1, size, count), strict=True):
+    jacobians = sites.jacobians.reshape(-1, size, count)
+    for place, jacobian in zip(places[:_POINTS], jacobians[:_POINTS], strict=True):
         if at_hand:
             inverse = np.linalg.inv(jacobian)
             found = inverse.T @ damping @ inverse - taken
