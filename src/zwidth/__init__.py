@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from zwidth.maps import stability_boundary, z_width, z_width_factors
     from zwidth.passivity import two_port
     from zwidth.passivity.absolute import AbsoluteStability, absolute_stability
+    from zwidth.passivity.active_hand import ToleratedActivity, tolerated_activity
     from zwidth.passivity.arms import Workspace, workspace
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
@@ -111,6 +112,7 @@ __all__ = [
     "StandardLinearSolid",
     "Timing",
     "TissueFit",
+    "ToleratedActivity",
     "TransformedCondition",
     "VelocityFilter",
     "Verdict",
@@ -160,6 +162,7 @@ __all__ = [
     "stability_boundary",
     "stable_virtual_masses",
     "tissue",
+    "tolerated_activity",
     "transformed_blocks",
     "transformed_condition",
     "two_port",
@@ -236,6 +239,8 @@ _LATER = {
     "simulate_batch": "zwidth.traces",
     "stable_virtual_masses": "zwidth.passivity.virtual_mass",
     "tissue": "zwidth.identification.tissue",
+    "ToleratedActivity": "zwidth.passivity.active_hand",
+    "tolerated_activity": "zwidth.passivity.active_hand",
     "two_port": "zwidth.passivity.two_port",
     "workspace": "zwidth.passivity.arms",
     "worst_hand": "zwidth.traces",

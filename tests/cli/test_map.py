@@ -43,7 +43,7 @@ def test_options_reach_the_map(capsys: pytest.CaptureFixture[str]) -> None:
         velocity_filter=zw.OnePole(0.03), hands={"finger": zw.operators.Finger()}, speed=1,
     )  # fmt: skip
     assert document["cells"] == 600
-    assert set(document["regions"]) == {"passive", "quiet", "stable_finger"}
+    assert set(document["regions"]) == {"passive", "passive_sustained", "quiet", "stable_finger"}
     for name, region in document["regions"].items():
         assert region["cells"] == int(found[name].sum())
     assert document["free_damping_N_s_per_m"] == 0.3

@@ -176,6 +176,8 @@ def _report(found: xr.Dataset) -> str:
 def _region(name: str, found: xr.Dataset) -> str:
     if name == "passive":
         return "passive, every hand"
+    if name == "passive_sustained":
+        return "passive, contact kept"
     if name == "quiet":
         return f"no gain up to {found['quiet'].attrs['speed']:g} {found['admissible_speed'].attrs['units']}"
     hand = name.removeprefix("stable_")

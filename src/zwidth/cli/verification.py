@@ -95,6 +95,8 @@ def _claim(part: Part) -> str:
         return f"Of the port below, proved: {reason}"
     if "absolute stability" in _kinds(part.evidence):
         return f"Proved: {reason}"
+    if "active hand" in _kinds(part.evidence):
+        return f"No hand of this activity goes on gaining energy from the loop below, proved: {reason}"
     if "arm" in _kinds(part.evidence):
         return f"The arm below is passive, proved: {reason}"
     return f"The loop below is passive, proved: {reason}"
@@ -120,6 +122,10 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
     if "kind" in shown_part:
         yield "kind", plain(str(shown_part["kind"]))
     known = _known_keys()
+    for key, value in shown_part.items():
+        if key in known and not isinstance(value, (Mapping, list)):
+            name, unit = known[key]
+            yield name, f"{plain(_text(value))} {unit}"
     for table in ("loop", "law", "domain", "system", "motion"):
         content = shown_part.get(table)
         for key, value in content.items() if isinstance(content, Mapping) else ():
@@ -138,7 +144,17 @@ def _known_keys() -> dict[str, tuple[str, str]]:
     }
     powers = "in descending powers of z"
     taps = {f"taps_{unit_suffix(u)}": ("taps", unit_text(u)) for u in ("N/m", "N*m/rad")}
-    return {**keys, **taps, "numerator": ("numerator", powers), "denominator": ("denominator", powers)}
+    damping = [
+        (unit_suffix(u), unit_text(u)) for u in map(GLOSSARY["damping"].unit_for, ("linear", "rotary"))
+    ]
+    hand = {"below_Hz": ("below", "Hz"), **{f"activity_{key}": ("activity", unit) for key, unit in damping}}
+    return {
+        **keys,
+        **taps,
+        **hand,
+        "numerator": ("numerator", powers),
+        "denominator": ("denominator", powers),
+    }
 
 
 def _text(value: object) -> str:

@@ -7,7 +7,6 @@ wall, T, d, and the region.  A stands for |B|: any A with A ± B ⪰ 0 does.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import Any
@@ -17,7 +16,6 @@ import numpy as np
 import numpy.typing as npt
 
 from zwidth.device.arm import Arm, DescribedArm, LeggedArm, PlanarChain
-from zwidth.device.arm.chain import Placed
 from zwidth.environment.environment import certain
 from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
@@ -29,6 +27,7 @@ from zwidth.passivity.checker.arm import matrix_at
 from zwidth.passivity.document import exact_text
 
 Array = npt.NDArray[np.float64]
+Written = LeggedArm | PlanarChain | DescribedArm
 
 _MARGIN = 1e-12
 """Of the largest entry: what is added so that rounded matrices are ⪰ 0 to the last digit."""
@@ -44,14 +43,13 @@ def arm_certificate(
     arm: Arm, wall: Wall | MatrixWall, rate: float, delay_samples: int, held: float | None
 ) -> tuple[Certificate | None, str]:
     """A certificate that the checker accepts, and its words; or None, and why there is none."""
-    machine, size = arm_document(arm)
-    if machine is None:
+    if not isinstance(arm, (LeggedArm, PlanarChain, DescribedArm)):
         return None, "arms of this kind have no certificate"
     document = {
         "format": FORMAT,
         "kind": "arm",
-        "arm": machine,
-        "wall": _wall_document(wall, delay_samples, size),
+        "arm": _legs_document(arm) if isinstance(arm, LeggedArm) else _chain_document(arm),
+        "wall": _wall_document(wall, delay_samples, arm.sites(2).jacobians.shape[-2]),
         "loop": _loop_document(arm, rate, delay_samples, held),
     }
     if not _is_of(document, arm, wall, 1 / rate, delay_samples):
@@ -61,7 +59,7 @@ def arm_certificate(
 
 
 def _is_of(
-    document: dict[str, Any], arm: Arm, wall: Wall | MatrixWall, period: float, delay_samples: int
+    document: dict[str, Any], arm: Written, wall: Wall | MatrixWall, period: float, delay_samples: int
 ) -> bool:
     """At a few points the matrix that the checker reads out of the document is the one of the arm's own J."""
     free = {**document, "loop": {**document["loop"], "torque": "follows the arm"}}
@@ -69,32 +67,21 @@ def _is_of(
     size, count = sites.jacobians.shape[-2:]
     need = wall_need(wall, period, delay_samples, size)
     taken = need.stiffness_share + need.bound
-    at_hand = isinstance(arm, LeggedArm)
-    own = range(count) if at_hand else [at.joint for at in arm.placements()[0]]  # type: ignore[attr-defined]
-    places = (sites.positions if at_hand else sites.joints[..., own]).reshape(-1, len(own))
-    damping = as_matrix(arm.damping)
-    jacobians = sites.jacobians.reshape(-1, size, count)
-    for place, jacobian in zip(places[:_POINTS], jacobians[:_POINTS], strict=True):
-        if at_hand:
-            inverse = np.linalg.inv(jacobian)
-            found = inverse.T @ damping @ inverse - taken
-        else:
-            found = surplus(jacobian, damping, taken)[np.ix_(own, own)]
-        read = matrix_at(free, [_exact(x) for x in place])
-        upper = np.concatenate([row[i:] for i, row in enumerate(found)])
-        scale = np.abs(found).max() + np.abs(damping).max() * (not at_hand)
-        if np.abs(np.concatenate(read) - upper).max() > _SAME * scale:
+    damping, jacobians = as_matrix(arm.damping), sites.jacobians.reshape(-1, size, count)
+    if isinstance(arm, LeggedArm):
+        places, inverses = sites.positions.reshape(-1, size), np.linalg.inv(jacobians)
+        given = np.swapaxes(inverses, -1, -2) @ damping @ inverses
+        found = given - taken
+    else:
+        own = [at.joint for at in arm.placements()[0]]
+        places = sites.joints.reshape(-1, count)[:, own]
+        found, given = surplus(jacobians, damping, taken)[:, own][:, :, own], damping
+    for place, expected in zip(places[:_POINTS], found[:_POINTS], strict=True):
+        read = np.concatenate(matrix_at(free, [_exact(x) for x in place]))
+        upper = np.concatenate([row[i:] for i, row in enumerate(expected)])
+        if np.abs(read - upper).max() > _SAME * (np.abs(given).max() + np.abs(expected).max()):
             return False
     return True
-
-
-def arm_document(arm: Arm) -> tuple[dict[str, Any] | None, int]:
-    """What the arm is made of and where it may be, and the coordinates of its hand."""
-    if isinstance(arm, LeggedArm):
-        return _legs_document(arm), len(arm.legs)
-    if isinstance(arm, (PlanarChain, DescribedArm)):
-        return _chain_document(arm, *arm.placements()), 2 if isinstance(arm, PlanarChain) else 3
-    return None, 0
 
 
 def _legs_document(arm: LeggedArm) -> dict[str, Any]:
@@ -115,9 +102,8 @@ def _legs_document(arm: LeggedArm) -> dict[str, Any]:
     return {"geometry": "legs", "legs": legs, "low_m": _texts(low), "high_m": _texts(high)}
 
 
-def _chain_document(
-    arm: PlanarChain | DescribedArm, placements: Sequence[Placed], end: Array
-) -> dict[str, Any]:
+def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
+    placements, end = arm.placements()
     joints = []
     for at in placements:
         low, high = arm.joint_range[at.joint]

@@ -16,6 +16,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from .absolute import absolute
+from .active_hand import active_hand
 from .arm import arm
 from .contact_motion import contact_motion_energy
 from .contact_proof import contact
@@ -33,6 +34,7 @@ __all__ = ["Verification", "verify"]
 _KINDS = {
     **PROOFS,
     "absolute stability": absolute,
+    "active hand": active_hand,
     "arm": arm,
     "contact": contact,
     "force bounding": force_bounding,

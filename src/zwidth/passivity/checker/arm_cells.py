@@ -111,8 +111,8 @@ def _at_corners(start: Whole, rest: Whole, lines: list[Whole]) -> bool:
         corner = [list(row) for row in base]
         for sign, line in zip(signs, lines, strict=True):
             for row, change in zip(corner, line, strict=True):
-                for l, x in enumerate(change):  # noqa: E741
-                    row[l] += sign * x
+                for k, x in enumerate(change):
+                    row[k] += sign * x
         if not _positive(corner):
             return False
     return True
