@@ -13,8 +13,8 @@ import pytest
 from zwidth.device.arm import Leg, LeggedArm
 from zwidth.passivity import checker
 from zwidth.passivity.checker import arm_cells
-from zwidth.passivity.checker.arm import matrix_at
-from zwidth.passivity.checker.enclosure import ONE, Jet
+from zwidth.passivity.checker.arm import _claim, matrix_at
+from zwidth.passivity.checker.enclosure import ONE, Jet, enclosed
 
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 
@@ -87,6 +87,11 @@ def put(document: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
             inner = inner[key]
         inner[last] = value
     return document
+
+
+HELD = {
+    "loop": {**two_link()["loop"], "torque": "held", "largest_force_N": "2", "curvature_m_per_rad2": "0.26"}
+}
 
 
 def end_of(arm: dict[str, Any], joints: list[complex]) -> np.ndarray:
@@ -199,6 +204,57 @@ def test_the_matrix_of_legs_is_that_of_their_angles(seed: int) -> None:
         assert row == pytest.approx(expected[i, i:], rel=1e-8, abs=1e-8 * np.abs(expected).max())
 
 
+def in_space() -> dict[str, Any]:
+    """A leg in each direction of space, with hinges that stand off."""
+    document = pantograph()
+    axes = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
+    leg = {**document["arm"]["legs"][0], "offset_m": "0.02", "base_m": ["0.04", "-0.01", "0.02"]}
+    legs = [{**leg, "out": axes[i], "up": axes[i - 1], "bend": (-1) ** i} for i in range(3)]
+    arm = {"geometry": "legs", "legs": legs, "low_m": ["0.05"] * 3, "high_m": ["0.06"] * 3}
+    return {**document, "arm": arm, "wall": random_chain(np.random.default_rng(2), 1)["wall"]}
+
+
+@pytest.mark.parametrize(
+    ("document", "place"),
+    [
+        (random_chain(np.random.default_rng(1), 4), [0.1, -0.15, 0.25, 0.2]),
+        (random_chain(np.random.default_rng(5), 3), [0.3, -0.1, 0.22]),
+        (two_link(), [1.1, 2.0]),
+        (pantograph(), [0.011, 0.083]),
+        (in_space(), [0.051, 0.054, 0.058]),
+    ],
+)
+def test_the_slopes_are_those_of_the_matrix(document: dict[str, Any], place: list[float]) -> None:
+    """Enclosed over a cell around a place, they hold the differences across it, and hardly more."""
+    width, matrix = 1e-6, _claim(document).matrix
+    ranges = [enclosed(Fraction(repr(x))) for x in place]
+    step = int(width * ONE)
+    cell = [Jet((low - step, high + step), {j: (ONE, ONE)}) for j, (low, high) in enumerate(ranges)]
+    for j in range(len(place)):
+        ends = []
+        for sign in (-1, 1):
+            moved = [Jet((r[0] + sign * step * (i == j),) * 2) for i, r in enumerate(ranges)]
+            ends.append([[sum(s.value) / 2 for s in row] for row in matrix(moved)])
+        slopes = [
+            [(y - x) / (2 * step) for x, y in zip(*rows, strict=True)] for rows in zip(*ends, strict=True)
+        ]
+        largest = max(abs(x) for row in slopes for x in row)
+        for row, expected in zip(matrix(cell), slopes, strict=True):
+            for found, slope in zip(row, expected, strict=True):
+                least, most = (x / ONE for x in found.slopes.get(j, (0, 0)))
+                assert least - 1e-9 * largest <= slope <= most + 1e-9 * largest
+                assert most - least <= 0.02 * largest
+
+
+def test_a_held_torque_takes_its_price_from_every_joint() -> None:
+    """h F T/2 from the diagonal, nothing beside it."""
+    place = [Fraction("0.7"), Fraction("1.3")]
+    free, held = (matrix_at(d, place) for d in (two_link(), two_link() | HELD))
+    assert free[0][0] - held[0][0] == pytest.approx(0.26 * 2 * 0.001 / 2)
+    assert free[1][0] - held[1][0] == pytest.approx(0.26 * 2 * 0.001 / 2)
+    assert free[0][1] == held[0][1]
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_the_verdict_on_a_chain_is_that_of_a_fine_grid(seed: int) -> None:
     """Just above the damping that a fine grid asks for it is accepted, just below refused."""
@@ -237,9 +293,6 @@ def test_the_verdict_on_legs_is_that_of_a_fine_grid(stiffness: list[int]) -> Non
         assert found.valid == valid, found.reason
 
 
-HELD = {
-    "loop": {**two_link()["loop"], "torque": "held", "largest_force_N": "2", "curvature_m_per_rad2": "0.26"}
-}
 MIXED = {
     "wall__stiffness_N_per_m": [["760", "0"], ["0", "660"]],
     "wall__virtual_damping_N_s_per_m": [["0.03", "0.04"], ["0.04", "-0.03"]],
@@ -288,6 +341,8 @@ def test_what_holds_is_accepted(document: dict[str, Any]) -> None:
         (two_link(wall__stiffness_N_per_m=[["1", "1"]]), "expected 1 coordinates|at most|entries"),
         (two_link(**MIXED | {"wall__damping_bound_N_s_per_m": [["0.049", "0"], ["0", "0.051"]]}), "no bound"),
         (two_link(**MIXED | {"wall__damping_bound_N_s_per_m": [["1", "0"], ["0", "1"]]}), "not enough"),
+        (two_link(wall__virtual_damping_N_s_per_m=[["0.01", "0"], ["0", "0"]]), "no bound"),
+        (two_link(wall__virtual_damping_N_s_per_m=[["0", "0"], ["0", "-0.01"]]), "no bound"),
         (two_link(arm__joints__0__rotation=[["1", "0.001", "0"], *IDENTITY[1:]]), "rotation is not one"),
         (two_link(arm__joints__0__kind="spherical"), "revolute or prismatic"),
         (two_link(arm__joints__0__low_rad="2"), "low ≤ high"),
@@ -345,6 +400,21 @@ def test_more_cells_than_the_budget_are_refused(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(arm_cells, "MOST_WORK", 240)
     found = checker.verify(two_link())
     assert (found.valid, found.reason) == (False, "more than 20 cells would be needed")
+
+
+@pytest.mark.parametrize(("top", "valid"), [(0.2501, True), (0.2499, False)])
+def test_a_hill_whose_middle_has_no_slope(top: float, valid: bool) -> None:
+    """S = top − x² on [−½, ½]: flat in the middle, and least at the ends; the same off the diagonal."""
+    box, high = ((-ONE // 2, ONE // 2),), Jet((int(top * ONE),) * 2)
+    for matrix in (
+        lambda x: [[high - x[0].squared()]],
+        lambda x: [[high, x[0] * x[0]], [high]],  # ≻ 0 where x² < top
+    ):
+        if valid:
+            assert arm_cells.positive_in(box, matrix) > 2
+        else:
+            with pytest.raises(arm_cells.Invalid, match=r"not enough|more than"):
+                arm_cells.positive_in(box, matrix)
 
 
 def test_a_dip_between_the_middles_is_seen() -> None:
