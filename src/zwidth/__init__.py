@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
-    from zwidth.maps import stability_boundary, z_width, z_width_factors
+    from zwidth.maps import stability_boundary, z_width, z_width_certificate, z_width_factors
     from zwidth.passivity import two_port
     from zwidth.passivity.absolute import AbsoluteStability, absolute_stability
     from zwidth.passivity.active_hand import ToleratedActivity, tolerated_activity
@@ -169,6 +169,7 @@ __all__ = [
     "workspace",
     "worst_hand",
     "z_width",
+    "z_width_certificate",
     "z_width_factors",
 ]
 
@@ -213,6 +214,7 @@ _LATER = {
     "stability": "zwidth.passivity.known_hand",
     "stability_boundary": "zwidth.maps",
     "z_width": "zwidth.maps",
+    "z_width_certificate": "zwidth.maps",
     "z_width_factors": "zwidth.maps",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",

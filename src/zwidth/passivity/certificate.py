@@ -46,7 +46,7 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """Of the first document: "spring", "contact", "linear", "positive real", "absolute stability", …"""
+        """Of the first document: "spring", "contact", "linear", "positive real", "stability", …"""
         return str(self.documents[0]["kind"])
 
     @property
