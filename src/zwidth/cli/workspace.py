@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from zwidth.passivity.arms import Workspace
 
-STATUS = {"theorem": 0, "active": 1, "undecided": 3}
+STATUS = {"passive": 0, "theorem": 0, "active": 1, "undecided": 3}
 _RATE = "1 kHz"
 
 _JOINT_OPTIONS = (
@@ -60,7 +60,13 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the verdict as JSON, units in the keys")
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the map: .png, .svg or .pdf")
-    output.add_argument("-o", "--save", metavar="FILE", action=Once, help="save the map as NetCDF")
+    output.add_argument(
+        "-o",
+        "--save",
+        metavar="FILE",
+        action=Once,
+        help="save the verdict with its certificate, for zwidth verify (.json), or else the map as NetCDF",
+    )
     output.add_argument("--force", action="store_true", help="replace files that exist")
 
 
@@ -86,13 +92,16 @@ def run_workspace(arguments: argparse.Namespace) -> int:
     )
     if save is not None:
         with writing(save):
-            space.data.to_netcdf(save, engine="h5netcdf")
+            if save.suffix.lower() == ".json":
+                space.save(save)
+            else:
+                space.data.to_netcdf(save, engine="h5netcdf")
     if plot is not None:
         from zwidth.plots.workspace import save_workspace  # matplotlib takes its time
 
         save_workspace(space, plot, overwrite=True)
     if arguments.json:
-        print_json(json.dumps(_document(space), indent=2, ensure_ascii=False))
+        print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
     else:
         print_workspace(space)
     return STATUS[space.outcome]
@@ -205,32 +214,3 @@ def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
     for joint, addition in enumerate(space.additions, start=1):
         if isfinite(addition):
             yield f"joint {joint} alone", f"{shown(addition, 'N*m*s/rad')} more damping"
-
-
-def _document(space: Workspace) -> dict[str, Any]:
-    """The verdict without the map, which is as large as the grid; --save writes it."""
-    data, motion = space.data, space.motion
-    return {
-        "outcome": space.outcome,
-        "claim": space.claim,
-        "arm": space.arm.name,
-        "region": data.attrs["region"],
-        "sample_period_s": space.sample_period,
-        "delay_samples": space.delay_samples,
-        "smallest_margin_N_s_per_m": float(data["margin"].min()),
-        "largest_stiffness_N_per_m": _finite(space.largest_stiffness),
-        "addition_to_all_N_m_s_per_rad": space.addition_to_all,
-        "addition_to_one_N_m_s_per_rad": [_finite(v) for v in space.additions],
-        "proved_part": float(data["proved"].mean()),
-        "motion": None
-        if motion is None
-        else {
-            "energy_J": motion.energy,
-            "joints_rad": motion.joints.tolist(),
-            "positions_m": motion.positions.tolist(),
-        },
-    }
-
-
-def _finite(value: float) -> float | None:
-    return value if isfinite(value) else None
