@@ -1,0 +1,56 @@
+"""Determinant, principal minors and adjugate of a square matrix of polynomials (Leverrier & Faddeev).
+
+    det(λ + A) = Σ λ^{m−k} e_k,   M_1 = 1,  e_k = ± tr(A M_k)/k,  M_{k+1} = A M_k ∓ e_k
+
+needs sums, products and division by whole numbers only, so the entries may be of any ring
+that has them.  e_k is the sum of the principal minors of size k; of a Hermitian A it is the
+k-th elementary symmetric function of the eigenvalues.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+Matrix = Sequence[Sequence[Any]]
+
+
+class Leverrier(NamedTuple):
+    """e_1 … e_m of a matrix, the last its determinant, and its adjugate."""
+
+    minors: list[Any]
+    adjugate: list[list[Any]]
+
+
+def leverrier(matrix: Matrix, one: Any) -> Leverrier:
+    """The minors and the adjugate; `one` is the ring's 1."""
+    size, zero = len(matrix), one - one
+    step = [[one if i == j else zero for j in range(size)] for i in range(size)]
+    minors: list[Any] = []
+    for k in range(1, size + 1):
+        adjugate, product = step, multiplied(matrix, step)
+        sign = 1 if k % 2 else -1
+        trace = product[0][0]
+        for i in range(1, size):
+            trace = trace + product[i][i]
+        minor = trace * sign / k
+        minors.append(minor)
+        step = [
+            [product[i][j] - minor * sign if i == j else product[i][j] for j in range(size)]
+            for i in range(size)
+        ]
+    last = 1 if size % 2 else -1
+    return Leverrier(minors, [[entry * last for entry in row] for row in adjugate])
+
+
+def multiplied(a: Matrix, b: Matrix) -> list[list[Any]]:
+    """A B."""
+    columns = list(zip(*b, strict=True))
+    return [[_dot(row, column) for column in columns] for row in a]
+
+
+def _dot(row: Sequence[Any], column: Sequence[Any]) -> Any:
+    total = row[0] * column[0]
+    for x, y in zip(row[1:], column[1:], strict=True):
+        total = total + x * y
+    return total
