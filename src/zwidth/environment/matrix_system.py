@@ -2,8 +2,8 @@
 
     G = (n_ij/d_ij)      y_i = Σ_j G_ij u_j
 
-A state space gives every entry as in `system`, over det(sI − A); what of that polynomial no
-entry shows, `hidden` says: the modes that no input reaches or no output sees.
+A state space gives every entry as in `system`, over det(sI − A); what of that polynomial belongs
+to modes that no input reaches or no output sees, `hidden_modes` finds.
 """
 
 from __future__ import annotations
@@ -24,16 +24,17 @@ from zwidth.environment.system import (
 from zwidth.errors import InputError
 
 Rows = list[list[Fraction]]
+Entries = tuple[tuple[tuple[Polynomial, Polynomial], ...], ...]
 
 
 class MatrixSystem(NamedTuple):
     """Numerators and denominators in descending powers, row by row, and the time they are of."""
 
-    entries: tuple[tuple[tuple[Polynomial, Polynomial], ...], ...]
+    entries: Entries
     time: Literal["continuous", "discrete", "unsaid"]
     sample_period: Fraction | None
-    hidden: Polynomial | None
-    """The characteristic polynomial of the hidden modes; None of a transfer function, whose entries tell."""
+    state: tuple[Rows, Rows, Rows] | None
+    """A, B and C of a state space with states."""
 
 
 def size_of(system: Any) -> tuple[int, int]:
@@ -64,8 +65,8 @@ def read_matrix_system(system: Any) -> MatrixSystem:
             "times its own input a power: leave out what is not part of the port"
         )
     if all(hasattr(system, name) for name in ("A", "B", "C", "D")):
-        entries, hidden = _from_state_space(system)
-        return MatrixSystem(entries, *time_of(system), hidden)
+        entries, state = _from_state_space(system)
+        return MatrixSystem(entries, *time_of(system), state)
     if not (hasattr(system, "num") and hasattr(system, "den")):
         raise InputError(
             f"a system of type {type(system).__name__} with several inputs is not read; give a "
@@ -74,7 +75,7 @@ def read_matrix_system(system: Any) -> MatrixSystem:
     return MatrixSystem(_from_transfer_functions(system), *time_of(system), None)
 
 
-def _from_transfer_functions(system: Any) -> tuple[tuple[tuple[Polynomial, Polynomial], ...], ...]:
+def _from_transfer_functions(system: Any) -> Entries:
     def polynomial(key: str, i: int, j: int) -> Polynomial:
         coefficients = getattr(system, key)[i][j]
         bounded(len(coefficients) - 1)
@@ -86,7 +87,7 @@ def _from_transfer_functions(system: Any) -> tuple[tuple[tuple[Polynomial, Polyn
 
 def _from_state_space(
     system: Any,
-) -> tuple[tuple[tuple[tuple[Polynomial, Polynomial], ...], ...], Polynomial]:
+) -> tuple[Entries, tuple[Rows, Rows, Rows] | None]:
     """C (sI − A)⁻¹ B + D: (det(sI − A + b_j c_i) + (d_ij − 1) det(sI − A))/det(sI − A)."""
     bounded(len(system.A))
     a, b, c, d = (rows_of(getattr(system, name), name) for name in "ABCD")
@@ -100,11 +101,11 @@ def _from_state_space(
         return tuple(x + (d[i][j] - 1) * y for x, y in zip(characteristic(closed), den, strict=True))
 
     entries = tuple(tuple((numerator(i, j), den) for j in size) for i in size)
-    return entries, _hidden(a, b, c) if a else (Fraction(1),)
+    return entries, (a, b, c) if a else None
 
 
-def _hidden(a: Rows, b: Rows, c: Rows) -> Polynomial:
-    """det(sI − A) over that of the part that is reached and seen."""
+def hidden_modes(a: Rows, b: Rows, c: Rows) -> Polynomial:
+    """det(sI − A) over that of the part that is reached and seen, in descending powers."""
     all_modes = _matrix(a)
     reached, inputs_to, outputs_of = _reached(all_modes, _matrix(b), _matrix(c))
     seen = (

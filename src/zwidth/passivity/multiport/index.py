@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from cmath import phase
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import atan2, hypot, pi
 from typing import Any
 
 from zwidth.passivity.certificate import positivity_document
@@ -32,9 +32,8 @@ class MatrixExtraction(Extraction):
         if self.kind != "burst":
             return []
         u = self._inputs_at_middle()
-        largest, first = max(hypot(*a) for a in u), u[max(range(len(u)), key=lambda i: hypot(*u[i]))]
-        turn = atan2(first[1], first[0])
-        return [(hypot(*a) / largest, (atan2(a[1], a[0]) - turn + pi) % (2 * pi) - pi) for a in u]
+        largest = max(u, key=abs)
+        return [(abs(a / largest), phase(a / largest)) for a in u]
 
     def signals(self, points: int = 1000) -> tuple[list[float], Signals, Signals]:
         """(t [s], u, y), a list of signals each, the largest u 1; of a discrete port its samples."""
@@ -50,11 +49,13 @@ class MatrixExtraction(Extraction):
     def _form(self) -> str:
         return f"{super()._form()} in {self.port.axes} axes"
 
-    def _inputs_at_middle(self) -> list[tuple[float, float]]:
+    def _inputs_at_middle(self) -> list[complex]:
         step, cycles, _ = self.motion.numbers
         side = self.port.inputs if self.document["index"] == "input" else self.port.outputs
         at = place(self.port, step * cycles)
-        return [(to_float(a.real), to_float(a.imaginary)) for a in answer(side, at, self.motion.latent)]
+        return [
+            complex(to_float(a.real), to_float(a.imaginary)) for a in answer(side, at, self.motion.latent)
+        ]
 
 
 @dataclass(frozen=True, repr=False)

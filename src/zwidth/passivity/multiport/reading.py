@@ -9,14 +9,15 @@ from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from zwidth.environment.matrix_system import MatrixSystem, read_matrix_system
+from zwidth.environment.matrix_system import MatrixSystem, hidden_modes, read_matrix_system
 from zwidth.environment.system import Polynomial
 from zwidth.errors import InputError
 from zwidth.passivity.multiport.port import MatrixPort
 from zwidth.passivity.port import Time, decays, said_time
 
 MOST_AXES = 6
-LARGEST_ORDER = 60
+LARGEST_SIZE = 120
+"""Axes times the order of the common denominator: the degree of a determinant."""
 
 
 def read_matrix_port(system: Any) -> MatrixPort:
@@ -36,7 +37,8 @@ def read_matrix_port(system: Any) -> MatrixPort:
         for _, d in row:
             common = common * (d // fmpq_poly(common.numer().gcd(d.numer())))
     numerators = [[n * (common // d) for n, d in row] for row in entries]
-    port = from_polynomials(numerators, common, time, read.sample_period or Fraction(1), _decay(read, time))
+    decay = _hidden_modes_decay(read, common, time)
+    port = from_polynomials(numerators, common, time, read.sample_period or Fraction(1), decay)
     _bounded(port)
     return port
 
@@ -66,10 +68,10 @@ def _bounded(port: MatrixPort) -> None:
             f"the system has {port.axes} inputs; at most {MOST_AXES} are decided together: where groups of "
             "axes do not act on each other, give each group by itself"
         )
-    if port.order > LARGEST_ORDER:
+    if port.axes * port.order > LARGEST_SIZE:
         raise InputError(
-            f"the entries of the system have a common denominator of order {port.order}; with several "
-            f"inputs at most {LARGEST_ORDER} is decided"
+            f"the system has {port.axes} inputs and its entries have order {port.order} over their common "
+            f"denominator; with so many inputs at most {LARGEST_SIZE // port.axes} is decided: reduce it"
         )
 
 
@@ -84,10 +86,14 @@ def _fraction(numerator: Polynomial, denominator: Polynomial, time: Time) -> tup
     return n // common, d // common
 
 
-def _decay(read: MatrixSystem, time: Time) -> bool:
-    """Whether every hidden mode decays: of transfer functions, what cancels within an entry."""
-    if read.hidden is not None:
-        return _decays(_polynomial(read.hidden), time)
+def _hidden_modes_decay(read: MatrixSystem, common: fmpq_poly, time: Time) -> bool:
+    """Whether every hidden mode decays: of transfer functions, what cancels within an entry.
+
+    Of a state space, what is not reached or not seen; it is no more than what no entry has as a pole.
+    """
+    if read.state is not None:
+        every = _polynomial(read.entries[0][0][1])
+        return _decays(every // common, time) or _decays(_polynomial(hidden_modes(*read.state)), time)
     for row in read.entries:
         for numerator, denominator in row:
             n, d = _polynomial(numerator), _polynomial(denominator)
