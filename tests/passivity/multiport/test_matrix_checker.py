@@ -34,13 +34,14 @@ def tampered(document, path, value):
 
 
 def proved():
-    """A port of two axes with the input index 1 − 1/16."""
-    lag = ([1], [1, 1])
-    return zw.passivity_indices(matrix([[([1, 2], [1, 1]), lag], [([0], [1]), ([1, 2], [1, 1])]])).input
+    """A port of two axes with the input index 1 − 1/32."""
+    lead = ([1, 3], [1, 2])
+    return zw.passivity_indices(matrix([[lead, ([1], [1, 2])], [([0], [1]), lead]])).input
 
 
 def test_the_checker_refuses_a_false_matrix_proof():
     """A higher level, another system, wrong factors, powers or resolvent: none passes."""
+    assert proved().exact == Fraction(31, 32)
     document = proved().certificate().to_dict()
     assert checker.verify(document).valid
     changes = [
@@ -53,7 +54,7 @@ def test_the_checker_refuses_a_false_matrix_proof():
         (("proof", "offset"), "0"),
         (("proof", "minors"), document["proof"]["minors"][:1]),
         (("proof", "minors", 1, "power"), 1),
-        (("proof", "minors", 1, "positivity", "factor"), ["1"]),
+        (("proof", "minors", 1, "positivity", "factor"), ["2", "1"]),
         (("proof", "minors", 0, "positivity", "factor"), ["-1", "3"]),
         (("proof", "resolvent", "denominator"), ["1", "7"]),
         (("proof", "resolvent", "numerators", 0, 0), ["1", "1"]),

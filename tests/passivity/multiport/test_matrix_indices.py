@@ -80,6 +80,7 @@ REFUSED = {
     ),
     "double integrator": matrix([[([1], [1, 0, 0]), NOTHING], [NOTHING, LAG]]),
     "grows with the square of the frequency": matrix([[([1, 0, 0], [1]), NOTHING], [NOTHING, LAG]]),
+    "a pole on the axis across": matrix([[([3], [1, 2]), NOTHING], [([1], [1, 0, 1]), ([1, 0], [1, 1])]]),
     "unstable across": matrix([[LAG, ([1], [1, -2])], [NOTHING, LAG]]),
 }
 

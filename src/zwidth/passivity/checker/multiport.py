@@ -91,8 +91,9 @@ def _nonnegative(p: _Ports, minors: Any) -> None:
     if degree > MOST_POINTS:
         raise Invalid("the minors have too high a degree")
     ratios: list[Fraction | None] = [None] * p.axes
+    whole = _whole(p)
     for step in range(degree + 1):
-        c, weight, found = _minors_at(p, Fraction(step + 1, degree // 2 + 2))
+        c, weight, found = _minors_at(p, whole, Fraction(step + 1, degree // 2 + 2))
         for k, (minor, power, q) in enumerate(zip(found, powers, claimed, strict=True)):
             said = weight**power * _horner(q, c)
             if ratios[k] is None and said and minor:
@@ -115,15 +116,29 @@ def _product(proof: Mapping[str, Any]) -> Polynomial:
     return product
 
 
-def _minors_at(p: _Ports, tangent: Fraction) -> tuple[Fraction, Fraction, list[Fraction]]:
+class _Whole(NamedTuple):
+    """The polynomials of a port times `scale`, in whole numbers."""
+
+    scale: int
+    inputs: list[list[list[int]]]
+    outputs: list[list[list[int]]]
+    denominator: list[int]
+
+
+def _whole(p: _Ports) -> _Whole:
+    sides = (p.inputs, p.outputs)
+    scale = lcm(*(x.denominator for side in sides for row in side for q in row for x in q))
+    inputs, outputs = ([[[int(c * scale) for c in q] for q in row] for row in side] for side in sides)
+    return _Whole(scale, inputs, outputs, [int(c * scale) for c in p.denominator])
+
+
+def _minors_at(p: _Ports, whole: _Whole, tangent: Fraction) -> tuple[Fraction, Fraction, list[Fraction]]:
     """(c, |d|², e_1 … e_m) at tan θ/2 = tangent: s = j tan θ/2, all times (1 + c)^order; or z = e^{jθ}."""
     t, b = tangent.numerator, tangent.denominator
     c = Fraction(b * b - t * t, b * b + t * t)
     point, unit = ((0, t), b) if p.continuous else ((b * b - t * t, 2 * t * b), b * b + t * t)
-    scale = lcm(*(x.denominator for side in (p.inputs, p.outputs) for row in side for q in row for x in q))
-    u, y = (
-        [[_at(q, point, unit, p.order, scale) for q in row] for row in side] for side in (p.inputs, p.outputs)
-    )
+    scale, inputs, outputs, denominator = whole
+    u, y = ([[_at(q, point, unit, p.order) for q in row] for row in side] for side in (inputs, outputs))
     top, bottom = p.level.numerator, p.level.denominator
     size = range(p.axes)
 
@@ -140,19 +155,19 @@ def _minors_at(p: _Ports, tangent: Fraction) -> tuple[Fraction, Fraction, list[F
         return real, imaginary
 
     # u, y and d are unit^order · scale too large; (1 + c)^order makes polynomials in c of those in ω²
-    d = _at(p.denominator, point, unit, p.order, scale)
+    d = _at(denominator, point, unit, p.order)
     factor = ((1 + c) if p.continuous else Fraction(1)) ** p.order / Fraction(unit**p.order * scale) ** 2
     sums = _principal_sums([[entry(i, j) for j in size] for i in size])
     share = factor / (2 * bottom)
     return c, factor * (d[0] ** 2 + d[1] ** 2), [s * share ** (k + 1) for k, s in enumerate(sums)]
 
 
-def _at(ascending: Sequence[Fraction], point: Gaussian, unit: int, order: int, scale: int) -> Gaussian:
-    """scale · unit^order · p(point/unit), a Gaussian integer."""
+def _at(ascending: Sequence[int], point: Gaussian, unit: int, order: int) -> Gaussian:
+    """unit^order · p(point/unit), a Gaussian integer."""
     real, imaginary, power = 0, 0, unit ** (order + 1 - len(ascending))
     for c in reversed(ascending):
         real, imaginary = real * point[0] - imaginary * point[1], real * point[1] + imaginary * point[0]
-        real += int(c * scale) * power
+        real += c * power
         power *= unit
     return (real, imaginary) if ascending else (0, 0)
 

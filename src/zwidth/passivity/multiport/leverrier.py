@@ -28,19 +28,35 @@ def leverrier(matrix: Matrix, one: Any) -> Leverrier:
     step = [[one if i == j else zero for j in range(size)] for i in range(size)]
     minors: list[Any] = []
     for k in range(1, size + 1):
-        adjugate, product = step, multiplied(matrix, step)
         sign = 1 if k % 2 else -1
-        trace = product[0][0]
-        for i in range(1, size):
-            trace = trace + product[i][i]
-        minor = trace * sign / k
-        minors.append(minor)
-        step = [
-            [product[i][j] - minor * sign if i == j else product[i][j] for j in range(size)]
-            for i in range(size)
-        ]
+        if k == size:
+            trace = _trace_of_product(matrix, step) if k > 1 else matrix[0][0]
+            minors.append(trace * sign / k)
+            break
+        product = multiplied(matrix, step) if k > 1 else matrix
+        minors.append(_trace(product) * sign / k)
+        step = _less_on_diagonal(product, minors[-1] * sign)
     last = 1 if size % 2 else -1
-    return Leverrier(minors, [[entry * last for entry in row] for row in adjugate])
+    return Leverrier(minors, [[entry * last for entry in row] for row in step])
+
+
+def _trace(matrix: Matrix) -> Any:
+    total = matrix[0][0]
+    for i in range(1, len(matrix)):
+        total = total + matrix[i][i]
+    return total
+
+
+def _trace_of_product(a: Matrix, b: Matrix) -> Any:
+    terms = [_dot(row, [other[i] for other in b]) for i, row in enumerate(a)]
+    total = terms[0]
+    for term in terms[1:]:
+        total = total + term
+    return total
+
+
+def _less_on_diagonal(matrix: Matrix, value: Any) -> list[list[Any]]:
+    return [[x - value if i == j else x for j, x in enumerate(row)] for i, row in enumerate(matrix)]
 
 
 def multiplied(a: Matrix, b: Matrix) -> list[list[Any]]:

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from flint import fmpq, fmpq_poly
 
-from zwidth.passivity.multiport.circle import OnCircle, product
+from zwidth.passivity.multiport.circle import ONE, OnCircle, product
 from zwidth.passivity.multiport.leverrier import leverrier, multiplied
 from zwidth.passivity.port import Time, frequency_of, in_zeta
 
@@ -64,6 +64,12 @@ class MatrixPort:
         """The largest degree of an entry."""
         return max(len(p) for side in (self.outputs, self.inputs) for row in side for p in row) - 1
 
+    @cached_property
+    def is_direct(self) -> bool:
+        """True for D = d·1, from inputs to outputs."""
+        size, nothing = range(self.axes), (0,)
+        return all(self.inputs[i][j] == (self.denominator if i == j else nothing) for i in size for j in size)
+
     @property
     def is_zero(self) -> bool:
         """True for D = 0: of the inverse of G = 0."""
@@ -90,6 +96,11 @@ class MatrixPort:
         crossed = [[pairing(d, n, i, j) for j in size] for i in size]
         power = [[(crossed[i][j] + crossed[j][i].conjugate()) / 2 for j in size] for i in size]
         return power, [[pairing(d, d, i, j) for j in size] for i in size]
+
+    @cached_property
+    def minors_at_zero(self) -> list[fmpq_poly]:
+        """e_1 … e_m of Π_0, in c."""
+        return [minor.real for minor in leverrier(self.forms[0], ONE).minors]
 
     def form(self, level: fmpq | int) -> list[list[OnCircle]]:
         """Π_σ at the level σ."""

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import comb
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
@@ -21,7 +22,7 @@ from zwidth.passivity.multiport.leverrier import leverrier
 from zwidth.passivity.multiport.port import MatrixPort
 from zwidth.passivity.port import decays
 from zwidth.passivity.positive_real import OFFSET
-from zwidth.passivity.positivity import Positivity, prove_nonnegative
+from zwidth.passivity.positivity import Positivity, prove_nonnegative, where_negative
 
 
 @dataclass(frozen=True)
@@ -57,14 +58,24 @@ def prove_minors(port: MatrixPort, level: Fraction) -> tuple[Minor, ...] | Fract
         q, power = without_weight(minor, port.weight, k)
         sign = prove_nonnegative(q)
         if isinstance(sign, Fraction):
-            return sign
+            return where_negative(minor.numer(), sign)  # beside a zero of |d|², where Π_σ vanishes
         proved.append(Minor(power, sign))
     return tuple(proved)
 
 
 def minors_at(port: MatrixPort, level: fmpq | int) -> list[fmpq_poly]:
     """e_1 … e_m of Π_σ, in c."""
-    return [minor.real for minor in leverrier(port.form(level), ONE).minors]
+    if not port.is_direct:
+        return [minor.real for minor in leverrier(port.form(level), ONE).minors]
+    size, shift = port.axes, port.weight * -level  # Π_σ = Π_0 − σ|d|²
+    fixed = [fmpq_poly([1]), *port.minors_at_zero]
+    powers = [fmpq_poly([1])]
+    for _ in range(size):
+        powers.append(powers[-1] * shift)
+    return [
+        sum((comb(size - j, k - j) * fixed[j] * powers[k - j] for j in range(k + 1)), fmpq_poly([]))
+        for k in range(1, size + 1)
+    ]
 
 
 def without_weight(minor: fmpq_poly, weight: fmpq_poly, most: int) -> tuple[fmpz_poly, int]:
