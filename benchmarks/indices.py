@@ -22,7 +22,7 @@ from control.passivity import get_input_ff_index, get_output_fb_index
 
 import zwidth as zw
 
-SYSTEMS = 25
+SYSTEMS = 100
 SIZES = ((1, 4), (1, 10), (2, 4), (3, 6))
 
 

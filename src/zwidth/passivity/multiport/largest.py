@@ -14,8 +14,6 @@ from fractions import Fraction
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from zwidth.passivity.multiport.circle import ONE
-from zwidth.passivity.multiport.leverrier import leverrier
 from zwidth.passivity.multiport.port import MatrixPort
 from zwidth.passivity.multiport.positive_real import (
     minors_at,
@@ -92,8 +90,7 @@ def largest_matrix_level(port: MatrixPort, root: str = "pole") -> Largest | NoLe
 def _spectrum(port: MatrixPort) -> Spectrum | None:
     """Z, from its values at σ = 0 … m; None where e_k is not 0 for some k > r."""
     size = port.axes
-    of_inputs = leverrier(port.forms[1], ONE).minors
-    rank = max(k + 1 for k in range(size) if of_inputs[k].real.degree() >= 0)
+    rank = port.rank
     samples = [minors_at(port, level) for level in range(size + 1)]
     if any(minor.degree() >= 0 for minors in samples for minor in minors[rank:]):
         return None

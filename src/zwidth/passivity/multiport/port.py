@@ -102,6 +102,12 @@ class MatrixPort:
         """e_1 … e_m of Π_0, in c."""
         return [minor.real for minor in leverrier(self.forms[0], ONE).minors]
 
+    @cached_property
+    def rank(self) -> int:
+        """The rank of D at all but some frequencies."""
+        found = leverrier(self.forms[1], ONE).minors
+        return max((k + 1 for k, minor in enumerate(found) if minor.real.degree() >= 0), default=0)
+
     def form(self, level: fmpq | int) -> list[list[OnCircle]]:
         """Π_σ at the level σ."""
         return [
@@ -130,17 +136,21 @@ class MatrixPort:
         return None if fraction is None else fraction[0]
 
     def eigenvalues(self, frequencies: Sequence[float]) -> list[list[float]]:
-        """Of the Hermitian part of N D⁻¹ at these frequencies [Hz], ascending, to rounding; nan at a pole."""
-        found = []
+        """Of the Hermitian part of N D⁻¹ at these frequencies [Hz], ascending, to rounding; nan at a pole.
+
+        Where D is not invertible, of what it reaches.
+        """
+        found, rank = [], self.rank
         for f in frequencies:
             omega = 2 * pi * f
             point = np.exp(1j * omega * float(self.period)) if self.time == "discrete" else 1j * omega
             n, d = (_at(side, point) for side in (self.outputs, self.inputs))
-            try:
-                response = n @ np.linalg.inv(d)
-                found.append([float(x) for x in np.linalg.eigvalsh((response + response.conj().T) / 2)])
-            except np.linalg.LinAlgError:
-                found.append([float("nan")] * self.axes)
+            left, sizes, right = np.linalg.svd(d)
+            if rank and sizes[rank - 1] > 0:
+                reached = left[:, :rank].conj().T @ n @ (right[:rank].conj().T / sizes[:rank])
+                found.append([float(x) for x in np.linalg.eigvalsh((reached + reached.conj().T) / 2)])
+            else:
+                found.append([float("nan")] * max(rank, 1))
         return found
 
     def frequency(self, cosine: Fraction) -> float:

@@ -9,7 +9,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from zwidth.environment.matrix_system import MatrixSystem, hidden_modes, read_matrix_system
+from zwidth.environment.matrix_system import MatrixSystem, hidden_modes, read_matrix_system, size_of
 from zwidth.environment.system import Polynomial
 from zwidth.errors import InputError
 from zwidth.passivity.multiport.port import MatrixPort
@@ -29,6 +29,7 @@ def read_matrix_port(system: Any) -> MatrixPort:
         If it has not as many inputs as outputs, is not causal in discrete time, too large, or
         does not say whether its time is continuous.
     """
+    _bounded(size_of(system)[0], len(getattr(system, "A", ())))
     read = read_matrix_system(system)
     time = said_time(read.time, [p for row in read.entries for entry in row for p in entry])
     entries = [[_fraction(*entry, time) for entry in row] for row in read.entries]
@@ -39,7 +40,7 @@ def read_matrix_port(system: Any) -> MatrixPort:
     numerators = [[n * (common // d) for n, d in row] for row in entries]
     decay = _hidden_modes_decay(read, common, time)
     port = from_polynomials(numerators, common, time, read.sample_period or Fraction(1), decay)
-    _bounded(port)
+    _bounded(port.axes, port.order)
     return port
 
 
@@ -62,16 +63,16 @@ def from_polynomials(
     return MatrixPort(outputs, inputs, d, time, period, hidden_modes_decay)
 
 
-def _bounded(port: MatrixPort) -> None:
-    if port.axes > MOST_AXES:
+def _bounded(axes: int, order: int) -> None:
+    if axes > MOST_AXES:
         raise InputError(
-            f"the system has {port.axes} inputs; at most {MOST_AXES} are decided together: where groups of "
+            f"the system has {axes} inputs; at most {MOST_AXES} are decided together: where groups of "
             "axes do not act on each other, give each group by itself"
         )
-    if port.axes * port.order > LARGEST_SIZE:
+    if axes * order > LARGEST_SIZE:
         raise InputError(
-            f"the system has {port.axes} inputs and its entries have order {port.order} over their common "
-            f"denominator; with so many inputs at most {LARGEST_SIZE // port.axes} is decided: reduce it"
+            f"the system has {axes} inputs and order {order}, of its states or of the common denominator of "
+            f"its entries; with so many inputs at most {LARGEST_SIZE // axes} is decided: reduce it"
         )
 
 
