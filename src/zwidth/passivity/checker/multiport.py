@@ -17,7 +17,7 @@ from itertools import count
 from math import lcm
 from typing import Any, NamedTuple
 
-from .port import _horner, _in_left_half_plane, _inside, _trimmed
+from .port import MOST_WORK, _horner, _in_left_half_plane, _inside, _trimmed
 from .proofs import _multiply, _strictly_positive, _sum
 from .reading import MOST_COEFFICIENTS, Invalid, get, integer, number, numbers
 
@@ -88,7 +88,7 @@ def _nonnegative(p: _Ports, minors: Any) -> None:
     degree = max(
         p.axes * p.order, *(len(q) + power * p.order for q, power in zip(claimed, powers, strict=True))
     )
-    if degree > MOST_POINTS:
+    if degree > MOST_POINTS or degree * p.axes**3 * p.order > MOST_WORK:
         raise Invalid("the minors have too high a degree")
     ratios: list[Fraction | None] = [None] * p.axes
     whole = _whole(p)

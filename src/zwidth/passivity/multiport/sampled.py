@@ -41,7 +41,7 @@ def sampled_damping(port: MatrixPort, device: Device) -> tuple[float | None, flo
     found = largest_matrix_level(_integrated(port, period, int(delay)))
     if not isinstance(found, Largest):
         return None, 0.0
-    cosine = Fraction(1) if found.cosine is None else found.cosine
+    cosine = Fraction(-1) if found.cosine is None else found.cosine  # of equals the highest, as for one axis
     return _not_below(max(-found.low, Fraction(0))), frequency(cosine, period)
 
 
