@@ -16,15 +16,17 @@ import numpy as np
 
 from zwidth.device import Device
 from zwidth.environment import Wall
-from zwidth.environment.environment import Environment, certain
+from zwidth.environment.environment import Environment, RationalFunction, certain
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.boundary import largest_holding
+from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.known_hand.characteristic import PRECISIONS, as_floats, family, of_law, precision
 from zwidth.passivity.known_hand.crossing import Plain, last_stable, plain
 from zwidth.passivity.known_hand.decide import Found, Outcome, corners, decided
 from zwidth.passivity.known_hand.hand import PassiveHand, as_hand
 from zwidth.passivity.known_hand.plant import Motion
+from zwidth.passivity.known_hand.proof import evidence
 from zwidth.quantity.exact import Exact, ends
 
 _BOXES_OF_A_SEARCH = 1000
@@ -59,6 +61,9 @@ class Stability:
         What the claim rests on.
     culprit
         Mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand together that do not decay.
+    certificate
+        What the independent checker accepted, of kind "stability" for the loop and all its intervals or
+        "instability" for the culprit; None where it is undecided.
     """
 
     outcome: Outcome
@@ -69,11 +74,16 @@ class Stability:
     limit_frequency: float | None
     assumptions: tuple[str, ...]
     culprit: tuple[float, float, float] | None = None
+    certificate: Certificate | None = None
 
     @property
     def margin(self) -> float:
         """1 − spectral radius: > 0 for a loop that decays."""
         return 1 - self.spectral_radius
+
+    def verify(self) -> bool:
+        """True when there is a certificate and the independent checker accepts it."""
+        return self.certificate is not None and self.certificate.verify()
 
     def __str__(self) -> str:
         return f"{self.outcome}: {self.claim}"
@@ -84,7 +94,8 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
 
     ``(m + m_h) ẍ + (b + c) ẋ + k x = −f``,  f = H(z) x sampled, delayed and held.  Decided exactly: in
     rational arithmetic without spring and damper, else in balls that hold the true coefficients.  A passive
-    loop is stable with every passive hand; this one answers for loops that are not passive.
+    loop is stable with every passive hand; this one answers for loops that are not passive.  What is said has
+    been confirmed by the independent checker.
 
     Parameters
     ----------
@@ -104,7 +115,9 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
     holding = as_hand(hand)
     motion = motion_of(device, holding)
     transfer = law.pulse_transfer_function(motion.period)
-    found = decided(motion, lambda box: of_law(box, transfer))
+    found, certificate = _checked(
+        decided(motion, lambda box: of_law(box, transfer)), motion, transfer, device.motion
+    )
     worst = max((_poles(corner, transfer) for corner in corners(motion)), key=lambda z: abs(z))
     largest, limit = _limit(motion, law)
     return Stability(
@@ -116,7 +129,19 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
         limit_frequency=None if limit is None else _hertz(limit, motion),
         assumptions=_assumptions(device, holding, law),
         culprit=_culprit(found),
+        certificate=certificate,
     )
+
+
+def _checked(
+    found: Found, motion: Motion, transfer: RationalFunction, units: str
+) -> tuple[Found, Certificate | None]:
+    """An outcome with a certificate that the independent checker accepts; undecided without one."""
+    document = evidence(found, motion, transfer, units)
+    certificate = None if document is None else Certificate((document,))
+    if certificate is None or not certificate.verify():
+        return Found("undecided"), None
+    return found, certificate
 
 
 def motion_of(device: Device, hand: PassiveHand) -> Motion:
@@ -203,7 +228,7 @@ def _claim(found: Found) -> str:
         return "device and hand come to rest against this wall, after every small disturbance"
     if found.outcome == "unstable":
         return "a disturbance does not die out: the hand is shaken, or left to drift"
-    return "some values in the intervals are so near the limit that they were not decided"
+    return "the loop, or some values in the intervals, are so near the limit that they were not decided"
 
 
 def _assumptions(device: Device, hand: PassiveHand, law: Environment) -> tuple[str, ...]:
