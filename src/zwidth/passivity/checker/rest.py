@@ -45,9 +45,9 @@ def stability(document: Mapping[str, Any]) -> str:
     if not _decays(loop._replace(motion=middle)):
         raise Invalid("that all roots lie inside the unit circle could not be confirmed")
     if middle == loop.motion:
-        return "device, hand and wall come to rest after every disturbance"
+        return "device, hand and wall come to rest after every disturbance, contact kept"
     boxes = _covered(loop)
-    return f"device, hand and wall come to rest for every value in the intervals, {boxes} boxes"
+    return f"device, hand and wall come to rest for every value in the intervals, contact kept, {boxes} boxes"
 
 
 def instability(document: Mapping[str, Any]) -> str:
@@ -56,7 +56,7 @@ def instability(document: Mapping[str, Any]) -> str:
         raise Invalid("what does not come to rest must be certain")
     if _decays(loop) is not False:
         raise Invalid("that a root lies on or outside the unit circle could not be confirmed")
-    return "device, hand and wall do not come to rest: a disturbance does not die out"
+    return "device, hand and wall do not come to rest, contact kept: a disturbance does not die out"
 
 
 def _read(document: Mapping[str, Any]) -> _Loop:
