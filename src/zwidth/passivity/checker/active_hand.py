@@ -15,6 +15,7 @@ from .contact_proof import contact
 from .proofs import PROOFS, _criterion, _friction, _linear_part, _positivity
 from .reading import Invalid, Loop, get, number, read_loop
 
+MOST_BITS_OF_ANGLE = 4000  # high powers of it are taken
 _PI = Fraction(31415926535897932385, 10**19)
 """Above π, by less than its last digit."""
 _LESS_THAN_PI = _PI - Fraction(1, 10**19)
@@ -62,6 +63,8 @@ def _in_band(document: Mapping[str, Any], p: Loop, activity: Fraction, proof: Ma
     if below <= 0 or 2 * below * p.period > 1:
         raise Invalid("the band must end above 0 and at most at half the rate")
     angle, cosine = number(get(proof, "angle")), number(get(proof, "cosine"))
+    if max(x.denominator for x in (angle, cosine)).bit_length() > MOST_BITS_OF_ANGLE or angle > 4:
+        raise Invalid("the angle of the band is too large, or has too many digits")
     if angle < 2 * _PI * below * p.period or not -1 <= cosine <= _least_cosine(angle):
         raise Invalid("the band of the proof is narrower than what is said")
     inside = p._replace(damping=_inside(p.damping, activity, angle))
