@@ -118,3 +118,8 @@ def test_the_index_of_a_port_is_no_verdict(outcome: str) -> None:
         (part,) = verifications({"outcome": outcome, "certificate": evidence})
         assert not part.verification.valid
         assert "is of a port" in part.verification.reason
+
+
+def test_only_what_is_checked_is_shown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A law beside the proof of a spring is no part of it."""
+    assert "99999" not in told({**SPRING, "law": {"stiffness_N_per_m": "99999"}}, tmp_path, capsys)

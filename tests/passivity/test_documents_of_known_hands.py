@@ -85,3 +85,64 @@ def test_absurd_values_never_raise(name: str) -> None:
             found = checker.verify(broken)
             assert isinstance(found.reason, str)
             assert found.energy is None
+
+
+HELD = {
+    "mass_kg": "0.036",
+    "damping_N_s_per_m": "0.15",
+    "hand_mass_kg": "0.006",
+    "hand_damping_N_s_per_m": "1.7",
+    "hand_stiffness_N_per_m": "500",
+    "sample_period_s": "0.001",
+    "delay_s": "0",
+}
+OF_LOOPS: dict[str, dict[str, Any]] = {
+    "stability": DOCUMENTS["stability"],
+    "absolute stability": {
+        "kind": "absolute stability",
+        "nonlinearity": "monotone",
+        "loop": HELD,
+        "slope": "10",
+        "center": "1",
+        "taps": [],
+        "convexity": "0",
+        "smoothness": "0",
+    },
+    "spring": {
+        "kind": "spring",
+        "loop": {
+            "damping_N_s_per_m": "0.15",
+            "coulomb_friction_N": "0.12",
+            "resolution_m": "0.00002",
+            "sample_period_s": "0.001",
+            "delay_s": "0",
+            "numerator": ["100"],
+            "denominator": ["1"],
+            "unilateral": True,
+        },
+    },
+}
+
+
+@pytest.mark.parametrize("name", OF_LOOPS)
+def test_what_is_not_read_is_refused(name: str) -> None:
+    """An entry beside those of the proof would be shown as if it had been checked."""
+    document = OF_LOOPS[name]
+    assert checker.verify(document).valid, checker.verify(document).reason
+    for key in ("coulomb_friction_mN", "force_limit_N", "virtual_wall"):
+        found = checker.verify({**document, "loop": {**document["loop"], key: "1"}})
+        assert not found.valid
+    assert "entries where" in checker.verify({**document, "loop": {**document["loop"], "note": 1}}).reason
+
+
+@pytest.mark.parametrize("name", OF_LOOPS)
+def test_a_number_is_in_its_unit(name: str) -> None:
+    """A damping in mN·s/m is not read as one in N·s/m: its key ends in an SI unit, or in none."""
+    document = OF_LOOPS[name]
+    loop = {key: value for key, value in document["loop"].items() if key != "damping_N_s_per_m"}
+    damping = document["loop"]["damping_N_s_per_m"]
+    assert checker.verify({**document, "loop": {**loop, "damping": damping}}).valid
+    for unit in ("N_s_per_mm", "N_s", "kg", "mN_s_per_m", "N_per_m"):
+        found = checker.verify({**document, "loop": {**loop, f"damping_{unit}": damping}})
+        assert not found.valid, unit
+        assert "unit of damping" in found.reason or "damping once" in found.reason

@@ -88,7 +88,7 @@ def test_refused_for_its_size(name: str) -> None:
 
 
 def test_the_effort_on_boxes_counts_the_series() -> None:
-    """A hand that swings many times within a sample has long series: fewer boxes are tried, and it is said."""
+    """A hand that swings many times within a sample has long series: fewer boxes are tried."""
     stiff = {
         **HAND,
         "stiffness_N_per_m": "24000000",

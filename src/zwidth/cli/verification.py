@@ -28,6 +28,13 @@ _OF_A_PORT = {"positive real", "positive real matrix", "extraction", "matrix ext
 _BOUNDED = {"storage", "row storage"}
 """Storage functions: they speak of the hands on their board only."""
 
+_TABLES = {
+    **dict.fromkeys(_OF_A_PORT, ("system", "motion")),
+    **dict.fromkeys(("contact", "force bounding"), ("loop", "law")),
+    **dict.fromkeys((*_BOUNDED, "contact motion", "row motion"), ("loop", "law", "domain")),
+}
+"""What a document of each kind is of, besides its loop: only what is checked is shown."""
+
 _CONTACT_KEPT = {"linear", "quantized", "delays"}
 """Kinds that take a one-sided law for the line that it is inside."""
 
@@ -163,7 +170,7 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
         if key in known and not isinstance(value, (Mapping, list)):
             name, unit = known[key]
             yield name, f"{plain(_text(value))} {unit}"
-    for table in ("loop", "law", "domain", "system", "motion"):
+    for table in _TABLES.get(str(shown_part.get("kind")), ("loop",)):
         content = shown_part.get(table)
         for key, value in content.items() if isinstance(content, Mapping) else ():
             name, unit = known.get(str(key), (str(key).replace("_", " "), ""))

@@ -106,3 +106,11 @@ def test_an_angle_beyond_half_a_turn_covers_all(turn: str) -> None:
     wide = changed(changed(kept, "below_Hz", "400"), "proof.angle", turn)
     assert not checker.verify(wide).valid
     assert _least_cosine(Fraction(turn)) == -1
+
+
+def test_activity_is_in_its_unit() -> None:
+    """A number that is said to be in mN·s/m is not taken for one in N·s/m."""
+    kept, _ = proofs(zw.Wall(100, 0.05))
+    activity = kept.pop("activity_N_s_per_m")
+    assert checker.verify({**kept, "activity_N_m_s_per_rad": activity}).valid
+    assert "unit of activity" in checker.verify({**kept, "activity_mN_s_per_m": activity}).reason

@@ -13,7 +13,7 @@ from typing import Any
 
 from .contact_proof import contact
 from .proofs import PROOFS, _criterion, _friction, _linear_part, _positivity
-from .reading import Invalid, Loop, get, number, read_loop
+from .reading import Invalid, Loop, get, in_its_unit, number, read_loop
 
 MOST_BITS_OF_ANGLE = 4000  # high powers of it are taken
 _PI = Fraction(31415926535897932385, 10**19)
@@ -33,7 +33,7 @@ def _activity(document: Mapping[str, Any]) -> Fraction:
     keys = [key for key in document if key.startswith("activity_")]
     if len(keys) != 1:
         raise Invalid("the document must give activity once")
-    found = number(document[keys[0]])
+    found = number(document[in_its_unit(keys[0], "activity")])
     if found < 0:
         raise Invalid("the activity must be ≥ 0")
     return found

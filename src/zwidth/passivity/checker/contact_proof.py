@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from .reading import Invalid, Loop, get, number, numbers, read_loop
+from .reading import Invalid, Loop, get, in_its_unit, number, numbers, read_loop
 
 
 class _Estimate(NamedTuple):
@@ -48,7 +48,7 @@ def _quantity(law: Any, name: str) -> Fraction:
     keys = [key for key in law if key == name or key.startswith(name + "_")]
     if len(keys) != 1:
         raise Invalid(f"the law must give {name} once")
-    return number(law[keys[0]])
+    return number(law[in_its_unit(keys[0], name)])
 
 
 def _estimate(weights: Any) -> _Estimate:

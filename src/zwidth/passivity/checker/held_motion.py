@@ -20,7 +20,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from .enclosed import Enclosed, between, known
-from .reading import Invalid, number
+from .reading import Invalid, in_its_unit, number
 
 MOST_LATE = 300
 LARGEST_NORM = 500
@@ -92,7 +92,7 @@ def quantity(loop: Any, name: str) -> Range:
     keys = [key for key in loop if key == name or key.startswith((name + "_N", name + "_kg", name + "_s"))]
     if len(keys) != 1:
         raise Invalid(f"the loop must give {name} once")
-    value = loop[keys[0]]
+    value = loop[in_its_unit(keys[0], name)]
     ends = [number(end) for end in value] if isinstance(value, list) else [number(value)] * 2
     if len(ends) != 2 or ends[0] > ends[1]:
         raise Invalid(f"{name} must be a number, or the smaller and the larger end of an interval")

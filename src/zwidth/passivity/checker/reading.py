@@ -26,6 +26,34 @@ def get(document: Mapping[str, Any], key: str) -> Any:
     return document[key]
 
 
+_DAMPING, _STIFFNESS = ("N_s_per_m", "N_m_s_per_rad"), ("N_per_m", "N_m_per_rad")
+_UNITS = {
+    "mass": ("kg", "kg_m2"),
+    "damping": _DAMPING,
+    "virtual_damping": _DAMPING,
+    "activity": _DAMPING,
+    "stiffness": _STIFFNESS,
+    "coulomb_friction": ("N", "N_m"),
+    "resolution": ("m", "rad"),
+    "sample_period": ("s",),
+    "delay": ("s",),
+}
+
+
+def in_its_unit(key: str, name: str) -> str:
+    """A key of a quantity, once its ending is the unit that the number is taken for, or nothing."""
+    units = _UNITS[name.removeprefix("hand_")]
+    if key != name and key.removeprefix(f"{name}_") not in units:
+        raise Invalid(f"the unit of {name} must be {' or '.join(units)}: {key[:60]}")
+    return key
+
+
+def with_no_more_than(table: Mapping[str, Any], count: int) -> None:
+    """As many entries as were read: what nobody reads would be taken for a part of what is proved."""
+    if len(table) != count:
+        raise Invalid(f"{len(table)} entries where {count} are read: {', '.join(map(str, table))[:200]}")
+
+
 def number(value: Any) -> Fraction:
     if isinstance(value, bool) or not isinstance(value, (int, str, Decimal, float, Fraction)):
         raise Invalid(f"expected a number, got {type(value).__name__}")
@@ -94,7 +122,7 @@ def read_loop(document: Mapping[str, Any]) -> Loop:
         keys = [k for k in loop if k == name or k.startswith(name + "_")]
         if len(keys) != 1:
             raise Invalid(f"the loop must give {name} once")
-        return number(loop[keys[0]])
+        return number(loop[in_its_unit(keys[0], name)])
 
     b, friction, resolution = (quantity(n) for n in ("damping", "coulomb_friction", "resolution"))
     period, delay = quantity("sample_period"), quantity("delay")
@@ -109,6 +137,7 @@ def read_loop(document: Mapping[str, Any]) -> Loop:
     if whole > MOST_COEFFICIENTS:
         raise Invalid(f"the delay is {float(whole):g} samples, more than {MOST_COEFFICIENTS}")
     unilateral = get(loop, "unilateral")
+    with_no_more_than(loop, 8)
     if not isinstance(unilateral, bool):
         raise Invalid("unilateral must be true or false")
     return Loop(

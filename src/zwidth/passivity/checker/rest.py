@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from .crossing import never_crosses
 from .enclosed import Enclosed, quotient
 from .held_motion import Motion, Sampled, quantity, read_motion, sampled, sampled_free
-from .reading import Invalid, common_scale, get, numbers
+from .reading import Invalid, common_scale, get, numbers, with_no_more_than
 from .schur_cohn import decays
 
 MOST_ORDER = 300
@@ -66,6 +66,7 @@ def _read(document: Mapping[str, Any]) -> _Loop:
     loop = get(document, "loop")
     motion = read_motion(*(quantity(loop, name) for name in _NAMES))
     above, below = (numbers(get(loop, name), MOST_ORDER) for name in ("numerator", "denominator"))
+    with_no_more_than(loop, len(_NAMES) + 2)
     if not below or below[0] == 0 or not 0 < len(above) <= len(below):
         raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
     scale = common_scale((*above, *below))

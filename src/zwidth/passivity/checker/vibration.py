@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from .enclosed import Enclosed, in_z, known
 from .held_motion import Motion, quantity, read_motion, sampled
-from .reading import Invalid, get, number, numbers
+from .reading import Invalid, get, number, numbers, with_no_more_than
 
 MOST_ORDER = 60
 LONGEST = 1000
@@ -84,6 +84,7 @@ def _touched(loop: Any) -> Motion:
         raise Invalid("b, m_h and c must be ≥ 0")
     mass, damping = ((a[0] + b[0], a[1] + b[1]) for a, b in zip(own, hand, strict=True))
     rest = [quantity(loop, name) for name in ("hand_stiffness", "sample_period", "delay")]
+    with_no_more_than(loop, len(own) + len(hand) + len(rest))
     motion = read_motion(mass, damping, *rest)
     if motion.middle != motion:
         raise Invalid("a motion is of certain numbers")
