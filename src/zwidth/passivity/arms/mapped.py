@@ -23,8 +23,11 @@ from zwidth.passivity.arms.need import WallNeed, wall_matrices
 Array = npt.NDArray[np.float64]
 Truth = npt.NDArray[np.bool_]
 
-_SINGULAR = 1e-9
-"""Singular values of J below this part of the largest count as this: damping there is as good as infinite."""
+_SINGULAR = 1e-4
+"""Singular values of J below this part of the largest count as this, with the wall's share cut alike: damping
+there is as good as infinite, yet leaves room for the digits of what is finite."""
+_BLOCKED = 1e-12
+"""Singular values of J below this part of the largest are rounding: the arm cannot move there."""
 
 Column = tuple[Array, str, str]
 
@@ -36,12 +39,12 @@ def columns_of(
     spring, damper = need.stiffness_share, need.bound
     lacking = surplus(jacobians, damping, spring + damper)
     alone = single_additions(lacking)
-    frame, at_hand = _at_hand(jacobians, damping)
-    turned = np.swapaxes(frame, -1, -2)
-    values, vectors = np.linalg.eigh(at_hand - turned @ (spring + damper) @ frame)
+    frame, seen, at_hand = _at_hand(jacobians, damping)
+    turned = np.swapaxes(seen, -1, -2)
+    values, vectors = np.linalg.eigh(at_hand - turned @ (spring + damper) @ seen)
     worst = (frame @ vectors[..., :, :1])[..., 0]
     stiffness = wall_matrices(wall, frame.shape[-2])[0]
-    scale = largest_scale(at_hand - turned @ damper @ frame, turned @ spring @ frame)
+    scale = largest_scale(at_hand - turned @ damper @ seen, turned @ spring @ seen)
     largest = float(np.linalg.norm(stiffness, 2))
     stiffest = np.where(np.isfinite(scale), scale, 0.0) * largest + np.where(np.isfinite(scale), 0.0, np.inf)
     in_joints = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
@@ -72,16 +75,21 @@ def columns_of(
     return columns
 
 
-def _at_hand(jacobians: Array, damping: Array) -> tuple[Array, Array]:
-    """U (…, n, r) and δ in its axes (…, r, r), from J = U S Vᵀ: (S Vᵀ δ_m⁻¹ V S)⁻¹."""
+def _at_hand(jacobians: Array, damping: Array) -> tuple[Array, Array, Array]:
+    """U (…, n, r), U P and P δ P in its axes (…, r, r), from J = U S Vᵀ and δ = (S Vᵀ δ_m⁻¹ V S)⁻¹.
+
+    P = 1 but for directions in which the arm can hardly move, where S/P is raised to a floor: δ − UᵀRU ⪰ 0
+    exactly if PδP − PUᵀRUP ⪰ 0, and no entry is so large that the others drown in its rounding.
+    """
     u, s, vt = np.linalg.svd(jacobians, full_matrices=False)
-    s = np.maximum(s, _SINGULAR * s[..., :1])
+    raised = np.maximum(s, _SINGULAR * s[..., :1])
+    share = np.where(s > _BLOCKED * s[..., :1], s / np.where(raised > 0, raised, 1.0), 0.0)
     v = np.swapaxes(vt, -1, -2)
     if jacobians.shape[-1] <= jacobians.shape[-2]:
         inner = vt @ damping @ v
     else:
         inner = np.linalg.inv(vt @ np.linalg.inv(damping) @ v)
-    return u, inner / (s[..., :, None] * s[..., None, :])
+    return u, u * share[..., None, :], inner / (raised[..., :, None] * raised[..., None, :])
 
 
 def _joint(alone: Array) -> Array:
