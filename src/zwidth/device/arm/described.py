@@ -17,9 +17,8 @@ import numpy.typing as npt
 
 from zwidth.device.arm.arm import Arm, Array, Axis, Sites, as_joints, middles
 from zwidth.device.arm.chain import Placed
+from zwidth.device.arm.description_file import read_model
 from zwidth.errors import InputError
-
-_ENDINGS = {".urdf": "buildModelFromUrdf", ".xml": "buildModelFromMJCF", ".mjcf": "buildModelFromMJCF"}
 
 _DIGITS = 15
 """Of rotations, which descriptions give as angles: what is beyond is the rounding of a sine."""
@@ -67,8 +66,7 @@ class DescribedArm(Arm):
         moving = [i for i, (low, high) in enumerate(self.joint_range) if high > low]
         names = [self.model.names[i + 1] for i in range(self.joint_count)]
         axes = tuple(
-            Axis(names[i], "m" if _slides(self.model, i) else "rad", middles(*self.joint_range[i], points))
-            for i in moving
+            Axis(names[i], _unit(self.model, i), middles(*self.joint_range[i], points)) for i in moving
         )
         q = np.empty((*[points] * len(moving), self.joint_count))
         q[...] = [low for low, _ in self.joint_range]
@@ -77,8 +75,10 @@ class DescribedArm(Arm):
         positions, jacobians = self._computed(q)
         halves = np.array([(high - low) / (2 * points) for low, high in self.joint_range])
         words = [
-            f"{name} {f'from {low:.4g} to {high:.4g}' if high > low else f'held at {low:.4g}'}"
-            for name, (low, high) in zip(names, self.joint_range, strict=True)
+            f"{name} {f'from {low:.4g} to {high:.4g}' if high > low else f'held at {low:.4g}'} {unit}"
+            for name, unit, (low, high) in zip(
+                names, (_unit(self.model, i) for i in range(len(names))), self.joint_range, strict=True
+            )
         ]
         rates, between = self._rates()
         change = np.full(q.shape[:-1], np.linalg.norm(rates @ halves[between]))
@@ -173,7 +173,7 @@ def read_arm(
         If the file cannot be read, a name is not in it, or its joints have no damping at all.
     """
     path = Path(path)
-    model = _model(path)
+    model = read_model(path)
     m, m_names = int(model.nv), [str(n) for n in model.names][1:]
     if len(m_names) != m:
         raise InputError(f"{path.name}: every joint must turn or slide about one axis")
@@ -199,36 +199,18 @@ def read_arm(
     )
 
 
-def _model(path: Path) -> Any:
-    build = _ENDINGS.get(path.suffix.lower())
-    if build is None:
-        raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
-    if not path.is_file():
-        raise InputError(f"there is no file {path}")
-    try:
-        import pinocchio as pin
-    except ImportError:
-        raise InputError("reading robot descriptions needs pinocchio: pip install 'zwidth[arms]'") from None
-    try:
-        model = getattr(pin, build)(str(path))
-    except (ValueError, RuntimeError) as error:
-        raise InputError(f"{path.name} cannot be read: {' '.join(str(error).split())[:200]}") from None
-    if model.nv == 0:
-        raise InputError(f"{path.name} has no joint that moves")
-    return model
-
-
 def _ranges(model: Any, names: list[str], hold: dict[str, float] | None) -> tuple[tuple[float, float], ...]:
     unknown = sorted(set(hold or {}) - set(names))
     if unknown:
         raise InputError(f"hold: there is no joint {unknown[0]!r}; there are {', '.join(names)}")
     ranges = []
     for i, name in enumerate(names):
-        low, high = _limits(model, i)
-        if name in (hold or {}):
-            low = high = float((hold or {})[name])
-        elif hold is None and i >= 2:
-            low = high = (low + high) / 2
+        if hold is not None and name in hold:
+            low = high = _held(model, i, name, float(hold[name]))
+        else:
+            low, high = _limits(model, i)
+            if hold is None and i >= 2:
+                low = high = (low + high) / 2
         ranges.append((low, high))
     moving = [name for name, (low, high) in zip(names, ranges, strict=True) if high > low]
     if not 1 <= len(moving) <= 2:
@@ -236,16 +218,27 @@ def _ranges(model: Any, names: list[str], hold: dict[str, float] | None) -> tupl
     return tuple(ranges)
 
 
+def _held(model: Any, i: int, name: str, value: float) -> float:
+    low, high = _written_limits(model, i) or (-np.inf, np.inf)
+    if not (np.isfinite(value) and low <= value <= high):
+        bounds = f"from {low:g} to {high:g} {_unit(model, i)}" if np.isfinite(low) else "finite"
+        raise InputError(f"hold: {name} can be {bounds}, got {value:g}")
+    return value
+
+
 def _limits(model: Any, i: int) -> tuple[float, float]:
-    joint = next(j for j in model.joints if j.idx_v == i)
-    if joint.nq == 1:
-        low = float(model.lowerPositionLimit[joint.idx_q])
-        high = float(model.upperPositionLimit[joint.idx_q])
-        if -1e3 < low < high < 1e3:
-            return low, high
-    if _slides(model, i):
+    written = _written_limits(model, i)
+    if written is None and _slides(model, i):
         raise InputError(f"joint {i + 1} slides without limits; write them into the description, or hold it")
-    return -float(np.pi), float(np.pi)
+    return written or (-float(np.pi), float(np.pi))
+
+
+def _written_limits(model: Any, i: int) -> tuple[float, float] | None:
+    joint = next(j for j in model.joints if j.idx_v == i)
+    if joint.nq != 1:
+        return None
+    low, high = (float(limit[joint.idx_q]) for limit in (model.lowerPositionLimit, model.upperPositionLimit))
+    return (low, high) if -1e3 < low < high < 1e3 else None
 
 
 def _turned_to(axis: Array) -> Array:
@@ -259,3 +252,7 @@ def _turned_to(axis: Array) -> Array:
 def _slides(model: Any, i: int) -> bool:
     joint = next(j for j in model.joints if j.idx_v == i)
     return "JointModelP" in joint.shortname()
+
+
+def _unit(model: Any, i: int) -> str:
+    return "m" if _slides(model, i) else "rad"
