@@ -13,6 +13,7 @@ from zwidth.cli.options import Once
 from zwidth.cli.output import print_json, targets, writing
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+from zwidth.writing import writing_whole
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 STATUS = {"passive": 0, "theorem": 0, "active": 1, "undecided": 3}
 _RATE = "1 kHz"
+_SAVED = (".json", ".nc")
 
 _JOINT_OPTIONS = (
     ("--joint-damping", "damping", "N*m*s/rad", "viscous friction of the joints"),
@@ -65,7 +67,7 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
         "--save",
         metavar="FILE",
         action=Once,
-        help="save the verdict with its certificate, for zwidth verify (.json), or else the map as NetCDF",
+        help="save the verdict with its certificate, for zwidth verify (.json), or the map as NetCDF (.nc)",
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
 
@@ -73,6 +75,11 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
 def run_workspace(arguments: argparse.Namespace) -> int:
     """`zwidth workspace`: 0 passive, 1 active, 3 undecided, as `check`."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    if save is not None and save.suffix.lower() not in _SAVED:
+        raise InputError(
+            f"--save: a file must end in .json for the verdict with its certificate, or in .nc for the map; "
+            f"got {save.name!r}"
+        )
     from zwidth.environment.wall import Wall
     from zwidth.passivity.arms import workspace
 
@@ -95,7 +102,8 @@ def run_workspace(arguments: argparse.Namespace) -> int:
             if save.suffix.lower() == ".json":
                 space.save(save)
             else:
-                space.data.to_netcdf(save, engine="h5netcdf")
+                with writing_whole(save) as unfinished:
+                    space.data.to_netcdf(unfinished, engine="h5netcdf")
     if plot is not None:
         from zwidth.plots.workspace import save_workspace  # matplotlib takes its time
 
@@ -188,7 +196,8 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
     data, motion = space.data, space.motion
     low, high = (shown(float(v), "N*s/m") for v in (data["margin"].min(), data["margin"].max()))
     best = shown(float(data["largest_stiffness"].max()), "N/m")
-    yield "arm", f"{space.arm.name}, {space.arm.joint_count} joints, {shown(1 / space.sample_period, 'Hz')}"
+    count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
+    yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
     yield "margin", f"{low} to {high} at the hand"
     yield "largest stiffness", f"{shown(space.largest_stiffness, 'N/m')} everywhere, {best} at the best point"
     if motion is not None:

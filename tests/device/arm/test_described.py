@@ -133,9 +133,7 @@ def test_the_words_of_the_parsers_are_in_the_message_alone(
     empty.write_text('<robot name="another format"/>')
     with pytest.raises(zw.InputError, match=r"^lost.urdf cannot be read: .*tip.* not found$"):
         read_arm(lost)
-    with pytest.raises(
-        zw.InputError, match=r"^empty.xml cannot be read: This is not a standard mujoco"
-    ):
+    with pytest.raises(zw.InputError, match=r"^empty.xml cannot be read: This is not a standard mujoco"):
         read_arm(empty)
     assert capfd.readouterr() == ("", "")
 
