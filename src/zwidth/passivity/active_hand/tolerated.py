@@ -33,7 +33,7 @@ from zwidth.passivity.active_hand.shaking import ShakingHand, shaking_hand, tole
 from zwidth.passivity.boundary import largest_holding
 from zwidth.passivity.certificate import FORMAT, Certificate, certify, linear_proof, positivity_document
 from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.document import exact_text, loop_document, to_json, unit_suffix
+from zwidth.passivity.document import exact_text, loop_document, save_json, unit_suffix
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.loop import LinearLoop
 from zwidth.quantity.exact import Exact, RealLike
@@ -131,7 +131,7 @@ class ToleratedActivity:
 
     def save(self, path: str | Path) -> None:
         """Write it as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+        save_json(path, self.to_dict())
 
     def __str__(self) -> str:
         return self.claim

@@ -35,7 +35,7 @@ from zwidth.passivity.arms.need import wall_need
 from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
 from zwidth.passivity.arms.report import workspace_document
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import to_json
+from zwidth.passivity.document import save_json
 
 if TYPE_CHECKING:
     import xarray
@@ -104,7 +104,7 @@ class Workspace:
 
     def save(self, path: str | Path) -> None:
         """Write the verdict with its certificate as JSON for `zwidth verify`; the map is in `data`."""
-        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+        save_json(path, self.to_dict())
 
 
 def workspace(
