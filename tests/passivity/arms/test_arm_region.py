@@ -39,6 +39,13 @@ def test_both_sides_of_the_largest_stiffness(name: str) -> None:
     assert under.certificate.verify()
 
 
+def test_a_map_shows_in_a_line() -> None:
+    """Outcome, claim and the stiffest wall, without the map."""
+    space = _space("hapkit", 100)
+    assert repr(space).startswith("<Workspace passive: No motion of the hand takes energy out with q1")
+    assert repr(space).endswith(f"Stiffest wall at every point: {space.largest_stiffness:.6g} N/m>")
+
+
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_the_advice_is_enough(name: str) -> None:
     """With the damping it asks for, in all joints or in one, the region is proved."""

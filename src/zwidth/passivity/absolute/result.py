@@ -57,6 +57,10 @@ class AbsoluteStability:
     resting: PeriodicMotion | None
     plant: Plant
 
+    def __repr__(self) -> str:
+        slopes = "; ".join(f"{row.criterion} {float(row.slope):.6g}" for row in self.proved)
+        return f"<AbsoluteStability proved: {slopes}; refuted: {self.refuted:.6g}>"
+
     def slope(self, criterion: Criterion) -> Exact:
         """The largest K that the criterion proves."""
         return next(row.slope for row in self.proved if row.criterion == criterion)

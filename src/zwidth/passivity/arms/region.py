@@ -98,6 +98,12 @@ class Workspace:
     motion: ArmMotion | None
     certificate: Certificate | None = None
 
+    def __repr__(self) -> str:
+        return (
+            f"<Workspace {self.outcome}: {self.claim} "
+            f"Stiffest wall at every point: {self.largest_stiffness:.6g} N/m>"
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """The verdict with its evidence as plain data; the map is in `data`."""
         return workspace_document(self)
