@@ -39,6 +39,11 @@ def test_every_arm_has_a_picture(name: str, tmp_path: Path) -> None:
         plots.save_workspace(_space(name, 100), path)
 
 
+def test_a_limit_that_is_nowhere_is_drawn_too() -> None:
+    """Without a wall any stiffness holds; the picture has no numbers, and no warning."""
+    assert plots.workspace_figure(_space("two-link", 0), "largest_stiffness").axes[0].collections
+
+
 def test_what_is_drawn_is_named() -> None:
     """Strokes and the line at 0 in words, each where it is; a colour bar that ends early says so; units."""
 

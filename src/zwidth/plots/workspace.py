@@ -120,7 +120,8 @@ def _coordinates(space: Workspace) -> tuple[Any, Any, tuple[str, str]]:
 
 
 def _colours(values: Any) -> dict[str, Any]:
-    low, high = float(np.nanmin(values)), float(np.nanpercentile(values, 95))
+    known = values[np.isfinite(values)]
+    low, high = (float(known.min()), float(np.percentile(known, 95))) if known.size else (0.0, 0.0)
     if low < 0:
         return {"cmap": "RdBu", "norm": TwoSlopeNorm(0.0, low, max(high, -low / 2))}
     return {"cmap": "viridis", "vmin": low, "vmax": max(high, low + 1e-300)}

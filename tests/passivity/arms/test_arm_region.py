@@ -225,6 +225,14 @@ def test_a_redundant_arm_is_proved_but_never_refuted() -> None:
     assert zw.workspace(arm, zw.Wall(limit * 2), rate=1000, points=60).outcome == "undecided"
 
 
+def test_a_hand_that_nothing_moves_has_no_limit() -> None:
+    """The hand on the axis of the only joint: any wall holds, and the margin is without bound."""
+    arm = _Raised(links=(0.1,), damping=(0.05,), joint_range=((0, 1),))
+    still = zw.workspace(_Still(**vars(arm)), zw.Wall(500), rate="1 kHz", delay="2 ms", points=10)
+    assert (still.outcome, still.largest_stiffness, still.delay_samples) == ("theorem", np.inf, 2)
+    assert (still.data["margin"] == np.inf).all()
+
+
 class _Raised(PlanarChain):
     """A chain in the plane whose hand is told with a third coordinate, as descriptions do."""
 
@@ -239,6 +247,13 @@ class _Raised(PlanarChain):
     def sites(self, points: int) -> Any:
         found = super().sites(points)
         return found._replace(positions=self.forward(found.joints), jacobians=self.jacobian(found.joints))
+
+
+class _Still(_Raised):
+    """The hand on the axis of the only joint."""
+
+    def jacobian(self, joints: Any) -> Any:
+        return 0 * super().jacobian(joints)
 
 
 TILT = np.linalg.qr(np.array([[1.0, 0.3, 0.2], [0.1, 2.0, -0.4], [-0.5, 0.3, 1.4]]))[0]

@@ -48,8 +48,9 @@ def columns_of(
     largest = float(np.linalg.norm(stiffness, 2))
     stiffest = np.where(np.isfinite(scale), scale, 0.0) * largest + np.where(np.isfinite(scale), 0.0, np.inf)
     in_joints = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
+    least = np.where(seen.any(axis=(-1, -2)), values[..., 0], np.inf)
     columns: dict[str, Column] = {
-        "margin": (values[..., 0], "N*s/m", "damping at the hand beyond need, in the worst direction"),
+        "margin": (least, "N*s/m", "damping at the hand beyond need, in the worst direction"),
         "largest_stiffness": (stiffest, "N/m", "stiffest passive wall here"),
         "margin_in_joints": (in_joints, "N*m*s/rad", "smallest eigenvalue of damping less need"),
         "addition_to_one": (alone.min(axis=-1), "N*m*s/rad", "smallest damping added to one joint"),
@@ -83,7 +84,8 @@ def _at_hand(jacobians: Array, damping: Array) -> tuple[Array, Array, Array]:
     """
     u, s, vt = np.linalg.svd(jacobians, full_matrices=False)
     raised = np.maximum(s, _SINGULAR * s[..., :1])
-    share = np.where(s > _BLOCKED * s[..., :1], s / np.where(raised > 0, raised, 1.0), 0.0)
+    raised = np.where(raised > 0, raised, 1.0)  # the hand on the axis of the only joint: nothing moves it
+    share = np.where(s > _BLOCKED * s[..., :1], s / raised, 0.0)
     v = np.swapaxes(vt, -1, -2)
     if jacobians.shape[-1] <= jacobians.shape[-2]:
         inner = vt @ damping @ v
