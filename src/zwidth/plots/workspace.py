@@ -89,11 +89,12 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str = "margin") -> No
     bar = axes.figure.colorbar(colours, ax=axes, label=label, extend="max" if beyond else "neither")
     low, high = colours.get_clim()
     if low < 0 < high:  # the two sides of 0 have scales of their own, and numbers of their own
-        bar.set_ticks([v for side in ((low, 0), (0, high)) for v in MaxNLocator(4).tick_values(*side)])
+        sides = [MaxNLocator(4).tick_values(*side) for side in ((low, 0.0), (0.0, high))]
+        bar.set_ticks([v for v in np.unique(np.concatenate(sides)) if low <= v <= high])
     margin, notes = space.data["margin"].values, []
     if np.nanmin(margin) < 0 < np.nanmax(margin):
         axes.contour(across, up, margin, levels=[0.0], colors=[BLACK], linewidths=1.5)
-        notes.append("black line: where the margin ends")
+        notes.append("black line: margin 0")
     if names == ("x", "y"):
         _directions(axes, space, across, up)
         axes.set_aspect("equal")
