@@ -1,24 +1,19 @@
-"""Arms from robot descriptions: URDF and MJCF, read by pinocchio.
+"""Arms from robot descriptions, computed by pinocchio.
 
 The hand is at the origin of one frame, and what counts is its position: three
-coordinates.  Viscous and Coulomb friction and the limits of motion and effort
-are read from the description where they are not given.
+coordinates.  In pose the turn of the frame counts too: `posed`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from zwidth.device.arm.arm import Arm, Array, Axis, Sites, as_joints, middles
-from zwidth.errors import InputError
-
-_ENDINGS = {".urdf": "buildModelFromUrdf", ".xml": "buildModelFromMJCF", ".mjcf": "buildModelFromMJCF"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +58,7 @@ class DescribedArm(Arm):
         moving = [i for i, (low, high) in enumerate(self.joint_range) if high > low]
         names = [self.model.names[i + 1] for i in range(self.joint_count)]
         axes = tuple(
-            Axis(names[i], "m" if _slides(self.model, i) else "rad", middles(*self.joint_range[i], points))
+            Axis(names[i], "m" if slides(self.model, i) else "rad", middles(*self.joint_range[i], points))
             for i in moving
         )
         q = np.empty((*[points] * len(moving), self.joint_count))
@@ -81,20 +76,25 @@ class DescribedArm(Arm):
         return Sites(axes, q, positions, jacobians, change, "; ".join(words))
 
     def _computed(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
+        positions, jacobians = self._placed(joints)
+        return positions, jacobians[..., :3, :]
+
+    def _placed(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
+        """p (…, 3), and the Jacobians of velocity and angular velocity (…, 6, m)."""
         import pinocchio as pin
 
         q = as_joints(joints, self.joint_count)
         data, neutral = self.model.createData(), pin.neutral(self.model)
         number = self.model.getFrameId(self.frame)
         flat = q.reshape(-1, self.joint_count)
-        positions, jacobians = np.empty((len(flat), 3)), np.empty((len(flat), 3, self.joint_count))
+        positions, jacobians = np.empty((len(flat), 3)), np.empty((len(flat), 6, self.joint_count))
         for k, row in enumerate(flat):
             pin.computeJointJacobians(self.model, data, pin.integrate(self.model, neutral, row))
             placed = pin.updateFramePlacement(self.model, data, number)
             positions[k] = placed.translation
             full = pin.getFrameJacobian(self.model, data, number, pin.LOCAL_WORLD_ALIGNED)
-            jacobians[k] = full.reshape(6, -1)[:3]  # one joint alone comes as a plain vector
-        return positions.reshape(*q.shape[:-1], 3), jacobians.reshape(*q.shape[:-1], 3, self.joint_count)
+            jacobians[k] = full.reshape(6, -1)  # one joint alone comes as a plain vector
+        return positions.reshape(*q.shape[:-1], 3), jacobians.reshape(*q.shape[:-1], 6, self.joint_count)
 
     def _rates(self) -> tuple[Array, list[int]]:
         """Bounds on |∂²p/∂q_i∂q_j|: what lies beyond both joints where both turn, 1 where one slides, else 0;
@@ -107,125 +107,19 @@ class DescribedArm(Arm):
         beyond, length = {}, float(np.linalg.norm(frame.placement.translation))
         for joint in path:
             i = self.model.joints[joint].idx_v
-            if _slides(self.model, i):
+            if slides(self.model, i):
                 length += max(map(abs, self.joint_range[i]))
             beyond[i] = length
             length += float(np.linalg.norm(self.model.jointPlacements[joint].translation))
 
         def rate(i: int, j: int) -> float:
-            sliding = _slides(self.model, i) + _slides(self.model, j)
+            sliding = slides(self.model, i) + slides(self.model, j)
             return min(beyond[i], beyond[j]) if sliding == 0 else float(sliding == 1)
 
         return np.array([[rate(i, j) for j in sorted(beyond)] for i in sorted(beyond)]), sorted(beyond)
 
 
-def read_arm(
-    path: str | Path,
-    *,
-    frame: str | None = None,
-    hold: dict[str, float] | None = None,
-    damping: Sequence[float] | None = None,
-    coulomb_friction: Sequence[float] | None = None,
-    resolution: Sequence[float] = (),
-    torque_limit: Sequence[float] | None = None,
-) -> DescribedArm:
-    """Read an arm from a URDF or MJCF file; needs the extra `arms`, which is pinocchio.
-
-    Parameters
-    ----------
-    path
-        The file, .urdf, .xml or .mjcf. Meshes are not read.
-    frame
-        The frame at whose origin the hand is; None: the last one.
-    hold
-        Joints that stay at a value [rad; m], by name; the map moves two joints at most.
-        None: of more than two joints, all but the first two are held in the middle of their ranges.
-    damping, coulomb_friction, torque_limit
-        Of each joint [N·m·s/rad], [N·m], [N·m]; None: those of the description.
-    resolution
-        Encoder step of each joint [rad; m]; descriptions have none.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, a name is not in it, or its joints have no damping at all.
-    """
-    path = Path(path)
-    model = _model(path)
-    m, m_names = int(model.nv), [str(n) for n in model.names][1:]
-    if len(m_names) != m:
-        raise InputError(f"{path.name}: every joint must turn or slide about one axis")
-    frames = [str(f.name) for f in model.frames]
-    if frame is not None and frame not in frames:
-        raise InputError(f"{path.name} has no frame {frame!r}; it has {', '.join(frames[1:21])}")
-    b = tuple(model.damping) if damping is None else tuple(damping)
-    if not any(b):
-        raise InputError(
-            f"{path.name} gives no joint any damping, and without damping no wall is passive; "
-            "measure it and give damping, or write <dynamics damping=…/> in the description"
-        )
-    limits = tuple(model.effortLimit) if torque_limit is None else tuple(torque_limit)
-    return DescribedArm(
-        model=model,
-        frame=frame or frames[-1],
-        joint_range=_ranges(model, m_names, hold),
-        damping=b,
-        coulomb_friction=tuple(model.friction) if coulomb_friction is None else coulomb_friction,
-        resolution=resolution,
-        torque_limit=limits if all(0 < v < np.inf for v in limits) else (),
-        name=str(model.name) or path.stem,
-    )
-
-
-def _model(path: Path) -> Any:
-    build = _ENDINGS.get(path.suffix.lower())
-    if build is None:
-        raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
-    if not path.is_file():
-        raise InputError(f"there is no file {path}")
-    try:
-        import pinocchio as pin
-    except ImportError:
-        raise InputError("reading robot descriptions needs pinocchio: pip install 'zwidth[arms]'") from None
-    try:
-        model = getattr(pin, build)(str(path))
-    except (ValueError, RuntimeError) as error:
-        raise InputError(f"{path.name} cannot be read: {' '.join(str(error).split())[:200]}") from None
-    if model.nv == 0:
-        raise InputError(f"{path.name} has no joint that moves")
-    return model
-
-
-def _ranges(model: Any, names: list[str], hold: dict[str, float] | None) -> tuple[tuple[float, float], ...]:
-    unknown = sorted(set(hold or {}) - set(names))
-    if unknown:
-        raise InputError(f"hold: there is no joint {unknown[0]!r}; there are {', '.join(names)}")
-    ranges = []
-    for i, name in enumerate(names):
-        low, high = _limits(model, i)
-        if name in (hold or {}):
-            low = high = float((hold or {})[name])
-        elif hold is None and i >= 2:
-            low = high = (low + high) / 2
-        ranges.append((low, high))
-    moving = [name for name, (low, high) in zip(names, ranges, strict=True) if high > low]
-    if not 1 <= len(moving) <= 2:
-        raise InputError(f"the map moves one or two joints, here {len(moving)} would move; hold the others")
-    return tuple(ranges)
-
-
-def _limits(model: Any, i: int) -> tuple[float, float]:
-    joint = next(j for j in model.joints if j.idx_v == i)
-    if joint.nq == 1:
-        low = float(model.lowerPositionLimit[joint.idx_q])
-        high = float(model.upperPositionLimit[joint.idx_q])
-        if -1e3 < low < high < 1e3:
-            return low, high
-    if _slides(model, i):
-        raise InputError(f"joint {i + 1} slides without limits; write them into the description, or hold it")
-    return -float(np.pi), float(np.pi)
-
-
-def _slides(model: Any, i: int) -> bool:
+def slides(model: Any, i: int) -> bool:
+    """Whether coordinate i is that of a sliding joint."""
     joint = next(j for j in model.joints if j.idx_v == i)
     return "JointModelP" in joint.shortname()

@@ -11,6 +11,7 @@ that stays in proved cells.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING, NamedTuple
@@ -28,8 +29,10 @@ from zwidth.passivity.arms.joints import (
     single_additions,
     surplus,
 )
-from zwidth.passivity.arms.mapped import columns_of, dataset
+from zwidth.passivity.arms.least import least_additions
+from zwidth.passivity.arms.mapped import columns_of, dataset, scaled_stiffness, stiffness_factors
 from zwidth.passivity.arms.need import wall_need
+from zwidth.passivity.arms.pose import fits, loss_in_pose
 from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
 
 if TYPE_CHECKING:
@@ -71,9 +74,13 @@ class Workspace:
         [N·m·s/rad].
     addition_to_all
         The smallest damping that, given to every joint, proves the region [N·m·s/rad].
+    least_additions
+        The damping of the joints with the smallest sum that proves the region [N·m·s/rad].
+    stiffness_factor
+        How many times as stiff the wall may be and hold at every point; ∞ if it has no stiffness.
     largest_stiffness
         The stiffest wall of this kind that holds at every point, in the largest stiffness of any
-        direction [N/m].
+        direction [N/m]; None of a wall in pose, which has two units.
     motion
         What takes energy out, near the worst point, if one was found.
     """
@@ -87,7 +94,9 @@ class Workspace:
     data: xarray.Dataset
     additions: tuple[float, ...]
     addition_to_all: float
-    largest_stiffness: float
+    least_additions: tuple[float, ...]
+    stiffness_factor: float
+    largest_stiffness: float | None
     motion: ArmMotion | None
 
 
@@ -98,7 +107,7 @@ def workspace(
     rate: float,
     delay: float = 0.0,
     points: int = 100,
-    torque_held_up_to: float | None = None,
+    torque_held_up_to: float | Sequence[float] | None = None,
 ) -> Workspace:
     """Map over the workspace whether an arm renders a wall passively.
 
@@ -107,7 +116,8 @@ def workspace(
     arm
         `zwidth.arms.built_in`, `PlanarChain`, `LeggedArm`, or `read_arm` of a description.
     wall
-        `Wall`, equally stiff in every direction (or a plane wall with any normal), or `MatrixWall`.
+        `Wall`, equally stiff in every direction (or a plane wall with any normal), or `MatrixWall`; of an
+        arm in pose `MatrixWall.in_pose`.
     rate
         Samples per second, > 0 [Hz].
     delay
@@ -117,7 +127,8 @@ def workspace(
     torque_held_up_to
         None: the force is held, and the torque J(q)ᵀF follows the arm within each period, as Miller and
         others assume. A force ≥ 0 [N]: the torque J(q_k)ᵀF is held, and the wall renders no more than
-        this; for chains and descriptions, whose curvature is bounded, and without delay.
+        this; for chains and descriptions, whose curvature is bounded, and without delay. In pose a force
+        and a moment [N], [N·m/rad of e].
 
     Raises
     ------
@@ -129,6 +140,7 @@ def workspace(
         raise InputError(f"the first argument is an arm, got {type(arm).__name__}")
     if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= 1000:
         raise InputError(f"points must be a whole number from 2 to 1000, got {points!r}")
+    fits(arm, wall)
     sites = arm.sites(points)
     n, m = sites.jacobians.shape[-2:]
     reached = _reached(sites)
@@ -143,14 +155,10 @@ def workspace(
         )
     parts = _refinement(sites, points)
     fine = sites if parts == 1 else arm.sites(points * parts)
-    account = _account(damping, need.stiffness_share + need.bound, fine)
+    account = _account(damping, need.stiffness_share + need.bound, fine, arm.turns)
     columns = columns_of(arm, damping, wall, need, sites.jacobians[reached])
-    stiffest = columns["largest_stiffness"][0]
-    if parts > 1:
-        between = columns_of(arm, damping, wall, need, fine.jacobians[account.reached])["largest_stiffness"][
-            0
-        ]
-        stiffest = np.append(stiffest, between)
+    factors = stiffness_factors(damping, need, fine.jacobians[account.reached])
+    factor = min(columns["stiffness_factor"][0].min(), factors.min())
     held = torque_held_up_to is not None
     motion = _motion(arm, wall, period, samples, fine.joints[account.reached], account.margins, held)
     whole = np.zeros(account.reached.shape, dtype=bool)
@@ -163,10 +171,12 @@ def workspace(
         wall=wall,
         sample_period=period,
         delay_samples=samples,
-        data=dataset(sites, reached, _all_in_blocks(whole, reached.shape), columns),
+        data=dataset(arm, sites, reached, _all_in_blocks(whole, reached.shape), columns),
         additions=tuple(float(v) for v in single_additions(account.counted).max(axis=0)),
         addition_to_all=max(0.0, -float(np.linalg.eigvalsh(account.counted)[:, 0].min())),
-        largest_stiffness=float(stiffest.min()),
+        least_additions=tuple(least_additions(account.counted)[0].tolist()),
+        stiffness_factor=float(factor),
+        largest_stiffness=None if arm.turns else float(scaled_stiffness(wall, factor, n)),
         motion=motion,
     )
 
@@ -180,12 +190,15 @@ class _Account(NamedTuple):
     counted: Array  # δ_m − JᵀRJ, less what it may lose inside the cell
 
 
-def _account(damping: Array, need: Array, sites: Sites) -> _Account:
+def _account(damping: Array, need: Array, sites: Sites, turns: int) -> _Account:
     reached = _reached(sites)
     jacobians = sites.jacobians[reached]
     lacking = surplus(jacobians, damping, need)
     margins = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
-    loss = _loss(need, jacobians, sites.change[reached])
+    if sites.parts is None:
+        loss = _loss(need, jacobians, sites.change[reached])
+    else:
+        loss = loss_in_pose(need, jacobians, sites.parts[reached], turns)
     rounding = _ROUNDING * (float(np.abs(damping).max()) + float(np.abs(lacking).max()))
     taken = np.where(np.isfinite(loss), loss, 0.0)
     taken = taken + 10 * rounding  # damping that is added adds to the rounding too
@@ -224,18 +237,24 @@ def _timing(rate: float, delay: float) -> tuple[float, int]:
     return 1 / rate, samples
 
 
-def _held_torque(arm: Arm, period: float, samples: int, force: float | None) -> float:
+def _held_torque(arm: Arm, period: float, samples: int, largest: float | Sequence[float] | None) -> float:
     """What a held torque asks of every joint [N·m·s/rad]."""
-    if force is None:
+    if largest is None:
         return 0.0
-    if not (isinstance(force, (int, float)) and 0 <= force < np.inf):
-        raise InputError(f"torque_held_up_to is the largest force of the wall, ≥ 0 N; got {force!r}")
-    if arm.curvature is None or samples:
+    curvatures = (arm.curvature, arm.turning_curvature) if arm.turns else (arm.curvature,)
+    forces = np.atleast_1d(np.asarray(largest, dtype=np.float64))
+    if forces.shape != (len(curvatures),) or not ((forces >= 0) & (forces < np.inf)).all():
+        also = " and the largest moment, ≥ 0 N·m" if arm.turns else ""
+        raise InputError(f"torque_held_up_to is the largest force of the wall, ≥ 0 N{also}; got {largest!r}")
+    if None in curvatures or samples:
         raise InputError(
             "a bound for held torques is known for chains and descriptions without delay; "
             "compute the torque several times in each period, and leave torque_held_up_to out"
         )
-    return sampled_jacobian_damping(arm.curvature, force, period)
+    return sum(
+        sampled_jacobian_damping(h or 0.0, float(force), period)
+        for h, force in zip(curvatures, forces, strict=True)
+    )
 
 
 def _loss(need: Array, jacobians: Array, change: Array) -> Array:
@@ -263,7 +282,9 @@ def _motion(
     return None
 
 
-def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm, held: float | None) -> str:
+def _claim(
+    outcome: str, sites: Sites, account: _Account, arm: Arm, held: float | Sequence[float] | None
+) -> str:
     """One sentence on what holds, others on what is not counted."""
     part = 100 * account.proved.mean()
     if outcome == "theorem":
@@ -284,6 +305,12 @@ def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm, held: float 
     text += (
         " The torque is taken to follow the arm within a period."
         if held is None
-        else f" The torque is held over a period, with wall forces up to {held:g} N."
+        else f" The torque is held over a period, with wall forces up to {_forces(held)}."
     )
     return text + (" Encoder steps are not counted." if any(arm.resolution) else "")
+
+
+def _forces(held: float | Sequence[float]) -> str:
+    return " and ".join(
+        f"{value:g} {unit}" for value, unit in zip(np.atleast_1d(held), ("N", "N·m"), strict=False)
+    )

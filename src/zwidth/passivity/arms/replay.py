@@ -43,7 +43,7 @@ class ArmMotion:
     joints
         q(k), N × m [rad; m].
     positions
-        p(k), N × n [m].
+        p(k), N × n [m]; in pose its rotation comes last [rad].
     work
         Of the hand against the wall's force, over one round [J].
     loss
@@ -99,8 +99,7 @@ def refuting_motion(
 ) -> ArmMotion | None:
     """A motion near the joints `at` that takes energy out; None where none was found."""
     jacobian = arm.jacobian(at)
-    singular = np.linalg.svd(jacobian, compute_uv=False)
-    if jacobian.shape[1] > jacobian.shape[0] or singular[-1] < _HELD * singular[0]:
+    if not _held(jacobian, arm.turns):
         return None
     samples, shape = _worst(arm, wall, sample_period, delay_samples, jacobian)
     turn = np.cos(2 * np.pi / samples * np.arange(samples))
@@ -112,6 +111,15 @@ def refuting_motion(
         if motion.energy < -1e-9 * (abs(motion.work) + motion.loss):
             return motion
     return None
+
+
+def _held(jacobian: Array, turns: int) -> bool:
+    """Whether a hand at the end holds every joint; rows of metres and rows of radians each by their size."""
+    point = len(jacobian) - turns
+    sizes = [np.linalg.norm(rows, 2) for rows in (jacobian[:point], jacobian[point:]) if len(rows)]
+    rows = jacobian / np.repeat([size or 1.0 for size in sizes], [point, turns][: len(sizes)])[:, None]
+    singular = np.linalg.svd(rows, compute_uv=False)
+    return bool(jacobian.shape[1] <= jacobian.shape[0] and singular[-1] >= _HELD * singular[0])
 
 
 def _worst(

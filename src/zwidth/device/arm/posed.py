@@ -1,0 +1,104 @@
+"""An arm from a description whose hand holds the frame, and turns with it: six coordinates.
+
+    y = (p, e),   e = 2 sin(φ/2) u   from the orientation in which the wall rests, in the axes of the base
+    ∂y/∂q = (J_p; E J_ω)
+
+The wall renders the forces K y of e and the moments Eᵀ of them, `turn`; whoever computes it keeps
+the sign of the quaternion from sample to sample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from zwidth.device.arm.arm import Array, Sites, as_joints
+from zwidth.device.arm.described import DescribedArm, slides
+from zwidth.device.arm.turn import SECOND_DERIVATIVE, about, coordinates, inverse, product, rates
+
+
+@dataclass(frozen=True, kw_only=True)
+class PosedArm(DescribedArm):
+    """An arm that pinocchio computes, held by its frame; made by `read_arm(…, pose=True)`.
+
+    Parameters
+    ----------
+    rest
+        The joints at which the frame has the orientation in which the wall rests [rad; m].
+    model, frame, joint_range, damping, coulomb_friction, resolution, torque_limit, name
+        As of `DescribedArm`.
+
+    Raises
+    ------
+    InputError
+        If `rest` has another number of joints.
+    """
+
+    rest: Sequence[float]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "rest", tuple(as_joints(self.rest, self.joint_count).tolist()))
+
+    @property
+    def turns(self) -> int:
+        """3."""
+        return 3
+
+    @property
+    def turning_curvature(self) -> float:
+        """Of e, |Σ ∂²e/∂q_i∂q_j w_i w_j| ≤ ½ (Σ |w_i|)² over the joints that turn the hand [1/rad]."""
+        return SECOND_DERIVATIVE * len(self._turning())
+
+    def sites(self, points: int) -> Sites:
+        """As of `DescribedArm`; every column of the rotation changes by ½ Σ h_j at most."""
+        sites, turning = super().sites(points), self._turning()
+        halves = [(high - low) / (2 * points) for low, high in (self.joint_range[i] for i in turning)]
+        turned = np.full_like(sites.change, np.sqrt(len(turning)) * SECOND_DERIVATIVE * sum(halves))
+        rest = ", ".join(f"{value:.4g}" for value in self.rest)
+        return sites._replace(
+            change=np.hypot(sites.change, turned),
+            parts=np.stack([sites.change, turned], axis=-1),
+            region=f"{sites.region}; the rotation of the wall at rest with the joints at {rest}",
+        )
+
+    def _computed(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
+        positions, jacobians = self._placed(joints)
+        turned = product(self._quaternion(joints), inverse(self._quaternion(self.rest)))
+        return (
+            np.concatenate([positions, coordinates(turned)], axis=-1),
+            np.concatenate([jacobians[..., :3, :], rates(turned, jacobians[..., 3:, :])], axis=-2),
+        )
+
+    def _quaternion(self, joints: npt.ArrayLike) -> Array:
+        """Of the frame, without a jump of its sign between any two positions (…, 4)."""
+        import pinocchio as pin
+
+        q = as_joints(joints, self.joint_count)
+        straight, moved = self.model.createData(), self.model.createData()
+        neutral = pin.neutral(self.model)
+        pin.forwardKinematics(self.model, straight, neutral)
+        pin.forwardKinematics(self.model, moved, pin.integrate(self.model, neutral, np.ones(self.model.nv)))
+        frame = self.model.frames[self.model.getFrameId(self.frame)]
+        turned = np.broadcast_to(_unit(frame.placement.rotation), (*q.shape[:-1], 4))
+        joint = frame.parentJoint
+        while joint > 0:
+            at_rest = straight.liMi[joint].rotation
+            axis = pin.log3(at_rest.T @ moved.liMi[joint].rotation)  # by one radian; 0 of a sliding joint
+            link = product(_unit(at_rest), about(axis, q[..., self.model.joints[joint].idx_v]))
+            turned, joint = product(link, turned), self.model.parents[joint]
+        return turned
+
+    def _turning(self) -> list[int]:
+        """The joints between the base and the hand that turn it."""
+        return [i for i in self._rates()[1] if not slides(self.model, i)]
+
+
+def _unit(rotation: Array) -> Array:
+    import pinocchio as pin
+
+    x, y, z, w = pin.Quaternion(rotation).coeffs()
+    return np.array([w, x, y, z])
