@@ -87,9 +87,11 @@ class PosedArm(DescribedArm):
         joint = frame.parentJoint
         while joint > 0:
             at_rest = straight.liMi[joint].rotation
-            axis = pin.log3(at_rest.T @ moved.liMi[joint].rotation)  # by one radian; 0 of a sliding joint
-            link = product(_unit(at_rest), about(axis, q[..., self.model.joints[joint].idx_v]))
-            turned, joint = product(link, turned), self.model.parents[joint]
+            i = self.model.joints[joint].idx_v
+            if not slides(self.model, i):
+                axis = pin.log3(at_rest.T @ moved.liMi[joint].rotation)  # it has turned by one radian
+                turned = product(about(axis, q[..., i]), turned)
+            turned, joint = product(_unit(at_rest), turned), self.model.parents[joint]
         return turned
 
     def _turning(self) -> list[int]:

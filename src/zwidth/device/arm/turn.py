@@ -36,10 +36,8 @@ def inverse(a: Array) -> Array:
 
 
 def about(axis: Array, angle: Array) -> Array:
-    """(cos q/2, a sin q/2) of angles (…); an axis 0 does not turn."""
+    """(cos q/2, a sin q/2) of a unit vector a and angles (…)."""
     half = np.asarray(angle)[..., None] / 2
-    if not axis.any():
-        return np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*half.shape[:-1], 4))
     return np.concatenate([np.cos(half), np.sin(half) * axis], axis=-1)
 
 
