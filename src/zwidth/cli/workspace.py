@@ -52,7 +52,7 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
         (
             "--torque-held-up-to",
             "FORCE",
-            "the torque is computed once a sample, for wall forces up to this [N]; in pose with a moment: 5,0.2",
+            "the torque is computed once a sample, for forces up to this [N]; in pose with a moment: 5,0.2",
         ),
         ("--points", "N", "cells along each side of the map (default: 100)"),
     ):

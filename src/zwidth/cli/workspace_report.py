@@ -54,11 +54,8 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
     low, high = (shown(float(v), unit) for v in (data[kind].min(), data[kind].max()))
     yield "margin", f"{low} to {high} {where}"
     if space.largest_stiffness is None:
-        best = float(data["stiffness_factor"].max())
-        yield (
-            "stiffness",
-            f"{space.stiffness_factor:.4g} times everywhere, {best:.4g} times at the best point",
-        )
+        factors = f"{space.stiffness_factor:.4g} times everywhere"
+        yield "stiffness", f"{factors}, {float(data['stiffness_factor'].max()):.4g} times at the best point"
     else:
         best = shown(float(data["largest_stiffness"].max()), "N/m")
         everywhere = shown(space.largest_stiffness, "N/m")
