@@ -17,7 +17,8 @@ def random_arm(path: Path, seed: int, joints: int, sliding: tuple[int, ...] = ()
         parts.append(
             f'<joint name="j{i}" type="{kind}"><parent link="l{i}"/><child link="l{i + 1}"/>'
             f"{_placed(rng)}<axis {_xyz(axis / np.linalg.norm(axis))}/>"
-            f'<limit lower="{-rng.uniform(0.2, 0.5)}" upper="{rng.uniform(0.2, 0.5)}" effort="5" velocity="1"/>'
+            f'<limit lower="{-rng.uniform(0.2, 0.5)}" upper="{rng.uniform(0.2, 0.5)}" '
+            'effort="5" velocity="1"/>'
             f'<dynamics damping="{rng.uniform(0.2, 0.6)}"/></joint>'
         )
     parts.append(

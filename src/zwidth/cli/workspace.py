@@ -44,7 +44,7 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
         (
             "--rest",
             "JOINTS",
-            "where the rotation of a wall in pose rests, as --hold (default: the middle of each range)",
+            "where the rotation of a wall in pose rests, as --hold, or middle (default: anywhere)",
         ),
         *WALL_OPTIONS,
         ("--rate", "VALUE", f"samples per second [Hz] (default: {_RATE})"),
@@ -128,7 +128,7 @@ def _arm(arguments: argparse.Namespace) -> Any:
         frame=arguments.frame,
         hold=_by_name(arguments.hold, "hold"),
         pose=arguments.pose,
-        rest=_by_name(arguments.rest, "rest"),
+        rest={} if arguments.rest == "middle" else _by_name(arguments.rest, "rest"),
         **given,
     )
 

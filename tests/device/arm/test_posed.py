@@ -111,6 +111,22 @@ def test_the_bounds_between_the_points_hold(arm: PosedArm) -> None:
     assert most > 0.1
 
 
+def test_the_bounds_hold_for_every_rest(arm: PosedArm) -> None:
+    """Without a rest the rows are those of the angular velocity, at any rest they are no longer."""
+    free = arm.replace(rest=None)
+    sites, rng = free.sites(6), np.random.default_rng(14)
+    assert sites.parts is not None
+    moving = [i for i, (low, high) in enumerate(arm.joint_range) if high > low]
+    halves = np.array([(high - low) / 12 for low, high in arm.joint_range])
+    for _ in range(40):
+        place = tuple(rng.integers(6, size=len(moving)))
+        q = sites.joints[place] + rng.choice([-1, 1], arm.joint_count) * halves
+        here = free.resting(q).jacobian(q)
+        assert np.linalg.norm((here - sites.jacobians[place])[3:], 2) <= sites.parts[place][1]
+        other = arm.replace(rest=rng.uniform(-3, 3, arm.joint_count)).jacobian(q)
+        assert np.linalg.eigvalsh(here[3:].T @ here[3:] - other[3:].T @ other[3:])[0] >= -1e-12
+
+
 def test_the_turning_curvature_is_a_bound(arm: PosedArm) -> None:
     """|e(q + s) − e(q) − J s| ≤ ½ h |s|²."""
     rng, most = np.random.default_rng(5), 0.0
@@ -161,6 +177,6 @@ def test_what_has_no_pose_is_said(tmp_path: Path) -> None:
         read_arm(path, rest={"j0": 0.1})
     with pytest.raises(zw.InputError, match="rest: there is no joint 'wrist'"):
         read_arm(path, pose=True, rest={"wrist": 0.1})
+    arm = read_arm(path, pose=True)
     with pytest.raises(zw.InputError, match="shape"):
-        arm = read_arm(path, pose=True)
         arm.replace(rest=(0.1,))

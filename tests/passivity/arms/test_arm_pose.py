@@ -25,7 +25,7 @@ def _arm(folder: Path, joints: int, moving: int = 2, **options: Any) -> Arm:
     """In pose; all but the first joints are held somewhere."""
     path = random_arm(folder / "arm.urdf", 10 + joints, joints)
     hold = {f"j{i}": 0.05 * i for i in range(moving, joints)}
-    return read_arm(path, pose=True, hold=hold, **options)
+    return read_arm(path, pose=True, hold=hold, **{"rest": {}, **options})
 
 
 def _space(arm: Arm, wall: zw.MatrixWall, points: int = 40, **options: Any) -> zw.Workspace:
@@ -64,6 +64,23 @@ def test_both_sides_of_the_limit_of_six_joints(kind: str, tmp_path: Path) -> Non
     assert under.outcome != "active"
     assert (under.data["margin_in_joints"] >= 0).all()
     assert _space(arm, _times(wall, 0.8 * limit)).outcome == "theorem"
+
+
+@pytest.mark.parametrize("kind", ["as stiff every way", "rotation alone"])
+def test_both_sides_wherever_the_wall_rests(kind: str, tmp_path: Path) -> None:
+    """Refuted by a wall that rests at the worst point; what is proved is so for every rest, and every rest
+    allows as much or more."""
+    arm, wall = _arm(tmp_path, 6, moving=1, rest=None), WALLS[kind]
+    limit = _space(arm, wall).stiffness_factor
+    over = _space(arm, _times(wall, 1.001 * limit))
+    assert over.outcome == "active"
+    assert over.motion is not None
+    assert np.linalg.norm(over.motion.positions[:, 3:], axis=1).max() < 0.2  # it turns about that rest
+    under = _space(arm, _times(wall, 0.9 * limit))
+    assert under.outcome == "theorem"
+    assert "in every orientation of rest" in under.claim
+    for q in np.random.default_rng(9).uniform(-3, 3, (6, 6)):
+        assert _space(arm.replace(rest=q), wall).stiffness_factor >= limit * (1 - 1e-12)
 
 
 def test_the_proof_comes_close_to_the_limit(tmp_path: Path) -> None:
@@ -105,7 +122,7 @@ def test_the_reported_energy_by_pinocchio(tmp_path: Path) -> None:
 
 
 def test_seven_joints_are_proved_up_to_what_a_hand_feels(tmp_path: Path) -> None:
-    """The factor is that of (J δ_m⁻¹ Jᵀ)⁻¹; a hand at the end cannot hold seven joints, nothing is refuted."""
+    """The factor is that of (J δ_m⁻¹ Jᵀ)⁻¹; a hand cannot hold seven joints, so nothing is refuted."""
     arm, wall = _arm(tmp_path, 7, moving=1), WALLS["coupled"]
     space = _space(arm, wall, 200)
     (need,) = wall_need(wall, 0.001, 0, 6).matrices
@@ -190,7 +207,7 @@ def test_the_loss_between_the_points_does_not_depend_on_units() -> None:
 
 
 def test_a_held_torque_in_pose() -> None:
-    """No closed path takes energy out about a wall that pushes and turns with the forces that were counted."""
+    """No closed path takes energy out about a wall with the forces and moments that were counted."""
     arm = PlanarChain(
         links=(0.1, 0.08), damping=(0.02, 0.015), joint_range=((0.2, 0.9), (0.5, 1.2)), pose=True
     )
@@ -265,6 +282,8 @@ def test_walls_and_hands_that_do_not_fit(tmp_path: Path) -> None:
     """One message each, with what to give."""
     posed, point = _arm(tmp_path, 2), built_in("two-link", damping=0.01)
     for arm, wall, words in (
+        (_arm(tmp_path, 2, rest=None), WALLS["coupled"], "say where it rests"),
+        (_arm(tmp_path, 2, rest=None), zw.MatrixWall(np.diag([1, 1, 1, 2, 2, 3]), turns=3), "every axis"),
         (posed, zw.Wall(500), "are not one stiffness"),
         (posed, zw.MatrixWall(np.eye(6)), "turns=3"),
         (posed, zw.MatrixWall.in_pose(1, 1, planar=True), "turns=3"),

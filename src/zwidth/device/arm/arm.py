@@ -96,6 +96,15 @@ class Arm(ABC):
         """How many of the hand's coordinates, the last ones, are rotations; 0: the hand is a point."""
         return 0
 
+    @property
+    def rests_anywhere(self) -> bool:
+        """Whether `sites` are for walls in every orientation of rest, where it makes a difference."""
+        return False
+
+    def resting(self, joints: npt.ArrayLike) -> Arm:
+        """The same arm, with the wall at rest at these joints if it may rest anywhere."""
+        return self
+
     @abstractmethod
     def forward(self, joints: npt.ArrayLike) -> Array:
         """The point that the hand holds, (…, m) → (…, n) [m]; its rotation comes last [rad]."""

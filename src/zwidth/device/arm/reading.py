@@ -50,7 +50,7 @@ def read_arm(
         The hand holds the frame and turns with it: six coordinates, `PosedArm`. Default: it holds a point.
     rest
         In pose, by name: joints at which the wall's rotation is at rest [rad; m]; those that are not named,
-        in the middle of their ranges.
+        in the middle of their ranges. None: in every orientation, for walls as stiff about every axis.
 
     Raises
     ------
@@ -83,7 +83,8 @@ def read_arm(
         "name": str(model.name) or path.stem,
     }
     if pose:
-        return PosedArm(rest=_rest(given["joint_range"], m_names, rest or {}), **given)
+        resting = None if rest is None else _rest(given["joint_range"], m_names, rest)
+        return PosedArm(rest=resting, **given)
     if rest is not None:
         raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
     return DescribedArm(**given)

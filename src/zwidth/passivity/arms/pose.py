@@ -24,6 +24,12 @@ def fits(arm: Arm, wall: Wall | MatrixWall) -> None:
     """Refuse a wall in pose before a point, and a wall of a point before a hand in pose."""
     turns = wall.turns if isinstance(wall, MatrixWall) else 0
     if turns == arm.turns:
+        if arm.rests_anywhere and not _alike(wall, turns):
+            raise InputError(
+                "a wall that is not as stiff about every axis asks for more in some orientations of rest "
+                "than in others: say where it rests, read_arm(…, rest={}) or --rest middle for the middle "
+                "of the ranges"
+            )
         return
     if arm.turns:
         planar = ", planar=True" if arm.turns == 1 else ""
@@ -35,6 +41,13 @@ def fits(arm: Arm, wall: Wall | MatrixWall) -> None:
         f"the wall has {turns} rotations and {arm.name} is held at a point; ask for the arm in pose, "
         "read_arm(…, pose=True) or PlanarChain(…, pose=True)"
     )
+
+
+def _alike(wall: Wall | MatrixWall, turns: int) -> bool:
+    """Whether a wall is as stiff about every axis, without coupling of forces and turns."""
+    matrices = [np.array(m) for m in (wall.stiffness, wall.damping)]
+    last = np.eye(turns, len(matrices[0]), len(matrices[0]) - turns)
+    return all(np.array_equal(m[-turns:], m[-1, -1] * last) for m in matrices)
 
 
 def loss_in_pose(need: Array, jacobians: Array, parts: Array, turns: int) -> Array:

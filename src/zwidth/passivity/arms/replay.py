@@ -98,6 +98,7 @@ def refuting_motion(
     torque_held: bool = False,
 ) -> ArmMotion | None:
     """A motion near the joints `at` that takes energy out; None where none was found."""
+    arm = arm.resting(at)
     jacobian = arm.jacobian(at)
     if not _held(jacobian, arm.turns):
         return None
