@@ -90,6 +90,10 @@ def test_the_map_is_saved_and_drawn(run: Run, tmp_path: Path) -> None:
         (("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--rest", "a=1"), "add --pose"),
         (("two-link", "--joint-damping", "0.1", "--pose"), "which wall"),
         (
+            ("two-link", "--joint-damping", "1", "--stiffness", "1", "--torque-held-up-to", "1,2,3"),
+            "a moment",
+        ),
+        (
             ("two-link", "--joint-damping", "0.1", "--wall", "w.toml", "--stiffness", "1"),
             "leave out --stiffness",
         ),

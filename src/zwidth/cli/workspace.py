@@ -150,8 +150,13 @@ def _largest(text: str | None) -> list[float] | None:
     """A force, and in pose a moment."""
     if text is None:
         return None
-    parts = zip(text.split(","), ("N", "N*m"), strict=False)
-    return [float(parse_number(part.strip(), unit, "torque_held_up_to")) for part, unit in parts]
+    parts, units = text.split(","), ("N", "N*m")
+    if len(parts) > len(units):
+        raise InputError(f"--torque-held-up-to: a force, and in pose a moment, got {text[:60]!r}")
+    return [
+        float(parse_number(part.strip(), unit, "torque_held_up_to"))
+        for part, unit in zip(parts, units, strict=False)
+    ]
 
 
 def _whole(text: str) -> int:

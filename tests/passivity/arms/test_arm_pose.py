@@ -305,3 +305,23 @@ def test_a_wall_in_pose_in_words() -> None:
         "wall of 6 coordinates, stiffness 500 to 500 N/m, virtual damping 0.1 to 0.1 N·s/m; "
         "of the rotation stiffness 5 to 5 N·m/rad"
     )
+
+
+def test_a_wrist_that_no_hand_can_hold_is_not_refuted(tmp_path: Path) -> None:
+    """Four axes through the hand but for rounding: one motion of the joints leaves it where it is."""
+    path = tmp_path / "wrist.urdf"
+    axes = ("1 0 0", "0 1 0", "0.6 0.8 0", "0 0 1")
+    path.write_text(
+        '<robot name="wrist">'
+        + "".join(f'<link name="l{i}"/>' for i in range(5))
+        + "".join(
+            f'<joint name="j{i}" type="revolute"><parent link="l{i}"/><child link="l{i + 1}"/>'
+            f'<origin xyz="{i}e-12 {i * i}e-12 0" rpy="0.1 0.2 0.3"/><axis xyz="{axis}"/>'
+            '<limit lower="-0.3" upper="0.4" effort="1" velocity="1"/><dynamics damping="0.01"/></joint>'
+            for i, axis in enumerate(axes)
+        )
+        + "</robot>"
+    )
+    wall, arm = zw.MatrixWall.in_pose(0, 1), read_arm(path, pose=True, hold={"j2": 0.1, "j3": 0.1})
+    limit = _space(arm, wall, 10).stiffness_factor
+    assert _space(arm, _times(wall, 1.5 * limit), 10).outcome == "undecided"

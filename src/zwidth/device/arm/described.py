@@ -85,7 +85,7 @@ class DescribedArm(Arm):
 
         q = as_joints(joints, self.joint_count)
         data, neutral = self.model.createData(), pin.neutral(self.model)
-        number = self.model.getFrameId(self.frame)
+        number = self._number()
         flat = q.reshape(-1, self.joint_count)
         positions, jacobians = np.empty((len(flat), 3)), np.empty((len(flat), 6, self.joint_count))
         for k, row in enumerate(flat):
@@ -96,10 +96,18 @@ class DescribedArm(Arm):
             jacobians[k] = full.reshape(6, -1)  # one joint alone comes as a plain vector
         return positions.reshape(*q.shape[:-1], 3), jacobians.reshape(*q.shape[:-1], 6, self.joint_count)
 
+    def _number(self) -> int:
+        """Of the frame; where a link and a joint share the name, of the link."""
+        import pinocchio as pin
+
+        named = [i for i, frame in enumerate(self.model.frames) if frame.name == self.frame]
+        links = [i for i in named if self.model.frames[i].type == pin.FrameType.BODY]
+        return (links or named)[-1]
+
     def _rates(self) -> tuple[Array, list[int]]:
         """Bounds on |∂²p/∂q_i∂q_j|: what lies beyond both joints where both turn, 1 where one slides, else 0;
         and which joints lie between the base and the hand."""
-        frame = self.model.frames[self.model.getFrameId(self.frame)]
+        frame = self.model.frames[self._number()]
         path, joint = [], frame.parentJoint
         while joint > 0:
             path.append(joint)

@@ -116,7 +116,7 @@ class PosedArm(DescribedArm):
         neutral = pin.neutral(self.model)
         pin.forwardKinematics(self.model, straight, neutral)
         pin.forwardKinematics(self.model, moved, pin.integrate(self.model, neutral, np.ones(self.model.nv)))
-        frame = self.model.frames[self.model.getFrameId(self.frame)]
+        frame = self.model.frames[self._number()]
         turned = np.broadcast_to(_unit(frame.placement.rotation), (*q.shape[:-1], 4))
         joint = frame.parentJoint
         while joint > 0:

@@ -23,9 +23,9 @@ from zwidth.device.arm import Arm, Sites
 from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
+from zwidth.passivity.arms.held import held_torque_damping, in_words
 from zwidth.passivity.arms.joints import (
     as_matrix,
-    sampled_jacobian_damping,
     single_additions,
     surplus,
 )
@@ -128,7 +128,7 @@ def workspace(
         None: the force is held, and the torque J(q)ᵀF follows the arm within each period, as Miller and
         others assume. A force ≥ 0 [N]: the torque J(q_k)ᵀF is held, and the wall renders no more than
         this; for chains and descriptions, whose curvature is bounded, and without delay. In pose a force
-        and a moment [N], [N·m/rad of e].
+        and a moment [N], [N·m].
 
     Raises
     ------
@@ -147,7 +147,8 @@ def workspace(
     if not reached.any():
         raise InputError(f"{arm.name} reaches no point of its region, {sites.region}; choose another one")
     need = wall_need(wall, period, samples, n)
-    damping = as_matrix(arm.damping) - _held_torque(arm, period, samples, torque_held_up_to) * np.eye(m)
+    held = held_torque_damping(arm, period, samples, torque_held_up_to)
+    damping = as_matrix(arm.damping) - held * np.eye(m)
     if m > n and np.linalg.eigvalsh(damping)[0] <= 0:
         raise InputError(
             "an arm with more joints than coordinates needs damping in each of them, "
@@ -159,8 +160,8 @@ def workspace(
     columns = columns_of(arm, damping, wall, need, sites.jacobians[reached])
     factors = stiffness_factors(damping, need, fine.jacobians[account.reached])
     factor = min(columns["stiffness_factor"][0].min(), factors.min())
-    held = torque_held_up_to is not None
-    motion = _motion(arm, wall, period, samples, fine.joints[account.reached], account.margins, held)
+    at = fine.joints[account.reached]
+    motion = _motion(arm, wall, period, samples, at, account.margins, torque_held_up_to is not None)
     whole = np.zeros(account.reached.shape, dtype=bool)
     whole[account.reached] = account.proved
     outcome = "active" if motion is not None else "theorem" if whole.all() else "undecided"
@@ -237,26 +238,6 @@ def _timing(rate: float, delay: float) -> tuple[float, int]:
     return 1 / rate, samples
 
 
-def _held_torque(arm: Arm, period: float, samples: int, largest: float | Sequence[float] | None) -> float:
-    """What a held torque asks of every joint [N·m·s/rad]."""
-    if largest is None:
-        return 0.0
-    curvatures = (arm.curvature, arm.turning_curvature) if arm.turns else (arm.curvature,)
-    forces = np.atleast_1d(np.asarray(largest, dtype=np.float64))
-    if forces.shape != (len(curvatures),) or not ((forces >= 0) & (forces < np.inf)).all():
-        also = " and the largest moment, ≥ 0 N·m" if arm.turns else ""
-        raise InputError(f"torque_held_up_to is the largest force of the wall, ≥ 0 N{also}; got {largest!r}")
-    if None in curvatures or samples:
-        raise InputError(
-            "a bound for held torques is known for chains and descriptions without delay; "
-            "compute the torque several times in each period, and leave torque_held_up_to out"
-        )
-    return sum(
-        sampled_jacobian_damping(h or 0.0, float(force), period)
-        for h, force in zip(curvatures, forces, strict=True)
-    )
-
-
 def _loss(need: Array, jacobians: Array, change: Array) -> Array:
     """How far the smallest eigenvalue may fall inside a cell."""
     size = np.linalg.norm(jacobians, ord=2, axis=(-2, -1))
@@ -305,12 +286,6 @@ def _claim(
     text += (
         " The torque is taken to follow the arm within a period."
         if held is None
-        else f" The torque is held over a period, with wall forces up to {_forces(held)}."
+        else f" The torque is held over a period, with wall forces up to {in_words(held)}."
     )
     return text + (" Encoder steps are not counted." if any(arm.resolution) else "")
-
-
-def _forces(held: float | Sequence[float]) -> str:
-    return " and ".join(
-        f"{value:g} {unit}" for value, unit in zip(np.atleast_1d(held), ("N", "N·m"), strict=False)
-    )

@@ -32,6 +32,8 @@ _AMPLITUDES = (1e-3, 3e-3, 1e-2, 3e-2, 1e-1)
 """Of the joints [rad; m]; larger ones only where Coulomb friction eats the small ones."""
 _HELD = 1e-3
 """Smallest ratio of the singular values of J at which a hand is taken to hold every joint."""
+_NOTHING = 1e-6
+"""Rows of J that are smaller [m/rad; 1] do not move the hand."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,8 +119,8 @@ def refuting_motion(
 def _held(jacobian: Array, turns: int) -> bool:
     """Whether a hand at the end holds every joint; rows of metres and rows of radians each by their size."""
     point = len(jacobian) - turns
-    sizes = [np.linalg.norm(rows, 2) for rows in (jacobian[:point], jacobian[point:]) if len(rows)]
-    rows = jacobian / np.repeat([size or 1.0 for size in sizes], [point, turns][: len(sizes)])[:, None]
+    parts = [part for part in (jacobian[:point], jacobian[point:]) if len(part)]
+    rows = np.concatenate([part / max(float(np.linalg.norm(part, 2)), _NOTHING) for part in parts])
     singular = np.linalg.svd(rows, compute_uv=False)
     return bool(jacobian.shape[1] <= jacobian.shape[0] and singular[-1] >= _HELD * singular[0])
 
