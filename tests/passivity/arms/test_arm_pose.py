@@ -83,6 +83,52 @@ def test_both_sides_wherever_the_wall_rests(kind: str, tmp_path: Path) -> None:
         assert _space(arm.replace(rest=q), wall).stiffness_factor >= limit * (1 - 1e-12)
 
 
+def test_no_closed_path_takes_energy_out_wherever_the_wall_rests(tmp_path: Path) -> None:
+    """Of an arm proved for every rest, with rests far and near; close to the limit at the rest itself."""
+    arm: Any = read_arm(random_arm(tmp_path / "arm.urdf", 21, 2), pose=True)
+    wall, rng, least = WALLS["rotation alone"], np.random.default_rng(10), np.inf
+    wall = _times(wall, 0.97 * _space(arm, wall, 20).stiffness_factor)
+    assert _space(arm, wall, 20).outcome == "theorem"
+    low, high = np.array(arm.joint_range).T
+    for _ in range(300):
+        middle = rng.uniform(low, high)
+        rest = middle if rng.random() < 0.5 else rng.uniform(-7, 7, 2)
+        shape = rng.normal(size=2) * (-1.0) ** np.arange(2)[:, None]
+        path = np.clip(middle + 10 ** rng.uniform(-4, 0) * shape, low, high)
+        motion = replay_cycle(arm.resting(rest), wall, 0.001, 0, path)
+        assert motion.energy >= -1e-12 * motion.loss
+        least = min(least, motion.energy / motion.loss)
+    assert least < 0.2
+
+
+def test_the_work_of_a_held_force_is_that_of_the_difference(tmp_path: Path) -> None:
+    """∫ f·v + Eᵀg·ω over a period, with pinocchio's velocities and scipy's quaternion, is F·Δy."""
+    import pinocchio as pin
+    from scipy.integrate import quad_vec
+    from scipy.spatial.transform import Rotation
+
+    arm: Any = _arm(tmp_path, 6)
+    rng, data = np.random.default_rng(11), arm.model.createData()
+    start, end = rng.uniform(-0.4, 0.4, (2, 6))
+    force, number = rng.normal(size=6), arm.model.getFrameId(arm.frame)
+
+    def frame(q: Array) -> tuple[Array, Array]:
+        pin.computeJointJacobians(arm.model, data, q)
+        turned = pin.updateFramePlacement(arm.model, data, number).rotation.copy()
+        return turned, pin.getFrameJacobian(arm.model, data, number, pin.LOCAL_WORLD_ALIGNED)
+
+    rest = frame(np.array(arm.rest))[0]
+
+    def power(s: float) -> float:
+        turned, jacobian = frame(start + s * (end - start))
+        *v, w = Rotation.from_matrix(turned @ rest.T).as_quat(canonical=True)
+        moment = w * force[3:] + np.cross(v, force[3:])
+        return float(np.concatenate([force[:3], moment]) @ jacobian @ (end - start))
+
+    work = quad_vec(power, 0, 1, epsabs=1e-12)[0]
+    assert work == pytest.approx(force @ (arm.forward(end) - arm.forward(start)), rel=1e-9)
+
+
 def test_the_proof_comes_close_to_the_limit(tmp_path: Path) -> None:
     """One joint moves, in a thousand cells: 0.99 of the limit is proved, 1.001 of it refuted."""
     arm, wall = _arm(tmp_path, 6, moving=1), WALLS["as stiff every way"]
