@@ -38,9 +38,10 @@ if TYPE_CHECKING:
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
-    from zwidth.maps import stability_boundary, z_width, z_width_factors
+    from zwidth.maps import robust_boundary, stability_boundary, z_width, z_width_certificate, z_width_factors
     from zwidth.passivity import two_port
     from zwidth.passivity.absolute import AbsoluteStability, absolute_stability
+    from zwidth.passivity.active_hand import ToleratedActivity, tolerated_activity
     from zwidth.passivity.arms import Workspace, workspace
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
@@ -111,6 +112,7 @@ __all__ = [
     "StandardLinearSolid",
     "Timing",
     "TissueFit",
+    "ToleratedActivity",
     "TransformedCondition",
     "VelocityFilter",
     "Verdict",
@@ -152,6 +154,7 @@ __all__ = [
     "rendering",
     "replay",
     "required_damping_by_slopes",
+    "robust_boundary",
     "rotary",
     "simulate",
     "simulate_admittance",
@@ -160,12 +163,14 @@ __all__ = [
     "stability_boundary",
     "stable_virtual_masses",
     "tissue",
+    "tolerated_activity",
     "transformed_blocks",
     "transformed_condition",
     "two_port",
     "workspace",
     "worst_hand",
     "z_width",
+    "z_width_certificate",
     "z_width_factors",
 ]
 
@@ -208,8 +213,10 @@ _LATER = {
     "RealHand": "zwidth.passivity.real_hand",
     "Stability": "zwidth.passivity.known_hand",
     "stability": "zwidth.passivity.known_hand",
+    "robust_boundary": "zwidth.maps",
     "stability_boundary": "zwidth.maps",
     "z_width": "zwidth.maps",
+    "z_width_certificate": "zwidth.maps",
     "z_width_factors": "zwidth.maps",
     "WorstHand": "zwidth.passivity.worst_hand",
     "operators": "zwidth.operator",
@@ -236,6 +243,8 @@ _LATER = {
     "simulate_batch": "zwidth.traces",
     "stable_virtual_masses": "zwidth.passivity.virtual_mass",
     "tissue": "zwidth.identification.tissue",
+    "ToleratedActivity": "zwidth.passivity.active_hand",
+    "tolerated_activity": "zwidth.passivity.active_hand",
     "two_port": "zwidth.passivity.two_port",
     "workspace": "zwidth.passivity.arms",
     "worst_hand": "zwidth.traces",

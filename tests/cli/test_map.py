@@ -43,7 +43,7 @@ def test_options_reach_the_map(capsys: pytest.CaptureFixture[str]) -> None:
         velocity_filter=zw.OnePole(0.03), hands={"finger": zw.operators.Finger()}, speed=1,
     )  # fmt: skip
     assert document["cells"] == 600
-    assert set(document["regions"]) == {"passive", "quiet", "stable_finger"}
+    assert set(document["regions"]) == {"passive", "passive_sustained", "quiet", "stable_finger"}
     for name, region in document["regions"].items():
         assert region["cells"] == int(found[name].sum())
     assert document["free_damping_N_s_per_m"] == 0.3
@@ -69,6 +69,25 @@ def test_a_store_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert capsys.readouterr().out == first
 
 
+def test_certificates_of_the_columns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One for each column with a passive cell; `zwidth verify` accepts the file, not with less damping."""
+    path = tmp_path / "walls.json"
+    command = (*MAP, "--cells", "60x12", "--certify", str(path), "--velocity-filter", "window 2")
+    assert main(command) == 0
+    assert main(command) == 2
+    assert "exists" in capsys.readouterr().err
+    document = json.loads(path.read_text())
+    found = zw.z_width(
+        zw.catalogue.device("haptic-paddle"), (0, 600), (0, "0.3"), (60, 12), velocity_filter=zw.Window(2)
+    )
+    assert len(document["corners"]) == int(found["passive"].any(dim="stiffness").sum())
+    assert main(("verify", str(path))) == 0
+    assert "is passive, proved" in " ".join(capsys.readouterr().out.split())
+    document["corners"][-1]["loop"]["damping_N_s_per_m"] = "0.05"
+    path.write_text(json.dumps(document))
+    assert main(("verify", str(path))) == 1
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -78,6 +97,11 @@ def test_a_store_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str
         ((*MAP, "--cells", "40xmany"), "whole numbers"),
         ((*MAP, "--hands", "fingr"), "did you mean"),
         ((*MAP, "--plot", "map.gif"), "must end in"),
+        ((*MAP, "--plot", "a.png", "--certify", "a.png"), "--plot and --certify"),
+        (
+            ("map", "haptic-paddle", "--stiffness", "400:900", "--damping", "0:9", "--certify", "c.json"),
+            "no wall",
+        ),
         (("map", "--stiffness", "0:1", "--damping", "0:1"), "no device is given"),
         ((*MAP, "--velocity-filter", "wavelet"), "no type"),
     ],

@@ -14,15 +14,26 @@ import xarray as xr
 
 import zwidth as zw
 from zwidth.maps.chunk import Place, compute
-from zwidth.maps.kernel import STABLE, UNKNOWN, UNSTABLE, decide
+from zwidth.maps.kernel import STABLE, UNKNOWN, UNSTABLE
+from zwidth.maps.kernel import decide as decide_cell
 from zwidth.maps.plan import plan
 from zwidth.maps.request import CHUNK, request
 from zwidth.maps.store import FORMAT
+from zwidth.maps.sustained import _exactly
 from zwidth.operator import Dowel, Finger
+from zwidth.passivity.decision import decide
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 WIDE = ((0, 30000), (0, 90))
-LAYERS = ("passive", "quiet", "admissible_speed", "stable_none", "stable_finger", "stable_dowel")
+LAYERS = (
+    "passive",
+    "passive_sustained",
+    "quiet",
+    "admissible_speed",
+    "stable_none",
+    "stable_finger",
+    "stable_dowel",
+)
 
 
 def same(a: xr.Dataset, b: xr.Dataset) -> bool:
@@ -65,6 +76,44 @@ def test_passive_cells_are_those_that_check_proves() -> None:
             assert b < 0 or mine == (k * 0.0005 + b <= 0.15)
             outcomes.add(mine)
     assert outcomes == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("changes", "velocity"),
+    [
+        ({}, zw.OnePole(0.005)),
+        ({"delay": "0.0005"}, zw.BackwardDifference()),
+        ({"delay": "0.0005"}, zw.Window(4)),
+        ({"delay": "0.002"}, zw.BackwardDifference()),
+        ({"delay": "0.0033", "resolution": "0.0008"}, zw.OnePole(0.003)),
+        ({"resolution": "0.001"}, zw.Window(3)),
+    ],
+)
+def test_sustained_cells_are_those_that_the_criterion_proves(changes: dict, velocity: object) -> None:
+    """Each cell as the exact decision says; more of them than with contact broken, and not all."""
+    device = PADDLE.replace(**changes)
+    found = zw.z_width(device, (0, 330), (-0.3, 0.6), (24, 17), velocity_filter=velocity, hands={})
+    cells = found["passive_sustained"]
+    for k in found["stiffness"].values:
+        for b in found["virtual_damping"].values:
+            expected = decide(device, zw.Wall(k, b, velocity_filter=velocity)).is_provable
+            assert bool(cells.sel(stiffness=k, virtual_damping=b)) == expected
+    assert (found["passive"] <= cells).all()
+    assert found["passive"].sum() < cells.sum() < cells.size
+
+
+@pytest.mark.parametrize(("first", "past"), [(0, 20), (3, 17), (9, 10), (1, 19), (0, 1), (19, 20), (4, 9)])
+def test_ends_of_an_interval_are_found(first: int, past: int) -> None:
+    """Wherever it lies in the range that floats allow, if one of the three cells tried first is in it."""
+    seen: set[int] = set()
+
+    def proved(i: int) -> bool:
+        seen.add(i)
+        return first <= i < past
+
+    expected = (0, 0) if (first, past) == (4, 9) else (first, past)
+    assert _exactly(proved, 0, 20) == expected
+    assert seen <= set(range(20))
 
 
 def test_a_cell_exactly_on_the_limit_is_passive_and_the_next_double_is_not() -> None:
@@ -130,7 +179,7 @@ def test_the_kernel_never_believes_a_sign_that_rounding_made() -> None:
         limit = zw.stability(PADDLE, zw.Wall(10, b), Finger()).max_stiffness
         assert limit is not None
         answers = {
-            off: decide(
+            off: decide_cell(
                 hand.free,
                 hand.stiff,
                 hand.damped,

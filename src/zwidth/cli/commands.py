@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,6 +12,7 @@ from zwidth.cli.output import print_json, targets, writing
 
 if TYPE_CHECKING:
     from zwidth.cli.specification import Specification
+    from zwidth.passivity.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
     from zwidth.passivity.verdict import Verdict
 
@@ -32,7 +32,8 @@ class Command(NamedTuple):
 
 def _configure_check(parser: argparse.ArgumentParser) -> None:
     parser.usage = (
-        "%(prog)s [SOURCE ...] [--PARAMETER VALUE ...] [--json] [--plot FILE] [--replay] [-o FILE] [--force]"
+        "%(prog)s [SOURCE ...] [--PARAMETER VALUE ...] [--json] [--plot FILE] [--replay] "
+        "[--active-below FREQUENCY] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -45,6 +46,12 @@ def _configure_check(parser: argparse.ArgumentParser) -> None:
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
     output.add_argument(
         "--replay", action="store_true", help="replay the motion by hands of finite stiffness; needs a mass"
+    )
+    output.add_argument(
+        "--active-below",
+        metavar="FREQUENCY",
+        action=Once,
+        help="how active a hand may be below this frequency that is passive above it, such as 10 Hz",
     )
     output.add_argument(
         "-o",
@@ -63,21 +70,22 @@ def _check(arguments: argparse.Namespace) -> int:
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     loop = load(arguments.sources, overrides(arguments))
+    active = _tolerated(loop, arguments.active_below)
     verdict = decided(loop)
     if save is not None:
         with writing(save):
-            verdict.save(save)
+            verdict.save(save, {} if active is None else {"active_hand": active.to_dict()})
     if plot is not None:
         from zwidth.plots import save_check  # matplotlib takes its time
 
         save_check(verdict, plot, overwrite=True)  # what is there was asked about before
     real_hand = _replayed(verdict) if arguments.replay else None
     if arguments.json:
-        print_json(verdict.to_json() if real_hand is None else _with_replay(verdict, real_hand))
+        print_json(_in_full(verdict, real_hand=real_hand, active_hand=active))
     else:
         from zwidth.cli.report import print_verdict
 
-        print_verdict(verdict, real_hand)
+        print_verdict(verdict, real_hand, active)
     return STATUS[verdict.outcome]
 
 
@@ -106,9 +114,20 @@ def _replayed(verdict: Verdict) -> RealHand:
     return replay(verdict)
 
 
-def _with_replay(verdict: Verdict, real_hand: RealHand) -> str:
-    document = {**json.loads(verdict.to_json()), "real_hand": real_hand.to_dict()}
-    return json.dumps(document, indent=2, ensure_ascii=False)
+def _tolerated(loop: Specification, below: str | None) -> ToleratedActivity | None:
+    if below is None:
+        return None
+    from zwidth.passivity.active_hand import tolerated_activity
+    from zwidth.quantity.units import parse_number
+
+    return tolerated_activity(loop.device, loop.environment, parse_number(below, "Hz", "active_below"))
+
+
+def _in_full(verdict: Verdict, **reports: RealHand | ToleratedActivity | None) -> str:
+    from zwidth.passivity.document import to_json
+
+    given = {name: report.to_dict() for name, report in reports.items() if report is not None}
+    return to_json({**verdict.to_dict(), **given})
 
 
 def _configure_devices(parser: argparse.ArgumentParser) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once, Parameter, add_all, device_parameters, given
-from zwidth.cli.output import PICTURES, check_new, print_json, quiet_pipe, writing
+from zwidth.cli.output import print_json, quiet_pipe, targets, writing
 from zwidth.cli.specification import read_tables, specified_device
 from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from zwidth.device import Device
+    from zwidth.environment.velocity import VelocityEstimator
 
 _DEVICE_DAMPING = "device_damping"
 """The option for b of the device: `--damping` is the range of B here."""
@@ -27,7 +28,8 @@ def configure_map(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth map`."""
     parser.usage = (
         "%(prog)s [SOURCE] --stiffness LOW:HIGH --damping LOW:HIGH [--cells NxM] [--hands NAMES] "
-        "[--PARAMETER VALUE ...] [--json] [--plot FILE] [-o DIRECTORY] [--force]"
+        "[--PARAMETER VALUE ...] [--json] [--plot FILE] [--certify FILE] "
+        "[-o DIRECTORY] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -50,6 +52,7 @@ def configure_map(parser: argparse.ArgumentParser) -> None:
         ("--workers", "N", "threads (default: one for each processor)"),
         ("--address", "ADDRESS", "of a Dask scheduler, tcp://…, whose workers compute instead"),
         ("--plot", "FILE", "save the plot: .png, .svg or .pdf"),
+        ("--certify", "FILE", "save a certificate of each column's stiffest passive wall, for zwidth verify"),
     ):
         output.add_argument(option, metavar=metavar, action=Once, help=meaning)
     output.add_argument("--json", action="store_true", help="print the summary as JSON, units in the keys")
@@ -60,7 +63,7 @@ def configure_map(parser: argparse.ArgumentParser) -> None:
         action=Once,
         help="zarr store, written as it goes; one that was begun is gone on with",
     )
-    output.add_argument("--force", action="store_true", help="replace a plot that exists")
+    output.add_argument("--force", action="store_true", help="replace files that exist")
     add_all(parser.add_argument_group("device", "override what SOURCE says, or replace it"), _parameters())
 
 
@@ -69,11 +72,7 @@ def run_map(arguments: argparse.Namespace) -> int:
     from zwidth.cli.patience import warn_of_compiling_the_map
     from zwidth.maps import z_width
 
-    plot = None if arguments.plot is None else Path(arguments.plot)
-    if plot is not None:
-        if plot.suffix.lower() not in PICTURES:
-            raise InputError(f"--plot: the file must end in {', '.join(PICTURES)}, got {str(plot)!r}")
-        check_new(plot, arguments.force)
+    plot, proof = targets(arguments.plot, arguments.certify, arguments.force, "--certify")
     device = _device(arguments)
     options = _options(arguments, device.motion)
     warn_of_compiling_the_map()
@@ -83,12 +82,24 @@ def run_map(arguments: argparse.Namespace) -> int:
 
         with writing(plot):
             save_z_width(found, plot, overwrite=True)
+    if proof is not None:
+        _certify(device, found, options.get("velocity_filter"), proof)
     if arguments.json:
         print_json(_json(found))
     else:
         with quiet_pipe():
             print(_report(found))
     return 0
+
+
+def _certify(device: Device, found: xr.Dataset, velocity: VelocityEstimator | None, path: Path) -> None:
+    from zwidth.maps import z_width_certificate
+
+    certificate = z_width_certificate(device, found, velocity_filter=velocity)
+    if certificate is None:
+        raise InputError("--certify: no wall of this map is passive, so there is nothing to certify")
+    with writing(path):
+        certificate.save(path)
 
 
 def _parameters() -> list[Parameter]:
@@ -176,6 +187,8 @@ def _report(found: xr.Dataset) -> str:
 def _region(name: str, found: xr.Dataset) -> str:
     if name == "passive":
         return "passive, every hand"
+    if name == "passive_sustained":
+        return "passive, contact kept"
     if name == "quiet":
         return f"no gain up to {found['quiet'].attrs['speed']:g} {found['admissible_speed'].attrs['units']}"
     hand = name.removeprefix("stable_")

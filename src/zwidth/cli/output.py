@@ -113,8 +113,10 @@ def check_new(path: Path, force: bool) -> None:
         raise InputError(f"{shown} cannot be written: {_reason(error)}") from None
 
 
-def targets(plot: str | None, save: str | None, force: bool) -> tuple[Path | None, Path | None]:
-    """The files of --plot and --save, checked before anything is computed.
+def targets(
+    plot: str | None, save: str | None, force: bool, option: str = "--save"
+) -> tuple[Path | None, Path | None]:
+    """The files of --plot and --save, or what takes its place, checked before anything is computed.
 
     Raises
     ------
@@ -126,7 +128,7 @@ def targets(plot: str | None, save: str | None, force: bool) -> tuple[Path | Non
     if picture is not None and picture.suffix.lower() not in PICTURES:
         raise InputError(f"--plot: the file must end in {', '.join(PICTURES)}, got {str(picture)!r}")
     if picture is not None and picture == document:
-        raise InputError("--plot and --save name the same file")
+        raise InputError(f"--plot and {option} name the same file")
     for path in (picture, document):
         if path is not None:
             check_new(path, force)

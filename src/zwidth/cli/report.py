@@ -27,6 +27,7 @@ from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
+    from zwidth.passivity.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
 
 COLOURS = {"passive": "green", "theorem": "blue", "active": "red", "undecided": "yellow"}
@@ -54,8 +55,10 @@ def page() -> Iterator[Console]:
         print("\n".join(line.rstrip() for line in text.replace(GLUE, " ").rstrip().split("\n")))
 
 
-def print_verdict(verdict: Verdict, real_hand: RealHand | None = None) -> None:
-    """Print the report on standard output, with what a real hand reaches if that was asked for."""
+def print_verdict(
+    verdict: Verdict, real_hand: RealHand | None = None, active_hand: ToleratedActivity | None = None
+) -> None:
+    """Print the report on standard output, with what was asked for of real and of active hands."""
     fancy = encodes(PICTURE)
     with page() as out:
         out.print(_headline(verdict))
@@ -65,16 +68,18 @@ def print_verdict(verdict: Verdict, real_hand: RealHand | None = None) -> None:
         if verdict.witness is not None:
             section(out, "the motion", motion_lines(verdict.witness, fancy))
         if real_hand is not None:
-            section(out, "a real hand", _real_hand(real_hand))
+            section(out, "a real hand", _table(real_hand.rows()))
+        if active_hand is not None:
+            section(out, "an active hand", _table(active_hand.rows()))
         section(out, *_advice(verdict))
         section(out, "actuator", _actuator(verdict))
         section(out, "assumes", assumption_lines(verdict.assumptions))
 
 
-def _real_hand(real_hand: RealHand) -> Iterator[Table]:
+def _table(rows: Iterable[tuple[str, str]]) -> Iterator[Table]:
     grid = Table.grid(padding=(0, 2))
-    for name, text in real_hand.rows():
-        grid.add_row(Text(name, style="dim"), Text(text))
+    for name, text in rows:
+        grid.add_row(Text(name, style="dim"), Text(unit_text(text)))
     yield grid
 
 

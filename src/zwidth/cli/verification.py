@@ -18,6 +18,9 @@ from zwidth.passivity.checker import Verification
 from zwidth.passivity.document import unit_key, unit_suffix
 from zwidth.quantity.glossary import GLOSSARY
 
+_OF_A_KNOWN_HAND = {"absolute stability", "stability", "instability", "vibration"}
+"""Kinds of proofs that say of one hand whether it comes to rest, and nothing of passivity."""
+
 _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 """A document that claims nothing of hands beyond its bounds."""
 
@@ -43,6 +46,8 @@ def verifications(document: object) -> list[Part]:
     found = [Part(part, verify_document(part)) for part in parts]
     if outcome == "passive" and not bounded and all(map(_is_bounded, parts)):
         return [_misfit(p, outcome, "covers hands within bounds only") for p in found]
+    if outcome in ("passive", "active") and any(_kinds(part) & _OF_A_KNOWN_HAND for part in parts):
+        return [_misfit(p, outcome, "is of a hand that is known") for p in found]
     misfit = {"passive": "is a motion that extracts energy", "active": "is a proof of passivity"}
     return [
         _misfit(p, outcome, misfit[outcome])
@@ -92,8 +97,10 @@ def _claim(part: Part) -> str:
         return f"No hand within these bounds takes energy out of the loop below, proved: {reason}"
     if "positive real" in _kinds(part.evidence):
         return f"Of the port below, proved: {reason}"
-    if "absolute stability" in _kinds(part.evidence):
+    if _kinds(part.evidence) & _OF_A_KNOWN_HAND:
         return f"Proved: {reason}"
+    if "active hand" in _kinds(part.evidence):
+        return f"No hand of this activity goes on gaining energy from the loop below, proved: {reason}"
     return f"The loop below is passive, proved: {reason}"
 
 
@@ -101,7 +108,7 @@ def _kinds(evidence: Mapping[str, object]) -> set[object]:
     """The kind of a proof, or those of its corners."""
     corners = evidence.get("corners")
     parts = corners if isinstance(corners, list) else [evidence]
-    return {part.get("kind") for part in parts if isinstance(part, Mapping)}
+    return {str(part.get("kind")) for part in parts if isinstance(part, Mapping)}
 
 
 def _rows(part: Part) -> Iterator[tuple[str, str]]:
@@ -117,6 +124,10 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
     if "kind" in shown_part:
         yield "kind", plain(str(shown_part["kind"]))
     known = _known_keys()
+    for key, value in shown_part.items():
+        if key in known and not isinstance(value, (Mapping, list)):
+            name, unit = known[key]
+            yield name, f"{plain(_text(value))} {unit}"
     for table in ("loop", "law", "domain", "system", "motion"):
         content = shown_part.get(table)
         for key, value in content.items() if isinstance(content, Mapping) else ():
@@ -133,7 +144,17 @@ def _known_keys() -> dict[str, tuple[str, str]]:
     }
     powers = "in descending powers of z"
     taps = {f"taps_{unit_suffix(u)}": ("taps", unit_text(u)) for u in ("N/m", "N*m/rad")}
-    return {**keys, **taps, "numerator": ("numerator", powers), "denominator": ("denominator", powers)}
+    damping = [
+        (unit_suffix(u), unit_text(u)) for u in map(GLOSSARY["damping"].unit_for, ("linear", "rotary"))
+    ]
+    hand = {"below_Hz": ("below", "Hz"), **{f"activity_{key}": ("activity", unit) for key, unit in damping}}
+    return {
+        **keys,
+        **taps,
+        **hand,
+        "numerator": ("numerator", powers),
+        "denominator": ("denominator", powers),
+    }
 
 
 def _text(value: object) -> str:

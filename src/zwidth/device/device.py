@@ -167,7 +167,8 @@ class Device:
         """
         value = getattr(self, key)
         if not isinstance(value, Exact):
-            raise InputError(f"{key} has no single value: {value}")
+            given = "it is unknown" if value is None else f"it is the interval {value}"
+            raise InputError(f"{key} has no single value, {given}; give one, of an interval each end in turn")
         return value.fraction
 
     def parameters(self) -> Mapping[str, Exact | Interval]:

@@ -2,6 +2,6 @@
 
 from zwidth.maps.boundary import stability_boundary
 from zwidth.maps.factors import z_width_factors
-from zwidth.maps.run import z_width
+from zwidth.maps.run import robust_boundary, z_width, z_width_certificate
 
-__all__ = ["stability_boundary", "z_width", "z_width_factors"]
+__all__ = ["robust_boundary", "stability_boundary", "z_width", "z_width_certificate", "z_width_factors"]

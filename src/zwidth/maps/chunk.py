@@ -39,7 +39,12 @@ def compute(ready: Plan, place: Place) -> Layers:
     k, b = ready.stiffness[rows], ready.damping[columns]
     indices = np.arange(len(ready.stiffness))[rows]
     passive = indices[:, None] < ready.passive[columns][None, :]
-    layers: Layers = {"passive": passive, "admissible_speed": _speed(ready.contact, k, b, passive)}
+    first, past = ready.sustained[:, columns]
+    layers: Layers = {
+        "passive": passive,
+        "passive_sustained": (indices[:, None] >= first) & (indices[:, None] < past),
+        "admissible_speed": _speed(ready.contact, k, b, passive),
+    }
     layers.update((f"stable_{hand.name}", _stable(hand, k, b)) for hand in ready.hands)
     return layers
 

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from zwidth.environment import Wall
 from zwidth.environment.environment import RationalFunction
 from zwidth.maps.request import Array, Request
+from zwidth.maps.sustained import sustained_walls
 from zwidth.passivity.contact import damped_wall
 from zwidth.passivity.decision import decide
 from zwidth.passivity.known_hand.characteristic import Family, as_floats, bilinear, family, precision
@@ -63,6 +64,8 @@ class Plan(NamedTuple):
     damping: Array
     passive: NDArray[np.int64]
     """For each B how many of the stiffnesses are passive, from the softest on."""
+    sustained: NDArray[np.int64]
+    """For each B the first stiffness that is passive while contact lasts, and the one past the last."""
     limit: Array
     """For each B the largest passive stiffness, below 0 or NaN where none is."""
     contact: Contact | None
@@ -82,6 +85,7 @@ def plan(asked: Request) -> Plan:
         stiffness=k,
         damping=b,
         passive=np.array(passive, dtype=np.int64),
+        sustained=sustained_walls(asked),
         limit=np.array([float(limit) for limit in limits] or [np.nan] * len(b)),
         contact=None if contact is None else Contact(*(float(value) for value in contact)),
         hands=tuple(_hand(name, motion_of(asked.device, hand), velocity) for name, hand in asked.hands),

@@ -1,4 +1,4 @@
-"""A map with a progress bar, once it has taken over a second."""
+"""A map and its certificates with a progress bar, once they have taken over a second."""
 
 from __future__ import annotations
 
@@ -7,7 +7,10 @@ from typing import Any
 
 import xarray as xr
 
+from zwidth.maps import certificates as _certificates
+from zwidth.maps import robust as _robust
 from zwidth.maps import z_width as _map
+from zwidth.passivity.certificate import Certificate
 from zwidth.traces.progress import progress_bar
 
 
@@ -18,3 +21,21 @@ def z_width(*args: Any, **kwargs: Any) -> xr.Dataset:
         return _map.z_width(*args, **kwargs)
     with progress_bar("chunks") as progress:
         return _map.z_width(*args, progress=progress, **kwargs)
+
+
+@wraps(_robust.robust_boundary)
+def robust_boundary(*args: Any, **kwargs: Any) -> xr.Dataset:
+    """As in `maps.robust`, with a bar of the points."""
+    if "progress" in kwargs:
+        return _robust.robust_boundary(*args, **kwargs)
+    with progress_bar("points") as progress:
+        return _robust.robust_boundary(*args, progress=progress, **kwargs)
+
+
+@wraps(_certificates.z_width_certificate)
+def z_width_certificate(*args: Any, **kwargs: Any) -> Certificate | None:
+    """As in `maps.certificates`, with a bar of the columns."""
+    if "progress" in kwargs:
+        return _certificates.z_width_certificate(*args, **kwargs)
+    with progress_bar("columns") as progress:
+        return _certificates.z_width_certificate(*args, progress=progress, **kwargs)

@@ -22,7 +22,7 @@ DIMENSIONS = ("stiffness", "virtual_damping")
 def layer_types(asked: Request) -> dict[str, str]:
     """The arrays of a map and the type of their numbers."""
     stable = {f"stable_{name}": "bool" for name, _ in asked.hands}
-    return {"passive": "bool", "admissible_speed": "float64"} | stable
+    return {"passive": "bool", "passive_sustained": "bool", "admissible_speed": "float64"} | stable
 
 
 class Store:

@@ -1,6 +1,7 @@
 """The Z-width of a device: which walls (K, B) it can render, cell by cell.
 
     passive            b ≥ (2d + 1) K T/2 + |B| Σ|w_j|   and   f_c ≥ (K + |B| ‖h_v‖₁) Δ/2
+    sustained          the criterion for contact that is kept, b ≥ (T/2) Re{(1 − z⁻¹) H}/(1 − cos ωT)
     admissible speed   of hands from which such a wall keeps its energy although it is not passive
     stable with a hand all poles of device, hand and wall inside the unit circle
 
@@ -51,8 +52,8 @@ def z_width(
 ) -> xr.Dataset:
     """Map the walls that a device can render over stiffness and virtual damping.
 
-    A cell stands for the wall at its middle.  `passive` and `stable_…` are True only where proved, by exact
-    comparison or in balls that hold the true numbers; `admissible_speed` is rounded down.
+    A cell stands for the wall at its middle.  `passive…` and `stable_…` are True only where proved, by exact
+    decisions or in balls that hold the true numbers; `admissible_speed` is rounded down.
 
     Parameters
     ----------
@@ -80,9 +81,10 @@ def z_width(
     Returns
     -------
     xarray.Dataset
-        Over (stiffness, virtual_damping): `passive`, `quiet`, `admissible_speed` and `stable_NAME` of each
-        hand. Over virtual_damping the curves where they end, `limit_passive` and `limit_NAME`, NaN where
-        nothing is stable. Of each region its `area` and its `largest_stiffness`, by counting cells.
+        Over (stiffness, virtual_damping): `passive`, `passive_sustained`, as long as contact lasts, `quiet`,
+        `admissible_speed` and `stable_NAME` of each hand. Over virtual_damping the curves where they end,
+        `limit_passive` and `limit_NAME`, NaN where nothing is stable. Of each region its `area` and its
+        `largest_stiffness`, by counting cells.
         `free_mass`, `free_damping` and `free_friction`, the lower end.
 
     Raises
@@ -156,7 +158,7 @@ def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Da
     variables["limit_passive"] = (dims[1], ready.limit)
     for hand in ready.hands:
         variables[f"limit_{hand.name}"] = (dims[1], stable_limits(hand, ready.damping))
-    names = ["passive", "quiet", *(f"stable_{name}" for name, _ in asked.hands)]
+    names = ["passive", "passive_sustained", "quiet", *(f"stable_{name}" for name, _ in asked.hands)]
     cell = asked.stiffness.width * asked.virtual_damping.width
     masks = [np.asarray(variables[name][1]) for name in names]
     units = [GLOSSARY[name].unit_for(motion) for name in axes]
@@ -190,5 +192,6 @@ def _largest(mask: Any, stiffness: Any) -> float:
 
 _MEANINGS = {
     "passive": {"long_name": "no hand takes energy out, contact made and broken"},
+    "passive_sustained": {"long_name": "no hand that keeps contact takes energy out"},
     "admissible_speed": {"long_name": "no hand up to this speed takes energy out"},
 }

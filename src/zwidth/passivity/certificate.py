@@ -46,7 +46,7 @@ class Certificate:
 
     @property
     def kind(self) -> str:
-        """Of the first document: "spring", "contact", "linear", "positive real", "absolute stability", …"""
+        """Of the first document: "spring", "contact", "linear", "positive real", "stability", …"""
         return str(self.documents[0]["kind"])
 
     @property
@@ -82,7 +82,7 @@ def certify(decision: Decision) -> dict[str, Any]:
         assert decision.wall is not None
         document["law"] = _law(decision.wall, decision.setting.motion)
     elif kind != "spring":
-        document["proof"] = _linear_proof(decision)
+        document["proof"] = linear_proof(decision)
     return document
 
 
@@ -94,7 +94,7 @@ def _document(decision: Decision, kind: str) -> dict[str, Any]:
     return {"format": FORMAT, "kind": kind, "loop": loop}
 
 
-def _linear_proof(decision: Decision) -> dict[str, Any]:
+def linear_proof(decision: Decision) -> dict[str, Any]:
     """The linear criterion, and with an encoder the bound on ‖h‖₁."""
     proof = decision.viscous
     assert isinstance(proof, LinearProof), "only a provable decision is certified"
@@ -119,7 +119,7 @@ def _law(wall: DampedWall, motion: str) -> dict[str, Any]:
 
 def certify_delays(decision: Decision, pieces: Sequence[Piece], longest: Fraction) -> dict[str, Any]:
     """The proof document of a provable decision for every delay up to `longest` [s]."""
-    document, proof = _document(decision, "delays"), _linear_proof(decision)
+    document, proof = _document(decision, "delays"), linear_proof(decision)
     del proof["positivity"]
     proof["pieces"] = [
         {
@@ -187,14 +187,19 @@ def evidence(document: object) -> list[Mapping[str, Any]]:
         raise InputError("expected a JSON object with a certificate or a witness")
     if "kind" in document:
         return [document]
-    holders = [document, document.get("worst_hand")]
-    inner = (h[k] for h in holders if isinstance(h, Mapping) for k in ("certificate", "witness") if k in h)
+    inner = (h[k] for h in _holders(document) for k in ("certificate", "witness") if k in h)
     found = [part for part in inner if isinstance(part, Mapping) and "kind" in part]
     if not found:
         raise InputError(
             "no certificate or witness found: the object has no key kind, certificate or witness"
         )
     return found
+
+
+def _holders(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The document and the reports inside it."""
+    inner = (document.get(key) for key in ("worst_hand", "active_hand", "contact_kept", "contact_broken"))
+    return [document, *(h for report in inner if isinstance(report, Mapping) for h in _holders(report))]
 
 
 def _verify_one(part: Mapping[str, Any]) -> checker.Verification:

@@ -210,9 +210,9 @@ class Verdict:
         """`to_dict` as JSON text, every exact number digit for digit."""
         return to_json(self.to_dict())
 
-    def save(self, path: str | Path) -> None:
-        """Write the verdict with its evidence as JSON for `zwidth verify`."""
-        document = self.to_dict()
+    def save(self, path: str | Path, reports: Mapping[str, Any] | None = None) -> None:
+        """Write verdict and evidence as JSON for `zwidth verify`, and `reports` under their names."""
+        document = {**self.to_dict(), **(reports or {})}
         if self.worst_hand is not None and self.witness is None:
             document["worst_hand"] = self.worst_hand.to_dict()
         Path(path).write_text(to_json(document) + "\n", encoding="utf-8")

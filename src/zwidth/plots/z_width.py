@@ -114,6 +114,7 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
     b, k = (_edges(found[name].values) for name in ("virtual_damping", "stiffness"))
     speed = f"{number(found['quiet'].attrs['speed'])} {pretty(found['admissible_speed'].attrs['units'])}"
     for name, colour, alpha, text in (
+        *_sustained(found),
         ("quiet", SKY, 0.35, f"no hand up to {speed} gains"),
         ("passive", GREEN, 0.55, "passive with every hand"),
     ):
@@ -132,6 +133,13 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
     axes.set_xlabel(label("virtual_damping", motion))
     axes.set_ylabel(label("stiffness", motion))
     axes.legend(loc="upper right", frameon=True, framealpha=0.85, edgecolor="none")
+
+
+def _sustained(found: xr.Dataset) -> tuple[tuple[str, str, float, str], ...]:
+    """What is passive as long as contact lasts, where that is more than what is passive anyway."""
+    if not (found["passive_sustained"] & ~found["passive"]).values.any():
+        return ()
+    return (("passive_sustained", GREEN, 0.25, "passive while contact lasts"),)
 
 
 def _edges(middles: Array) -> Array:
@@ -176,7 +184,7 @@ def _speeds(axes: Axes, found: xr.Dataset) -> None:
 
 def _corner(found: xr.Dataset) -> xr.Dataset | None:
     """The part with passive and quiet walls, if it is a small part of the map and has cells enough to see."""
-    held = (found["passive"] | found["quiet"]).values
+    held = (found["passive"] | found["passive_sustained"] | found["quiet"]).values
     if not held.any():
         return None
     rows, columns = (int(np.flatnonzero(held.any(axis=along))[-1]) for along in (1, 0))

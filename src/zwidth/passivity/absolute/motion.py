@@ -9,13 +9,16 @@ until the solution has the pattern it was computed for; see `orbit`.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.passivity.absolute.orbit import Array, corrected, growth_of, is_certain, returns, simulated
 from zwidth.passivity.absolute.plant import Plant
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.document import exact_text
+from zwidth.quantity.exact import Exact
 
 _RUNS = 4
 _SHORT = 14
@@ -35,7 +38,8 @@ class PeriodicMotion(NamedTuple):
 
     `positions` are from where the hand rests without a wall; the wall begins at `gap`. `growth` is the
     largest factor by which a small deviation grows in one period: below 1 the motion attracts. `basin` is the
-    share of the simulated starts that did not come to rest.
+    share of the simulated starts that did not come to rest; `source` says of which plant it is a motion.
+    ``certificate`` lets the independent checker solve for it.
     """
 
     slope: float
@@ -43,6 +47,7 @@ class PeriodicMotion(NamedTuple):
     positions: tuple[float, ...]
     growth: float
     basin: float
+    source: dict[str, Any]
 
     @property
     def period(self) -> int:
@@ -59,9 +64,22 @@ class PeriodicMotion(NamedTuple):
         """From the outermost to the innermost sample."""
         return max(self.positions) - min(self.positions)
 
+    @property
+    def certificate(self) -> Certificate:
+        """Slope, gap and pattern, of kind "vibration": the checker solves for the motion itself."""
+        document = {
+            "format": FORMAT,
+            "kind": "vibration",
+            **self.source,
+            "slope": exact_text(Exact(self.slope).fraction),
+            "gap": exact_text(Exact(self.gap).fraction),
+            "inside": list(self.inside),
+        }
+        return Certificate((document,))
+
 
 def periodic_motion(plant: Plant, slope: float, gap: float, longest: int = 120) -> PeriodicMotion | None:
-    """A periodic motion of at most `longest` samples, its pattern certain; None if none was found.
+    """A periodic motion of at most `longest` samples, confirmed by the checker; None if none was found.
 
     One that attracts is preferred.
 
@@ -98,10 +116,10 @@ def periodic_motion(plant: Plant, slope: float, gap: float, longest: int = 120) 
             continue
         if is_certain(plant, slope, gap, positions > gap):
             share = len(alive) / len(runs)
-            found = PeriodicMotion(slope, gap, tuple(positions.tolist()), growth, share)
+            found = PeriodicMotion(slope, gap, tuple(positions.tolist()), growth, share, plant.source)
             if growth < 1:
                 break
-    return found
+    return found if found is not None and found.certificate.verify() else None
 
 
 def smallest_motion(plant: Plant, low: float, gap: float, longest: int = 120) -> PeriodicMotion | None:
@@ -142,4 +160,5 @@ def _softened(plant: Plant, motion: PeriodicMotion, low: float) -> PeriodicMotio
             low = slope
     runs = simulated(plant, best.slope, gap)
     moving = sum(bool(np.ptp(run) > _SMALLEST * abs(gap)) for run in runs)
-    return best._replace(basin=moving / len(runs))
+    best = best._replace(basin=moving / len(runs))
+    return best if best.certificate.verify() else motion

@@ -78,15 +78,21 @@ class AbsoluteStability:
         return self.refuted / self.largest - 1 if self.largest else inf
 
     def to_dict(self) -> dict[str, Any]:
-        """Slopes and certificates as plain data."""
+        """Slopes, motions and certificates of both as plain data."""
         corners = [d for row in self.proved if row.certificate for d in row.certificate.documents]
-        return {
+        motions = [motion for motion in (self.pressing, self.resting) if motion is not None]
+        against = [d for motion in motions for d in motion.certificate.documents]
+        document = {
             "format": "zwidth absolute stability 1",
             "slopes": {row.criterion: float(row.slope) for row in self.proved},
             "linear_limit": self.linear_limit.slope,
-            "motions": [motion._asdict() for motion in (self.pressing, self.resting) if motion is not None],
-            "certificate": Certificate(tuple(corners)).to_dict(),
+            "motions": [{k: v for k, v in m._asdict().items() if k != "source"} for m in motions],
         }
+        if corners:
+            document["certificate"] = Certificate(tuple(corners)).to_dict()
+        if against:
+            document["witness"] = Certificate(tuple(against)).to_dict()
+        return document
 
     def save(self, path: str | Path) -> None:
         """Write it as JSON for `zwidth verify`."""

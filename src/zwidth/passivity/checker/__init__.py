@@ -1,12 +1,12 @@
 """The independent checker: re-proves a certificate, recomputes a witness.
 
-Written from the mathematics alone, with other algorithms than the prover's:
-Chebyshev sums for the criterion, Bernstein coefficients for its sign, Routh's table
-for stability, a plain recursion for the energy of a motion, every move one by one
-for a storage function.  The standard library does for all but the last, whose many
-moves need numpy and numba.  It imports nothing else of zwidth, on purpose: keep it so.
+Written from the mathematics alone, with other algorithms than the prover's: Chebyshev sums for the criterion,
+Bernstein coefficients for its sign, Routh's table for stability, Schur and Cohn's recursion where a hand is
+known, a plain recursion for the energy of a motion, every move one by one for a storage function.  The
+standard library does for all but the last, whose many moves need numpy and numba.  It imports nothing else of
+zwidth, on purpose: keep it so.
 
-Everything is exact: numbers are integers, or text such as "3/20" and "0.15".
+Everything is exact, or enclosed where e^A comes in: numbers are integers, or text such as "3/20" and "0.15".
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from .absolute import absolute
+from .active_hand import active_hand
 from .contact_motion import contact_motion_energy
 from .contact_proof import contact
 from .force_bounding import force_bounding
@@ -23,20 +24,26 @@ from .motions import motion_energy, stored_at_start
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
+from .rest import instability, stability
 from .row_motion import row_motion_energy
 from .storage_proof import storage
 from .storage_row import storage_of_row
+from .vibration import vibration
 
 __all__ = ["Verification", "verify"]
 
 _KINDS = {
     **PROOFS,
     "absolute stability": absolute,
+    "active hand": active_hand,
     "contact": contact,
     "force bounding": force_bounding,
+    "instability": instability,
     "positive real": positive_real,
+    "stability": stability,
     "storage": storage,
     "row storage": storage_of_row,
+    "vibration": vibration,
 }
 
 

@@ -16,19 +16,18 @@ import numpy as np
 
 from zwidth.device import Device
 from zwidth.environment import Wall
-from zwidth.environment.environment import Environment, certain
+from zwidth.environment.environment import Environment, RationalFunction, certain
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.boundary import largest_holding
+from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.known_hand.characteristic import PRECISIONS, as_floats, family, of_law, precision
 from zwidth.passivity.known_hand.crossing import Plain, last_stable, plain
 from zwidth.passivity.known_hand.decide import Found, Outcome, corners, decided
 from zwidth.passivity.known_hand.hand import PassiveHand, as_hand
 from zwidth.passivity.known_hand.plant import Motion
+from zwidth.passivity.known_hand.proof import evidence
 from zwidth.quantity.exact import Exact, ends
-
-_BOXES_OF_A_SEARCH = 1000
-"""Boxes for each stiffness that is tried while the largest one of intervals is sought."""
 
 _HALVINGS = 8
 """Of the stiffness, in that search."""
@@ -59,6 +58,9 @@ class Stability:
         What the claim rests on.
     culprit
         Mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand together that do not decay.
+    certificate
+        What the independent checker accepted, of kind "stability" for the loop and all its intervals or
+        "instability" for the culprit; None where it is undecided.
     """
 
     outcome: Outcome
@@ -69,11 +71,16 @@ class Stability:
     limit_frequency: float | None
     assumptions: tuple[str, ...]
     culprit: tuple[float, float, float] | None = None
+    certificate: Certificate | None = None
 
     @property
     def margin(self) -> float:
         """1 − spectral radius: > 0 for a loop that decays."""
         return 1 - self.spectral_radius
+
+    def verify(self) -> bool:
+        """True when there is a certificate and the independent checker accepts it."""
+        return self.certificate is not None and self.certificate.verify()
 
     def __str__(self) -> str:
         return f"{self.outcome}: {self.claim}"
@@ -84,7 +91,8 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
 
     ``(m + m_h) ẍ + (b + c) ẋ + k x = −f``,  f = H(z) x sampled, delayed and held.  Decided exactly: in
     rational arithmetic without spring and damper, else in balls that hold the true coefficients.  A passive
-    loop is stable with every passive hand; this one answers for loops that are not passive.
+    loop is stable with every passive hand; this one answers for loops that are not passive.  What is said has
+    been confirmed by the independent checker.
 
     Parameters
     ----------
@@ -104,9 +112,9 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
     holding = as_hand(hand)
     motion = motion_of(device, holding)
     transfer = law.pulse_transfer_function(motion.period)
-    found = decided(motion, lambda box: of_law(box, transfer))
+    found, certificate = _checked(motion, transfer, device.motion)
     worst = max((_poles(corner, transfer) for corner in corners(motion)), key=lambda z: abs(z))
-    largest, limit = _limit(motion, law)
+    largest, limit = largest_stable(motion, law, device.motion)
     return Stability(
         outcome=found.outcome,
         claim=_claim(found),
@@ -116,7 +124,18 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
         limit_frequency=None if limit is None else _hertz(limit, motion),
         assumptions=_assumptions(device, holding, law),
         culprit=_culprit(found),
+        certificate=certificate,
     )
+
+
+def _checked(motion: Motion, transfer: RationalFunction, units: str) -> tuple[Found, Certificate | None]:
+    """An outcome with a certificate that the independent checker accepts; undecided without one."""
+    found = decided(motion, lambda point: of_law(point, transfer))
+    document = evidence(found, motion, transfer, units)
+    certificate = None if document is None else Certificate((document,))
+    if certificate is None or not certificate.verify():
+        return Found("undecided"), None
+    return found, certificate
 
 
 def motion_of(device: Device, hand: PassiveHand) -> Motion:
@@ -148,8 +167,11 @@ def _poles(corner: Motion, transfer: Any) -> complex:
     return complex(roots[np.abs(roots).argmax()])
 
 
-def _limit(motion: Motion, law: Environment) -> tuple[float | None, float | None]:
-    """The largest stable stiffness of a wall and the angle of its poles there."""
+def largest_stable(motion: Motion, law: Environment, units: str) -> tuple[float | None, float | None]:
+    """The largest stable stiffness of a wall and the angle ωT of its poles there; None where there is none.
+
+    For intervals the largest that the independent checker accepts for every value in them.
+    """
     if not isinstance(law, Wall):
         return None, None
     damping = certain(law.damping, "damping")
@@ -160,26 +182,31 @@ def _limit(motion: Motion, law: Environment) -> tuple[float | None, float | None
     guess = min(end for end in ends_of_bands if end is not None)
 
     def holds(k: Fraction) -> bool:
-        def polynomial(box: Motion) -> Any:
-            return family(box, velocity).at(k, damping)
+        return decided(motion, lambda point: family(point, velocity).at(k, damping)).outcome == "stable"
 
-        return decided(motion, polynomial, _BOXES_OF_A_SEARCH).outcome == "stable"
+    def holds_in_the_box(k: Fraction) -> bool:
+        transfer = law.replace(stiffness=Exact(k)).pulse_transfer_function(motion.period)
+        return _checked(motion, transfer, units)[0].outcome == "stable"
 
-    search = largest_holding if motion.is_certain else _largest_below
-    found = search(holds, guess.stiffness)
+    if motion.is_certain:
+        found = largest_holding(holds, guess.stiffness)
+    else:
+        found = _largest_below(holds_in_the_box, guess.stiffness)
     return (found, guess.angle) if found else (None, None)
 
 
 def _largest_below(holds: Callable[[Fraction], bool], limit: float) -> float:
-    """The largest of 2⁻⁸, 2 · 2⁻⁸, … of a limit that holds, by halving; 0 if none does."""
-    low, high = 0, 1 << _HALVINGS
+    """The largest of 2⁻⁸, 2 · 2⁻⁸, … of a limit that holds, sought from the limit down; 0 if none does."""
+    whole = 1 << _HALVINGS
+    low, high = 0, whole
+    step = 1
     while high - low > 1:
-        middle = (low + high) // 2
-        if holds(Exact(limit * middle / (1 << _HALVINGS)).fraction):
-            low = middle
+        tried = max(low + 1, whole - step) if not low else (low + high) // 2
+        if holds(Exact(limit * tried / whole).fraction):
+            low = tried
         else:
-            high = middle
-    return limit * low / (1 << _HALVINGS)
+            high, step = tried, 2 * step
+    return limit * low / whole
 
 
 def _plain(motion: Motion, velocity: Any) -> Plain:
@@ -203,7 +230,7 @@ def _claim(found: Found) -> str:
         return "device and hand come to rest against this wall, after every small disturbance"
     if found.outcome == "unstable":
         return "a disturbance does not die out: the hand is shaken, or left to drift"
-    return "some values in the intervals are so near the limit that they were not decided"
+    return "the loop, or some values in the intervals, are so near the limit that they were not decided"
 
 
 def _assumptions(device: Device, hand: PassiveHand, law: Environment) -> tuple[str, ...]:

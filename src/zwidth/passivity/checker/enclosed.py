@@ -1,0 +1,116 @@
+"""Numbers known within bounds: in fixed point, to first order in what varies, the rest as a radius.
+
+    x = (m + Σ sᵢ εᵢ + r ε) / 2^bits,    every |εᵢ|, |ε| ≤ 1,  the εᵢ shared by all numbers
+
+What depends on the same εᵢ cancels where it is subtracted: a difference is known as well as its terms.  Every
+rounding is added to r.  A 0 stays exact.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+Slopes = tuple[int, ...]
+
+
+class Enclosed:
+    """One such number; all that meet have the same `bits` and as many slopes, or none."""
+
+    __slots__ = ("bits", "middle", "radius", "slopes")
+
+    def __init__(self, bits: int, middle: int, slopes: Slopes = (), radius: int = 0) -> None:
+        self.bits, self.middle, self.slopes, self.radius = bits, middle, slopes, radius
+
+    def __add__(self, other: Enclosed) -> Enclosed:
+        slopes = _merged(self.slopes, other.slopes, 1)
+        return Enclosed(self.bits, self.middle + other.middle, slopes, self.radius + other.radius)
+
+    def __sub__(self, other: Enclosed) -> Enclosed:
+        slopes = _merged(self.slopes, other.slopes, -1)
+        return Enclosed(self.bits, self.middle - other.middle, slopes, self.radius + other.radius)
+
+    def __mul__(self, other: Enclosed) -> Enclosed:
+        a, b, bits = self.middle, other.middle, self.bits
+        own, strange = self.reach, other.reach
+        rest = abs(a) * other.radius + abs(b) * self.radius + own * strange
+        first, second = [b * s for s in self.slopes], [a * s for s in other.slopes]
+        slopes = _merged(tuple(first), tuple(second), 1)
+        return _rounded(bits, a * b, slopes, rest, bits)
+
+    def times(self, whole: int) -> Enclosed:
+        """Times a whole number, exactly."""
+        slopes = tuple(whole * s for s in self.slopes)
+        return Enclosed(self.bits, whole * self.middle, slopes, abs(whole) * self.radius)
+
+    def over(self, whole: int) -> Enclosed:
+        """Divided by a whole number > 0."""
+        slopes = tuple(s // whole for s in self.slopes)
+        lost = bool(self.middle % whole) + sum(bool(s % whole) for s in self.slopes)
+        return Enclosed(self.bits, self.middle // whole, slopes, -(-self.radius // whole) + lost)
+
+    def shifted(self, up: int) -> Enclosed:
+        """Times 2^up."""
+        if up >= 0:
+            return self.times(1 << up)
+        return _rounded(self.bits, self.middle, self.slopes, self.radius, -up)
+
+    def in_bits(self, bits: int) -> Enclosed:
+        """The same with so many bits."""
+        moved = self.shifted(bits - self.bits)
+        return Enclosed(bits, moved.middle, moved.slopes, moved.radius)
+
+    def widened(self, by: Fraction) -> Enclosed:
+        """With so much more for its radius."""
+        more = -(-(by.numerator << self.bits) // by.denominator)
+        return Enclosed(self.bits, self.middle, self.slopes, self.radius + more)
+
+    @property
+    def reach(self) -> int:
+        """How far it may be from its middle, in units of 2^−bits."""
+        return sum(map(abs, self.slopes)) + self.radius
+
+    @property
+    def sign(self) -> int | None:
+        """1, 0 or −1 where it is certain."""
+        if abs(self.middle) > self.reach:
+            return 1 if self.middle > 0 else -1
+        return 0 if self.middle == 0 and self.reach == 0 else None
+
+
+def known(value: Fraction, bits: int) -> Enclosed:
+    """A rational number."""
+    middle, rest = divmod(value.numerator << bits, value.denominator)
+    return Enclosed(bits, middle, (), 1 if rest else 0)
+
+
+def between(low: Fraction, high: Fraction, place: int, places: int, bits: int) -> Enclosed:
+    """Every number of an interval: the middle and the slope of the εᵢ at a place."""
+    half = known((high - low) / 2, bits)
+    slopes = tuple(half.middle if i == place else 0 for i in range(places))
+    middle = known((low + high) / 2, bits)
+    return Enclosed(bits, middle.middle, slopes if high > low else (), middle.radius + half.radius)
+
+
+def _merged(a: Slopes, b: Slopes, sign: int) -> Slopes:
+    if not b:
+        return a
+    if not a:
+        return b if sign > 0 else tuple(-s for s in b)
+    return tuple(x + sign * y for x, y in zip(a, b, strict=True))
+
+
+def _rounded(bits: int, middle: int, slopes: Slopes, rest: int, down: int) -> Enclosed:
+    """Over 2^down: one unit of radius for every number that has lost something."""
+    mask = (1 << down) - 1
+    lost = bool(middle & mask) + sum(bool(s & mask) for s in slopes)
+    return Enclosed(bits, middle >> down, tuple(s >> down for s in slopes), -(-rest >> down) + lost)
+
+
+def in_z(in_zeta: list[Enclosed]) -> list[Enclosed]:
+    """A polynomial in ζ = z − 1, in powers of z, descending."""
+    zero = Enclosed(in_zeta[0].bits, 0)
+    out: list[Enclosed] = []
+    for c in in_zeta:  # Horner
+        out = [x - y for x, y in zip([*out, zero], [zero, *out], strict=True)]
+        out[-1] = out[-1] + c
+    return out

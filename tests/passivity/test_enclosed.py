@@ -1,0 +1,131 @@
+"""The checker's numbers with error bounds, and the motion behind the hold, against mpmath and by hand."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+
+from zwidth.passivity.checker.enclosed import Enclosed, between, in_z, known
+from zwidth.passivity.checker.held_motion import read_motion, sampled, sampled_free
+
+BITS = 200
+EPS = Fraction(1, 1 << 180)
+
+
+def value(x: Enclosed, places: tuple[Fraction, ...] = ()) -> tuple[Fraction, Fraction]:
+    """Smallest and largest value where the shared εᵢ have these values."""
+    middle = x.middle + sum(s * e for s, e in zip(x.slopes, places, strict=bool(x.slopes)))
+    return Fraction(middle - x.radius, 1 << x.bits), Fraction(middle + x.radius, 1 << x.bits)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_sums_and_products_hold_the_true_number(seed: int) -> None:
+    """A random formula of three variables, at random places of a box: inside, and tight at the middle."""
+    rng = np.random.default_rng(seed)
+    ends = [sorted(Fraction(float(x)) for x in rng.uniform(-3, 3, 2)) for _ in range(3)]
+    x, y, z = (between(*pair, i, 3, BITS) for i, pair in enumerate(ends))
+    formula = (x * y - z.times(3)) * (x + known(Fraction(1, 3), BITS)).over(7) - (y * z).shifted(-2)
+    for _ in range(20):
+        e = tuple(Fraction(float(v)) for v in rng.uniform(-1, 1, 3))
+        a, b, c = ((lo + hi) / 2 + (hi - lo) / 2 * s for (lo, hi), s in zip(ends, e, strict=True))
+        low, high = value(formula, e)
+        assert low <= (a * b - 3 * c) * (a + Fraction(1, 3)) / 7 - b * c / 4 <= high
+    point = [known((lo + hi) / 2, BITS) for lo, hi in ends]
+    low, high = value(point[0] * point[1] * point[2])
+    assert high - low < EPS
+
+
+def test_what_is_shared_cancels() -> None:
+    """x − x is 0 over an interval, and its sign is certain to be 0; x − y of two intervals is open."""
+    x, y = between(Fraction(1), Fraction(2), 0, 2, BITS), between(Fraction(1), Fraction(2), 1, 2, BITS)
+    assert (x - x).sign == 0
+    assert (x - y).sign is None
+    assert (x + y).sign == 1
+
+
+def test_a_polynomial_shifted_to_z() -> None:
+    """2ζ³ − 5ζ + 7 with ζ = z − 1 is 2z³ − 6z² + z + 10."""
+    found = in_z([known(Fraction(c), BITS) for c in (2, 0, -5, 7)])
+    assert [x.middle >> BITS for x in found] == [2, -6, 1, 10]
+
+
+@pytest.mark.parametrize(
+    ("mass", "damping", "stiffness", "period", "delay", "digits"),
+    [
+        ("0.036", "0.15", "0", "0.001", "0", 50),
+        ("0.2", "0", "930", "0.002", "0.0013", 50),
+        ("0.05", "3.1", "420", "0.0005", "0.00213", 50),
+        ("0.0004", "9", "21000", "0.002", "0.0007", 15),
+    ],
+)
+def test_the_held_motion_is_that_of_matrix_exponentials(
+    mass: str, damping: str, stiffness: str, period: str, delay: str, digits: int
+) -> None:
+    """They hold those of mpmath's expm at 80 digits; a motion that is fast within a sample costs bits."""
+    numbers = [(Fraction(x),) * 2 for x in (mass, damping, stiffness, period, delay)]
+    motion = read_motion(*numbers)
+    found = sampled(motion, BITS)
+    with mpmath.workdps(80):
+        m, d, k, t, late = (mpmath.mpf(x) for x in (mass, damping, stiffness, period, delay))
+        flow = mpmath.matrix([[0, 1, 0], [-k / m, -d / m, 1 / m], [0, 0, 0]])
+        part = float(motion.late % 1)
+        whole = mpmath.expm(flow * t)
+        state, force = whole[:2, :2], whole[:2, 2]
+        now = mpmath.expm(flow * (t - (late - int(motion.late) * t)))[:2, 2]
+        trace, det = state[0, 0] + state[1, 1], state[0, 0] * state[1, 1] - state[0, 1] * state[1, 0]
+        expected = [mpmath.mpf(1), 2 - trace, 1 - trace + det]
+
+        def row(g: object) -> list:
+            """C adj(zI − Φ) g in ζ = z − 1."""
+            return [g[0], g[0] * (1 - state[1, 1]) + state[0, 1] * g[1]]
+
+        top = row(force)
+        if part:
+            late_row, early = row(now), row(force - now)
+            top = [late_row[0], late_row[0] + late_row[1] + early[0], late_row[1] + early[1]]
+        assert found.late == int(motion.late) + (part > 0)
+        for mine, true in zip([*found.denominator, *found.numerator], [*expected, *top], strict=True):
+            low, high = value(mine)
+            assert high - low < Fraction(1, 10**digits)
+            slack = mpmath.mpf(10) ** -70 * max(abs(trace), 1)
+            assert mpmath.mpf(low.numerator) / low.denominator - slack <= true
+            assert true <= mpmath.mpf(high.numerator) / high.denominator + slack
+
+
+@pytest.mark.parametrize("delay", ["0", "0.0003", "0.0017"])
+def test_a_free_mass_is_exact(delay: str) -> None:
+    """Without spring and damper the enclosure holds the rational polynomials, to 10⁻⁵⁰."""
+    zero = (Fraction(0),) * 2
+    motion = read_motion((Fraction(1, 30),) * 2, zero, zero, (Fraction(1, 1000),) * 2, (Fraction(delay),) * 2)
+    ball, exact = sampled(motion, BITS), sampled_free(motion)
+    assert ball.late == exact.late
+    pairs = zip([*ball.numerator, *ball.denominator], [*exact.numerator, *exact.denominator], strict=True)
+    for mine, true in pairs:
+        low, high = value(mine)
+        assert low <= true <= high
+        assert high - low < Fraction(1, 10**50)
+
+
+def test_an_interval_holds_every_motion_in_it() -> None:
+    """Polynomials of 30 random motions lie in those of the box, at their own place of it."""
+    ends = [(Fraction(1, 30), Fraction(1, 20)), (Fraction(0), Fraction(2)), (Fraction(100), Fraction(900))]
+    clock = [(Fraction(1, 1000),) * 2, (Fraction(14, 10000),) * 2]
+    box = sampled(read_motion(*ends, *clock), BITS)
+    rng = np.random.default_rng(5)
+    for _ in range(30):
+        inverse, d, k = (
+            lo + (hi - lo) * Fraction(float(rng.uniform()))
+            for lo, hi in ((1 / ends[0][1], 1 / ends[0][0]), *ends[1:])
+        )
+        one = sampled(read_motion((1 / inverse,) * 2, (d,) * 2, (k,) * 2, *clock), BITS)
+        spans = ((1 / ends[0][1], 1 / ends[0][0]), *ends[1:])
+        e = tuple((2 * v - lo - hi) / (hi - lo) for v, (lo, hi) in zip((inverse, d, k), spans, strict=True))
+        for wide, point in zip(
+            [*box.numerator, *box.denominator], [*one.numerator, *one.denominator], strict=True
+        ):
+            (low, high), (a, b) = value(wide, e), value(point)
+            assert low <= b
+            assert a <= high
