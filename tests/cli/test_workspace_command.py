@@ -34,7 +34,7 @@ def test_a_wall_that_holds_everywhere(run: Run) -> None:
     status, out, _ = run(*HAPLY, "--stiffness", "300")
     words = " ".join(out.split())
     assert status == 0
-    assert "THEOREM No motion of the hand takes energy out with x from -0.05 to 0.05 m" in words
+    assert "PASSIVE No motion of the hand takes energy out with x from -0.05 to 0.05 m" in words
     assert "what to change" not in words
     assert "Encoder steps are not counted." in words
 
@@ -55,11 +55,33 @@ def test_a_wall_that_fails_says_what_to_change(run: Run) -> None:
 
 
 def test_just_below_the_limit_is_undecided(run: Run) -> None:
-    """The points hold and the cells between them are not proved: status 3."""
-    found = json.loads(run(*HAPLY, "--stiffness", "300", "--json")[1])
-    status, out, _ = run(*HAPLY, "--stiffness", str(0.999 * found["largest_stiffness_N_per_m"]))
+    """The points hold, and between two of them the checker finds that the condition fails: status 3."""
+    chain = ("workspace", "two-link", "--joint-damping", "0.02,0.012", "--points", "20", "--stiffness")
+    found = json.loads(run(*chain, "300", "--json")[1])
+    status, out, _ = run(*chain, str(0.9999 * found["largest_stiffness_N_per_m"]))
+    words = " ".join(out.split())
     assert status == 3
-    assert "between the points" in " ".join(out.split())
+    assert "between the points" in words
+    assert "There is no certificate: the damping is not enough at" in words
+
+
+def test_the_certificate_is_saved_and_verified(run: Run, tmp_path: Path) -> None:
+    """A file .json takes the verdict; `zwidth verify` accepts it, and refuses it once changed."""
+    assert run(*HAPLY, "--stiffness", "300", "-o", "proof.json")[0] == 0
+    status, out, _ = run("verify", "proof.json")
+    words = " ".join(out.split())
+    assert status == 0
+    assert "VALID The arm below is passive, proved: no motion of the hand" in words
+    assert "read without encoder steps; the torque follows the arm" in words
+    assert "stiffness [[300, 0], [0, 300]] N/m" in words
+    assert "link 0.07 m, rod 0.09 m" in words
+    text = (tmp_path / "proof.json").read_text(encoding="utf-8")
+    found = json.loads(text)
+    assert (found["outcome"], found["certificate"]["kind"]) == ("passive", "arm")
+    (tmp_path / "other.json").write_text(text.replace('"300"', '"900"'), encoding="utf-8")
+    assert run("verify", "other.json")[0] == 1
+    assert run(*HAPLY, "--stiffness", "900", "-o", "active.json")[0] == 1
+    assert run("verify", "active.json")[0] == 2
 
 
 def test_the_map_is_saved_and_drawn(run: Run, tmp_path: Path) -> None:

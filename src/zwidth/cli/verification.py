@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from rich.table import Table
 from rich.text import Text
 
+from zwidth.cli.arm_rows import arm_rows
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.report import page
 from zwidth.cli.table import plain
@@ -101,6 +102,8 @@ def _claim(part: Part) -> str:
         return f"Proved: {reason}"
     if "active hand" in _kinds(part.evidence):
         return f"No hand of this activity goes on gaining energy from the loop below, proved: {reason}"
+    if "arm" in _kinds(part.evidence):
+        return f"The arm below is passive, proved: {reason}"
     return f"The loop below is passive, proved: {reason}"
 
 
@@ -133,6 +136,8 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
         for key, value in content.items() if isinstance(content, Mapping) else ():
             name, unit = known.get(str(key), (str(key).replace("_", " "), ""))
             yield plain(name), f"{plain(_text(value))} {unit}".rstrip()
+    if shown_part.get("kind") == "arm":
+        yield from arm_rows(shown_part)
 
 
 def _known_keys() -> dict[str, tuple[str, str]]:

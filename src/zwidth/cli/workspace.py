@@ -9,12 +9,12 @@ from typing import Any
 
 from zwidth.cli.options import Once
 from zwidth.cli.output import print_json, targets, writing
-from zwidth.cli.workspace_report import document, print_workspace
+from zwidth.cli.workspace_report import print_workspace
 from zwidth.cli.workspace_wall import WALL_OPTIONS, wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 
-STATUS = {"theorem": 0, "active": 1, "undecided": 3}
+STATUS = {"passive": 0, "theorem": 0, "active": 1, "undecided": 3}
 _RATE = "1 kHz"
 
 _JOINT_OPTIONS = (
@@ -65,7 +65,13 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the verdict as JSON, units in the keys")
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the map: .png, .svg or .pdf")
-    output.add_argument("-o", "--save", metavar="FILE", action=Once, help="save the map as NetCDF")
+    output.add_argument(
+        "-o",
+        "--save",
+        metavar="FILE",
+        action=Once,
+        help="save the verdict with its certificate, for zwidth verify (.json), or else the map as NetCDF",
+    )
     output.add_argument("--force", action="store_true", help="replace files that exist")
 
 
@@ -85,13 +91,16 @@ def run_workspace(arguments: argparse.Namespace) -> int:
     )
     if save is not None:
         with writing(save):
-            space.data.to_netcdf(save, engine="h5netcdf")
+            if save.suffix.lower() == ".json":
+                space.save(save)
+            else:
+                space.data.to_netcdf(save, engine="h5netcdf")
     if plot is not None:
         from zwidth.plots.workspace import save_workspace  # matplotlib takes its time
 
         save_workspace(space, plot, overwrite=True)
     if arguments.json:
-        print_json(json.dumps(document(space), indent=2, ensure_ascii=False))
+        print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
     else:
         print_workspace(space)
     return STATUS[space.outcome]

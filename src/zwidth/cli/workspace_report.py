@@ -1,15 +1,15 @@
-"""What `zwidth workspace` prints: the verdict, the numbers, what to change; and the same as JSON."""
+"""What `zwidth workspace` prints: the verdict, the numbers, what to change."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from zwidth.passivity.arms import ArmMotion, Workspace
+    from zwidth.passivity.arms import Workspace
 
 _SHOWN = 1e-6
 """Of the sum: what one joint gets less than this is the room for rounding."""
@@ -95,42 +95,3 @@ def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
     for joint, addition in enumerate(space.additions, start=1):
         if isfinite(addition):
             yield f"joint {joint} alone", f"{shown(addition, 'N*m*s/rad')} more damping"
-
-
-def document(space: Workspace) -> dict[str, Any]:
-    """The verdict without the map, which is as large as the grid; --save writes it."""
-    data, motion = space.data, space.motion
-    margin = float(data["margin"].min()) if "margin" in data else None
-    return {
-        "outcome": space.outcome,
-        "claim": space.claim,
-        "arm": space.arm.name,
-        "region": data.attrs["region"],
-        "sample_period_s": space.sample_period,
-        "delay_samples": space.delay_samples,
-        "smallest_margin_N_s_per_m": margin,
-        "smallest_margin_in_joints_N_m_s_per_rad": float(data["margin_in_joints"].min()),
-        "stiffness_factor": _finite(space.stiffness_factor),
-        "largest_stiffness_N_per_m": None
-        if space.largest_stiffness is None
-        else _finite(space.largest_stiffness),
-        "addition_to_all_N_m_s_per_rad": space.addition_to_all,
-        "addition_to_one_N_m_s_per_rad": [_finite(v) for v in space.additions],
-        "least_additions_N_m_s_per_rad": list(space.least_additions),
-        "proved_part": float(data["proved"].mean()),
-        "motion": None if motion is None else _motion(motion, space.arm.turns),
-    }
-
-
-def _motion(motion: ArmMotion, turns: int) -> dict[str, Any]:
-    point = motion.positions.shape[-1] - turns
-    document = {
-        "energy_J": motion.energy,
-        "joints_rad": motion.joints.tolist(),
-        "positions_m": motion.positions[:, :point].tolist(),
-    }
-    return {**document, "rotations_rad": motion.positions[:, point:].tolist()} if turns else document
-
-
-def _finite(value: float) -> float | None:
-    return value if isfinite(value) else None

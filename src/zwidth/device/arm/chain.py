@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi, prod
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +26,18 @@ from zwidth.errors import InputError
 
 _MOST_CELLS = 2_000_000
 """Beyond three joints a grid outgrows the memory."""
+
+
+class Placed(NamedTuple):
+    """Where a joint is in the frame of the one before it; it turns about, or slides along, its own z axis.
+
+    p_i = t_i + C_i (Rot_z(q_i) p_{i+1} or p_{i+1} + q_i ẑ), `translation` t_i [m] and `rotation` C_i.
+    """
+
+    joint: int  # its place among those of the arm, from 0
+    slides: bool
+    rotation: Array
+    translation: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +99,12 @@ class PlanarChain(Arm):
         arms = np.cumsum(self._links(q)[..., ::-1, :], axis=-2)[..., ::-1, :]  # from joint i to the end
         rows = [-arms[..., 1], arms[..., 0]] + [np.ones_like(q)] * self.turns
         return np.stack(rows, axis=-2)
+
+    def placements(self) -> tuple[list[Placed], Array]:
+        """Each joint at the end of the link before it, and the hand in the frame of the last one [m]."""
+        before, along = (0.0, *self.links), np.array([1.0, 0.0, 0.0])
+        joints = [Placed(i, False, np.eye(3), before[i] * along) for i in range(self.joint_count)]
+        return joints, self.links[-1] * along
 
     def sites(self, points: int) -> Sites:
         """Equal cells of the joint range."""

@@ -14,6 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from zwidth.device.arm.arm import Arm, Array, Axis, Sites, as_joints, middles
+from zwidth.device.arm.chain import Placed
+
+_DIGITS = 15
+"""Of rotations, which descriptions give as angles: what is beyond is the rounding of a sine."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,16 +108,34 @@ class DescribedArm(Arm):
         links = [i for i in named if self.model.frames[i].type == pin.FrameType.BODY]
         return (links or named)[-1]
 
+    def placements(self) -> tuple[list[Placed], Array]:
+        """The joints between base and hand, z turned to each axis, and the hand in the last frame [m]."""
+        data, joints, before = self.model.createData(), list[Placed](), np.eye(3)
+        for number in self._path():
+            at, twist = self.model.jointPlacements[number], np.ravel(data.joints[number].S)
+            i = int(self.model.joints[number].idx_v)
+            sliding = slides(self.model, i)
+            turn = _turned_to(twist[:3] if sliding else twist[3:])
+            rotation, translation = before.T @ at.rotation @ turn, before.T @ at.translation
+            joints.append(Placed(i, sliding, np.round(rotation, _DIGITS), translation))
+            before = turn
+        frame = self.model.frames[self._number()]
+        return joints, before.T @ frame.placement.translation
+
+    def _path(self) -> list[int]:
+        """The joints between the base and the hand, from the base on."""
+        path, joint = list[int](), self.model.frames[self._number()].parentJoint
+        while joint > 0:
+            path.insert(0, int(joint))
+            joint = self.model.parents[joint]
+        return path
+
     def _rates(self) -> tuple[Array, list[int]]:
         """Bounds on |∂²p/∂q_i∂q_j|: what lies beyond both joints where both turn, 1 where one slides, else 0;
         and which joints lie between the base and the hand."""
         frame = self.model.frames[self._number()]
-        path, joint = [], frame.parentJoint
-        while joint > 0:
-            path.append(joint)
-            joint = self.model.parents[joint]
         beyond, length = {}, float(np.linalg.norm(frame.placement.translation))
-        for joint in path:
+        for joint in reversed(self._path()):
             i = self.model.joints[joint].idx_v
             if slides(self.model, i):
                 length += max(map(abs, self.joint_range[i]))
@@ -125,6 +147,14 @@ class DescribedArm(Arm):
             return min(beyond[i], beyond[j]) if sliding == 0 else float(sliding == 1)
 
         return np.array([[rate(i, j) for j in sorted(beyond)] for i in sorted(beyond)]), sorted(beyond)
+
+
+def _turned_to(axis: Array) -> Array:
+    """A rotation that takes z to this unit vector."""
+    side = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    x = np.cross(side, axis)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(axis, x), axis], axis=-1)
 
 
 def slides(model: Any, i: int) -> bool:

@@ -150,6 +150,14 @@ class LeggedArm(Arm):
         """J (…, n, n) [m/rad]; NaN where the arm does not reach or gives way."""
         return _inverted(self.gradients(self.forward(joints)))
 
+    def box(self) -> tuple[Array, Array]:
+        """Opposite corners of what the cells cover [m]: in space, of one thin layer."""
+        low, high = np.array(self.lower), np.array(self.upper)
+        if len(low) == 3:
+            middle, thick = (low[2] + high[2]) / 2, _LAYER * (high[0] - low[0])
+            low[2], high[2] = middle - thick, middle + thick
+        return low, high
+
     def sites(self, points: int) -> Sites:
         """Equal cells of the region; in space, of one thin layer."""
         low, high = np.asarray(self.lower), np.asarray(self.upper)

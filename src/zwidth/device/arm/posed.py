@@ -118,14 +118,13 @@ class PosedArm(DescribedArm):
         pin.forwardKinematics(self.model, moved, pin.integrate(self.model, neutral, np.ones(self.model.nv)))
         frame = self.model.frames[self._number()]
         turned = np.broadcast_to(_unit(frame.placement.rotation), (*q.shape[:-1], 4))
-        joint = frame.parentJoint
-        while joint > 0:
+        for joint in reversed(self._path()):
             at_rest = straight.liMi[joint].rotation
             i = self.model.joints[joint].idx_v
             if not slides(self.model, i):
                 axis = pin.log3(at_rest.T @ moved.liMi[joint].rotation)  # it has turned by one radian
                 turned = product(about(axis, q[..., i]), turned)
-            turned, joint = product(_unit(at_rest), turned), self.model.parents[joint]
+            turned = product(_unit(at_rest), turned)
         return turned
 
     def _turning(self) -> list[int]:

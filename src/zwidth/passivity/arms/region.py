@@ -14,7 +14,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,7 @@ from zwidth.device.arm import Arm, Sites
 from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
+from zwidth.passivity.arms.certificate import arm_certificate
 from zwidth.passivity.arms.held import held_torque_damping, in_words
 from zwidth.passivity.arms.joints import (
     as_matrix,
@@ -34,6 +36,9 @@ from zwidth.passivity.arms.mapped import columns_of, dataset, scaled_stiffness, 
 from zwidth.passivity.arms.need import wall_need
 from zwidth.passivity.arms.pose import fits, loss_in_pose
 from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
+from zwidth.passivity.arms.report import workspace_document
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.document import to_json
 
 if TYPE_CHECKING:
     import xarray
@@ -56,9 +61,9 @@ class Workspace:
     Parameters
     ----------
     outcome
-        "theorem": the condition of a proof on paper holds in every cell of the region, reckoned in doubles
-        with room for rounding; there is no certificate that a checker could read. "active": at one point
-        a motion of the hand takes energy out, `motion`. "undecided": neither.
+        "passive": the independent checker has shown the condition in the whole region, `certificate`.
+        "theorem": it holds in every cell, reckoned in doubles with room for rounding, without a certificate.
+        "active": at one point a motion of the hand takes energy out, `motion`. "undecided": none of these.
     claim
         In words, with what was assumed.
     arm, wall
@@ -83,6 +88,8 @@ class Workspace:
         direction [N/m]; None of a wall in pose, which has two units.
     motion
         What takes energy out, near the worst point, if one was found.
+    certificate
+        The proof for `zwidth verify`, if "passive".
     """
 
     outcome: str
@@ -98,6 +105,15 @@ class Workspace:
     stiffness_factor: float
     largest_stiffness: float | None
     motion: ArmMotion | None
+    certificate: Certificate | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The verdict with its evidence as plain data; the map is in `data`."""
+        return workspace_document(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write the verdict with its certificate as JSON for `zwidth verify`; the map is in `data`."""
+        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
 
 
 def workspace(
@@ -164,10 +180,17 @@ def workspace(
     motion = _motion(arm, wall, period, samples, at, account.margins, torque_held_up_to is not None)
     whole = np.zeros(account.reached.shape, dtype=bool)
     whole[account.reached] = account.proved
-    outcome = "active" if motion is not None else "theorem" if whole.all() else "undecided"
+    certificate, words = None, ""
+    if account.reached.all() and (account.margins > 0).all():
+        certificate, words = arm_certificate(arm, wall, rate, samples, torque_held_up_to)
+    if certificate is not None:
+        whole[...] = True
+        account = account._replace(counted=np.eye(m)[None])  # nothing is missing
+    proof = "theorem" if certificate is None else "passive"
+    outcome = "active" if motion is not None else proof if whole.all() else "undecided"
     return Workspace(
         outcome=outcome,
-        claim=_claim(outcome, fine, account, arm, torque_held_up_to),
+        claim=_claim(outcome, fine, account, arm, torque_held_up_to, words),
         arm=arm,
         wall=wall,
         sample_period=period,
@@ -179,6 +202,7 @@ def workspace(
         stiffness_factor=float(factor),
         largest_stiffness=None if arm.turns else float(scaled_stiffness(wall, factor, n)),
         motion=motion,
+        certificate=certificate,
     )
 
 
@@ -264,11 +288,18 @@ def _motion(
 
 
 def _claim(
-    outcome: str, sites: Sites, account: _Account, arm: Arm, held: float | Sequence[float] | None
+    outcome: str,
+    sites: Sites,
+    account: _Account,
+    arm: Arm,
+    held: float | Sequence[float] | None,
+    without: str,
 ) -> str:
     """One sentence on what holds, others on what is not counted."""
     part = 100 * account.proved.mean()
-    if outcome == "theorem":
+    if outcome == "passive":
+        text = f"No motion of the hand takes energy out with {sites.region}, proved."
+    elif outcome == "theorem":
         text = f"No motion of the hand takes energy out with {sites.region}, by a proof on paper."
     elif outcome == "active":
         text = "At one point of this map a motion of the hand takes energy out."
@@ -281,6 +312,8 @@ def _claim(
             f"{part:.4g} % of the region are proved; where the condition fails, no motion was found "
             "that takes energy out."
         )
+    if outcome in ("theorem", "undecided") and without:
+        text += f" There is no certificate: {without}."
     if not account.reached.all():
         text += " Parts of the region are out of reach; a smaller region may be proved."
     text += (

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from .absolute import absolute
 from .active_hand import active_hand
+from .arm import arm
 from .contact_motion import contact_motion_energy
 from .contact_proof import contact
 from .force_bounding import force_bounding
@@ -36,6 +37,7 @@ _KINDS = {
     **PROOFS,
     "absolute stability": absolute,
     "active hand": active_hand,
+    "arm": arm,
     "contact": contact,
     "force bounding": force_bounding,
     "instability": instability,

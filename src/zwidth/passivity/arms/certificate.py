@@ -1,0 +1,189 @@
+"""The proof document of an arm before a wall: its exact numbers, for the checker to prove δ_m ⪰ JᵀRJ.
+
+The document lists what the arm is made of, as decimals: for a chain the fixed placement of
+each joint, which turns or slides along the z axis of its own frame, for a parallel arm its legs; the
+wall, T, d, and the region.  A stands for |B|: any A with A ± B ⪰ 0 does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import combinations
+from typing import Any
+
+import flint
+import numpy as np
+import numpy.typing as npt
+
+from zwidth.device.arm import Arm, DescribedArm, LeggedArm, PlanarChain
+from zwidth.environment.environment import certain
+from zwidth.environment.matrix_wall import MatrixWall
+from zwidth.environment.wall import Wall
+from zwidth.passivity import checker
+from zwidth.passivity.arms.joints import as_matrix, surplus
+from zwidth.passivity.arms.need import wall_matrices, wall_need
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.checker.arm import matrix_at
+from zwidth.passivity.document import exact_text
+
+Array = npt.NDArray[np.float64]
+Written = LeggedArm | PlanarChain | DescribedArm
+
+_MARGIN = 1e-12
+"""Of the largest entry: what is added so that rounded matrices are ⪰ 0 to the last digit."""
+_POINTS = 8
+"""Of the arm, at which the document's matrix is compared with the arm's own."""
+_SAME = 1e-9
+"""Of the largest entry: how far the document's matrix may be from the arm's, in doubles."""
+_CURVED = 2e-6
+"""Of the curvature: the checker's lengths are longer by a millionth, and an eigenvalue is rounded."""
+
+
+def arm_certificate(
+    arm: Arm, wall: Wall | MatrixWall, rate: float, delay_samples: int, held: float | Sequence[float] | None
+) -> tuple[Certificate | None, str]:
+    """A certificate that the checker accepts, and its words; or None, and why there is none."""
+    if arm.turns:
+        return None, "the checker knows no hand in pose"
+    if not isinstance(arm, (LeggedArm, PlanarChain, DescribedArm)):
+        return None, "arms of this kind have no certificate"
+    document = {
+        "format": FORMAT,
+        "kind": "arm",
+        "arm": _legs_document(arm) if isinstance(arm, LeggedArm) else _chain_document(arm),
+        "wall": _wall_document(wall, delay_samples, arm.sites(2).jacobians.shape[-2]),
+        "loop": _loop_document(arm, rate, delay_samples, None if held is None else float(np.ravel(held)[0])),
+    }
+    if not _is_of(document, arm, wall, 1 / rate, delay_samples):
+        return None, "this arm moves in another way than its document can say"
+    found = checker.verify(document)
+    return Certificate((document,)) if found.valid else None, found.reason
+
+
+def _is_of(
+    document: dict[str, Any], arm: Written, wall: Wall | MatrixWall, period: float, delay_samples: int
+) -> bool:
+    """At a few points the matrix that the checker reads out of the document is the one of the arm's own J."""
+    free = {**document, "loop": {**document["loop"], "torque": "follows the arm"}}
+    sites = arm.sites(2)
+    size, count = sites.jacobians.shape[-2:]
+    need = wall_need(wall, period, delay_samples, size)
+    taken = need.stiffness_share + need.bound
+    damping, jacobians = as_matrix(arm.damping), sites.jacobians.reshape(-1, size, count)
+    if isinstance(arm, LeggedArm):
+        places, inverses = sites.positions.reshape(-1, size), np.linalg.inv(jacobians)
+        given = np.swapaxes(inverses, -1, -2) @ damping @ inverses
+        found = given - taken
+    else:
+        own = [at.joint for at in arm.placements()[0]]
+        places = sites.joints.reshape(-1, count)[:, own]
+        found, given = surplus(jacobians, damping, taken)[:, own][:, :, own], damping
+    for place, expected in zip(places[:_POINTS], found[:_POINTS], strict=True):
+        read = np.concatenate(matrix_at(free, [_exact(x) for x in place]))
+        upper = np.concatenate([row[i:] for i, row in enumerate(expected)])
+        if np.abs(read - upper).max() > _SAME * (np.abs(given).max() + np.abs(expected).max()):
+            return False
+    return True
+
+
+def _legs_document(arm: LeggedArm) -> dict[str, Any]:
+    low, high = arm.box()
+    legs = [
+        {
+            "base_m": _texts(leg.base),
+            "out": _texts(leg.out),
+            "up": _texts(leg.up),
+            "link_m": _text(leg.link),
+            "rod_m": _text(leg.rod),
+            "offset_m": _text(leg.offset),
+            "bend": leg.bend,
+            "damping_N_m_s_per_rad": _text(b),
+        }
+        for leg, b in zip(arm.legs, arm.damping, strict=True)
+    ]
+    return {"geometry": "legs", "legs": legs, "low_m": _texts(low), "high_m": _texts(high)}
+
+
+def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
+    placements, end = arm.placements()
+    joints = []
+    for at in placements:
+        low, high = arm.joint_range[at.joint]
+        unit, per = ("m", "N_s_per_m") if at.slides else ("rad", "N_m_s_per_rad")
+        joints.append(
+            {
+                "kind": "prismatic" if at.slides else "revolute",
+                "rotation": [_texts(row) for row in at.rotation],
+                "translation_m": _texts(at.translation),
+                f"low_{unit}": _text(low),
+                f"high_{unit}": _text(high),
+                f"damping_{per}": _text(arm.damping[at.joint]),
+            }
+        )
+    return {"geometry": "chain", "joints": joints, "end_m": _texts(end)}
+
+
+def _wall_document(wall: Wall | MatrixWall, delay_samples: int, size: int) -> dict[str, Any]:
+    if isinstance(wall, Wall):
+        spring, damper = certain(wall.stiffness, "stiffness"), certain(wall.damping, "damping")
+        stiffness, damping, bound = (_scalar(x, size) for x in (spring, damper, abs(damper)))
+    else:
+        k, b = wall_matrices(wall, size)
+        stiffness = _matrix(k if _is_semidefinite(k) else _raised(k))
+        damping, bound = _matrix(b), _matrix(_raised(wall_need(wall, 1.0, delay_samples, size).bound))
+    return {
+        "stiffness_N_per_m": stiffness,
+        "virtual_damping_N_s_per_m": damping,
+        "damping_bound_N_s_per_m": bound,
+    }
+
+
+def _is_semidefinite(matrix: Array) -> bool:
+    """True when no principal minor of the decimals is negative."""
+    exact = [[flint.fmpq(*_exact(x).as_integer_ratio()) for x in row] for row in matrix]
+    places = range(len(matrix))
+    return all(
+        flint.fmpq_mat([[exact[i][k] for k in chosen] for i in chosen]).det() >= 0
+        for size in places
+        for chosen in combinations(places, size + 1)
+    )
+
+
+def _raised(matrix: Array) -> Array:
+    return np.asarray(matrix + _MARGIN * np.abs(matrix).max() * np.eye(len(matrix)))
+
+
+def _loop_document(arm: Arm, rate: float, delay_samples: int, held: float | None) -> dict[str, Any]:
+    loop: dict[str, Any] = {
+        "sample_period_s": exact_text(1 / _exact(rate)),
+        "delay_samples": delay_samples,
+        "encoder": "ideal",
+        "torque": "follows the arm" if held is None else "held",
+    }
+    if held is not None:
+        assert arm.curvature is not None
+        loop["largest_force_N"] = _text(held)
+        loop["curvature_m_per_rad2"] = _text(arm.curvature * (1 + _CURVED))
+    return loop
+
+
+def _scalar(value: Fraction, size: int) -> list[list[str]]:
+    return [[exact_text(value if i == k else Fraction(0)) for k in range(size)] for i in range(size)]
+
+
+def _matrix(rows: Array) -> list[list[str]]:
+    return [_texts(row) for row in (rows + rows.T) / 2]
+
+
+def _texts(values: npt.ArrayLike) -> list[str]:
+    return [_text(v) for v in np.asarray(values, dtype=np.float64)]
+
+
+def _text(value: float) -> str:
+    return exact_text(_exact(value))
+
+
+def _exact(value: float) -> Fraction:
+    """The decimal that a double is written as."""
+    return Fraction(repr(float(value)))
