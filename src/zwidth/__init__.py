@@ -46,7 +46,8 @@ if TYPE_CHECKING:
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
-    from zwidth.passivity.index import Extraction, PassivityIndex
+    from zwidth.passivity.extracted import Extraction
+    from zwidth.passivity.index import PassivityIndex
     from zwidth.passivity.indices import PassivityIndices, passivity_indices
     from zwidth.passivity.known_hand import PassiveHand, Stability, stability
     from zwidth.passivity.loop_transformation import (
@@ -204,7 +205,7 @@ _LATER = {
     "required_damping_by_slopes": "zwidth.passivity.loop_transformation",
     "transformed_blocks": "zwidth.passivity.loop_transformation",
     "transformed_condition": "zwidth.passivity.loop_transformation",
-    "Extraction": "zwidth.passivity.index",
+    "Extraction": "zwidth.passivity.extracted",
     "PassivityIndex": "zwidth.passivity.index",
     "PassivityIndices": "zwidth.passivity.indices",
     "passivity_indices": "zwidth.passivity.indices",

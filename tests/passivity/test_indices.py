@@ -364,7 +364,7 @@ def test_sampled_damping_of_a_continuous_law():
     ("arguments", "message"),
     [
         ((control.tf([1, 0, 0], [1, 2], 0.1),), "more zeros than poles"),
-        ((control.ss(-np.eye(2), np.eye(2), np.eye(2), np.zeros((2, 2))),), "several inputs"),
+        ((control.ss(-np.eye(2), np.eye(2), [[1, 1]], [[0, 0]]),), "2 inputs and 1 outputs"),
         ((control.tf([1], [1, 1], None),), "dt=None"),
         ((3.0,), "a port is a system"),
         ((zw.Wall(100),), "give the device"),

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from io import BytesIO
 
+import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -252,6 +253,23 @@ def test_indices_mark_the_least_real_part():
         assert min(curve.get_ydata()) == pytest.approx(index.value, rel=1e-3)
     assert axes.lines[-1].get_xdata()[0] == index.frequency
     assert axes.get_ylabel() == "Re $1/G$"
+
+
+def test_indices_of_several_axes_are_eigenvalues():
+    """One curve for each eigenvalue, the least of them down to the index; also where G has no inverse."""
+    from scipy.signal import StateSpace
+
+    found = zw.passivity_indices(
+        StateSpace([[-1, 2], [-2, -3]], np.eye(2), [[1, 0.5], [0, 1]], 0.2 * np.eye(2))
+    )
+    for axes, index in zip(plots.indices(found).axes, (found.input, found.output), strict=True):
+        curves = [line.get_ydata() for line in axes.lines if len(line.get_xdata()) > 100]
+        assert len(curves) == 2
+        assert min(map(min, curves)) == pytest.approx(index.value, rel=1e-3)
+        assert _dashed(axes) == index.value
+    one = zw.passivity_indices(StateSpace([[-1]], [[1, 1]], [[1], [1]], np.zeros((2, 2))))
+    assert one.output.curve([0.1, 1, 10]) == pytest.approx([0.5, 0.5, 0.5])
+    plots.indices(one).savefig(BytesIO(), format="svg")
 
 
 @pytest.mark.parametrize(("num", "den"), [([1], [1, -1]), ([1], [1, 0, 0]), ([2], [1])])

@@ -96,7 +96,7 @@ def _claim(part: Part) -> str:
         return reason
     if _is_bounded(part.evidence):
         return f"No hand within these bounds takes energy out of the loop below, proved: {reason}"
-    if "positive real" in _kinds(part.evidence):
+    if {"positive real", "positive real matrix"} & _kinds(part.evidence):
         return f"Of the port below, proved: {reason}"
     if _kinds(part.evidence) & _OF_A_KNOWN_HAND:
         return f"Proved: {reason}"
@@ -115,7 +115,10 @@ def _kinds(evidence: Mapping[str, object]) -> set[object]:
 
 
 def _rows(part: Part) -> Iterator[tuple[str, str]]:
-    if part.verification.energy is not None and part.evidence.get("kind") != "extraction":
+    if part.verification.energy is not None and part.evidence.get("kind") not in (
+        "extraction",
+        "matrix extraction",
+    ):
         yield "energy extracted", _joules(part.verification.energy)
     corners = part.evidence.get("corners")
     shown_part: object = part.evidence

@@ -57,11 +57,14 @@ def read_system(system: Any) -> LinearSystem:
             f"a system of type {type(system).__name__} is not read; give a TransferFunction, StateSpace or "
             "ZerosPolesGain system of python-control or scipy.signal, or the coefficients themselves"
         )
-    return LinearSystem(num, den, *_time(system))
+    return LinearSystem(num, den, *time_of(system))
 
 
-def _time(system: Any) -> tuple[Literal["continuous", "discrete", "unsaid"], Fraction | None]:
-    """scipy says None for continuous time; python-control says 0, and None for either."""
+def time_of(system: Any) -> tuple[Literal["continuous", "discrete", "unsaid"], Fraction | None]:
+    """Which time a system is of, and its T [s].
+
+    scipy says None for continuous time; python-control says 0, and None for either.
+    """
     dt = system.dt
     if dt is None:
         return ("continuous" if _of_scipy(system) else "unsaid"), None
@@ -69,14 +72,15 @@ def _time(system: Any) -> tuple[Literal["continuous", "discrete", "unsaid"], Fra
         return "discrete", None
     if dt == 0:
         return "continuous", None
-    return "discrete", _number(dt, "dt")
+    return "discrete", number_of(dt, "dt")
 
 
 def _of_scipy(system: object) -> bool:
     return any(base.__module__.split(".")[0] == "scipy" for base in type(system).__mro__)
 
 
-def _number(value: Any, key: str) -> Fraction:
+def number_of(value: Any, key: str) -> Fraction:
+    """A coefficient as the shortest decimal of its double."""
     if isinstance(value, complex) or getattr(value, "imag", 0) != 0:
         raise InputError(f"{key} has the complex coefficient {value}; a force law is real")
     number = float(value)
@@ -92,11 +96,12 @@ def _single(coefficients: Any, key: str) -> Polynomial:
         inner = inner[0]
     if any(isinstance(c, Iterable) for c in inner):
         raise InputError(_SEVERAL)
-    _bounded(len(inner) - 1)
-    return tuple(_number(c, key) for c in inner)
+    bounded(len(inner) - 1)
+    return tuple(number_of(c, key) for c in inner)
 
 
-def _bounded(order: int) -> None:
+def bounded(order: int) -> None:
+    """Refuse what would take too long to read."""
     if order > LARGEST_ORDER:
         raise InputError(f"the system has order {order}; at most {LARGEST_ORDER} is read")
 
@@ -109,43 +114,45 @@ _SEVERAL = (
 
 def _from_state_space(system: Any) -> tuple[Polynomial, Polynomial]:
     """C (zI − A)⁻¹ B + D = (det(zI − A + BC) + (D − 1) det(zI − A))/det(zI − A)."""
-    _bounded(len(system.A))
-    a, b, c, d = (_rows(getattr(system, name), name) for name in "ABCD")
+    bounded(len(system.A))
+    a, b, c, d = (rows_of(getattr(system, name), name) for name in "ABCD")
     order = len(a)
     if len(d) != 1 or len(d[0]) != 1:
         raise InputError(_SEVERAL)
     if order == 0:
         return (d[0][0],), (Fraction(1),)
     closed = [[a[i][j] - b[i][0] * c[0][j] for j in range(order)] for i in range(order)]
-    den = _characteristic(a)
-    num = tuple(x + (d[0][0] - 1) * y for x, y in zip(_characteristic(closed), den, strict=True))
+    den = characteristic(a)
+    num = tuple(x + (d[0][0] - 1) * y for x, y in zip(characteristic(closed), den, strict=True))
     return num, den
 
 
-def _rows(matrix: Any, key: str) -> list[list[Fraction]]:
-    return [[_number(entry, key) for entry in row] for row in matrix]
+def rows_of(matrix: Any, key: str) -> list[list[Fraction]]:
+    """A matrix of doubles, exactly."""
+    return [[number_of(entry, key) for entry in row] for row in matrix]
 
 
-def _characteristic(matrix: list[list[Fraction]]) -> Polynomial:
+def characteristic(matrix: list[list[Fraction]]) -> Polynomial:
+    """det(zI − A) in descending powers."""
     entries = [[flint.fmpq(x.numerator, x.denominator) for x in row] for row in matrix]
     coefficients = flint.fmpq_mat(entries).charpoly().coeffs()
     return tuple(Fraction(int(c.p), int(c.q)) for c in coefficients[::-1])
 
 
 def _from_roots(system: Any) -> tuple[Polynomial, Polynomial]:
-    gain = _number(system.gain, "gain")
+    gain = number_of(system.gain, "gain")
     num = tuple(gain * c for c in _with_roots(system.zeros, "zeros"))
     return num, _with_roots(system.poles, "poles")
 
 
 def _with_roots(roots: Any, key: str) -> Polynomial:
     """∏ (z − r), the complex roots in conjugate pairs."""
-    _bounded(len(roots))
+    bounded(len(roots))
     real, imaginary = [Fraction(1)], [Fraction(0)]
     for root in roots:
         if isinstance(root, Iterable):
             raise InputError(_SEVERAL)
-        x, y = _number(root.real, key), _number(root.imag, key)
+        x, y = number_of(root.real, key), number_of(root.imag, key)
         zero = [Fraction(0)]
         re, im = zero + real, zero + imaginary
         real, imaginary = (

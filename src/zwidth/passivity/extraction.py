@@ -106,7 +106,7 @@ def _polynomial(port: Port, level: Fraction) -> Motion | None:
     lowest = port.order
     if lowest > _LARGEST_ORDER:
         return None
-    for tau in _durations(port):
+    for tau in paces(pole_places(port)):
         pairs = [_answers(port, level, tau, lowest + j) for j in range(_TERMS)]
         form = [[(_mean(u * z) + _mean(v * w)) / 2 for v, z in pairs] for u, w in pairs]
         found = _verified(port, level, negative_direction(form), "polynomial", (tau, Fraction(lowest)))
@@ -128,11 +128,10 @@ def _mean(p: fmpq_poly) -> fmpq:
     return p.integral()(1)
 
 
-def _durations(port: Port) -> list[Fraction]:
-    """A few times 1/σ of what grows, and of the size of every pole."""
-    places = pole_places(port)
-    paces = [p.real for p in places if p.real > 1e-9 * abs(p)] + [abs(p) for p in places if p] + [1.0]
-    return [Fraction(f"{factor / pace:.3g}") for factor in (2, 8, 32) for pace in paces]
+def paces(places: Sequence[complex]) -> list[Fraction]:
+    """Durations [s]: a few times 1/σ of what grows among the poles, and of the size of every one."""
+    rates = [p.real for p in places if p.real > 1e-9 * abs(p)] + [abs(p) for p in places if p] + [1.0]
+    return [Fraction(f"{factor / pace:.3g}") for factor in (2, 8, 32) for pace in rates]
 
 
 def _verified(
@@ -147,13 +146,13 @@ def _verified(
         return None
     exact = [Fraction(int(x.p), int(x.q)) for x in direction]
     for digits in (3, 6, 12, 24):
-        motion = Motion(kind, (*head, *_rounded(exact, digits)))
+        motion = Motion(kind, (*head, *rounded(exact, digits)))
         if absorbed(port, level, motion) < 0:
             return motion
     return Motion(kind, (*head, *exact))
 
 
-def _rounded(values: Sequence[Fraction], digits: int) -> list[Fraction]:
+def rounded(values: Sequence[Fraction], digits: int) -> list[Fraction]:
     """To so many digits of the largest, as decimals."""
     largest = max(abs(v) for v in values)
     decade = digits - round(log10(largest)) if largest else 0

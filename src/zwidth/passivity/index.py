@@ -1,108 +1,33 @@
 """One passivity index of a port, what proves it and what refutes more.
 
-    input   ν = max σ: ∫ u y ≥ σ ∫ u²      G − ν positive real
-    output  ρ = max σ: ∫ u y ≥ σ ∫ y²      1/G − ρ positive real, G/(1 − ρ G) passive
+    input   ν = max σ: ∫ uᵀy ≥ σ ∫ uᵀu      G − ν positive real
+    output  ρ = max σ: ∫ uᵀy ≥ σ ∫ yᵀy      1/G − ρ positive real, G (1 − ρ G)⁻¹ passive
 
 from rest, for every u and every time (in discrete time sums).  Both are one
-question, of F = G and of F = 1/G: see `positive_real`.
+question, of F = G and of F = 1/G: see `positive_real`, and for several axes `multiport`.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import cos, inf, nextafter, pi
-from pathlib import Path
+from math import inf, nextafter
 from typing import Any, Literal
 
 from zwidth.errors import InputError
-from zwidth.passivity import checker
-from zwidth.passivity.certificate import FORMAT, Certificate, positivity_document
-from zwidth.passivity.document import to_json
-from zwidth.passivity.extraction import find_motion
-from zwidth.passivity.port import Port
-from zwidth.passivity.port_motion import Motion, absorbed, played
-from zwidth.passivity.positive_real import OFFSET, Largest, NoLevel, prove_level
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.extracted import AnyPort, Extraction
+from zwidth.passivity.positive_real import Largest, NoLevel
 from zwidth.quantity.exact import Exact, RealLike
 
 Which = Literal["input", "output"]
 
 
 @dataclass(frozen=True)
-class Extraction:
-    """An input from rest by which a port gives out more than a level of its index allows.
-
-    Attributes
-    ----------
-    document
-        The system, the level and the motion, as the independent checker reads them.
-    share
-        What comes out above the level, per ∫ u² (∫ y² for the output index).
-    port, motion
-        F and φ, from which u and y follow.
-    """
-
-    document: dict[str, Any]
-    share: float
-    port: Port
-    motion: Motion
-
-    @property
-    def kind(self) -> str:
-        """ "burst", a sinusoid that fades in and out; "polynomial" or "sequence"."""
-        return self.motion.kind
-
-    @property
-    def frequency(self) -> float | None:
-        """Of a burst, its middle frequency [Hz]; None for another motion."""
-        if self.motion.kind != "burst":
-            return None
-        step, cycles, _ = self.motion.numbers
-        return float(step * cycles) / (2 * pi)
-
-    def signals(self, points: int = 1000) -> tuple[list[float], list[float], list[float]]:
-        """(t [s], u, y), u with a peak of 1; of a discrete port its samples, whatever `points`."""
-        t, u, y = played(self.port, self.motion, points)
-        if self.document["index"] == "output":
-            u, y = y, u
-        peak = max(map(abs, u)) or 1.0
-        return t, [a / peak for a in u], [a / peak for a in y]
-
-    def verify(self) -> bool:
-        """True when the independent checker sums the same sign."""
-        return checker.verify(self.document).valid
-
-    def to_dict(self) -> dict[str, Any]:
-        """The motion as plain data."""
-        return self.document
-
-    def save(self, path: str | Path) -> None:
-        """Write it as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(self.document) + "\n", encoding="utf-8")
-
-    def describe(self) -> str:
-        """The motion in a sentence."""
-        of = "∫u²" if self.document["index"] == "input" else "∫y²"
-        if self.port.time == "discrete":
-            of = of.replace("∫", "Σ")
-        form = {
-            "burst": f"a burst of {self.frequency or 0:.6g} Hz",
-            "polynomial": f"a polynomial over {float(self.motion.numbers[0]):.4g} s",
-            "sequence": f"{len(self.motion.numbers)} samples",
-        }[self.kind]
-        return f"{form}, from rest: {self.share:.4g} {of} comes out above the level"
-
-    def __repr__(self) -> str:
-        return f"<Extraction {self.describe()}>"
-
-    def _repr_html_(self) -> str:
-        return f"<p>{self.describe()}</p>"
-
-
-@dataclass(frozen=True)
-class PassivityIndex:
+class PassivityIndex(ABC):
     """The largest level σ of one index, with where it is reached.
 
     Attributes
@@ -116,7 +41,7 @@ class PassivityIndex:
     """
 
     name: Which
-    port: Port
+    port: AnyPort
     found: Largest | NoLevel | None
 
     @cached_property
@@ -156,7 +81,7 @@ class PassivityIndex:
 
     def at_least(self, level: RealLike) -> bool:
         """Whether the index is at least this level, decided exactly."""
-        return self.found is None or prove_level(self.port, Exact(level).fraction) is not None
+        return self.found is None or self._proof(Exact(level).fraction) is not None
 
     def certificate(self, level: RealLike | None = None) -> Certificate:
         """The proof that the index is at least this level, by default `value`.
@@ -169,17 +94,13 @@ class PassivityIndex:
         if level is None and not isinstance(self.found, Largest):
             raise InputError(f"the {self.name} index is {self.value}; there is nothing to certify")
         at = Fraction(repr(self.value)) if level is None else Exact(level).fraction
-        proof = None if self.found is None else prove_level(self.port, at)
+        proof = None if self.found is None else self._proof(at)
         if proof is None:
             raise InputError(
                 f"the {self.name} index is {self.value:.17g}, so the level {float(at):.17g} cannot be "
                 "certified; give a lower one"
             )
-        document = {
-            **self._document("positive real", at),
-            "proof": {"offset": str(OFFSET), "positivity": positivity_document(proof)},
-        }
-        return Certificate((document,))
+        return Certificate((self._document(proof, at),))
 
     def refute(self, level: RealLike = 0) -> Extraction | None:
         """A motion by which the port gives out more than this level allows.
@@ -187,27 +108,18 @@ class PassivityIndex:
         None if the level holds; or, though it does not, where no motion was found that the
         checker can sum: growth too slow, too near to the limit.
         """
-        at = Exact(level).fraction
         if self.at_least(level):
             return None
         cosine = self.found.cosine if isinstance(self.found, Largest) else None
-        motion = find_motion(self.port, at, cosine)
-        if motion is None:
-            return None
-        taken = -absorbed(self.port, at, motion)
-        size = absorbed(self.port, Fraction(0), motion) - absorbed(self.port, Fraction(1), motion)
-        document = {**self._document("extraction", at), "motion": _motion_document(motion)}
-        return Extraction(document, float(taken / size), self.port, motion)
+        return self._extraction(Exact(level).fraction, cosine)
 
+    @abstractmethod
+    def places(self) -> list[complex]:
+        """Poles and zeros of the port, to rounding."""
+
+    @abstractmethod
     def curve(self, frequencies: Sequence[float]) -> list[float]:
-        """Re F at these frequencies [Hz]; ±inf or nan at a pole."""
-        port = self.port
-        if port.time == "discrete":
-            cosines = [Fraction(cos(2 * pi * f * float(port.period))) for f in frequencies]
-        else:
-            squares = [Fraction(2 * pi * f) ** 2 for f in frequencies]
-            cosines = [(1 - x) / (1 + x) for x in squares]
-        return [port.real_part_at(c) for c in cosines]
+        """The real part whose least value is the index, at these frequencies [Hz]; ±inf or nan at a pole."""
 
     def describe(self) -> str:
         """The index in a line."""
@@ -228,23 +140,19 @@ class PassivityIndex:
     def _repr_html_(self) -> str:
         return f"<p>{self.name} index {self.describe()}</p>"
 
-    def _document(self, kind: str, level: Fraction) -> dict[str, Any]:
-        own = self.port if self.name == "input" else self.port.inverse()
-        system = {
-            "time": own.time,
-            "numerator": [str(c) for c in reversed(own.numerator)],
-            "denominator": [str(c) for c in reversed(own.denominator)],
-        }
-        return {"format": FORMAT, "kind": kind, "index": self.name, "level": str(level), "system": system}
+    @abstractmethod
+    def _proof(self, level: Fraction) -> dict[str, Any] | None:
+        """The proof at a level as plain data; None if it does not hold."""
 
+    @abstractmethod
+    def _extraction(self, level: Fraction, cosine: Fraction | None) -> Extraction | None:
+        """A motion that refutes the level, looked for at c = cosine first."""
 
-def _motion_document(motion: Motion) -> dict[str, Any]:
-    numbers = [str(x) for x in motion.numbers]
-    if motion.kind == "sequence":
-        return {"kind": "sequence", "latent": numbers}
-    if motion.kind == "burst":
-        step, cycles, power = numbers
-        return {"kind": "burst", "step_rad_per_s": step, "cycles": cycles, "power": power}
-    tau, lowest, *coefficients = numbers
-    scaled = {"duration_s": tau, "lowest_power": lowest, "coefficients": coefficients}
-    return {"kind": "polynomial", **scaled}
+    @abstractmethod
+    def _system(self) -> dict[str, Any]:
+        """G as plain data."""
+
+    def _document(self, evidence: dict[str, Any], level: Fraction) -> dict[str, Any]:
+        """`evidence`, a kind with a proof or a motion, as a document of its own."""
+        claim = {"index": self.name, "level": str(level), "system": self._system()}
+        return {"format": FORMAT, "kind": evidence["kind"], **claim, **evidence}

@@ -17,13 +17,21 @@ from typing import Any
 from zwidth.device import Device
 from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
+from zwidth.environment.matrix_system import size_of
+from zwidth.environment.system import is_system
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity import limits
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import decide
-from zwidth.passivity.index import Extraction, PassivityIndex
-from zwidth.passivity.port import Port, read_port
+from zwidth.passivity.extracted import Extraction
+from zwidth.passivity.index import PassivityIndex
+from zwidth.passivity.multiport.index import MatrixIndex
+from zwidth.passivity.multiport.largest import largest_matrix_level
+from zwidth.passivity.multiport.reading import read_matrix_port
+from zwidth.passivity.multiport.sampled import sampled_damping
+from zwidth.passivity.port import read_port
+from zwidth.passivity.port_index import PortIndex
 from zwidth.passivity.positive_real import largest_level
 from zwidth.passivity.supremum import frequency, tightest
 from zwidth.quantity.glossary import GLOSSARY
@@ -134,8 +142,9 @@ def passivity_indices(
     Parameters
     ----------
     system
-        One input and one output: a TransferFunction or StateSpace of python-control, a system of
-        scipy.signal, continuous or discrete; or an environment, for its H(z).
+        As many inputs as outputs, each input times its own output a power: a TransferFunction or
+        StateSpace of python-control, a system of scipy.signal, continuous or discrete; or an
+        environment, for its H(z).
     device
         What H runs on: its rate and delay for `sampled_damping`.  Needed for that with a continuous
         system or an environment; a discrete system has its own rate, and is taken without delay.
@@ -145,29 +154,46 @@ def passivity_indices(
     Raises
     ------
     InputError
-        If the system has several inputs or outputs, is discrete and not causal, of too high an order,
-        or does not say whether its time is continuous; if only one of device and discretization is
-        given for a continuous system.
+        If the system has not as many inputs as outputs, is discrete and not causal, of too high an
+        order, or does not say whether its time is continuous; if only one of device and discretization
+        is given for a continuous system, or either for a continuous system of several inputs.
 
     References
     ----------
     Bao & Lee, Process Control: The Passive Systems Approach, 2007.  Kottenstette, McCourt, Xia,
     Gupta & Antsaklis, Automatica 50(4), 2014.
     """
+    if is_system(system) and size_of(system) != (1, 1):
+        return _of_several_axes(system, device, discretization)
     port = read_port(system, None if device is None else device.exact("sample_period"))
     return PassivityIndices(
-        PassivityIndex("input", port, largest_level(port)),
-        PassivityIndex("output", port.inverse(), _output(port)),
-        _sampled(system, port, device, discretization),
+        PortIndex("input", port, largest_level(port)),
+        PortIndex("output", port.inverse(), None if port.is_zero else largest_level(port.inverse(), "zero")),
+        _sampled(system, device, discretization),
     )
 
 
-def _output(port: Port) -> Any:
-    return None if port.is_zero else largest_level(port.inverse(), "zero")
+def _of_several_axes(
+    system: Any, device: Device | None, discretization: Discretization | None
+) -> PassivityIndices:
+    port = read_matrix_port(system)
+    back = port.inverse()
+    given = device or _bare(system)
+    if discretization is not None or (device is not None and port.time == "continuous"):
+        raise InputError(
+            "several inputs are sampled and held as H(z) only: discretize the system first, and leave "
+            "discretization out"
+        )
+    damping = None if given is None else sampled_damping(port, given)
+    return PassivityIndices(
+        MatrixIndex("input", port, largest_matrix_level(port)),
+        MatrixIndex("output", back, None if back.is_zero else largest_matrix_level(back, "zero")),
+        None if damping is None or given is None else SampledDamping(*damping, given),
+    )
 
 
 def _sampled(
-    system: Environment | Any, port: Port, device: Device | None, discretization: Discretization | None
+    system: Environment | Any, device: Device | None, discretization: Discretization | None
 ) -> SampledDamping | None:
     if device is None:
         if discretization is not None:

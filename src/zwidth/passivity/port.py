@@ -10,7 +10,7 @@ Everything is rational.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -70,8 +70,8 @@ class Port:
     def on_circle(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """N and D as polynomials in ascending powers of ζ, both of length order + 1."""
         return (
-            _in_zeta(self.numerator, self.order, self.time),
-            _in_zeta(self.denominator, self.order, self.time),
+            in_zeta(self.numerator, self.order, self.time),
+            in_zeta(self.denominator, self.order, self.time),
         )
 
     @cached_property
@@ -98,11 +98,7 @@ class Port:
 
     def frequency(self, cosine: Fraction) -> float:
         """ω/2π [Hz] of c = cos θ; inf for a continuous port at c = −1."""
-        if self.time == "discrete":
-            return acos(max(-1.0, min(1.0, float(cosine)))) / (2 * pi * float(self.period))
-        if cosine == -1:
-            return inf
-        return sqrt((1 - cosine) / (1 + cosine)) / (2 * pi)
+        return frequency_of(cosine, self.time, self.period)
 
 
 def read_port(thing: Environment | Any, period: Fraction | None = None) -> Port:
@@ -123,20 +119,28 @@ def read_port(thing: Environment | Any, period: Fraction | None = None) -> Port:
         raise InputError(
             f"a port is a system of python-control or scipy.signal, or an environment; got {thing!r}"
         )
-    if _is_wide(thing):
-        raise InputError(
-            "the system has several inputs or outputs; indices are proved for one input and one output: "
-            "take the entries one by one, such as system[0, 0]"
-        )
     system = read_system(thing)
-    constant = all(not any(p[:-1]) for p in (system.numerator, system.denominator))
-    if system.time == "unsaid" and not constant:
+    time = said_time(system.time, (system.numerator, system.denominator))
+    return port(system.numerator, system.denominator, time, system.sample_period or Fraction(1))
+
+
+def said_time(time: Time | Literal["unsaid"], polynomials: Iterable[Polynomial]) -> Time:
+    """The time that a system says, or any of a constant one."""
+    if time == "unsaid" and any(any(p[:-1]) for p in polynomials):
         raise InputError(
             "the system has dt=None and so does not say whether it is G(s) or G(z); give it a dt: 0 for "
             "continuous time, the sample period or True for discrete time"
         )
-    time: Time = "discrete" if system.time == "discrete" else "continuous"
-    return port(system.numerator, system.denominator, time, system.sample_period or Fraction(1))
+    return "discrete" if time == "discrete" else "continuous"
+
+
+def frequency_of(cosine: Fraction, time: Time, period: Fraction) -> float:
+    """ω/2π [Hz] of c = cos θ; inf in continuous time at c = −1."""
+    if time == "discrete":
+        return acos(max(-1.0, min(1.0, float(cosine)))) / (2 * pi * float(period))
+    if cosine == -1:
+        return inf
+    return sqrt((1 - cosine) / (1 + cosine)) / (2 * pi)
 
 
 def port(numerator: Polynomial, denominator: Polynomial, time: Time, period: Fraction) -> Port:
@@ -152,13 +156,14 @@ def port(numerator: Polynomial, denominator: Polynomial, time: Time, period: Fra
         raise InputError(f"the system has order {order}; at most {LARGEST_DEGREE} is decided")
     common = n.gcd(d)
     n, d = n // common, d // common
-    decay = n.degree() < 0 or _decays([int(c) for c in common.coeffs()], time)
+    decay = n.degree() < 0 or decays([int(c) for c in common.coeffs()], time)
     top = tuple(int(c) for c in n.coeffs()) or (0,)
     return Port(top, tuple(int(c) for c in d.coeffs()), time, period, decay)
 
 
-def _decays(ascending: list[int], time: Time) -> bool:
-    q = _in_zeta(tuple(ascending), len(ascending) - 1, time)
+def decays(ascending: Sequence[int], time: Time) -> bool:
+    """True when every root lies in the open left half plane (inside the circle)."""
+    q = in_zeta(ascending, len(ascending) - 1, time)
     return q[0] != 0 and _outside_circle(q)
 
 
@@ -171,7 +176,7 @@ def _outside_circle(in_zeta: Sequence[int]) -> bool:
     return all(size > 1 for size in sizes) or is_schur(in_zeta[::-1])
 
 
-def _in_zeta(ascending: tuple[int, ...], order: int, time: Time) -> tuple[int, ...]:
+def in_zeta(ascending: Sequence[int], order: int, time: Time) -> tuple[int, ...]:
     """p(z) ζⁿ, or p(s) (1 + ζ)ⁿ, as a polynomial in ζ with n = order."""
     if time == "discrete":
         padded = [*ascending, *[0] * (order + 1 - len(ascending))]
@@ -181,13 +186,6 @@ def _in_zeta(ascending: tuple[int, ...], order: int, time: Time) -> tuple[int, .
         if coefficient:
             total += coefficient * minus**power * plus ** (order - power)
     return tuple(int(total[i]) for i in range(order + 1))
-
-
-def _is_wide(system: Any) -> bool:
-    if any(getattr(system, name, 1) not in (1, None) for name in ("ninputs", "noutputs")):
-        return True
-    shape = getattr(getattr(system, "D", None), "shape", (1, 1))
-    return shape != (1, 1)
 
 
 def _q(value: Fraction) -> fmpq:

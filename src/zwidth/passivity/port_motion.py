@@ -155,6 +155,7 @@ def differentiated(phi: Sequence[Fraction], ascending: Sequence[int], tau: Fract
     return total
 
 
-def integral(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
+def integral(a: Sequence[Fraction | int], b: Sequence[Fraction | int]) -> Fraction:
     """∫ a b dx over [0, 1]."""
-    return sum((x * y / (i + j + 1) for i, x in enumerate(a) if x for j, y in enumerate(b) if y), Fraction(0))
+    products = ((i + j + 1, x * y) for i, x in enumerate(a) if x for j, y in enumerate(b) if y)
+    return sum((xy * Fraction(1, power) for power, xy in products), Fraction(0))

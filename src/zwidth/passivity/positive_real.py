@@ -15,12 +15,13 @@ positive residue passes both lines, any other fails one.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from zwidth.passivity.port import Port
+from zwidth.passivity.port import Port, Time
 from zwidth.passivity.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.roots import real_roots
 
@@ -56,14 +57,16 @@ def largest_level(port: Port, root: str = "pole") -> Largest | NoLevel:
     `root` is what a pole of F is called in a reason: of 1/G it is a zero of G.
     """
     p, w = _in_lowest_terms(*port.real_part)
-    if _vanishes(w):
-        return NoLevel(_without_bound(port, root, w(-1) == 0))
+    if vanishes(w):
+        return NoLevel(without_bound(port.time, root, w(-1) == 0))
     least, cosine = _minimum(p, w)
     flat = p.degree() <= 0 and w.degree() <= 0
-    low = _proved_below(port, least)
+    low = proved_below(
+        least, lambda level: isinstance(prove_nonnegative(above_level(port, level)), Positivity)
+    )
     if not port.is_stable_with(OFFSET - low):
         return NoLevel(_not_stable(port, root))
-    if _vanishes(p - fmpq(low.numerator, low.denominator) * w):
+    if vanishes(p - fmpq(low.numerator, low.denominator) * w):
         least = low
     return Largest(low, least, None if flat else cosine)
 
@@ -91,7 +94,7 @@ def _in_lowest_terms(p: fmpq_poly, w: fmpq_poly) -> tuple[fmpq_poly, fmpq_poly]:
     return p, w
 
 
-def _vanishes(w: fmpq_poly) -> bool:
+def vanishes(w: fmpq_poly) -> bool:
     """True when w has a zero on [−1, 1]: exactly, by the sign of its squarefree part."""
     q = w.numer()
     if q(1) == 0 or q(-1) == 0:
@@ -116,24 +119,25 @@ def _value(p: fmpq_poly, w: fmpq_poly, c: Fraction) -> Fraction:
     return Fraction(int(value.p), int(value.q))
 
 
-def _proved_below(port: Port, least: Fraction) -> Fraction:
-    """A level at most `least` that is proved: the same one, its simplest neighbour, or one a little less."""
+def proved_below(least: Fraction, holds: Callable[[Fraction], bool]) -> Fraction:
+    """A level at most `least` that holds: the same one, its simplest neighbour, or one a little less."""
     simple = least.limit_denominator(10**15)
     near = _TIGHT * max(abs(least), Fraction(1, 10**30))
     candidates = [least] if least.denominator < 10**60 else []
     if abs(simple - least) <= near:
         candidates.append(simple)
     for level in candidates:
-        if isinstance(prove_nonnegative(above_level(port, level)), Positivity):
+        if holds(level):
             return level
     step = near
-    while isinstance(prove_nonnegative(above_level(port, least - step)), Fraction):
+    while not holds(least - step):
         step *= 1024
     return least - step
 
 
-def _without_bound(port: Port, root: str, at_end: bool) -> str:
-    if port.time == "discrete":
+def without_bound(time: Time, root: str, at_end: bool) -> str:
+    """Why no level holds where the real part has a pole of its own."""
+    if time == "discrete":
         return f"the real part is without bound at a {root} on the unit circle"
     where = "as the frequency grows" if at_end else f"at a {root} on the imaginary axis"
     return f"the real part is without bound {where}"
@@ -144,20 +148,33 @@ def _not_stable(port: Port, root: str) -> str:
     continuous = port.time == "continuous"
     if not continuous and len(port.numerator) > len(port.denominator):
         return "the output does not answer the input within the same sample"
-    excess = [(r.real if continuous else abs(r) - 1, r) for r in pole_places(port)]
-    growing = [(e, r) for e, r in excess if e > 1e-9 * abs(r)]
-    if growing:
-        variable, worst = "s" if continuous else "z", max(growing, key=lambda pair: pair[0])[1]
-        return f"there is an unstable {root} at {variable} = {_text(worst)}"
+    growing = growing_place(pole_places(port), port.time)
+    if growing is not None:
+        return f"there is an unstable {root} at {growing}"
     if continuous and len(port.numerator) > len(port.denominator):
         return "it grows with the frequency, with a negative sign"
     where = "the imaginary axis" if continuous else "the unit circle"
     return f"a {root} on {where} is multiple, or has a negative residue"
 
 
+def growing_place(places: Sequence[complex], time: Time) -> str | None:
+    """The one of these roots that grows fastest, in words; None if none grows."""
+    continuous = time == "continuous"
+    excess = [(r.real if continuous else abs(r) - 1, r) for r in places]
+    growing = [(e, r) for e, r in excess if e > 1e-9 * abs(r)]
+    if not growing:
+        return None
+    return f"{'s' if continuous else 'z'} = {_text(max(growing, key=lambda pair: pair[0])[1])}"
+
+
 def pole_places(port: Port) -> list[complex]:
     """The poles of F, to rounding: for a message, or for where to look."""
-    p = fmpz_poly(list(port.denominator))
+    return places_of(port.denominator)
+
+
+def places_of(ascending: Sequence[int]) -> list[complex]:
+    """The roots of a polynomial, to rounding."""
+    p = fmpz_poly(list(ascending))
     return [complex(float(r.real), float(r.imag)) for r, _ in p.complex_roots()] if p.degree() > 0 else []
 
 

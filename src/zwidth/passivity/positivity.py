@@ -42,7 +42,7 @@ def prove_nonnegative(p: fmpz_poly) -> Positivity | Fraction:
     point = _negative_point(g)
     if point is None:
         return Positivity(at_one, at_minus_one, _ints(square), _ints(g))
-    return _where_negative(p, point)
+    return where_negative(p, point)
 
 
 def _strip(p: fmpz_poly, root: int) -> tuple[fmpz_poly, int]:
@@ -83,7 +83,7 @@ def _negative_point(g: fmpz_poly) -> Fraction | None:
         if value < 0:
             return middle
         if value == 0:  # a simple root: g is negative on one side of it
-            return _where_negative(g, middle)
+            return where_negative(g, middle)
         left = _halve(h)
         work.append((left, low, middle))
         work.append((left(_SHIFT), middle, high))
@@ -104,7 +104,7 @@ def _halve(h: fmpz_poly) -> fmpz_poly:
     return fmpz_poly([h[i] * (1 << (n - i)) for i in range(n + 1)])
 
 
-def _where_negative(p: fmpz_poly, point: Fraction) -> Fraction:
+def where_negative(p: fmpz_poly, point: Fraction) -> Fraction:
     """Move off a zero of the square or an end of [−1, 1] while p stays negative."""
     step = Fraction(1, 2)
     while True:

@@ -1,7 +1,8 @@
 """The real part of a port against frequency, and the index it does not fall below.
 
 The input index is the least of Re G, the output index the least of Re 1/G; both only
-where no pole lies where it may not.
+where no pole lies where it may not.  With several axes the eigenvalues of the Hermitian
+parts take the place of the real parts.
 """
 
 from __future__ import annotations
@@ -15,15 +16,19 @@ from matplotlib.figure import Figure
 
 from zwidth.passivity.index import PassivityIndex
 from zwidth.passivity.indices import PassivityIndices
-from zwidth.passivity.positive_real import pole_places
+from zwidth.passivity.multiport.index import MatrixIndex
 from zwidth.plots.style import BLUE, GREY, LOOK, RED, label, new_figure, number
 
 _POINTS = 800
+_NAMES = {
+    "input": ("ν", "Re $G$", "eigenvalues of ½($G$ + $G^H$)"),
+    "output": ("ρ", "Re $1/G$", "eigenvalues of ½($G^{-1}$ + $G^{-H}$)"),
+}
 
 
 @rc_context(LOOK)
 def indices(found: PassivityIndices) -> Figure:
-    """Re G and Re 1/G against frequency with the two indices.
+    """Re G and Re 1/G against frequency with the two indices; of several axes the eigenvalues.
 
     Parameters
     ----------
@@ -39,7 +44,8 @@ def indices(found: PassivityIndices) -> Figure:
 
 def draw_index(axes: Axes, index: PassivityIndex) -> None:
     """One of them on given axes."""
-    name, symbol = {"input": ("Re $G$", "ν"), "output": ("Re $1/G$", "ρ")}[index.name]
+    several = isinstance(index, MatrixIndex)
+    symbol, name = _NAMES[index.name][0], _NAMES[index.name][1 + several]
     axes.set_title(f"{index.name} index: {_title(index, symbol)}")
     axes.set_xlabel(label("frequency"))
     axes.set_ylabel(name)
@@ -47,6 +53,9 @@ def draw_index(axes: Axes, index: PassivityIndex) -> None:
         return
     frequencies = _frequencies(index)
     values = index.curve(list(frequencies))
+    if isinstance(index, MatrixIndex):
+        for other in index.curves(list(frequencies))[1:]:
+            axes.plot(frequencies, other, color=GREY, lw=0.9)
     axes.plot(frequencies, values, color=BLUE)
     axes.axhline(0, color=GREY, lw=0.6)
     axes.set_xscale("log" if index.port.time == "continuous" else "linear")
@@ -77,7 +86,7 @@ def _frequencies(index: PassivityIndex) -> np.ndarray:
         nyquist = 0.5 / float(port.period)
         grid = np.linspace(nyquist / _POINTS, nyquist, _POINTS)
         return np.unique(np.append(grid, at)) if at else grid
-    places = [abs(p) / (2 * np.pi) for q in (port, port.inverse()) for p in pole_places(q) if p]
+    places = [abs(p) / (2 * np.pi) for p in index.places() if p]
     known = [*places, *([at] if at and at < inf else [])] or [1.0]
     grid = np.geomspace(min(known) / 100, max(known) * 100, _POINTS)
     return np.unique(np.concatenate([grid, known]))

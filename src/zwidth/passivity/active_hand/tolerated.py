@@ -35,6 +35,7 @@ from zwidth.passivity.certificate import FORMAT, Certificate, certify, linear_pr
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.document import exact_text, loop_document, to_json, unit_suffix
 from zwidth.passivity.linear import LinearProof
+from zwidth.passivity.loop import LinearLoop
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -64,6 +65,8 @@ class ToleratedActivity:
         The proofs of the two, accepted by the independent checker.
     unit
         Of the activities.
+    loop
+        Device and H(z), exact.
     """
 
     claim: str
@@ -75,7 +78,7 @@ class ToleratedActivity:
     certificate: Certificate | None
     certificate_with_contact_broken: Certificate | None
     unit: str
-    _decision: Decision = field(repr=False)
+    loop: LinearLoop = field(repr=False)
 
     def at(self, frequency: npt.ArrayLike) -> Array:
         """The activity that is tolerated at single frequencies [N·s/m], contact kept, for plots.
@@ -85,13 +88,12 @@ class ToleratedActivity:
         frequency
             0 < f ≤ 1/(2T) [Hz].
         """
-        loop = self._decision.loop
-        if loop.part_delay:
+        if self.loop.part_delay:
             raise InputError("single frequencies are known for delays of whole samples")
-        angles = 2 * np.pi * np.atleast_1d(np.asarray(frequency, dtype=np.float64)) * float(loop.period)
+        angles = 2 * np.pi * np.atleast_1d(np.asarray(frequency, dtype=np.float64)) * float(self.loop.period)
         if not ((angles > 0) & (angles <= np.pi * (1 + 1e-12))).all():
             raise InputError("frequency must be > 0 and at most half the rate")
-        return tolerance(loop, angles)
+        return tolerance(self.loop, angles)
 
     def rows(self) -> list[tuple[str, str]]:
         """The numbers as (name, text) for a report."""
@@ -172,7 +174,7 @@ def tolerated_activity(
         certificate=None if kept is None else kept[1],
         certificate_with_contact_broken=None if broken is None else broken[1],
         unit=unit,
-        _decision=decision,
+        loop=decision.loop,
     )
 
 

@@ -22,6 +22,8 @@ from .contact_motion import contact_motion_energy
 from .contact_proof import contact
 from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
+from .multiport import positive_real_matrix
+from .multiport_motion import matrix_extraction
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
@@ -42,6 +44,7 @@ _KINDS = {
     "force bounding": force_bounding,
     "instability": instability,
     "positive real": positive_real,
+    "positive real matrix": positive_real_matrix,
     "stability": stability,
     "storage": storage,
     "row storage": storage_of_row,
@@ -69,6 +72,8 @@ def verify(document: Mapping[str, Any]) -> Verification:
             return _round_again(row_motion_energy(document))
         if kind == "extraction":
             return Verification(True, *extraction(document))
+        if kind == "matrix extraction":
+            return Verification(True, *matrix_extraction(document))
         if not isinstance(kind, str) or kind not in _KINDS:
             raise Invalid(f"kind must be motion, extraction, {', '.join(_KINDS)}; got {str(kind)[:40]!r}")
         return Verification(True, _KINDS[kind](document))
