@@ -69,10 +69,15 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
         if "rotational_resolution" in data:
             turned = f" and {shown(float(data['rotational_resolution'].max()), 'rad')}"
         yield "encoder step", f"up to {shown(float(data['resolution'].max()), 'm')}{turned} at the hand"
-    if "friction_margin" in data:
-        least = float(data["friction_margin"].min())
-        words = "covers" if least >= 0 else "does not cover"
-        yield "Coulomb friction", f"{words} the encoder steps, {shown(least, 'N*m')} in the worst joint"
+    if space.encoder_friction:
+        enough = ", ".join(shown(f, "N*m") if isfinite(f) else "none" for f in space.encoder_friction)
+        own = space.arm.coulomb_friction
+        has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "what it has is not known"
+        yield "Coulomb friction", f"{enough} covers the steps in joint {_joints(space)}; {has}"
+
+
+def _joints(space: Workspace) -> str:
+    return ", ".join(str(joint) for joint in range(1, space.arm.joint_count + 1))
 
 
 def _changes(space: Workspace) -> Iterator[tuple[str, str]]:

@@ -25,6 +25,7 @@ from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.passivity.arms.certificate import arm_certificate
+from zwidth.passivity.arms.encoders import covering_friction
 from zwidth.passivity.arms.held import held_torque_damping, in_words
 from zwidth.passivity.arms.joints import (
     as_matrix,
@@ -86,6 +87,9 @@ class Workspace:
     largest_stiffness
         The stiffest wall of this kind that holds at every point, in the largest stiffness of any
         direction [N/m]; None of a wall in pose, which has two units.
+    encoder_friction
+        Coulomb friction of each joint that covers the encoder steps in the whole region, the torque following
+        the arm [N·m]; empty where no encoder is known.
     motion
         What takes energy out, near the worst point, if one was found.
     certificate
@@ -104,6 +108,7 @@ class Workspace:
     least_additions: tuple[float, ...]
     stiffness_factor: float
     largest_stiffness: float | None
+    encoder_friction: tuple[float, ...]
     motion: ArmMotion | None
     certificate: Certificate | None = None
 
@@ -186,11 +191,15 @@ def workspace(
     if certificate is not None:
         whole[...] = True
         account = account._replace(counted=np.eye(m)[None])  # nothing is missing
+    friction: Array = np.zeros(0)
+    if any(arm.resolution):
+        friction = covering_friction(arm, wall, period, fine)
     proof = "theorem" if certificate is None else "passive"
     outcome = "active" if motion is not None else proof if whole.all() else "undecided"
     return Workspace(
         outcome=outcome,
-        claim=_claim(outcome, fine, account, arm, torque_held_up_to, words),
+        claim=_claim(outcome, fine, account, arm, torque_held_up_to, words)
+        + _encoders(arm, friction, torque_held_up_to is not None),
         arm=arm,
         wall=wall,
         sample_period=period,
@@ -201,6 +210,7 @@ def workspace(
         least_additions=tuple(least_additions(account.counted)[0].tolist()),
         stiffness_factor=float(factor),
         largest_stiffness=None if arm.turns else float(scaled_stiffness(wall, factor, n)),
+        encoder_friction=tuple(friction.tolist()),
         motion=motion,
         certificate=certificate,
     )
@@ -316,9 +326,17 @@ def _claim(
         text += f" There is no certificate: {without}."
     if not account.reached.all():
         text += " Parts of the region are out of reach; a smaller region may be proved."
-    text += (
+    return text + (
         " The torque is taken to follow the arm within a period."
         if held is None
         else f" The torque is held over a period, with wall forces up to {in_words(held)}."
     )
-    return text + (" Encoder steps are not counted." if any(arm.resolution) else "")
+
+
+def _encoders(arm: Arm, friction: Array, held: bool) -> str:
+    if not friction.size:
+        return ""
+    own = arm.coulomb_friction or (0.0,) * len(friction)
+    if held or not (friction <= own).all():
+        return " Encoder steps are not counted."
+    return " Encoder steps are counted: Coulomb friction covers them, by a proof on paper."

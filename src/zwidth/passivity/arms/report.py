@@ -26,6 +26,7 @@ def workspace_document(space: Workspace) -> dict[str, Any]:
         "smallest_margin_in_joints_N_m_s_per_rad": float(data["margin_in_joints"].min()),
         "stiffness_factor": _finite(space.stiffness_factor),
         "largest_stiffness_N_per_m": None if largest is None else _finite(largest),
+        "encoder_friction_N_m": [_finite(v) for v in space.encoder_friction],
         "addition_to_all_N_m_s_per_rad": space.addition_to_all,
         "addition_to_one_N_m_s_per_rad": [_finite(v) for v in space.additions],
         "least_additions_N_m_s_per_rad": list(space.least_additions),
