@@ -91,8 +91,8 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
 
     ``(m + m_h) ẍ + (b + c) ẋ + k x = −f``,  f = H(z) x sampled, delayed and held.  Decided exactly: in
     rational arithmetic without spring and damper, else in balls that hold the true coefficients.  What is
-    said has been confirmed by the independent checker, and of intervals proved by it alone.  A passive loop is
-    stable with every passive hand; this one answers for loops that are not passive.
+    said has been confirmed by the independent checker, and of intervals proved by it alone.  A passive loop
+    is stable with every passive hand; this one answers for loops that are not passive.
 
     Parameters
     ----------
