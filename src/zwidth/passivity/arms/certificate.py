@@ -2,7 +2,8 @@
 
 The document lists what the arm is made of, as decimals: for a chain the fixed placement of
 each joint, which turns or slides along the z axis of its own frame, for a parallel arm its legs; the
-wall, T, d, and the region.  A stands for |B|: any A with A ± B ⪰ 0 does.
+wall, T, d, and the region; in pose the joints at which the wall's rotation rests, or that it may
+anywhere.  A stands for |B|: any A with A ± B ⪰ 0 does.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ Array = npt.NDArray[np.float64]
 Written = LeggedArm | PlanarChain | DescribedArm
 
 _MARGIN = 1e-12
-"""Of the largest entry: what is added so that rounded matrices are ⪰ 0 to the last digit."""
+"""Of the largest entry of its unit: what is added so that rounded matrices are ⪰ 0 to the last digit."""
 _POINTS = 8
 """Of the arm, at which the document's matrix is compared with the arm's own."""
 _SAME = 1e-9
@@ -50,7 +51,7 @@ def arm_certificate(
         "format": FORMAT,
         "kind": "arm",
         "arm": _legs_document(arm) if isinstance(arm, LeggedArm) else _chain_document(arm),
-        "wall": _wall_document(wall, delay_samples, arm.sites(2).jacobians.shape[-2]) | _pose_of(arm),
+        "wall": _wall_document(wall, arm.sites(2).jacobians.shape[-2]) | _pose_of(arm),
         "loop": _loop_document(arm, rate, delay_samples, held),
     }
     if not _is_of(document, arm, wall, 1 / rate, delay_samples):
@@ -130,26 +131,27 @@ def _pose_of(arm: Arm) -> dict[str, Any]:
     return {"turns": arm.turns, "rest": "given" if given else "every orientation"}
 
 
-def _wall_document(wall: Wall | MatrixWall, delay_samples: int, size: int) -> dict[str, Any]:
+def _wall_document(wall: Wall | MatrixWall, size: int) -> dict[str, Any]:
     if isinstance(wall, Wall):
         spring, damper = certain(wall.stiffness, "stiffness"), certain(wall.damping, "damping")
         matrices = [_scalar(x, size) for x in (spring, damper, abs(damper))]
     else:
         k, b = wall_matrices(wall, size)
-        bound = _raised(_apart(b, wall_need(wall, 1.0, delay_samples, size).bound, wall.turns))
-        matrices = [_matrix(k if _is_semidefinite(k) else _raised(k)), _matrix(b), _matrix(bound)]
+        stiffness = k if _is_semidefinite(k) else _raised(k, wall.turns)
+        bound = _raised(_absolute(b, wall.turns), wall.turns)
+        matrices = [_matrix(m) for m in (stiffness, b, bound)]
     keys = POSE_KEYS if isinstance(wall, MatrixWall) and wall.turns else KEYS
     return dict(zip(keys, matrices, strict=True))
 
 
-def _apart(damping: Array, bound: Array, turns: int) -> Array:
-    """|B| without the rounding that couples forces and turns where B does not."""
-    point = len(damping) - turns
-    if damping[:point, point:].any():
-        return bound
-    apart = bound.copy()
-    apart[:point, point:] = apart[point:, :point] = 0
-    return apart
+def _absolute(matrix: Array, turns: int) -> Array:
+    """|B|, of forces and turns each by itself where B does not couple them: nor does rounding then."""
+    point, bound = len(matrix) - turns, np.zeros_like(matrix)
+    coupled = turns == 0 or matrix[:point, point:].any()
+    for part in (slice(None),) if coupled else (slice(point), slice(point, None)):
+        values, vectors = np.linalg.eigh(matrix[part, part])
+        bound[part, part] = (vectors * np.abs(values)) @ vectors.T
+    return bound
 
 
 def _is_semidefinite(matrix: Array) -> bool:
@@ -163,8 +165,12 @@ def _is_semidefinite(matrix: Array) -> bool:
     )
 
 
-def _raised(matrix: Array) -> Array:
-    return np.asarray(matrix + _MARGIN * np.abs(matrix).max() * np.eye(len(matrix)))
+def _raised(matrix: Array, turns: int) -> Array:
+    """With a little more on the diagonal; forces and turns, in units of their own, each by their own size."""
+    more, point = np.empty(len(matrix)), len(matrix) - turns
+    for part in (slice(point), slice(point, None)):
+        more[part] = _MARGIN * np.abs(matrix[part, part]).max(initial=0.0)
+    return np.asarray(matrix + np.diag(more))
 
 
 def _loop_document(

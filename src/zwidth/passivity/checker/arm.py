@@ -5,8 +5,9 @@
 
 K and B of the wall, d whole samples of delay, T the period. A stands for |B|: all that the proof takes from
 it is aᵀAa + bᵀAb ± 2aᵀBb ≥ 0. c = h F T/2 where the torque is held over a period, else 0: h bounds the second
-derivatives of the hand's position, F the force of the wall. The hand's position is read without steps. In pose
-the last coordinates are rotations, `arm_pose`, and c = (h F + h_e M) T/2 with M for what the wall gives for them.
+derivatives of the hand's position, F the force of the wall. The hand's position is read without steps.
+In pose the last coordinates are rotations, `arm_pose`, and c = (h F + h_e M) T/2: M bounds what the wall gives
+for them, no less than its moment.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import Any, NamedTuple
 from .arm_cells import Function, positive_in
 from .arm_chain import bends, chain_surplus, read_chain, vector
 from .arm_legs import legs_surplus, read_legs
-from .arm_pose import Pose, for_every_rest, read_pose, turning, turning_bend
+from .arm_pose import Pose, for_every_rest, in_words, read_pose, turning, turning_bend
 from .enclosure import ONE, Jet, enclosed
 from .reading import Invalid, get, integer, number
 
@@ -64,7 +65,7 @@ def _claim(document: Mapping[str, Any]) -> Claim:
             words += f" and moments up to {float(moment):g} N·m"
         box = [(joint.low, joint.high) for joint in chain.joints]
         matrix = chain_surplus(chain, need, price, turning(machine, chain, pose) if pose.turns else None)
-        return Claim(box, matrix, words.format("every joint in its range") + pose.words)
+        return Claim(box, matrix, words.format("every joint in its range") + in_words(wall, pose))
     if geometry != "legs":
         raise Invalid("the geometry is chain or legs")
     if pose.turns:
@@ -126,7 +127,7 @@ def _moment(loop: Mapping[str, Any]) -> Fraction:
 
 def _symmetric(rows: Any, sizes: range) -> Matrix:
     if not isinstance(rows, list) or len(rows) not in sizes:
-        raise Invalid(f"a matrix of the wall has from {sizes[0]} to {sizes[-1]} rows")
+        raise Invalid(f"a matrix of the wall has {' or '.join(map(str, sizes))} rows")
     matrix = [vector(row, len(rows)) for row in rows]
     if any(matrix[i][k] != matrix[k][i] for i in range(len(rows)) for k in range(i)):
         raise Invalid("a matrix of the wall is not symmetric")

@@ -3,11 +3,11 @@
     y = (p, e),    e = 2 v,    (w, v) = Q(q) ⊗ Q(q₀)⁻¹,    Q = Π c_i ⊗ (cos q_i/2, ẑ sin q_i/2)
     ∂e/∂q_i = E a_i,    EᵀE = 1 − v vᵀ ⪯ 1
 
-c_i is the unit quaternion next to the placement of joint i, a_i the axis of joint i in the base, and no column
-is longer than 1. Where the rest q₀ is given the columns are those of e. For every orientation of rest they are
+c_i is the unit quaternion of the placement of joint i, a_i the axis of joint i in the base; a joint that slides
+has 0 here. Where the rest q₀ is given the columns of J are those of e. For every orientation of rest they are
 the axes alone: with no coupling of forces and turns in R and R_e ⪯ ρ·1,
 
-    JᵀRJ ⪯ J_pᵀ R_p J_p + ρ J_ωᵀ J_ω    and the same for a sliding joint with 0.
+    JᵀRJ ⪯ J_pᵀ R_p J_p + ρ J_ωᵀ J_ω
 
 In the plane y = (x, y, Σ q_i): the derivative is constant, and the rest plays no part.
 """
@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 from .arm_chain import Chain
 from .enclosure import NOTHING, ONE, Jet, Range, enclosed, inverse, root, sine_cosine, times, total
-from .reading import Invalid, get, integer, number, numbers
+from .reading import Invalid, get, integer, number
 
 Matrix = list[list[Fraction]]
 Columns = Callable[[Sequence[Jet]], list[list[Jet]]]
@@ -31,7 +31,6 @@ UNIT = Jet((ONE, ONE))
 class Pose(NamedTuple):
     turns: int  # coordinates of the wall, the last ones, that are rotations
     anywhere: bool
-    words: str
 
     @property
     def sizes(self) -> range:
@@ -41,21 +40,23 @@ class Pose(NamedTuple):
 
 def read_pose(wall: Mapping[str, Any]) -> Pose:
     if not isinstance(wall, Mapping) or "turns" not in wall:
-        return Pose(0, False, "")
+        return Pose(0, False)
     turns, rest = integer(wall["turns"]), get(wall, "rest")
     if turns not in (1, 3):
         raise Invalid("a wall in pose has three rotations, or one in the plane")
     if rest not in ("every orientation", "given") or (turns == 1 and rest == "given"):
         raise Invalid("a wall rests in every orientation; in space one may be given")
-    where = f"in {rest} of rest" if rest != "given" else "from the orientation of rest that is given"
-    return Pose(turns, rest != "given", f"; the wall is in pose, {_stiffest(wall, turns)}, {where}")
+    return Pose(turns, rest == "every orientation")
 
 
-def _stiffest(wall: Mapping[str, Any], turns: int) -> str:
-    """In words; of a matrix without negative eigenvalues no entry is above the largest of the diagonal."""
-    diagonal = [numbers(row)[i] for i, row in enumerate(get(wall, "stiffness_N_m_rad"))]
-    largest = (float(max(part)) for part in (diagonal[:-turns], diagonal[-turns:]))
-    return "with up to {:g} N/m and {:g} N·m/rad".format(*largest)
+def in_words(wall: Mapping[str, Any], pose: Pose) -> str:
+    """Of a matrix without negative eigenvalues no entry is above the largest of the diagonal."""
+    if not pose.turns:
+        return ""
+    diagonal = [number(row[i]) for i, row in enumerate(get(wall, "stiffness_N_m_rad"))]
+    along, about = (float(max(part)) for part in (diagonal[: -pose.turns], diagonal[-pose.turns :]))
+    where = "in every orientation of rest" if pose.anywhere else "from the orientation of rest that is given"
+    return f"; the wall is in pose, with up to {along:g} N/m and {about:g} N·m/rad, {where}"
 
 
 def for_every_rest(need: Matrix, pose: Pose) -> Matrix:
