@@ -6,8 +6,8 @@
 K and B of the wall, d whole samples of delay, T the period. A stands for |B|: all that the proof takes from
 it is aᵀAa + bᵀAb ± 2aᵀBb ≥ 0. c = h F T/2 where the torque is held over a period, else 0: h bounds the second
 derivatives of the hand's position, F the force of the wall. The hand's position is read without steps.
-In pose the last coordinates are rotations, `arm_pose`, and c = (h F + h_e M) T/2: M bounds what the wall gives
-for them, no less than its moment.
+In pose the last coordinates are rotations, `arm_pose`, and c = (h F + h_e M) T/2: M bounds what the wall
+gives for them, no less than its moment.
 """
 
 from __future__ import annotations

@@ -3,9 +3,9 @@
     y = (p, e),    e = 2 v,    (w, v) = Q(q) ⊗ Q(q₀)⁻¹,    Q = Π c_i ⊗ (cos q_i/2, ẑ sin q_i/2)
     ∂e/∂q_i = E a_i,    EᵀE = 1 − v vᵀ ⪯ 1
 
-c_i is the unit quaternion of the placement of joint i, a_i the axis of joint i in the base; a joint that slides
-has 0 here. Where the rest q₀ is given the columns of J are those of e. For every orientation of rest they are
-the axes alone: with no coupling of forces and turns in R and R_e ⪯ ρ·1,
+c_i is the unit quaternion of the placement of joint i, a_i the axis of joint i in the base; a joint that
+slides has 0 here. Where the rest q₀ is given the columns of J are those of e. For every orientation of rest
+they are the axes alone: with no coupling of forces and turns in R and R_e ⪯ ρ·1,
 
     JᵀRJ ⪯ J_pᵀ R_p J_p + ρ J_ωᵀ J_ω
 
