@@ -186,7 +186,24 @@ def test_a_wall_in_pose(run: Run, tmp_path: Path) -> None:
     assert 0 < sum(found["least_additions_N_m_s_per_rad"]) < 6 * found["addition_to_all_N_m_s_per_rad"]
     factor = 0.9 * found["stiffness_factor"]
     better = run(*POSED, "--stiffness", str(40000 * factor), "--rotational-stiffness", str(400 * factor))
-    assert (better[0], json.loads(better[1])["outcome"]) == (0, "theorem")
+    assert (better[0], json.loads(better[1])["outcome"]) == (0, "passive")
+
+
+@pytest.mark.parametrize("rest", [(), ("--rest", "middle")])
+def test_the_proof_of_a_wall_in_pose_is_verified(rest: tuple[str, ...], run: Run, tmp_path: Path) -> None:
+    """Saved, read and proved again, with both units in the words; with more of the rotation it is refused."""
+    pytest.importorskip("pinocchio")
+    random_arm(tmp_path / "arm.urdf", 4, 6)
+    wall = ("--stiffness", "40", "--rotational-stiffness", "0.4 N*m/rad")
+    assert run(*POSED[:-1], *rest, *wall, "-o", "proof.json")[0] == 0
+    status, out, _ = run("verify", "proof.json")
+    where = "from the orientation of rest that is given" if rest else "in every orientation of rest"
+    assert status == 0
+    assert f"in pose, with up to 40 N/m and 0.4 N·m/rad, {where}" in " ".join(out.split())
+    document = json.loads((tmp_path / "proof.json").read_text())
+    document["certificate"]["wall"]["stiffness_N_m_rad"][5][5] = "4000"
+    (tmp_path / "more.json").write_text(json.dumps(document))
+    assert run("verify", "more.json")[0] != 0
 
 
 def test_a_wall_by_matrices(run: Run, tmp_path: Path) -> None:
