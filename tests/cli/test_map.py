@@ -26,7 +26,7 @@ def test_the_report_and_the_json_say_the_same(capsys: pytest.CaptureFixture[str]
     }
     assert "passive, every hand" in report
     assert "298.5" in report
-    assert "free air: 0.036 kg, 0.15 N*s/m, 0.12 N" in report
+    assert "free air: 0.036 kg, 0.15 N·s/m, 0.12 N" in report
 
 
 def test_options_reach_the_map(capsys: pytest.CaptureFixture[str]) -> None:
@@ -67,6 +67,25 @@ def test_a_store_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "exists" in capsys.readouterr().err
     assert main((*command, "--force")) == 0
     assert capsys.readouterr().out == first
+
+
+def test_ctrl_c_says_what_is_kept(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Status 130, no traceback; with a store, that the same command goes on with it."""
+
+    def stop(*_: object, path: object = None, **__: object) -> None:
+        if path is not None:
+            Path(str(path)).mkdir()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("zwidth.maps.z_width", stop)
+    assert main(MAP) == 130
+    assert capsys.readouterr().err == "zwidth: interrupted\n"
+    assert main((*MAP, "-o", str(tmp_path / "map.zarr"))) == 130
+    err = capsys.readouterr().err
+    assert "map.zarr keeps what is finished; the same command goes on" in err
+    assert err.endswith("zwidth: interrupted\n")
 
 
 def test_certificates_of_the_columns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -36,6 +36,7 @@ def test_a_wall_that_holds_everywhere(run: Run) -> None:
     assert status == 0
     assert "PASSIVE No motion of the hand takes energy out with x from -0.05 to 0.05 m" in words
     assert "what to change" not in words
+    assert "haply-2diy, 2 joints, 1 kHz" in words
     assert "Encoder steps are not counted." in words
 
 
@@ -120,6 +121,10 @@ def test_the_map_is_saved_and_drawn(run: Run, tmp_path: Path) -> None:
             "leave out --stiffness",
         ),
         (("two-link", "--joint-damping", "0.1", "--wall", "w.toml"), "no file"),
+        (
+            ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "-o", "proof.jsn"),
+            "a file must end in .json for the verdict",
+        ),
         (
             ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--delay", "0.3 ms"),
             "whole number of samples",

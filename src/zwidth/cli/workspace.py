@@ -13,9 +13,11 @@ from zwidth.cli.workspace_report import print_workspace
 from zwidth.cli.workspace_wall import WALL_OPTIONS, wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+from zwidth.writing import writing_whole
 
 STATUS = {"passive": 0, "theorem": 0, "active": 1, "undecided": 3}
 _RATE = "1 kHz"
+_SAVED = (".json", ".nc")
 
 _JOINT_OPTIONS = (
     ("--joint-damping", "damping", "N*m*s/rad", "viscous friction of the joints"),
@@ -70,7 +72,7 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
         "--save",
         metavar="FILE",
         action=Once,
-        help="save the verdict with its certificate, for zwidth verify (.json), or else the map as NetCDF",
+        help="save the verdict with its certificate, for zwidth verify (.json), or the map as NetCDF (.nc)",
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
 
@@ -78,6 +80,11 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
 def run_workspace(arguments: argparse.Namespace) -> int:
     """`zwidth workspace`: 0 passive, 1 active, 3 undecided, as `check`."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    if save is not None and save.suffix.lower() not in _SAVED:
+        raise InputError(
+            f"--save: a file must end in .json for the verdict with its certificate, or in .nc for the map; "
+            f"got {save.name!r}"
+        )
     from zwidth.passivity.arms import workspace
 
     arm = _arm(arguments)
@@ -94,7 +101,8 @@ def run_workspace(arguments: argparse.Namespace) -> int:
             if save.suffix.lower() == ".json":
                 space.save(save)
             else:
-                space.data.to_netcdf(save, engine="h5netcdf")
+                with writing_whole(save) as unfinished:
+                    space.data.to_netcdf(unfinished, engine="h5netcdf")
     if plot is not None:
         from zwidth.plots.workspace import save_workspace  # matplotlib takes its time
 

@@ -47,7 +47,8 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
     from zwidth.cli.numerals import shown
 
     data, motion = space.data, space.motion
-    yield "arm", f"{space.arm.name}, {space.arm.joint_count} joints, {shown(1 / space.sample_period, 'Hz')}"
+    count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
+    yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
     kind, unit, where = ("margin", "N*s/m", "at the hand")
     if space.arm.turns:
         kind, unit, where = ("margin_in_joints", "N*m*s/rad", "in the worst direction of the joints")

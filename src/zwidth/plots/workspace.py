@@ -77,7 +77,7 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) ->
     data = space.data[variable]
     label = f"{variable.replace('_', ' ')} [{pretty(data.attrs.get('units', '1'))}]"
     if data.ndim == 1:
-        _line(axes, data, label)
+        _line(axes, space, data, label)
         return
     if data.ndim > 2:
         raise InputError("a map of more than two joints cannot be drawn; take a slice of `data`")
@@ -86,25 +86,28 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) ->
     # The cells of a chain are bent: their colours run from middle to middle.
     shading: Any = "nearest" if "x" in space.data.coords or names != ("x", "y") else "gouraud"
     colours = axes.pcolormesh(across, up, values, shading=shading, rasterized=True, **_colours(values))
-    axes.figure.colorbar(colours, ax=axes, label=label)
-    margin = space.data[least].values
+    beyond = float(np.nanmax(values)) > colours.get_clim()[1]
+    axes.figure.colorbar(colours, ax=axes, label=label, extend="max" if beyond else "neither")
+    margin, notes = space.data[least].values, []
     if np.nanmin(margin) < 0 < np.nanmax(margin):
         axes.contour(across, up, margin, levels=[0.0], colors=[BLACK], linewidths=1.5)
-        strokes = "; strokes: the direction in which it is smallest" if least == "margin" else ""
-        note(axes, f"black: where the margin ends{strokes}")
+        notes.append("black line: where the margin ends")
     if names == ("x", "y"):
         axes.set_aspect("equal")
         if least == "margin":
             _directions(axes, space, across, up)
-    axes.set_xlabel(_axis(names[0]))
-    axes.set_ylabel(_axis(names[1]))
+            notes.append("strokes: the direction in which the margin is smallest")
+    if notes:
+        note(axes, "; ".join(notes))
+    axes.set_xlabel(_axis(space, names[0]))
+    axes.set_ylabel(_axis(space, names[1]))
 
 
-def _line(axes: Axes, data: Any, label: str) -> None:
+def _line(axes: Axes, space: Workspace, data: Any, label: str) -> None:
     name = str(data.dims[0])
     axes.plot(data[name], data.values, color=OUTCOME["passive"] if data.min() >= 0 else RED)
     axes.axhline(0, color=GREY, linewidth=0.8)
-    axes.set_xlabel(_axis(name))
+    axes.set_xlabel(_axis(space, name))
     axes.set_ylabel(label)
 
 
@@ -120,7 +123,8 @@ def _coordinates(space: Workspace) -> tuple[Any, Any, tuple[str, str]]:
 
 
 def _colours(values: Any) -> dict[str, Any]:
-    low, high = float(np.nanmin(values)), float(np.nanpercentile(values, 95))
+    known = values[np.isfinite(values)]
+    low, high = (float(known.min()), float(np.percentile(known, 95))) if known.size else (0.0, 0.0)
     if low < 0:
         return {"cmap": "RdBu", "norm": TwoSlopeNorm(0.0, low, max(high, -low / 2))}
     return {"cmap": "viridis", "vmin": low, "vmax": max(high, low + 1e-300)}
@@ -135,5 +139,7 @@ def _directions(axes: Axes, space: Workspace, across: Any, up: Any) -> None:
     )  # fmt: skip
 
 
-def _axis(name: str) -> str:
-    return f"{name} [m]" if name in ("x", "y") else f"joint {name} [rad]"
+def _axis(space: Workspace, name: str) -> str:
+    if name in ("x", "y"):
+        return f"{name} [m]"
+    return f"joint {name} [{pretty(space.data[name].attrs['units'])}]"

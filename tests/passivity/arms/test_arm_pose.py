@@ -24,7 +24,7 @@ Array = npt.NDArray[np.float64]
 def _arm(folder: Path, joints: int, moving: int = 2, **options: Any) -> Arm:
     """In pose; all but the first joints are held somewhere."""
     path = random_arm(folder / "arm.urdf", 10 + joints, joints)
-    hold = {f"j{i}": 0.05 * i for i in range(moving, joints)}
+    hold = {f"j{i}": 0.03 * i for i in range(moving, joints)}
     return read_arm(path, pose=True, hold=hold, **{"rest": {}, **options})
 
 
@@ -197,7 +197,7 @@ def test_one_joint_that_turns_the_hand(tmp_path: Path) -> None:
 def test_without_rotational_stiffness_it_is_the_wall_of_a_point(joints: int, tmp_path: Path) -> None:
     """The same margins, limits and proofs as of the arm held at a point."""
     arm = _arm(tmp_path, joints)
-    point = read_arm(tmp_path / "arm.urdf", hold={f"j{i}": 0.05 * i for i in range(2, joints)})
+    point = read_arm(tmp_path / "arm.urdf", hold={f"j{i}": 0.03 * i for i in range(2, joints)})
     for stiffness in (200, 3000):
         posed = _space(arm, zw.MatrixWall.in_pose(stiffness, 0))
         plain = zw.workspace(point, zw.Wall(stiffness), rate=1000, points=40)

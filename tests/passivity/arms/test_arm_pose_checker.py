@@ -149,7 +149,7 @@ def test_the_matrix_is_that_of_the_motion(size: int, slides: tuple[int, ...], ev
 def test_the_matrix_is_that_of_the_arm(joints: int, rest: Any, tmp_path: Path) -> None:
     """The saved document and pinocchio's Jacobian, in the region and beyond, past half a turn, too."""
     pytest.importorskip("pinocchio")
-    hold = {f"j{i}": 0.05 * i for i in range(1, joints)}
+    hold = {f"j{i}": 0.03 * i for i in range(1, joints)}
     path = random_arm(tmp_path / "arm.urdf", joints, joints, sliding=(2,))
     arm = read_arm(path, pose=True, hold=hold, rest=rest)
     wall = zw.MatrixWall.in_pose(30, 0.5)
@@ -222,7 +222,7 @@ def test_a_wall_that_is_not_alike_about_every_axis_is_taken_at_its_stiffest() ->
 def test_both_sides_of_the_limit(joints: int, rest: Any, tmp_path: Path) -> None:
     """0.99 of it certified, with one joint or two that move; 1.01 refused by the checker, too."""
     pytest.importorskip("pinocchio")
-    hold = {f"j{i}": 0.05 * i for i in range(2 if joints == 3 else 1, joints)}
+    hold = {f"j{i}": 0.03 * i for i in range(2 if joints == 3 else 1, joints)}
     arm = read_arm(random_arm(tmp_path / "arm.urdf", 10 + joints, joints), pose=True, hold=hold, rest=rest)
     limit = zw.workspace(arm, zw.MatrixWall.in_pose(500, 5), rate=1000, points=20).stiffness_factor
     under = zw.workspace(arm, zw.MatrixWall.in_pose(495 * limit, 4.95 * limit), rate=1000, points=20)

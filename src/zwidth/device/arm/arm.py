@@ -157,7 +157,7 @@ def _numbers(values: Sequence[float], key: str, count: int, needed: bool = False
     if not numbers and not needed:
         return ()
     if len(numbers) != count:
-        raise InputError(f"{key}: this arm has {count} joints, got {len(numbers)} numbers; give one for each")
+        raise InputError(f"{key}: give one for each joint, {count} in all; got {len(numbers)}")
     if any(not isfinite(v) or v < 0 for v in numbers):
         raise InputError(f"{key} must be finite and ≥ 0 in every joint, got {numbers}")
     return numbers

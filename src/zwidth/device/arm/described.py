@@ -62,8 +62,7 @@ class DescribedArm(Arm):
         moving = [i for i, (low, high) in enumerate(self.joint_range) if high > low]
         names = [self.model.names[i + 1] for i in range(self.joint_count)]
         axes = tuple(
-            Axis(names[i], "m" if slides(self.model, i) else "rad", middles(*self.joint_range[i], points))
-            for i in moving
+            Axis(names[i], unit_of(self.model, i), middles(*self.joint_range[i], points)) for i in moving
         )
         q = np.empty((*[points] * len(moving), self.joint_count))
         q[...] = [low for low, _ in self.joint_range]
@@ -72,8 +71,10 @@ class DescribedArm(Arm):
         positions, jacobians = self._computed(q)
         halves = np.array([(high - low) / (2 * points) for low, high in self.joint_range])
         words = [
-            f"{name} {f'from {low:.4g} to {high:.4g}' if high > low else f'held at {low:.4g}'}"
-            for name, (low, high) in zip(names, self.joint_range, strict=True)
+            f"{name} {f'from {low:.4g} to {high:.4g}' if high > low else f'held at {low:.4g}'} {unit}"
+            for name, unit, (low, high) in zip(
+                names, (unit_of(self.model, i) for i in range(len(names))), self.joint_range, strict=True
+            )
         ]
         rates, between = self._rates()
         change = np.full(q.shape[:-1], np.linalg.norm(rates @ halves[between]))
@@ -161,3 +162,8 @@ def slides(model: Any, i: int) -> bool:
     """Whether coordinate i is that of a sliding joint."""
     joint = next(j for j in model.joints if j.idx_v == i)
     return "JointModelP" in joint.shortname()
+
+
+def unit_of(model: Any, i: int) -> str:
+    """Of coordinate i."""
+    return "m" if slides(model, i) else "rad"

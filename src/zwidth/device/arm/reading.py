@@ -12,11 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from zwidth.device.arm.described import DescribedArm, slides
+from zwidth.device.arm.described import DescribedArm, slides, unit_of
+from zwidth.device.arm.description_file import read_model
 from zwidth.device.arm.posed import PosedArm
 from zwidth.errors import InputError
-
-_ENDINGS = {".urdf": "buildModelFromUrdf", ".xml": "buildModelFromMJCF", ".mjcf": "buildModelFromMJCF"}
 
 
 def read_arm(
@@ -58,7 +57,7 @@ def read_arm(
         If the file cannot be read, a name is not in it, or its joints have no damping at all.
     """
     path = Path(path)
-    model = _model(path)
+    model = read_model(path)
     m, m_names = int(model.nv), [str(n) for n in model.names][1:]
     if len(m_names) != m:
         raise InputError(f"{path.name}: every joint must turn or slide about one axis")
@@ -90,34 +89,16 @@ def read_arm(
     return DescribedArm(**given)
 
 
-def _model(path: Path) -> Any:
-    build = _ENDINGS.get(path.suffix.lower())
-    if build is None:
-        raise InputError(f"an arm is described in a .urdf, .xml or .mjcf file, got {path.name!r}")
-    if not path.is_file():
-        raise InputError(f"there is no file {path}")
-    try:
-        import pinocchio as pin
-    except ImportError:
-        raise InputError("reading robot descriptions needs pinocchio: pip install 'zwidth[arms]'") from None
-    try:
-        model = getattr(pin, build)(str(path))
-    except (ValueError, RuntimeError) as error:
-        raise InputError(f"{path.name} cannot be read: {' '.join(str(error).split())[:200]}") from None
-    if model.nv == 0:
-        raise InputError(f"{path.name} has no joint that moves")
-    return model
-
-
 def _ranges(model: Any, names: list[str], hold: dict[str, float] | None) -> tuple[tuple[float, float], ...]:
     _named(hold or {}, names, "hold")
     ranges = []
     for i, name in enumerate(names):
-        low, high = _limits(model, i)
-        if name in (hold or {}):
-            low = high = float((hold or {})[name])
-        elif hold is None and i >= 2:
-            low = high = (low + high) / 2
+        if hold is not None and name in hold:
+            low = high = _held(model, i, name, float(hold[name]))
+        else:
+            low, high = _limits(model, i)
+            if hold is None and i >= 2:
+                low = high = (low + high) / 2
         ranges.append((low, high))
     moving = [name for name, (low, high) in zip(names, ranges, strict=True) if high > low]
     if not 1 <= len(moving) <= 2:
@@ -140,13 +121,24 @@ def _named(given: dict[str, float], names: list[str], what: str) -> None:
         raise InputError(f"{what}: there is no joint {unknown[0]!r}; there are {', '.join(names)}")
 
 
+def _held(model: Any, i: int, name: str, value: float) -> float:
+    low, high = _written_limits(model, i) or (-np.inf, np.inf)
+    if not (np.isfinite(value) and low <= value <= high):
+        bounds = f"from {low:g} to {high:g} {unit_of(model, i)}" if np.isfinite(low) else "finite"
+        raise InputError(f"hold: {name} can be {bounds}, got {value:g}")
+    return value
+
+
 def _limits(model: Any, i: int) -> tuple[float, float]:
-    joint = next(j for j in model.joints if j.idx_v == i)
-    if joint.nq == 1:
-        low = float(model.lowerPositionLimit[joint.idx_q])
-        high = float(model.upperPositionLimit[joint.idx_q])
-        if -1e3 < low < high < 1e3:
-            return low, high
-    if slides(model, i):
+    written = _written_limits(model, i)
+    if written is None and slides(model, i):
         raise InputError(f"joint {i + 1} slides without limits; write them into the description, or hold it")
-    return -float(np.pi), float(np.pi)
+    return written or (-float(np.pi), float(np.pi))
+
+
+def _written_limits(model: Any, i: int) -> tuple[float, float] | None:
+    joint = next(j for j in model.joints if j.idx_v == i)
+    if joint.nq != 1:
+        return None
+    low, high = (float(limit[joint.idx_q]) for limit in (model.lowerPositionLimit, model.upperPositionLimit))
+    return (low, high) if -1e3 < low < high < 1e3 else None

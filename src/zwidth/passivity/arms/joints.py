@@ -22,6 +22,9 @@ from zwidth.errors import InputError
 
 Array = npt.NDArray[np.float64]
 
+_ROUNDING = 1e-13
+"""Of the largest eigenvalue: a smallest one below this is none, and Cholesky's root is not taken."""
+
 
 def end_effector_damping(
     jacobian: npt.ArrayLike, damping: npt.ArrayLike, as_published: bool = False
@@ -91,7 +94,8 @@ def single_additions(matrices: Array) -> Array:
 
 def largest_scale(base: Array, load: Array) -> Array:
     """The largest s ≥ 0 with base − s·load ⪰ 0 (…), for load ⪰ 0; 0 where base is not ≻ 0, ∞ without load."""
-    positive = np.linalg.eigvalsh(base)[..., 0] > 0
+    values = np.linalg.eigvalsh(base)
+    positive = values[..., 0] > _ROUNDING * np.abs(values[..., -1])
     safe = np.where(positive[..., None, None], base, np.eye(base.shape[-1]))
     root = np.linalg.inv(np.linalg.cholesky(safe))
     most = np.linalg.eigvalsh(root @ load @ np.swapaxes(root, -1, -2))[..., -1]

@@ -24,8 +24,11 @@ from zwidth.passivity.arms.pose import motion_at_hand
 Array = npt.NDArray[np.float64]
 Truth = npt.NDArray[np.bool_]
 
-_SINGULAR = 1e-9
-"""Singular values of J below this part of the largest count as this: damping there is as good as infinite."""
+_SINGULAR = 1e-4
+"""Singular values of J below this part of the largest count as this, with the wall's share cut alike: damping
+there is as good as infinite, yet leaves room for the digits of what is finite."""
+_BLOCKED = 1e-12
+"""Singular values of J below this part of the largest are rounding: the arm cannot move there."""
 
 Column = tuple[Array, str, str]
 
@@ -68,13 +71,13 @@ def scaled_stiffness(wall: Wall | MatrixWall, factor: Array, size: int) -> Array
 
 def _at_point(jacobians: Array, damping: Array, need: WallNeed) -> dict[str, Column]:
     """The margin at the hand, in the directions U in which the arm can move."""
-    frame, at_hand = _at_hand(jacobians, damping)
-    values, vectors = np.linalg.eigh(
-        at_hand - np.swapaxes(frame, -1, -2) @ (need.stiffness_share + need.bound) @ frame
-    )
+    frame, seen, at_hand = _at_hand(jacobians, damping)
+    turned = np.swapaxes(seen, -1, -2)
+    values, vectors = np.linalg.eigh(at_hand - turned @ (need.stiffness_share + need.bound) @ seen)
     worst = (frame @ vectors[..., :, :1])[..., 0]
+    least = np.where(seen.any(axis=(-1, -2)), values[..., 0], np.inf)
     columns: dict[str, Column] = {
-        "margin": (values[..., 0], "N*s/m", "damping at the hand beyond need, in the worst direction")
+        "margin": (least, "N*s/m", "damping at the hand beyond need, in the worst direction")
     }
     for name, component in zip("xyz", np.moveaxis(worst, -1, 0), strict=False):
         columns[f"direction_{name}"] = (component, "1", "unit vector of the worst direction")
@@ -119,16 +122,22 @@ def _held(arm: Arm, wall: Wall | MatrixWall, jacobians: Array) -> dict[str, Colu
     return columns
 
 
-def _at_hand(jacobians: Array, damping: Array) -> tuple[Array, Array]:
-    """U (…, n, r) and δ in its axes (…, r, r), from J = U S Vᵀ: (S Vᵀ δ_m⁻¹ V S)⁻¹."""
+def _at_hand(jacobians: Array, damping: Array) -> tuple[Array, Array, Array]:
+    """U (…, n, r), U P and P δ P in its axes (…, r, r), from J = U S Vᵀ and δ = (S Vᵀ δ_m⁻¹ V S)⁻¹.
+
+    P = 1 but for directions in which the arm can hardly move, where S/P is raised to a floor: δ − UᵀRU ⪰ 0
+    exactly if PδP − PUᵀRUP ⪰ 0, and no entry is so large that the others drown in its rounding.
+    """
     u, s, vt = np.linalg.svd(jacobians, full_matrices=False)
-    s = np.maximum(s, _SINGULAR * s[..., :1])
+    raised = np.maximum(s, _SINGULAR * s[..., :1])
+    raised = np.where(raised > 0, raised, 1.0)  # the hand on the axis of the only joint: nothing moves it
+    share = np.where(s > _BLOCKED * s[..., :1], s / raised, 0.0)
     v = np.swapaxes(vt, -1, -2)
     if jacobians.shape[-1] <= jacobians.shape[-2]:
         inner = vt @ damping @ v
     else:
         inner = np.linalg.inv(vt @ np.linalg.inv(damping) @ v)
-    return u, inner / (s[..., :, None] * s[..., None, :])
+    return u, u * share[..., None, :], inner / (raised[..., :, None] * raised[..., None, :])
 
 
 def _joint(alone: Array) -> Array:

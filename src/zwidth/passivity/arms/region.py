@@ -39,7 +39,9 @@ from zwidth.passivity.arms.pose import fits, loss_in_pose
 from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
 from zwidth.passivity.arms.report import workspace_document
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import to_json
+from zwidth.passivity.document import save_json
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
     import xarray
@@ -112,21 +114,27 @@ class Workspace:
     motion: ArmMotion | None
     certificate: Certificate | None = None
 
+    def __repr__(self) -> str:
+        return (
+            f"<Workspace {self.outcome}: {self.claim} "
+            f"Stiffest wall at every point: {self.largest_stiffness:.6g} N/m>"
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """The verdict with its evidence as plain data; the map is in `data`."""
         return workspace_document(self)
 
     def save(self, path: str | Path) -> None:
         """Write the verdict with its certificate as JSON for `zwidth verify`; the map is in `data`."""
-        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+        save_json(path, self.to_dict())
 
 
 def workspace(
     arm: Arm,
     wall: Wall | MatrixWall,
     *,
-    rate: float,
-    delay: float = 0.0,
+    rate: RealLike,
+    delay: RealLike = 0,
     points: int = 100,
     torque_held_up_to: float | Sequence[float] | None = None,
 ) -> Workspace:
@@ -140,9 +148,9 @@ def workspace(
         `Wall`, equally stiff in every direction (or a plane wall with any normal), or `MatrixWall`; of an
         arm in pose `MatrixWall.in_pose`.
     rate
-        Samples per second, > 0 [Hz].
+        Samples per second, > 0 [Hz], or a text such as "1 kHz".
     delay
-        From reading to force, a whole number of samples [s]; round up what is not.
+        From reading to force, a whole number of samples [s], or a text; round up what is not.
     points
         Cells along each side of the map, from 2 to 1000.
     torque_held_up_to
@@ -156,7 +164,8 @@ def workspace(
     InputError
         If a number is outside its bound, or the arm reaches no point of its region.
     """
-    period, samples = _timing(rate, delay)
+    hertz = float(parse_number(rate, "Hz", "rate"))
+    period, samples = _timing(hertz, float(parse_number(delay, "s", "delay")))
     if not isinstance(arm, Arm):
         raise InputError(f"the first argument is an arm, got {type(arm).__name__}")
     if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= 1000:
@@ -187,7 +196,7 @@ def workspace(
     whole[account.reached] = account.proved
     certificate, words = None, ""
     if account.reached.all() and (account.margins > 0).all():
-        certificate, words = arm_certificate(arm, wall, rate, samples, torque_held_up_to)
+        certificate, words = arm_certificate(arm, wall, hertz, samples, torque_held_up_to)
     if certificate is not None:
         whole[...] = True
         account = account._replace(counted=np.eye(m)[None])  # nothing is missing
@@ -259,9 +268,9 @@ def _all_in_blocks(fine: Truth, shape: tuple[int, ...]) -> Truth:
 
 
 def _timing(rate: float, delay: float) -> tuple[float, int]:
-    if not (isinstance(rate, (int, float)) and 0 < rate < np.inf):
+    if rate <= 0:
         raise InputError(f"rate must be > 0 Hz, got {rate!r}")
-    if not (isinstance(delay, (int, float)) and 0 <= delay < np.inf):
+    if delay < 0:
         raise InputError(f"delay must be ≥ 0 s, got {delay!r}")
     samples = round(delay * rate)
     if abs(delay * rate - samples) > 1e-9 * max(1, samples):

@@ -78,6 +78,10 @@ class Stability:
         """1 − spectral radius: > 0 for a loop that decays."""
         return 1 - self.spectral_radius
 
+    def __repr__(self) -> str:
+        limit = "" if self.max_stiffness is None else f", stiffest {self.max_stiffness:.6g}"
+        return f"<Stability {self.outcome}: {self.claim}; spectral radius {self.spectral_radius:.6g}{limit}>"
+
     def verify(self) -> bool:
         """True when there is a certificate and the independent checker accepts it."""
         return self.certificate is not None and self.certificate.verify()
