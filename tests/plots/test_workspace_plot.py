@@ -53,7 +53,12 @@ def test_what_is_drawn_is_named() -> None:
     limit = _space("haply-2diy", 100).data["largest_stiffness"]
     assert words(_space("haply-2diy", 100)) == "strokes: the direction in which the margin is smallest"
     crossing = words(_space("haply-2diy", float(limit.mean())))
-    assert crossing.startswith("black line: where the margin ends; strokes")
+    figure = plots.workspace_figure(_space("haply-2diy", float(limit.mean())))
+    figure.canvas.draw()
+    low, high = figure.axes[1].get_ylim()
+    ticks = figure.axes[1].get_yticks()
+    assert low < ticks.min() < 0 < ticks.max() <= high
+    assert crossing.startswith("black line: margin 0; strokes")
     figure = plots.workspace_figure(_space("haply-2diy", 100))
     assert figure.axes[0].collections[0].colorbar.extend == "max"
     assert plots.workspace_figure(_space("hapkit", 100)).axes[0].get_xlabel() == "joint q1 [rad]"

@@ -60,6 +60,14 @@ def test_speeds_are_written_on_their_contours() -> None:
     assert "10 m/s" not in numbers
 
 
+def test_a_close_up_without_speeds_says_so() -> None:
+    """With a part of a sample of delay none is known: what is passive while contact lasts is all."""
+    found = zw.z_width(PADDLE.replace(delay=0.0005), (0, 3000), (0, 5), (300, 300))
+    _, near = plots.z_width_figure(found).axes
+    assert near.get_title(loc="left") == "close-up of what is passive"
+    assert not near.texts
+
+
 def test_only_maps_are_drawn() -> None:
     """A boundary is no map."""
     with pytest.raises(zw.InputError, match="no Z-width map"):

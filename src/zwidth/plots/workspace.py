@@ -11,6 +11,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from zwidth.errors import InputError
 from zwidth.passivity.arms import Workspace
@@ -86,12 +87,16 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) ->
     # The cells of a chain are bent: their colours run from middle to middle.
     shading: Any = "nearest" if "x" in space.data.coords or names != ("x", "y") else "gouraud"
     colours = axes.pcolormesh(across, up, values, shading=shading, rasterized=True, **_colours(values))
-    beyond = float(np.nanmax(values)) > colours.get_clim()[1]
-    axes.figure.colorbar(colours, ax=axes, label=label, extend="max" if beyond else "neither")
+    beyond = float(np.nanmax(values)) > colours.get_clim()[1] * (1 + 1e-9)
+    bar = axes.figure.colorbar(colours, ax=axes, label=label, extend="max" if beyond else "neither")
+    low, high = colours.get_clim()
+    if low < 0 < high:  # the two sides of 0 have scales of their own, and numbers of their own
+        sides = [MaxNLocator(4).tick_values(*side) for side in ((low, 0.0), (0.0, high))]
+        bar.set_ticks([v for v in np.unique(np.concatenate(sides)) if low <= v <= high])
     margin, notes = space.data[least].values, []
     if np.nanmin(margin) < 0 < np.nanmax(margin):
         axes.contour(across, up, margin, levels=[0.0], colors=[BLACK], linewidths=1.5)
-        notes.append("black line: where the margin ends")
+        notes.append("black line: margin 0")
     if names == ("x", "y"):
         axes.set_aspect("equal")
         if least == "margin":

@@ -98,8 +98,12 @@ def z_width_figure(found: xr.Dataset) -> Figure:
     note(axes[0], _free(found))
     if near is not None:
         draw_z_width(axes[1], near)
-        _speeds(axes[1], near)
-        axes[1].set_title("close-up: how fast a hand may be before it gains energy")
+        drawn = _speeds(axes[1], near)
+        axes[1].set_title(
+            "close-up: how fast a hand may be before it gains energy"
+            if drawn
+            else "close-up of what is passive"
+        )
     _legend_beside(figure)
     return figure
 
@@ -177,8 +181,8 @@ def _outline(axes: Axes, found: xr.Dataset, name: str, place: int) -> None:
     )  # fmt: skip
 
 
-def _speeds(axes: Axes, found: xr.Dataset) -> None:
-    """Contours of the admissible speed, each with its value."""
+def _speeds(axes: Axes, found: xr.Dataset) -> bool:
+    """Contours of the admissible speed, each with its value; False where there is none to draw."""
     values = found["admissible_speed"].values
     shown = np.log10(np.where(np.isfinite(values) & (values > 0), values, np.nan))
     inside = [
@@ -188,13 +192,14 @@ def _speeds(axes: Axes, found: xr.Dataset) -> None:
         and min((shown > log10(level)).sum(axis=along).max() for along in (0, 1)) >= _APART
     ]
     if not inside or min(shown.shape) < 2:
-        return
+        return False
     drawn = axes.contour(
         found["virtual_damping"], found["stiffness"], shown, levels=[log10(level) for level in inside],
         colors=[GREY], linewidths=0.7, linestyles="-",
     )  # fmt: skip
     unit = pretty(found["admissible_speed"].attrs["units"])
     axes.clabel(drawn, fontsize=7.5, fmt=lambda level: f"{number(10**level)} {unit}")
+    return True
 
 
 def _corner(found: xr.Dataset) -> xr.Dataset | None:
