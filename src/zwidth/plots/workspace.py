@@ -39,7 +39,7 @@ def save_workspace(space: Workspace, path: str | Path, overwrite: bool = False) 
 
 
 @rc_context(LOOK)
-def workspace_figure(space: Workspace, variable: str = "margin") -> Figure:
+def workspace_figure(space: Workspace, variable: str | None = None) -> Figure:
     """One variable of the map, in colours; red where there is too little of it.
 
     Parameters
@@ -47,7 +47,7 @@ def workspace_figure(space: Workspace, variable: str = "margin") -> Figure:
     space
         What `zwidth.workspace` returned.
     variable
-        A name in `space.data`. Default "margin".
+        A name in `space.data`. Default "margin", of a wall in pose "margin_in_joints".
     """
     figure = new_figure(6.4, 5.0)
     axes = figure.add_subplot()
@@ -59,7 +59,7 @@ def workspace_figure(space: Workspace, variable: str = "margin") -> Figure:
     return figure
 
 
-def draw_workspace(axes: Axes, space: Workspace, variable: str = "margin") -> None:
+def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) -> None:
     """Draw one variable of the map on axes of your own.
 
     Parameters
@@ -69,8 +69,10 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str = "margin") -> No
     space
         What `zwidth.workspace` returned.
     variable
-        A name in `space.data`.
+        A name in `space.data`. Default "margin", of a wall in pose "margin_in_joints".
     """
+    least = "margin" if "margin" in space.data else "margin_in_joints"
+    variable = least if variable is None else variable
     if variable not in space.data:
         raise InputError(f"the map has no {variable!r}; it has {', '.join(map(str, space.data))}")
     data = space.data[variable]
@@ -91,14 +93,15 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str = "margin") -> No
     if low < 0 < high:  # the two sides of 0 have scales of their own, and numbers of their own
         sides = [MaxNLocator(4).tick_values(*side) for side in ((low, 0.0), (0.0, high))]
         bar.set_ticks([v for v in np.unique(np.concatenate(sides)) if low <= v <= high])
-    margin, notes = space.data["margin"].values, []
+    margin, notes = space.data[least].values, []
     if np.nanmin(margin) < 0 < np.nanmax(margin):
         axes.contour(across, up, margin, levels=[0.0], colors=[BLACK], linewidths=1.5)
         notes.append("black line: margin 0")
     if names == ("x", "y"):
-        _directions(axes, space, across, up)
         axes.set_aspect("equal")
-        notes.append("strokes: the direction in which the margin is smallest")
+        if least == "margin":
+            _directions(axes, space, across, up)
+            notes.append("strokes: the direction in which the margin is smallest")
     if notes:
         note(axes, "; ".join(notes))
     axes.set_xlabel(_axis(space, names[0]))
@@ -120,7 +123,7 @@ def _coordinates(space: Workspace) -> tuple[Any, Any, tuple[str, str]]:
         return (*np.meshgrid(data["x"], data["y"], indexing="ij"), ("x", "y"))
     if "hand_x" in data.coords and "hand_z" not in data.coords:
         return data["hand_x"].values, data["hand_y"].values, ("x", "y")
-    first, second = (str(name) for name in data["margin"].dims)
+    first, second = (str(name) for name in data["margin_in_joints"].dims)
     return (*np.meshgrid(data[first], data[second], indexing="ij"), (first, second))
 
 

@@ -91,6 +91,14 @@ def test_sliding_joints_and_joints_that_are_held(tmp_path: Path) -> None:
         read_arm(path, hold={})
 
 
+def test_a_joint_may_have_the_name_of_its_link(urdf: Path) -> None:
+    """The hand is at the link."""
+    q = [0.4, 0.9]
+    expected = read_arm(urdf, frame="tip").forward(q)
+    urdf.write_text(urdf.read_text().replace('joint name="hand"', 'joint name="tip"'))
+    assert read_arm(urdf, frame="tip").forward(q) == pytest.approx(expected)
+
+
 def test_mjcf_is_read_too(tmp_path: Path) -> None:
     """One hinge; its damping is given by the caller."""
     path = tmp_path / "one.xml"

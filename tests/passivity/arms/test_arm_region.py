@@ -340,6 +340,8 @@ def test_the_map_is_labelled() -> None:
         ({"rate": 1000, "delay": -1}, "delay"),
         ({"rate": 1000, "points": 1}, "points"),
         ({"rate": 1000, "torque_held_up_to": -1}, "largest force"),
+        ({"rate": 1000, "torque_held_up_to": "much"}, "largest force"),
+        ({"rate": 1000, "torque_held_up_to": (1, 2)}, "largest force"),
         ({"rate": 1000, "torque_held_up_to": 1, "delay": 0.001}, "without delay"),
     ],
 )

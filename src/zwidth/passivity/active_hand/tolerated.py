@@ -164,6 +164,8 @@ def tolerated_activity(
     band = band_of(parse_number(below, "Hz", "below").fraction, device.exact("sample_period"))
     decision = decide(device, law)
     kept, broken = _kept(device, law, decision, band), _throughout(device, law, contact=True)
+    if broken is not None and (kept is None or broken[0] > kept[0]):
+        kept = broken  # what may leave the wall may stay
     hand = None
     if kept is not None and device.mass is not None and not decision.loop.part_delay:
         hand = shaking_hand(decision.loop, float(device.exact("mass")), band, device.motion)

@@ -11,6 +11,7 @@ that stays in proved cells.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 from pathlib import Path
@@ -24,14 +25,17 @@ from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.passivity.arms.certificate import arm_certificate
+from zwidth.passivity.arms.encoders import covering_friction
+from zwidth.passivity.arms.held import held_torque_damping, in_words
 from zwidth.passivity.arms.joints import (
     as_matrix,
-    sampled_jacobian_damping,
     single_additions,
     surplus,
 )
-from zwidth.passivity.arms.mapped import columns_of, dataset
+from zwidth.passivity.arms.least import least_additions
+from zwidth.passivity.arms.mapped import columns_of, dataset, scaled_stiffness, stiffness_factors
 from zwidth.passivity.arms.need import wall_need
+from zwidth.passivity.arms.pose import fits, loss_in_pose
 from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
 from zwidth.passivity.arms.report import workspace_document
 from zwidth.passivity.certificate import Certificate
@@ -78,9 +82,16 @@ class Workspace:
         [N·m·s/rad].
     addition_to_all
         The smallest damping that, given to every joint, proves the region [N·m·s/rad].
+    least_additions
+        The damping of the joints with the smallest sum that proves the region [N·m·s/rad].
+    stiffness_factor
+        How many times as stiff the wall may be and hold at every point; ∞ if it has no stiffness.
     largest_stiffness
         The stiffest wall of this kind that holds at every point, in the largest stiffness of any
-        direction [N/m].
+        direction [N/m]; None of a wall in pose, which has two units.
+    encoder_friction
+        Coulomb friction of each joint that covers the encoder steps in the whole region, the torque following
+        the arm [N·m]; empty where no encoder is known.
     motion
         What takes energy out, near the worst point, if one was found.
     certificate
@@ -96,7 +107,10 @@ class Workspace:
     data: xarray.Dataset
     additions: tuple[float, ...]
     addition_to_all: float
-    largest_stiffness: float
+    least_additions: tuple[float, ...]
+    stiffness_factor: float
+    largest_stiffness: float | None
+    encoder_friction: tuple[float, ...]
     motion: ArmMotion | None
     certificate: Certificate | None = None
 
@@ -122,7 +136,7 @@ def workspace(
     rate: RealLike,
     delay: RealLike = 0,
     points: int = 100,
-    torque_held_up_to: float | None = None,
+    torque_held_up_to: float | Sequence[float] | None = None,
 ) -> Workspace:
     """Map over the workspace whether an arm renders a wall passively.
 
@@ -131,7 +145,8 @@ def workspace(
     arm
         `zwidth.arms.built_in`, `PlanarChain`, `LeggedArm`, or `read_arm` of a description.
     wall
-        `Wall`, equally stiff in every direction (or a plane wall with any normal), or `MatrixWall`.
+        `Wall`, equally stiff in every direction (or a plane wall with any normal), or `MatrixWall`; of an
+        arm in pose `MatrixWall.in_pose`.
     rate
         Samples per second, > 0 [Hz], or a text such as "1 kHz".
     delay
@@ -141,7 +156,8 @@ def workspace(
     torque_held_up_to
         None: the force is held, and the torque J(q)ᵀF follows the arm within each period, as Miller and
         others assume. A force ≥ 0 [N]: the torque J(q_k)ᵀF is held, and the wall renders no more than
-        this; for chains and descriptions, whose curvature is bounded, and without delay.
+        this; for chains and descriptions, whose curvature is bounded, and without delay. In pose a force
+        and a moment [N], [N·m].
 
     Raises
     ------
@@ -154,13 +170,15 @@ def workspace(
         raise InputError(f"the first argument is an arm, got {type(arm).__name__}")
     if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= 1000:
         raise InputError(f"points must be a whole number from 2 to 1000, got {points!r}")
+    fits(arm, wall)
     sites = arm.sites(points)
     n, m = sites.jacobians.shape[-2:]
     reached = _reached(sites)
     if not reached.any():
         raise InputError(f"{arm.name} reaches no point of its region, {sites.region}; choose another one")
     need = wall_need(wall, period, samples, n)
-    damping = as_matrix(arm.damping) - _held_torque(arm, period, samples, torque_held_up_to) * np.eye(m)
+    held = held_torque_damping(arm, period, samples, torque_held_up_to)
+    damping = as_matrix(arm.damping) - held * np.eye(m)
     if m > n and np.linalg.eigvalsh(damping)[0] <= 0:
         raise InputError(
             "an arm with more joints than coordinates needs damping in each of them, "
@@ -168,16 +186,12 @@ def workspace(
         )
     parts = _refinement(sites, points)
     fine = sites if parts == 1 else arm.sites(points * parts)
-    account = _account(damping, need.stiffness_share + need.bound, fine)
+    account = _account(damping, need.stiffness_share + need.bound, fine, arm.turns)
     columns = columns_of(arm, damping, wall, need, sites.jacobians[reached])
-    stiffest = columns["largest_stiffness"][0]
-    if parts > 1:
-        between = columns_of(arm, damping, wall, need, fine.jacobians[account.reached])["largest_stiffness"][
-            0
-        ]
-        stiffest = np.append(stiffest, between)
-    held = torque_held_up_to is not None
-    motion = _motion(arm, wall, period, samples, fine.joints[account.reached], account.margins, held)
+    factors = stiffness_factors(damping, need, fine.jacobians[account.reached])
+    factor = min(columns["stiffness_factor"][0].min(), factors.min())
+    at = fine.joints[account.reached]
+    motion = _motion(arm, wall, period, samples, at, account.margins, torque_held_up_to is not None)
     whole = np.zeros(account.reached.shape, dtype=bool)
     whole[account.reached] = account.proved
     certificate, words = None, ""
@@ -186,19 +200,26 @@ def workspace(
     if certificate is not None:
         whole[...] = True
         account = account._replace(counted=np.eye(m)[None])  # nothing is missing
+    friction: Array = np.zeros(0)
+    if any(arm.resolution):
+        friction = covering_friction(arm, wall, period, fine)
     proof = "theorem" if certificate is None else "passive"
     outcome = "active" if motion is not None else proof if whole.all() else "undecided"
     return Workspace(
         outcome=outcome,
-        claim=_claim(outcome, fine, account, arm, torque_held_up_to, words),
+        claim=_claim(outcome, fine, account, arm, torque_held_up_to, words)
+        + _encoders(arm, friction, torque_held_up_to is not None),
         arm=arm,
         wall=wall,
         sample_period=period,
         delay_samples=samples,
-        data=dataset(sites, reached, _all_in_blocks(whole, reached.shape), columns),
+        data=dataset(arm, sites, reached, _all_in_blocks(whole, reached.shape), columns),
         additions=tuple(float(v) for v in single_additions(account.counted).max(axis=0)),
         addition_to_all=max(0.0, -float(np.linalg.eigvalsh(account.counted)[:, 0].min())),
-        largest_stiffness=float(stiffest.min()),
+        least_additions=tuple(least_additions(account.counted)[0].tolist()),
+        stiffness_factor=float(factor),
+        largest_stiffness=None if arm.turns else float(scaled_stiffness(wall, factor, n)),
+        encoder_friction=tuple(friction.tolist()),
         motion=motion,
         certificate=certificate,
     )
@@ -213,12 +234,15 @@ class _Account(NamedTuple):
     counted: Array  # δ_m − JᵀRJ, less what it may lose inside the cell
 
 
-def _account(damping: Array, need: Array, sites: Sites) -> _Account:
+def _account(damping: Array, need: Array, sites: Sites, turns: int) -> _Account:
     reached = _reached(sites)
     jacobians = sites.jacobians[reached]
     lacking = surplus(jacobians, damping, need)
     margins = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
-    loss = _loss(need, jacobians, sites.change[reached])
+    if sites.parts is None:
+        loss = _loss(need, jacobians, sites.change[reached])
+    else:
+        loss = loss_in_pose(need, jacobians, sites.parts[reached], turns)
     rounding = _ROUNDING * (float(np.abs(damping).max()) + float(np.abs(lacking).max()))
     taken = np.where(np.isfinite(loss), loss, 0.0)
     taken = taken + 10 * rounding  # damping that is added adds to the rounding too
@@ -257,20 +281,6 @@ def _timing(rate: float, delay: float) -> tuple[float, int]:
     return 1 / rate, samples
 
 
-def _held_torque(arm: Arm, period: float, samples: int, force: float | None) -> float:
-    """What a held torque asks of every joint [N·m·s/rad]."""
-    if force is None:
-        return 0.0
-    if not (isinstance(force, (int, float)) and 0 <= force < np.inf):
-        raise InputError(f"torque_held_up_to is the largest force of the wall, ≥ 0 N; got {force!r}")
-    if arm.curvature is None or samples:
-        raise InputError(
-            "a bound for held torques is known for chains and descriptions without delay; "
-            "compute the torque several times in each period, and leave torque_held_up_to out"
-        )
-    return sampled_jacobian_damping(arm.curvature, force, period)
-
-
 def _loss(need: Array, jacobians: Array, change: Array) -> Array:
     """How far the smallest eigenvalue may fall inside a cell."""
     size = np.linalg.norm(jacobians, ord=2, axis=(-2, -1))
@@ -296,7 +306,14 @@ def _motion(
     return None
 
 
-def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm, held: float | None, without: str) -> str:
+def _claim(
+    outcome: str,
+    sites: Sites,
+    account: _Account,
+    arm: Arm,
+    held: float | Sequence[float] | None,
+    without: str,
+) -> str:
     """One sentence on what holds, others on what is not counted."""
     part = 100 * account.proved.mean()
     if outcome == "passive":
@@ -318,9 +335,17 @@ def _claim(outcome: str, sites: Sites, account: _Account, arm: Arm, held: float 
         text += f" There is no certificate: {without}."
     if not account.reached.all():
         text += " Parts of the region are out of reach; a smaller region may be proved."
-    text += (
+    return text + (
         " The torque is taken to follow the arm within a period."
         if held is None
-        else f" The torque is held over a period, with wall forces up to {held:g} N."
+        else f" The torque is held over a period, with wall forces up to {in_words(held)}."
     )
-    return text + (" Encoder steps are not counted." if any(arm.resolution) else "")
+
+
+def _encoders(arm: Arm, friction: Array, held: bool) -> str:
+    if not friction.size:
+        return ""
+    own = arm.coulomb_friction or (0.0,) * len(friction)
+    if held or not (friction <= own).all():
+        return " Encoder steps are not counted."
+    return " Encoder steps are counted: Coulomb friction covers them, by a proof on paper."

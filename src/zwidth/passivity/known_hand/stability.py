@@ -94,9 +94,9 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
     """Whether device, known hand and wall come to rest in sustained contact.
 
     ``(m + m_h) ẍ + (b + c) ẋ + k x = −f``,  f = H(z) x sampled, delayed and held.  Decided exactly: in
-    rational arithmetic without spring and damper, else in balls that hold the true coefficients.  A passive
-    loop is stable with every passive hand; this one answers for loops that are not passive.  What is said has
-    been confirmed by the independent checker.
+    rational arithmetic without spring and damper, else in balls that hold the true coefficients.  What is
+    said has been confirmed by the independent checker, and of intervals proved by it alone.  A passive loop
+    is stable with every passive hand; this one answers for loops that are not passive.
 
     Parameters
     ----------
