@@ -370,3 +370,10 @@ def test_a_wrist_that_no_hand_can_hold_is_not_refuted(tmp_path: Path) -> None:
     wall, arm = zw.MatrixWall.in_pose(0, 1), read_arm(path, pose=True, hold={"j2": 0.1, "j3": 0.1})
     limit = _space(arm, wall, 10).stiffness_factor
     assert _space(arm, _times(wall, 1.5 * limit), 10).outcome == "undecided"
+
+
+def test_shows_itself_without_a_stiffness_in_one_unit(tmp_path: Path) -> None:
+    """In a console: a factor in the place of N/m."""
+    space = _space(_arm(tmp_path, 3), zw.MatrixWall.in_pose(10, 0.1), points=5)
+    assert "times this one" in repr(space)
+    assert len(repr(space)) < 600

@@ -1,41 +1,33 @@
 """Where in its workspace an arm renders a wall passively, and what to change where it does not.
 
-At each middle of a cell: does δ_m ⪰ Jᵀ R J hold, with what margin, in which direction does it fail?
-Between the middles J changes by no more than η, so the smallest eigenvalue falls by no more than
-
-    ‖R‖ (2 ‖J‖ η + η²)
-
-and a cell with more margin than that is proved as a whole.  The loop is passive for every motion
-that stays in proved cells.
+The loop is passive for every motion that stays in cells in which δ_m ⪰ Jᵀ R J is proved.  Where it does
+not hold: in which direction, what would help, and a motion that takes energy out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.device.arm import Arm, Sites
+from zwidth.device.arm import Arm
 from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
+from zwidth.passivity.arms.account import account_of, all_in_blocks, reached_cells, refinement
 from zwidth.passivity.arms.certificate import arm_certificate
+from zwidth.passivity.arms.claim import claim, encoders
 from zwidth.passivity.arms.encoders import covering_friction
-from zwidth.passivity.arms.held import held_torque_damping, in_words
-from zwidth.passivity.arms.joints import (
-    as_matrix,
-    single_additions,
-    surplus,
-)
+from zwidth.passivity.arms.held import held_torque_damping
+from zwidth.passivity.arms.joints import as_matrix, single_additions
 from zwidth.passivity.arms.least import least_additions
 from zwidth.passivity.arms.mapped import columns_of, dataset, scaled_stiffness, stiffness_factors
 from zwidth.passivity.arms.need import wall_need
-from zwidth.passivity.arms.pose import fits, loss_in_pose
+from zwidth.passivity.arms.pose import fits
 from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
 from zwidth.passivity.arms.report import workspace_document
 from zwidth.passivity.certificate import Certificate
@@ -47,12 +39,7 @@ if TYPE_CHECKING:
     import xarray
 
 Array = npt.NDArray[np.float64]
-Truth = npt.NDArray[np.bool_]
 
-_ROUNDING = 1e-12
-"""Of the damping: how far rounding may move an eigenvalue."""
-_FINE = 200
-"""Cells along each side on which the proof is made, at least, in one or two coordinates."""
 _TRIES = 20
 """Points from which a motion that takes energy out is sought, the worst first."""
 
@@ -115,10 +102,10 @@ class Workspace:
     certificate: Certificate | None = None
 
     def __repr__(self) -> str:
-        return (
-            f"<Workspace {self.outcome}: {self.claim} "
-            f"Stiffest wall at every point: {self.largest_stiffness:.6g} N/m>"
-        )
+        stiffest = f"{self.stiffness_factor:.6g} times this one"
+        if self.largest_stiffness is not None:
+            stiffest = f"{self.largest_stiffness:.6g} N/m"
+        return f"<Workspace {self.outcome}: {self.claim} Stiffest wall at every point: {stiffest}>"
 
     def to_dict(self) -> dict[str, Any]:
         """The verdict with its evidence as plain data; the map is in `data`."""
@@ -173,7 +160,7 @@ def workspace(
     fits(arm, wall)
     sites = arm.sites(points)
     n, m = sites.jacobians.shape[-2:]
-    reached = _reached(sites)
+    reached = reached_cells(sites)
     if not reached.any():
         raise InputError(f"{arm.name} reaches no point of its region, {sites.region}; choose another one")
     need = wall_need(wall, period, samples, n)
@@ -184,9 +171,9 @@ def workspace(
             "an arm with more joints than coordinates needs damping in each of them, "
             "beyond what held torques ask for"
         )
-    parts = _refinement(sites, points)
+    parts = refinement(sites, points)
     fine = sites if parts == 1 else arm.sites(points * parts)
-    account = _account(damping, need.stiffness_share + need.bound, fine, arm.turns)
+    account = account_of(damping, need.stiffness_share + need.bound, fine, arm.turns)
     columns = columns_of(arm, damping, wall, need, sites.jacobians[reached])
     factors = stiffness_factors(damping, need, fine.jacobians[account.reached])
     factor = min(columns["stiffness_factor"][0].min(), factors.min())
@@ -207,13 +194,13 @@ def workspace(
     outcome = "active" if motion is not None else proof if whole.all() else "undecided"
     return Workspace(
         outcome=outcome,
-        claim=_claim(outcome, fine, account, arm, torque_held_up_to, words)
-        + _encoders(arm, friction, torque_held_up_to is not None),
+        claim=claim(outcome, fine, account, arm, torque_held_up_to, words)
+        + encoders(arm, friction, torque_held_up_to is not None),
         arm=arm,
         wall=wall,
         sample_period=period,
         delay_samples=samples,
-        data=dataset(arm, sites, reached, _all_in_blocks(whole, reached.shape), columns),
+        data=dataset(arm, sites, reached, all_in_blocks(whole, reached.shape), columns),
         additions=tuple(float(v) for v in single_additions(account.counted).max(axis=0)),
         addition_to_all=max(0.0, -float(np.linalg.eigvalsh(account.counted)[:, 0].min())),
         least_additions=tuple(least_additions(account.counted)[0].tolist()),
@@ -223,48 +210,6 @@ def workspace(
         motion=motion,
         certificate=certificate,
     )
-
-
-class _Account(NamedTuple):
-    """What the cells of a fine grid show."""
-
-    reached: Truth
-    margins: Array
-    proved: Truth
-    counted: Array  # δ_m − JᵀRJ, less what it may lose inside the cell
-
-
-def _account(damping: Array, need: Array, sites: Sites, turns: int) -> _Account:
-    reached = _reached(sites)
-    jacobians = sites.jacobians[reached]
-    lacking = surplus(jacobians, damping, need)
-    margins = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
-    if sites.parts is None:
-        loss = _loss(need, jacobians, sites.change[reached])
-    else:
-        loss = loss_in_pose(need, jacobians, sites.parts[reached], turns)
-    rounding = _ROUNDING * (float(np.abs(damping).max()) + float(np.abs(lacking).max()))
-    taken = np.where(np.isfinite(loss), loss, 0.0)
-    taken = taken + 10 * rounding  # damping that is added adds to the rounding too
-    counted = np.asarray(lacking - taken[:, None, None] * np.eye(lacking.shape[-1]))
-    return _Account(reached, margins, margins > loss + rounding, counted)
-
-
-def _reached(sites: Sites) -> Truth:
-    return np.asarray(np.isfinite(sites.jacobians).all(axis=(-1, -2)))
-
-
-def _refinement(sites: Sites, points: int) -> int:
-    """Into how many parts each side of a cell is cut for the proof."""
-    return max(1, ceil(_FINE / points)) if len(sites.axes) < 3 else 1
-
-
-def _all_in_blocks(fine: Truth, shape: tuple[int, ...]) -> Truth:
-    """True where every part of a cell is."""
-    for axis, count in enumerate(shape):
-        split = (*fine.shape[:axis], count, -1, *fine.shape[axis + 1 :])
-        fine = np.asarray(fine.reshape(split).all(axis=axis + 1))
-    return fine
 
 
 def _timing(rate: float, delay: float) -> tuple[float, int]:
@@ -279,13 +224,6 @@ def _timing(rate: float, delay: float) -> tuple[float, int]:
             "round it up: that is safe for springs"
         )
     return 1 / rate, samples
-
-
-def _loss(need: Array, jacobians: Array, change: Array) -> Array:
-    """How far the smallest eigenvalue may fall inside a cell."""
-    size = np.linalg.norm(jacobians, ord=2, axis=(-2, -1))
-    with np.errstate(invalid="ignore"):
-        return np.asarray(np.linalg.norm(need, 2) * (2 * size * change + change**2))
 
 
 def _motion(
@@ -304,48 +242,3 @@ def _motion(
         if motion is not None:
             return motion
     return None
-
-
-def _claim(
-    outcome: str,
-    sites: Sites,
-    account: _Account,
-    arm: Arm,
-    held: float | Sequence[float] | None,
-    without: str,
-) -> str:
-    """One sentence on what holds, others on what is not counted."""
-    part = 100 * account.proved.mean()
-    if outcome == "passive":
-        text = f"No motion of the hand takes energy out with {sites.region}, proved."
-    elif outcome == "theorem":
-        text = f"No motion of the hand takes energy out with {sites.region}, by a proof on paper."
-    elif outcome == "active":
-        text = "At one point of this map a motion of the hand takes energy out."
-    elif (account.margins >= 0).all():
-        text = (
-            f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
-        )
-    else:
-        text = (
-            f"{part:.4g} % of the region are proved; where the condition fails, no motion was found "
-            "that takes energy out."
-        )
-    if outcome in ("theorem", "undecided") and without:
-        text += f" There is no certificate: {without}."
-    if not account.reached.all():
-        text += " Parts of the region are out of reach; a smaller region may be proved."
-    return text + (
-        " The torque is taken to follow the arm within a period."
-        if held is None
-        else f" The torque is held over a period, with wall forces up to {in_words(held)}."
-    )
-
-
-def _encoders(arm: Arm, friction: Array, held: bool) -> str:
-    if not friction.size:
-        return ""
-    own = arm.coulomb_friction or (0.0,) * len(friction)
-    if held or not (friction <= own).all():
-        return " Encoder steps are not counted."
-    return " Encoder steps are counted: Coulomb friction covers them, by a proof on paper."
