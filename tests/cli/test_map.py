@@ -133,3 +133,11 @@ def test_bad_input_is_one_line(
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+
+
+def test_a_region_without_walls_has_no_largest_one(capsys: pytest.CaptureFixture[str]) -> None:
+    """None, not 0 N/m."""
+    arguments = ("--stiffness", "400:600", "--damping", "0:1", "--cells", "5x5", "--hands", "finger")
+    assert main(("map", "haptic-paddle", *arguments)) == 0
+    (line,) = [row for row in capsys.readouterr().out.splitlines() if row.startswith("passive, every hand")]
+    assert line.split()[-2:] == ["none", "0.0%"]

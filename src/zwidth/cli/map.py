@@ -182,9 +182,9 @@ def _report(found: xr.Dataset) -> str:
     lines = [f"{'region':<28}{'largest K [' + unit + ']':>24}{'area of the map':>18}"]
     cells = found["passive"].size
     for name in found["region"].values:
-        one = found.sel(region=name)
-        share = int(found[str(name)].values.sum()) / cells
-        lines.append(f"{_region(str(name), found):<28}{float(one['largest_stiffness']):>24.6g}{share:>18.1%}")
+        count = int(found[str(name)].values.sum())
+        largest = f"{float(found['largest_stiffness'].sel(region=name)):.6g}" if count else "none"
+        lines.append(f"{_region(str(name), found):<28}{largest:>24}{count / cells:>18.1%}")
     free = [
         shown(float(found[key]), found[key].attrs["units"])
         for key in ("free_mass", "free_damping", "free_friction")
