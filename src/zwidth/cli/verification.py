@@ -22,6 +22,15 @@ from zwidth.quantity.glossary import GLOSSARY
 _OF_A_KNOWN_HAND = {"absolute stability", "stability", "instability", "vibration"}
 """Kinds of proofs that say of one hand whether it comes to rest, and nothing of passivity."""
 
+_OF_A_PORT = {"positive real", "positive real matrix", "extraction", "matrix extraction"}
+"""Kinds that say of a port on which side of a level its index lies."""
+
+_BOUNDED = {"storage", "row storage"}
+"""Storage functions: they speak of the hands on their board only."""
+
+_CONTACT_KEPT = {"linear", "quantized", "delays"}
+"""Kinds that take a one-sided law for the line that it is inside."""
+
 _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 """A document that claims nothing of hands beyond its bounds."""
 
@@ -47,8 +56,10 @@ def verifications(document: object) -> list[Part]:
     found = [Part(part, verify_document(part)) for part in parts]
     if outcome == "passive" and not bounded and all(map(_is_bounded, parts)):
         return [_misfit(p, outcome, "covers hands within bounds only") for p in found]
-    if outcome in ("passive", "active") and any(_kinds(part) & _OF_A_KNOWN_HAND for part in parts):
-        return [_misfit(p, outcome, "is of a hand that is known") for p in found]
+    if outcome in ("passive", "active"):
+        for kinds, what in ((_OF_A_KNOWN_HAND, "is of a hand that is known"), (_OF_A_PORT, "is of a port")):
+            if any(_kinds(part) & kinds for part in parts):
+                return [_misfit(p, outcome, what) for p in found]
     misfit = {"passive": "is a motion that extracts energy", "active": "is a proof of passivity"}
     return [
         _misfit(p, outcome, misfit[outcome])
@@ -68,8 +79,7 @@ def _misfit(part: Part, outcome: str, what: str) -> Part:
 
 
 def _is_bounded(part: Mapping[str, object]) -> bool:
-    """True for a storage function: it speaks of the hands on its board only."""
-    return part.get("kind") in ("storage", "row storage")
+    return bool(_kinds(part) & _BOUNDED)
 
 
 def print_verifications(parts: Sequence[Part]) -> None:
@@ -94,24 +104,44 @@ def _claim(part: Part) -> str:
     reason = plain(part.verification.reason, 400)
     if not part.verification.valid or part.verification.energy is not None:
         return reason
-    if _is_bounded(part.evidence):
-        return f"No hand within these bounds takes energy out of the loop below, proved: {reason}"
-    if {"positive real", "positive real matrix"} & _kinds(part.evidence):
-        return f"Of the port below, proved: {reason}"
-    if _kinds(part.evidence) & _OF_A_KNOWN_HAND:
-        return f"Proved: {reason}"
-    if "active hand" in _kinds(part.evidence):
-        return f"No hand of this activity goes on gaining energy from the loop below, proved: {reason}"
-    if "arm" in _kinds(part.evidence):
-        return f"The arm below is passive, proved: {reason}"
-    return f"The loop below is passive, proved: {reason}"
+    heads = {_head(single) for single in _singles(part.evidence)}
+    return f"{heads.pop() if len(heads) == 1 else 'Proved'}: {reason}"
+
+
+def _head(single: Mapping[str, object]) -> str:
+    """What a proof of this kind shows."""
+    kind, kept = single.get("kind"), " as long as contact is kept" if _keeps_contact(single) else ""
+    if kind in _BOUNDED:
+        return "No hand within these bounds takes energy out of the loop below, proved"
+    if kind in _OF_A_PORT:
+        return "Of the port below, proved"
+    if kind in _OF_A_KNOWN_HAND:
+        return "Proved"
+    if kind == "active hand":
+        return f"No hand of this activity goes on gaining energy from the loop below{kept}, proved"
+    return f"The {'arm' if kind == 'arm' else 'loop'} below is passive{kept}, proved"
+
+
+def _keeps_contact(single: Mapping[str, object]) -> bool:
+    """True where a one-sided law is covered only while the hand stays inside."""
+    loop, proof = single.get("loop"), single.get("proof")
+    if not isinstance(loop, Mapping) or loop.get("unilateral") is not True:
+        return False
+    if single.get("kind") == "active hand":
+        reduced = proof.get("reduced") if isinstance(proof, Mapping) else None
+        return not isinstance(reduced, Mapping) or reduced.get("kind") in _CONTACT_KEPT
+    return single.get("kind") in _CONTACT_KEPT
+
+
+def _singles(evidence: Mapping[str, object]) -> list[Mapping[str, object]]:
+    """A proof, or those of its corners."""
+    corners = evidence.get("corners") if evidence.get("kind") == "corners" else None
+    parts = corners if isinstance(corners, list) else [evidence]
+    return [part for part in parts if isinstance(part, Mapping)]
 
 
 def _kinds(evidence: Mapping[str, object]) -> set[object]:
-    """The kind of a proof, or those of its corners."""
-    corners = evidence.get("corners")
-    parts = corners if isinstance(corners, list) else [evidence]
-    return {str(part.get("kind")) for part in parts if isinstance(part, Mapping)}
+    return {str(part.get("kind")) for part in _singles(evidence)}
 
 
 def _rows(part: Part) -> Iterator[tuple[str, str]]:
@@ -120,13 +150,12 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
         "matrix extraction",
     ):
         yield "energy extracted", _joules(part.verification.energy)
-    corners = part.evidence.get("corners")
-    shown_part: object = part.evidence
-    if isinstance(corners, list) and corners:
-        yield "corner", f"1 of {len(corners)}, each with a proof of its own"
-        shown_part = corners[0]
-    if not isinstance(shown_part, Mapping):
+    singles = _singles(part.evidence)
+    if part.evidence.get("kind") == "corners":
+        yield "corner", f"1 of {len(singles)}, each with a proof of its own"
+    if not singles:
         return
+    shown_part = singles[0]
     if "kind" in shown_part:
         yield "kind", plain(str(shown_part["kind"]))
     known = _known_keys()

@@ -13,7 +13,7 @@ import pytest
 import zwidth as zw
 from zwidth.passivity import checker
 from zwidth.passivity.active_hand.band import band_of
-from zwidth.passivity.checker.active_hand import _cosine_from_below
+from zwidth.passivity.checker.active_hand import _least_cosine
 
 PADDLE = zw.Device(mass=0.036, damping=0.15, rate=1000, coulomb_friction=0.12, resolution=22.4e-6)
 
@@ -96,4 +96,13 @@ def test_ends_of_the_band(hertz: float) -> None:
     angle = 2 * np.pi * hertz / 1000
     assert 0 <= float(band.angle) - angle < 1e-15
     assert -2e-15 < float(band.cosine) - np.cos(angle) <= 1e-16
-    assert band.cosine <= max(Fraction(-1), _cosine_from_below(band.angle))
+    assert band.cosine <= _least_cosine(band.angle)
+
+
+@pytest.mark.parametrize("turn", ["3.1416", "4", "6.2203", "6.2831853", "12.5"])
+def test_an_angle_beyond_half_a_turn_covers_all(turn: str) -> None:
+    """cos rises again there: a narrow band at its cosine is not all that is below the angle."""
+    kept, _ = proofs(zw.Wall(100, 0.05))
+    wide = changed(changed(kept, "below_Hz", "400"), "proof.angle", turn)
+    assert not checker.verify(wide).valid
+    assert _least_cosine(Fraction(turn)) == -1

@@ -19,7 +19,7 @@ from math import factorial
 from typing import Any, NamedTuple
 
 from .proofs import _inside_unit_circle
-from .reading import Invalid, get, number, numbers
+from .reading import Invalid, common_scale, get, number, numbers
 
 MOST_ORDER = 300
 TERMS = 160
@@ -43,6 +43,8 @@ class Plant(NamedTuple):
 
 def read_plant(document: Mapping[str, Any]) -> Plant:
     if "plant" in document:
+        if "loop" in document:
+            raise Invalid("the document speaks of a plant and of a loop: only one can be meant")
         return _given(get(document, "plant"))
     return _touched(get(document, "loop"))
 
@@ -51,6 +53,7 @@ def _given(plant: Mapping[str, Any]) -> Plant:
     top, bottom = (numbers(get(plant, name), MOST_ORDER) for name in ("numerator", "denominator"))
     if not top or not bottom or bottom[0] == 0 or len(top) >= len(bottom):
         raise Invalid("G(z) must be strictly proper")
+    common_scale((*top, *bottom))
     if not _inside_unit_circle(bottom):
         raise Invalid("G(z) has a pole outside or on the unit circle")
     return Plant(_known(top[::-1]), _known(bottom[::-1]))

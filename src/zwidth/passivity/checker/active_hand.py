@@ -15,8 +15,10 @@ from .contact_proof import contact
 from .proofs import PROOFS, _criterion, _friction, _linear_part, _positivity
 from .reading import Invalid, Loop, get, number, read_loop
 
+MOST_BITS_OF_ANGLE = 4000  # high powers of it are taken
 _PI = Fraction(31415926535897932385, 10**19)
-"""Above π."""
+"""Above π, by less than its last digit."""
+_LESS_THAN_PI = _PI - Fraction(1, 10**19)
 
 
 def active_hand(document: Mapping[str, Any]) -> str:
@@ -61,7 +63,9 @@ def _in_band(document: Mapping[str, Any], p: Loop, activity: Fraction, proof: Ma
     if below <= 0 or 2 * below * p.period > 1:
         raise Invalid("the band must end above 0 and at most at half the rate")
     angle, cosine = number(get(proof, "angle")), number(get(proof, "cosine"))
-    if angle < 2 * _PI * below * p.period or not -1 <= cosine <= max(Fraction(-1), _cosine_from_below(angle)):
+    if max(x.denominator for x in (angle, cosine)).bit_length() > MOST_BITS_OF_ANGLE or angle > 4:
+        raise Invalid("the angle of the band is too large, or has too many digits")
+    if angle < 2 * _PI * below * p.period or not -1 <= cosine <= _least_cosine(angle):
         raise Invalid("the band of the proof is narrower than what is said")
     inside = p._replace(damping=_inside(p.damping, activity, angle))
     _positivity(get(proof, "in_band"), _from(_criterion(inside), cosine))
@@ -75,6 +79,11 @@ def _inside(b: Fraction, a: Fraction, angle: Fraction) -> Fraction:
     if rest <= 0:
         raise Invalid("no damping of a wall is enough for this activity in so wide a band")
     return b * (b - a) / rest
+
+
+def _least_cosine(angle: Fraction) -> Fraction:
+    """Below cos x for every x from 0 to an angle: beyond π the cosine rises again."""
+    return max(Fraction(-1), _cosine_from_below(angle)) if angle < _LESS_THAN_PI else Fraction(-1)
 
 
 def _cosine_from_below(angle: Fraction) -> Fraction:

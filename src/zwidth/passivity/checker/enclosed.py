@@ -79,7 +79,12 @@ class Enclosed:
 
 def known(value: Fraction, bits: int) -> Enclosed:
     """A rational number."""
-    middle, rest = divmod(value.numerator << bits, value.denominator)
+    return quotient(value.numerator, value.denominator, bits)
+
+
+def quotient(top: int, bottom: int, bits: int) -> Enclosed:
+    """top/bottom, bottom ≠ 0: large whole numbers need no common factor taken out."""
+    middle, rest = divmod(top << bits, bottom)
     return Enclosed(bits, middle, (), 1 if rest else 0)
 
 

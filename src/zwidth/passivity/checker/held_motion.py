@@ -43,6 +43,11 @@ class Motion(NamedTuple):
         return self.damping[1] == self.stiffness[1] == 0
 
     @property
+    def norm(self) -> Fraction:
+        """The largest η + δ."""
+        return (self.stiffness[1] * self.period + self.damping[1]) * self.period * self.inverse_mass[1]
+
+    @property
     def middle(self) -> Motion:
         """One of them, itself where it is certain."""
         inverse, damping, stiffness = (((a + b) / 2,) * 2 for a, b in self[:3])

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 from .port import MOST_WORK, _horner, _in_left_half_plane, _inside, _trimmed
 from .proofs import _multiply, _strictly_positive, _sum
-from .reading import MOST_COEFFICIENTS, Invalid, get, integer, number, numbers
+from .reading import Invalid, common_scale, get, integer, number, numbers
 
 MOST_AXES = 12
 MOST_ORDER = 200
@@ -55,6 +55,7 @@ def read_ports(document: Mapping[str, Any]) -> _Ports:
     order = max(longest, len(d)) - 1
     if order > MOST_ORDER:
         raise Invalid(f"the order is {order}, more than {MOST_ORDER}")
+    common_scale((*d, *(c for row in n for p in row for c in p)))
     diagonal: list[list[Polynomial]] = [[d if i == j else [] for j in range(len(n))] for i in range(len(n))]
     sides = (n, diagonal) if which == "input" else (diagonal, n)
     return _Ports(*sides, d, time == "continuous", number(get(document, "level")), order, len(n))
@@ -88,10 +89,10 @@ def _nonnegative(p: _Ports, minors: Any) -> None:
     degree = max(
         p.axes * p.order, *(len(q) + power * p.order for q, power in zip(claimed, powers, strict=True))
     )
-    if degree > MOST_POINTS or degree * p.axes**3 * p.order > MOST_WORK:
+    whole = _whole(p)
+    if degree > MOST_POINTS or degree * p.axes**3 * p.order * (1 + whole.bits / 1000) > MOST_WORK:
         raise Invalid("the minors have too high a degree")
     ratios: list[Fraction | None] = [None] * p.axes
-    whole = _whole(p)
     for step in range(degree + 1):
         c, weight, found = _minors_at(p, whole, Fraction(step + 1, degree // 2 + 2))
         for k, (minor, power, q) in enumerate(zip(found, powers, claimed, strict=True)):
@@ -102,18 +103,24 @@ def _nonnegative(p: _Ports, minors: Any) -> None:
                 raise Invalid("the factors do not multiply to the sum of the principal minors")
 
 
-def _product(proof: Mapping[str, Any]) -> Polynomial:
-    """(1 − c)ⁱ (1 + c)ʲ s² g, with the sign of g confirmed."""
+def _product(proof: Mapping[str, Any]) -> list[int]:
+    """(1 − c)ⁱ (1 + c)ʲ s² g times a positive number, with the sign of g confirmed."""
     at_one, at_minus_one = integer(get(proof, "at_one")), integer(get(proof, "at_minus_one"))
     square, g = numbers(get(proof, "square")), numbers(get(proof, "factor"))
-    if not g or at_one + at_minus_one > MOST_COEFFICIENTS:
-        raise Invalid("the factors of a sum of minors are missing")
+    if not g or at_one + at_minus_one + 2 * len(square) + len(g) > MOST_POINTS:
+        raise Invalid("the factors of a sum of minors are missing, or too long")
     _strictly_positive(g)
-    product = _multiply(_multiply(square, square), g) if square else []
-    for times, root in ((at_one, Fraction(-1)), (at_minus_one, Fraction(1))):
+    side, rest = (_in_whole_numbers(q) for q in (square, g))
+    product = _multiply(_multiply(side, side), rest) if side else []
+    for times, root in ((at_one, -1), (at_minus_one, 1)):
         for _ in range(times):
-            product = _multiply(product, [Fraction(1), root]) if product else product
+            product = _multiply(product, [1, root]) if product else product
     return product
+
+
+def _in_whole_numbers(q: Polynomial) -> list[int]:
+    scale = common_scale(q)
+    return [int(c * scale) for c in q]
 
 
 class _Whole(NamedTuple):
@@ -123,6 +130,12 @@ class _Whole(NamedTuple):
     inputs: list[list[list[int]]]
     outputs: list[list[list[int]]]
     denominator: list[int]
+
+    @property
+    def bits(self) -> int:
+        """Of its largest coefficient."""
+        sides = (self.inputs, self.outputs)
+        return max(c.bit_length() for side in sides for row in side for q in row for c in q)
 
 
 def _whole(p: _Ports) -> _Whole:
@@ -204,6 +217,7 @@ def _stable(p: _Ports, offset: Fraction, resolvent: Mapping[str, Any]) -> None:
     rows = [[_trimmed(q) for q in row] for row in _square(get(resolvent, "numerators"))]
     if not pi or len(rows) != p.axes or max(len(q) for row in rows for q in row) > len(pi):
         raise Invalid("the resolvent must be a proper matrix of the port's size")
+    common_scale((*pi, *(c for row in rows for q in row for c in q)))
     share = offset - p.level
     m = [
         [_sum(n, [share * c for c in d]) for n, d in zip(*pair, strict=True)]

@@ -8,9 +8,9 @@ from math import comb, lcm, pi
 from typing import Any
 
 from .multiport import Polynomial, _Ports, read_ports
-from .port import MOST_POWER, MOST_WORK, _horner, _operated, _part, _short
+from .port import MOST_POWER, MOST_WORK, _horner, _operated, _part, _short, bounded_lines, bounded_terms
 from .proofs import _multiply, _sum
-from .reading import MOST_COEFFICIENTS, MOST_SAMPLES, Invalid, get, integer, number, numbers
+from .reading import MOST_COEFFICIENTS, MOST_SAMPLES, Invalid, common_scale, get, integer, number, numbers
 
 
 def matrix_extraction(document: Mapping[str, Any]) -> tuple[str, Fraction]:
@@ -48,6 +48,7 @@ def _burst(p: _Ports, motion: Mapping[str, Any]) -> Fraction:
         raise Invalid("a burst needs Ω > 0, more cycles than its power, and two numbers for every axis")
     if 2 * power < p.order:
         raise Invalid("the burst is not smooth enough to begin and end at rest")
+    bounded_lines(p.order, (cycles + power) * step, power, p.axes**2)
     total = Fraction(0)
     for j in range(-power, power + 1):
         u, y = (_line(side, (cycles + j) * step, alpha, beta) for side in (p.inputs, p.outputs))
@@ -80,6 +81,7 @@ def _polynomial(p: _Ports, motion: Mapping[str, Any]) -> Fraction:
     if tau <= 0 or lowest < p.order or lowest > MOST_COEFFICIENTS:
         raise Invalid("the polynomial must last and begin at rest")
     axes = _axes(p, get(motion, "coefficients"), 200)
+    bounded_terms(p.order, tau, lowest + len(axes[0]), p.axes**2)
     latent = [[c / tau**k for k, c in enumerate([*[Fraction(0)] * lowest, *a])] for a in axes]
     total = Fraction(0)
     for first, second in zip(p.inputs, p.outputs, strict=True):
@@ -100,11 +102,11 @@ def _added(signals: Sequence[list[Fraction]]) -> list[Fraction]:
 
 def _sequence(p: _Ports, latent: list[list[Fraction]]) -> Fraction:
     """Σ uᵀy − σ uᵀu with u = D φ, y = N φ, shifted so that no sample is ahead of its time."""
-    length, large = len(latent[0]), lcm(*(x.denominator for phi in latent for x in phi))
+    length, large = len(latent[0]), common_scale(x for phi in latent for x in phi)
     sides = (p.inputs, p.outputs)
     scale = lcm(*(c.denominator for side in sides for row in side for q in row for c in q))
     whole = [[int(x * large) for x in phi] for phi in latent]
-    if length * (p.order + 1) * p.axes**2 > MOST_WORK:
+    if length * (p.order + 1) * p.axes**2 * (1 + large.bit_length() / 1000) > MOST_WORK:
         raise Invalid("the sequence is too long")
     taken = spent = 0
     for first, second in zip(*sides, strict=True):

@@ -12,11 +12,13 @@ from math import comb, lcm, pi
 from typing import Any, NamedTuple
 
 from .proofs import _chebyshev, _hurwitz, _inside_unit_circle, _multiply, _positivity, _square_modulus, _sum
-from .reading import MOST_COEFFICIENTS, MOST_SAMPLES, Invalid, get, integer, number, numbers
+from .reading import MOST_COEFFICIENTS, MOST_SAMPLES, Invalid, common_scale, get, integer, number, numbers
 
 MOST_ORDER = 400
 MOST_POWER = 400
 MOST_WORK = 40_000_000
+MOST_LINES = 2_000_000_000
+MOST_TERMS = 1_000_000_000
 MOST_BITS_OF_TIME = 400  # high powers of frequencies and durations are taken
 
 
@@ -43,6 +45,7 @@ def _read(document: Mapping[str, Any]) -> _Port:
         n, d = d, n
     if not d:
         raise Invalid("G is zero and has no inverse")
+    common_scale((*n, *d))
     order = max(len(n), len(d)) - 1
     if order > MOST_ORDER:
         raise Invalid(f"the order is {order}, more than {MOST_ORDER}")
@@ -145,6 +148,7 @@ def _burst(p: _Port, motion: Mapping[str, Any]) -> Fraction:
         raise Invalid("a burst needs Ω > 0 and more cycles than its power")
     if 2 * power < p.order:
         raise Invalid("the burst is not smooth enough to begin and end at rest")
+    bounded_lines(p.order, (cycles + power) * step, power)
     total = Fraction(0)
     for j in range(-power, power + 1):
         omega = (cycles + j) * step
@@ -159,13 +163,30 @@ def _burst(p: _Port, motion: Mapping[str, Any]) -> Fraction:
     return total / step
 
 
+def bounded_lines(order: int, highest: Fraction, power: int, entries: int = 1) -> None:
+    """A burst has 2k + 1 lines; powers of the frequency of each are taken, for every entry of a matrix."""
+    bits = 16 + _bits(_short(highest))
+    if entries * (2 * power + 1) * (order + 1) ** 2 * bits > MOST_LINES:
+        raise Invalid("the burst has too many lines for so large a port")
+
+
+def bounded_terms(order: int, tau: Fraction, terms: int, entries: int = 1) -> None:
+    """A polynomial of so many terms, powers of τ in each, is differentiated for every entry of a matrix."""
+    if entries * (order + 1) * terms**2 * _bits(tau) > MOST_TERMS:
+        raise Invalid("the polynomial has too many terms for so large a port")
+
+
+def _bits(value: Fraction) -> int:
+    return value.numerator.bit_length() + value.denominator.bit_length()
+
+
 def _short(value: Fraction) -> Fraction:
     if max(value.numerator.bit_length(), value.denominator.bit_length()) > MOST_BITS_OF_TIME:
         raise Invalid("a frequency or a duration has too many digits")
     return value
 
 
-def _horner(ascending: Sequence[Fraction], x: Fraction) -> Fraction:
+def _horner(ascending: Sequence[Fraction | int], x: Fraction) -> Fraction:
     total = Fraction(0)
     for c in reversed(ascending):
         total = total * x + c
@@ -178,6 +199,7 @@ def _polynomial(p: _Port, motion: Mapping[str, Any]) -> Fraction:
     if tau <= 0 or lowest < p.order or lowest > MOST_COEFFICIENTS:
         raise Invalid("the polynomial must last and begin at rest")
     a = numbers(get(motion, "coefficients"), 200)
+    bounded_terms(p.order, tau, lowest + len(a))
     phi = [c / tau**k for k, c in enumerate([*[Fraction(0)] * lowest, *a])]
     u, y = (_operated(side, phi) for side in (p.denominator, p.numerator))
     integrand = _multiply(u, _sum(y, [-p.level * c for c in u]))

@@ -11,6 +11,8 @@ from .reading import MOST_COEFFICIENTS, Invalid, Loop, get, integer, number, num
 
 MOST_SPLITS = 20_000
 MOST_MODES = 60
+MOST_ROUTH = 20_000_000
+"""Order squared times the bits of the largest coefficient of a polynomial whose roots are to be placed."""
 
 _Exact = TypeVar("_Exact", int, Fraction)
 
@@ -264,8 +266,12 @@ def _bernstein(g: list[Fraction]) -> list[int]:
         in_t = _multiply(in_t, [-1, 2])
         in_t[0] += int(c * scale)
     common = lcm(*(comb(n, k) for k in range(n + 1)))
-    weighted = [in_t[k] * (common // comb(n, k)) for k in range(n + 1)]
-    return [sum(comb(i, k) * weighted[k] for k in range(i + 1)) for i in range(n + 1)]
+    row = [in_t[k] * (common // comb(n, k)) for k in range(n + 1)]
+    out = []
+    while row:  # Σ_k C(i, k) row_k, by Pascal's triangle
+        out.append(row[0])
+        row = [x + y for x, y in zip(row, row[1:], strict=False)]
+    return out
 
 
 def _split(b: list[int]) -> tuple[list[int], list[int]]:
@@ -359,6 +365,8 @@ def _inside_unit_circle(descending: Sequence[Fraction]) -> bool:
 
 
 def _hurwitz(descending: list[int]) -> bool:
+    if len(descending) ** 2 * max(c.bit_length() for c in descending) > MOST_ROUTH:
+        raise Invalid("the stability of so high an order, with so many digits, is not decided")
     if descending[0] == 0:
         return False
     if descending[0] < 0:

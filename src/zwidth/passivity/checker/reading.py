@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal, InvalidOperation
 from fractions import Fraction
+from math import lcm
 from typing import Any, NamedTuple
 
 MOST_COEFFICIENTS = 2000
@@ -12,6 +13,7 @@ MOST_SAMPLES = 4_000_000
 LONGEST_NUMBER = 20_000
 MOST_EFFORT = 5e7
 MOST_BITS = 400_000
+MOST_BITS_OF_A_LAW = 20_000
 
 
 class Invalid(Exception):
@@ -59,6 +61,18 @@ def numbers(values: Any, most: int = MOST_COEFFICIENTS) -> list[Fraction]:
     return [number(v) for v in values]
 
 
+def common_scale(values: Iterable[Fraction]) -> int:
+    """The smallest whole number that makes all of them whole, of ordinary size as they are then."""
+    values, scale = list(values), 1
+    for value in values:
+        scale = lcm(scale, value.denominator)
+        if scale.bit_length() > MOST_BITS_OF_A_LAW:
+            raise Invalid("the coefficients have too many digits")
+    if any((scale * value.numerator).bit_length() > 2 * MOST_BITS_OF_A_LAW for value in values):
+        raise Invalid("a coefficient has too many digits")
+    return scale
+
+
 class Loop(NamedTuple):
     numerator: list[Fraction]  # N, D in ascending powers of 1/z
     denominator: list[Fraction]
@@ -90,6 +104,7 @@ def read_loop(document: Mapping[str, Any]) -> Loop:
     numerator = [Fraction(0)] * (len(denominator) - len(numerator)) + numerator
     if not denominator or denominator[0] == 0 or len(numerator) != len(denominator):
         raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
+    common_scale((*numerator, *denominator))
     whole = delay // period
     if whole > MOST_COEFFICIENTS:
         raise Invalid(f"the delay is {float(whole):g} samples, more than {MOST_COEFFICIENTS}")

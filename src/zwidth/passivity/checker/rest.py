@@ -10,19 +10,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from math import lcm
+from math import ceil, lcm
 from typing import Any, NamedTuple
 
 from .crossing import never_crosses
-from .enclosed import Enclosed, known
+from .enclosed import Enclosed, quotient
 from .held_motion import Motion, Sampled, quantity, read_motion, sampled, sampled_free
-from .reading import Invalid, get, numbers
+from .reading import Invalid, common_scale, get, numbers
 from .schur_cohn import decays
 
 MOST_ORDER = 300
 MOST_BOXES = 4000
 MOST_HALVINGS = 45
 MOST_EFFORT = 5_000_000
+SERIES = 150
+"""What the series of the motion costs in each box, beside its order³, times η + δ."""
+MOST_EXACT = 8_000_000
 BOX_BITS = 128
 PRECISIONS = (128, 512, 2048)
 
@@ -35,8 +38,8 @@ _Numbers = list[Any]
 
 class _Loop(NamedTuple):
     motion: Motion
-    above: list[Fraction]  # H(z), in descending powers of ζ, its denominator monic
-    below: list[Fraction]
+    above: list[int]  # H(z), in descending powers of ζ, both in whole numbers
+    below: list[int]
 
 
 def stability(document: Mapping[str, Any]) -> str:
@@ -45,9 +48,9 @@ def stability(document: Mapping[str, Any]) -> str:
     if not _decays(loop._replace(motion=middle)):
         raise Invalid("that all roots lie inside the unit circle could not be confirmed")
     if middle == loop.motion:
-        return "device, hand and wall come to rest after every disturbance"
+        return "device, hand and wall come to rest after every disturbance, contact kept"
     boxes = _covered(loop)
-    return f"device, hand and wall come to rest for every value in the intervals, {boxes} boxes"
+    return f"device, hand and wall come to rest for every value in the intervals, contact kept, {boxes} boxes"
 
 
 def instability(document: Mapping[str, Any]) -> str:
@@ -56,7 +59,7 @@ def instability(document: Mapping[str, Any]) -> str:
         raise Invalid("what does not come to rest must be certain")
     if _decays(loop) is not False:
         raise Invalid("that a root lies on or outside the unit circle could not be confirmed")
-    return "device, hand and wall do not come to rest: a disturbance does not die out"
+    return "device, hand and wall do not come to rest, contact kept: a disturbance does not die out"
 
 
 def _read(document: Mapping[str, Any]) -> _Loop:
@@ -65,14 +68,15 @@ def _read(document: Mapping[str, Any]) -> _Loop:
     above, below = (numbers(get(loop, name), MOST_ORDER) for name in ("numerator", "denominator"))
     if not below or below[0] == 0 or not 0 < len(above) <= len(below):
         raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
-    return _Loop(motion, *(_in_zeta([c / below[0] for c in part]) for part in (above, below)))
+    scale = common_scale((*above, *below))
+    return _Loop(motion, *(_in_zeta([int(c * scale) for c in part]) for part in (above, below)))
 
 
-def _in_zeta(descending: Sequence[Fraction]) -> list[Fraction]:
+def _in_zeta(descending: Sequence[int]) -> list[int]:
     """A polynomial in z, in powers of ζ = z − 1."""
-    out: list[Fraction] = []
+    out: list[int] = []
     for c in descending:
-        out = [x + y for x, y in zip([*out, Fraction(0)], [Fraction(0), *out], strict=True)]
+        out = [x + y for x, y in zip([*out, 0], [0, *out], strict=True)]
         out[-1] += c
     return out
 
@@ -83,19 +87,23 @@ def _decays(loop: _Loop) -> bool | None:
         answer = decays(_characteristic(loop, bits))
         if answer is not None:
             return answer
-    return decays(_exactly(loop)) if loop.motion.is_free else None
+    if not loop.motion.is_free:
+        return None
+    whole = _exactly(loop)
+    cost = len(whole) ** 2 * max(c.middle.bit_length() for c in whole)
+    return decays(whole) if cost <= MOST_EXACT else None
 
 
 def _characteristic(loop: _Loop, bits: int) -> list[Enclosed]:
     """P, monic, in descending powers of ζ."""
-    above, below = ([known(c, bits) for c in part] for part in (loop.above, loop.below))
+    above, below = ([quotient(c, loop.below[0], bits) for c in part] for part in (loop.above, loop.below))
     return _closed(sampled(loop.motion, bits), above, below, Enclosed(bits, 0))
 
 
 def _exactly(loop: _Loop) -> list[Enclosed]:
-    """A whole multiple of P, of a motion without spring and damper."""
+    """A whole multiple of P, its first coefficient > 0, of a motion without spring and damper."""
     found = _closed(sampled_free(loop.motion), loop.above, loop.below, Fraction(0))
-    scale = lcm(*(c.denominator for c in found))
+    scale = lcm(*(c.denominator for c in found)) * (1 if loop.below[0] > 0 else -1)
     return [Enclosed(0, int(c * scale)) for c in found]
 
 
@@ -119,7 +127,7 @@ def _product(a: _Numbers, b: _Numbers, zero: Any) -> _Numbers:
 def _covered(loop: _Loop) -> int:
     """In how many boxes no root was found to meet the circle."""
     order = len(loop.below) + 1 + int(loop.motion.late) + (loop.motion.late % 1 > 0)
-    most = min(MOST_BOXES, MOST_EFFORT // order**3)
+    most = min(MOST_BOXES, MOST_EFFORT // (order**3 + ceil(SERIES * loop.motion.norm)))
     left, tried, shown = [(loop.motion, 0)], 0, 0
     while left:
         box, halved = left.pop()

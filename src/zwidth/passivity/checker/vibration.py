@@ -19,6 +19,7 @@ from .reading import Invalid, get, number, numbers
 
 MOST_ORDER = 60
 LONGEST = 1000
+MOST_EFFORT = 1_000_000
 PRECISIONS = (256, 1024, 4096, 16384)
 
 _Row = list[Enclosed]
@@ -33,6 +34,9 @@ class _Wall(NamedTuple):
 
 def vibration(document: Mapping[str, Any]) -> str:
     wall = _wall(document)
+    order = len(_plant(document, PRECISIONS[0])[1])
+    if order**2 * len(wall.inside) > MOST_EFFORT:
+        raise Invalid("the motion is too long for a plant of this order")
     answers = (_repeats(*_plant(document, bits), wall, bits) for bits in PRECISIONS)
     if not next((answer for answer in answers if answer is not None), False):
         raise Invalid("the motion with this pattern is not one of the wall")
@@ -56,6 +60,8 @@ def _wall(document: Mapping[str, Any]) -> _Wall:
 def _plant(document: Mapping[str, Any], bits: int) -> tuple[list[Enclosed], list[Enclosed]]:
     """N and D in ascending powers of z without the leading 1 of D, of one length."""
     if "plant" in document:
+        if "loop" in document:
+            raise Invalid("the document speaks of a plant and of a loop: only one can be meant")
         plant = get(document, "plant")
         top, bottom = (numbers(get(plant, name), MOST_ORDER) for name in ("numerator", "denominator"))
         if not bottom or bottom[0] == 0 or not 0 < len(top) < len(bottom):

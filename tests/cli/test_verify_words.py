@@ -1,0 +1,120 @@
+"""What `zwidth verify` says of a proof: no more than its kind shows, and of the numbers that were checked."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import zwidth as zw
+from zwidth.cli.main import main
+from zwidth.cli.verification import verifications
+from zwidth.passivity import checker
+from zwidth.passivity.document import to_json
+
+PADDLE = zw.Device(
+    mass=0.036, damping=0.15, rate=1000, coulomb_friction=0.12, resolution=22.4e-6, delay=0.0004
+)
+
+
+def plain(document: dict[str, Any]) -> dict[str, Any]:
+    """As it is read from a file."""
+    read: dict[str, Any] = json.loads(to_json(document))
+    return read
+
+
+def proof_of(wall: zw.Wall) -> dict[str, Any]:
+    """The certificate of a passive loop."""
+    found = zw.check(PADDLE, wall).certificate
+    assert found is not None
+    return plain(found.to_dict())
+
+
+SPRING, DAMPED = proof_of(zw.Wall(100)), proof_of(zw.Wall(100, 0.05))
+STABLE = {
+    "kind": "stability",
+    "loop": {
+        "mass_kg": "0.05",
+        "damping_N_s_per_m": "0.7",
+        "stiffness_N_per_m": "350",
+        "sample_period_s": "0.001",
+        "delay_s": "0",
+        "numerator": ["1200", "-400"],
+        "denominator": ["1", "0"],
+    },
+}
+PORT = {
+    "kind": "positive real",
+    "system": {"time": "discrete", "numerator": ["-4"], "denominator": ["1"]},
+    "index": "input",
+    "level": "-5",
+    "proof": {
+        "offset": "1",
+        "positivity": {"at_one": 0, "at_minus_one": 0, "square": ["1"], "factor": ["1"]},
+    },
+}
+
+
+def told(document: object, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    """What is printed of a document that is valid, in one line."""
+    file = tmp_path / "proof.json"
+    file.write_text(json.dumps(document))
+    assert main(["verify", str(file)]) == 0
+    return " ".join(capsys.readouterr().out.split())
+
+
+def test_a_damped_wall_is_passive_in_contact_only(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of a one-sided law that is proved as a line it is said that contact is kept; of a spring it is not."""
+    assert DAMPED["kind"] == "quantized"
+    assert "passive as long as contact is kept" in told(DAMPED, tmp_path, capsys)
+    two_sided = {**DAMPED, "loop": {**DAMPED["loop"], "unilateral": False}}
+    assert "contact is kept" not in told(two_sided, tmp_path, capsys)
+    assert SPRING["kind"] == "spring"
+    assert "The loop below is passive, proved" in told(SPRING, tmp_path, capsys)
+    corners = {"kind": "corners", "corners": [DAMPED, DAMPED]}
+    assert "passive as long as contact is kept" in told(corners, tmp_path, capsys)
+
+
+def test_an_active_hand_keeps_contact_in_its_band(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A hand more active than the device is damped shakes it off the wall: contact is kept, it says."""
+    found = plain(zw.tolerated_activity(PADDLE.replace(delay=0), zw.Wall(20, 0.12)).to_dict())
+    kept, broken = (found[key]["certificate"] for key in ("contact_kept", "contact_broken"))
+    assert "from the loop below as long as contact is kept" in told(kept, tmp_path, capsys)
+    assert "contact is kept" not in told(broken, tmp_path, capsys)
+
+
+def test_a_known_hand_keeps_contact(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Rest is that of the linear loop, and nothing is said of passivity."""
+    out = told(STABLE, tmp_path, capsys)
+    assert "contact kept" in out
+    assert "passive" not in out
+
+
+def test_corners_belong_to_the_kind_corners(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Other proofs beside a proof neither change its headline nor stand in the place of its loop."""
+    out = told({**STABLE, "corners": [SPRING]}, tmp_path, capsys)
+    assert "passive" not in out
+    assert "mass 0.05 kg" in out
+    out = told({**SPRING, "corners": [DAMPED]}, tmp_path, capsys)
+    assert "numerator [100] in" in out
+
+
+def test_corners_of_several_kinds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Where corners show different things, none of their headlines is that of all."""
+    out = told({"kind": "corners", "corners": [SPRING, STABLE]}, tmp_path, capsys)
+    assert "is passive" not in out
+    assert "VALID Proved: all 2 corners" in out
+
+
+@pytest.mark.parametrize("outcome", ["passive", "active"])
+def test_the_index_of_a_port_is_no_verdict(outcome: str) -> None:
+    """A level of −5 N·s/m says nothing of passivity, and extraction above one nothing of activity."""
+    motion = {"kind": "sequence", "latent": ["1"]}
+    taken = {**PORT, "kind": "extraction", "level": "-3", "motion": motion}
+    for evidence in (PORT, taken):
+        assert checker.verify(evidence).valid, checker.verify(evidence).reason
+        (part,) = verifications({"outcome": outcome, "certificate": evidence})
+        assert not part.verification.valid
+        assert "is of a port" in part.verification.reason

@@ -1,0 +1,154 @@
+"""Documents that would keep the checker busy for minutes: refused for their size, before any work is done."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from random import Random
+from typing import Any
+
+import pytest
+
+from zwidth.passivity import checker
+from zwidth.passivity.checker import rest
+from zwidth.passivity.checker.proofs import _bernstein
+from zwidth.passivity.checker.reading import Invalid, common_scale
+
+HAND = {
+    "mass_kg": "0.05",
+    "damping_N_s_per_m": "0.7",
+    "stiffness_N_per_m": "350",
+    "sample_period_s": "0.001",
+    "delay_s": "0",
+}
+LOOP = {
+    "damping_N_s_per_m": "0.15",
+    "coulomb_friction_N": "0.12",
+    "resolution_m": "0",
+    "sample_period_s": "0.001",
+    "delay_s": "0",
+    "unilateral": True,
+}
+
+
+def ratios(count: int, seed: int) -> list[str]:
+    """Numbers p/q of 4000 digits above and below, no two alike."""
+    random = Random(seed)
+    return ["/".join(str(random.randrange(10**3999, 10**4000)) for _ in range(2)) for _ in range(count)]
+
+
+LAW = {"numerator": ratios(30, 1), "denominator": ratios(31, 2)}
+PORT = {"index": "input", "level": "0"}
+ONES = ["1"] * 150
+
+
+def motion(system: dict[str, Any], **moved: Any) -> dict[str, Any]:
+    """What is taken out of a port, of one axis or of two."""
+    kind = "matrix extraction" if "numerators" in system else "extraction"
+    return {"kind": kind, "system": {"time": "continuous", **system}, "motion": moved, **PORT}
+
+
+BURST = {"kind": "burst", "step_rad_per_s": "1", "power": 400, "cosine": ["1", "1"], "sine": ["1", "1"]}
+LONG = {"numerator": ONES, "denominator": ONES}
+LONG_MATRIX = {"numerators": [[ONES, ONES], [ONES, ONES]], "denominator": ONES}
+SPREAD = {"kind": "polynomial", "duration_s": "1.3", "lowest_power": 2000}
+DOCUMENTS = {
+    "rest": {"kind": "stability", "loop": {**HAND, **LAW}},
+    "no rest": {"kind": "instability", "loop": {**HAND, **LAW}},
+    "slope": {
+        "kind": "absolute stability",
+        "nonlinearity": "monotone",
+        "plant": {"numerator": LAW["numerator"], "denominator": LAW["denominator"]},
+        **{"slope": "1", "center": "1", "taps": [], "convexity": "0", "smoothness": "0"},
+    },
+    "port": motion(LAW, kind="polynomial"),
+    "ports": motion({"numerators": [[LAW["numerator"]]], "denominator": LAW["denominator"]}),
+    "line": {"kind": "linear", "loop": {**LOOP, "numerator": ratios(31, 3), "denominator": ratios(31, 4)}},
+    "burst of many digits": motion(LONG, **BURST, cycles=10**900),
+    "bursts of many digits": motion(LONG_MATRIX, **BURST, cycles=10**900),
+    "burst of many lines": motion(LONG, **BURST, cycles=10**40),
+    "bursts of many lines": motion(LONG_MATRIX, **BURST, cycles=10**40),
+    "many powers": motion(LONG, **SPREAD, coefficients=ONES),
+    "many powers of two axes": motion(LONG_MATRIX, **SPREAD, coefficients=[ONES, ONES]),
+    "long motion": {
+        "kind": "vibration",
+        "plant": {"numerator": ["1"] * 40, "denominator": ["1", *["0.001"] * 40]},
+        "slope": "1",
+        "gap": "1",
+        "inside": [True, False] * 500,
+    },
+}
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_refused_for_its_size(name: str) -> None:
+    """The reason is the number of digits, lines, terms or samples, not what a computation found."""
+    found = checker.verify(DOCUMENTS[name])
+    assert not found.valid
+    assert "too many" in found.reason or "too long" in found.reason
+
+
+def test_the_effort_on_boxes_counts_the_series() -> None:
+    """A hand that swings many times within a sample has long series: fewer boxes are tried, and it is said."""
+    stiff = {
+        **HAND,
+        "stiffness_N_per_m": "24000000",
+        "damping_N_s_per_m": ["10", "11"],
+        "mass_kg": ["0.05", "0.0501"],
+    }
+    found = checker.verify(
+        {"kind": "stability", "loop": {**stiff, "numerator": ["1200", "-400"], "denominator": ["1", "0"]}}
+    )
+    assert not found.valid
+    assert int(found.reason.split()[-2]) < 100
+
+
+def test_the_limit_is_decided_exactly_while_it_is_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A root at z = −1 without spring and damper is seen; where that would cost too much neither side is."""
+    # (z + 1) (z − 0.9) (z − 0.8) = (z − 1)² (z + 1) + (T²/2M) (z + 1) N
+    unit = Fraction(1, 10**6) / Fraction("1.2") / 2
+    numerator = [str(Fraction(c) / unit) for c in ("0.3", "-0.28")]
+    free = {**HAND, "stiffness_N_per_m": "0", "damping_N_s_per_m": "0", "mass_kg": "1.2"}
+    loop = {**free, "numerator": numerator, "denominator": ["1", "1"]}
+    stable, unstable = ({"kind": kind, "loop": loop} for kind in ("stability", "instability"))
+    assert not checker.verify(stable).valid
+    assert checker.verify(unstable).valid
+    monkeypatch.setattr(rest, "MOST_EXACT", 10)
+    assert not checker.verify(stable).valid
+    assert not checker.verify(unstable).valid
+
+
+def test_a_plant_and_a_loop() -> None:
+    """Of a document with both it would be shown that a loop vibrates while its plant was checked."""
+    document = {
+        "kind": "vibration",
+        "plant": {"numerator": ["2", "0.92"], "denominator": ["1", "-0.5", "0"]},
+        "slope": "0.92",
+        "gap": "-1",
+        "inside": [True, False, False],
+    }
+    assert checker.verify(document).valid
+    assert "only one" in checker.verify({**document, "loop": HAND}).reason
+    rest = {
+        **DOCUMENTS["slope"],
+        "plant": {"numerator": ["0.1"], "denominator": ["1", "-0.5"]},
+        "slope": "0.1",
+    }
+    assert checker.verify(rest).valid
+    assert "only one" in checker.verify({**rest, "loop": HAND}).reason
+
+
+def test_scale() -> None:
+    """The least common denominator, refused where it grows out of bounds."""
+    assert common_scale([Fraction(1, 6), Fraction(3, 4), Fraction(5)]) == 12
+    with pytest.raises(Invalid, match="too many digits"):
+        common_scale(Fraction(x) for x in ratios(3, 5))
+    with pytest.raises(Invalid, match="too many digits"):
+        common_scale([Fraction(10**20_000)])
+
+
+def test_bernstein_coefficients_of_a_power() -> None:
+    """(1 + c)ⁿ = (2 t)ⁿ has 2ⁿ at one end and 0 elsewhere; 1 has 1 everywhere; both times a whole number."""
+    assert _bernstein([Fraction(1), Fraction(3), Fraction(3), Fraction(1)]) == [0, 0, 0, 24]
+    assert _bernstein([Fraction(1), Fraction(0), Fraction(0)]) == [2, 2, 2]
+    # 3 − 2 c − c² with c = 2 t − 1 is 4 − 4 t²: 4, 4, 0
+    assert _bernstein([Fraction(3), Fraction(-2), Fraction(-1)]) == [8, 8, 0]
