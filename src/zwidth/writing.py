@@ -32,25 +32,35 @@ def check_target(path: Path, force: bool) -> None:
 
 @contextmanager
 def writing_whole(path: Path) -> Iterator[Path]:
-    """A name to write to; what is there at the end takes the place of `path`.
+    """A name to write to; what is there at the end takes the place of `path`, of the file that a link names.
+
+    What exists and is no file, such as /dev/null, keeps its place and is written itself.
 
     Raises
     ------
     InputError
         If writing fails for a reason of the disk; nothing is then left behind.
     """
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        place = Path(os.path.realpath(path))
+    except ValueError as error:  # a name that no file can have
+        raise InputError(f"{path} cannot be written: {error}") from None
+    device = place.exists() and not place.is_file()
+    unfinished = place if device else place.with_name(f".{place.name}.{os.getpid()}.part")
     try:
         yield unfinished
+        if device:
+            return
         with open(unfinished, "rb+") as file:
             os.fsync(file.fileno())  # a full disk may show only here
-        os.replace(unfinished, path)
+        os.replace(unfinished, place)
     except OSError as error:
         reason = error.strerror or first_line(error)
         raise InputError(f"{path} cannot be written: {reason}; nothing was left there") from None
     finally:
-        with suppress(OSError):
-            unfinished.unlink()
+        if not device:
+            with suppress(OSError):
+                unfinished.unlink()
 
 
 def first_line(error: BaseException) -> str:

@@ -197,6 +197,7 @@ def test_a_name_is_text_and_never_markup(run: Run) -> None:
         ((*PASSIVE, "--plot", "no/such/folder/a.png"), ("no directory",)),
         ((*PASSIVE, "-o", "."), ("directory",)),
         ((*PASSIVE, "-o", "a.svg", "--plot", "a.svg"), ("same file",)),
+        ((*PASSIVE, "-o", "a.PNG"), ("--save", "the name of a picture", "give --plot")),
         ((*PASSIVE, "-o", "a\0b"), ("cannot be written",)),
         (("devices", "phanton"), ("phantom",)),
         (("devices", "phantom", "falcon"), ("too many",)),

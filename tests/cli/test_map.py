@@ -26,7 +26,7 @@ def test_the_report_and_the_json_say_the_same(capsys: pytest.CaptureFixture[str]
     }
     assert "passive, every hand" in report
     assert "298.5" in report
-    assert "free air: 0.036 kg, 0.15 N*s/m, 0.12 N" in report
+    assert "free air: 0.036 kg, 0.15 N·s/m, 0.12 N" in report
 
 
 def test_options_reach_the_map(capsys: pytest.CaptureFixture[str]) -> None:
@@ -67,6 +67,25 @@ def test_a_store_and_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "exists" in capsys.readouterr().err
     assert main((*command, "--force")) == 0
     assert capsys.readouterr().out == first
+
+
+def test_ctrl_c_says_what_is_kept(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Status 130, no traceback; with a store, that the same command goes on with it."""
+
+    def stop(*_: object, path: object = None, **__: object) -> None:
+        if path is not None:
+            Path(str(path)).mkdir()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("zwidth.maps.z_width", stop)
+    assert main(MAP) == 130
+    assert capsys.readouterr().err == "zwidth: interrupted\n"
+    assert main((*MAP, "-o", str(tmp_path / "map.zarr"))) == 130
+    err = capsys.readouterr().err
+    assert "map.zarr keeps what is finished; the same command goes on" in err
+    assert err.endswith("zwidth: interrupted\n")
 
 
 def test_certificates_of_the_columns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -114,3 +133,11 @@ def test_bad_input_is_one_line(
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
+
+
+def test_a_region_without_walls_has_no_largest_one(capsys: pytest.CaptureFixture[str]) -> None:
+    """None, not 0 N/m."""
+    arguments = ("--stiffness", "400:600", "--damping", "0:1", "--cells", "5x5", "--hands", "finger")
+    assert main(("map", "haptic-paddle", *arguments)) == 0
+    (line,) = [row for row in capsys.readouterr().out.splitlines() if row.startswith("passive, every hand")]
+    assert line.split()[-2:] == ["none", "0.0%"]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 import xarray
+from described_arms import random_arm
 
 from zwidth.cli.main import main
 
@@ -34,6 +36,7 @@ def test_a_wall_that_holds_everywhere(run: Run) -> None:
     assert status == 0
     assert "PASSIVE No motion of the hand takes energy out with x from -0.05 to 0.05 m" in words
     assert "what to change" not in words
+    assert "haply-2diy, 2 joints, 1 kHz" in words
     assert "Encoder steps are not counted." in words
 
 
@@ -105,6 +108,23 @@ def test_the_map_is_saved_and_drawn(run: Run, tmp_path: Path) -> None:
         (("phantom", "--joint-damping", "0.1", "--stiffness", "1"), "built in are"),
         (("missing.urdf", "--stiffness", "1"), "missing.urdf"),
         (("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--points", "2.5"), "whole number"),
+        (("haply-2diy", "--joint-damping", "0.1", "--stiffness", "1", "--pose"), "has no pose"),
+        (("two-link", "--joint-damping", "0.1", "--rotational-stiffness", "1"), "add --pose"),
+        (("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--rest", "a=1"), "add --pose"),
+        (("two-link", "--joint-damping", "0.1", "--pose"), "which wall"),
+        (
+            ("two-link", "--joint-damping", "1", "--stiffness", "1", "--torque-held-up-to", "1,2,3"),
+            "a moment",
+        ),
+        (
+            ("two-link", "--joint-damping", "0.1", "--wall", "w.toml", "--stiffness", "1"),
+            "leave out --stiffness",
+        ),
+        (("two-link", "--joint-damping", "0.1", "--wall", "w.toml"), "no file"),
+        (
+            ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "-o", "proof.jsn"),
+            "a file must end in .json for the verdict",
+        ),
         (
             ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--delay", "0.3 ms"),
             "whole number of samples",
@@ -151,3 +171,108 @@ def test_a_description_from_the_command_line(run: Run, tmp_path: Path) -> None:
     )
     assert status == 0
     assert "second held at 0.5" in " ".join(out.split())
+
+
+HELD = "j1=0,j2=0.1,j3=0,j4=0,j5=0"
+POSED = ("workspace", "arm.urdf", "--pose", "--points", "10", "--hold", HELD, "--json")
+
+
+def test_a_wall_in_pose(run: Run, tmp_path: Path) -> None:
+    """Its factor, the least damping, the motion with its turns; a wall of that factor holds."""
+    pytest.importorskip("pinocchio")
+    random_arm(tmp_path / "arm.urdf", 4, 6)
+    status, out, _ = run(*POSED, "--stiffness", "40000", "--rotational-stiffness", "400 N*m/rad")
+    found = json.loads(out)
+    assert (status, found["outcome"]) == (1, "active")
+    assert found["largest_stiffness_N_per_m"] is found["smallest_margin_N_s_per_m"] is None
+    assert found["smallest_margin_in_joints_N_m_s_per_rad"] < 0
+    motion = found["motion"]
+    assert [len(motion[key][0]) for key in ("joints_rad", "positions_m", "rotations_rad")] == [6, 3, 3]
+    assert 0 < sum(found["least_additions_N_m_s_per_rad"]) < 6 * found["addition_to_all_N_m_s_per_rad"]
+    factor = 0.9 * found["stiffness_factor"]
+    better = run(*POSED, "--stiffness", str(40000 * factor), "--rotational-stiffness", str(400 * factor))
+    assert (better[0], json.loads(better[1])["outcome"]) == (0, "passive")
+
+
+@pytest.mark.parametrize("rest", [(), ("--rest", "middle")])
+def test_the_proof_of_a_wall_in_pose_is_verified(rest: tuple[str, ...], run: Run, tmp_path: Path) -> None:
+    """Saved, read and proved again, with both units in the words; with more of the rotation it is refused."""
+    pytest.importorskip("pinocchio")
+    random_arm(tmp_path / "arm.urdf", 4, 6)
+    wall = ("--stiffness", "40", "--rotational-stiffness", "0.4 N*m/rad")
+    assert run(*POSED[:-1], *rest, *wall, "-o", "proof.json")[0] == 0
+    status, out, _ = run("verify", "proof.json")
+    where = "from the orientation of rest that is given" if rest else "in every orientation of rest"
+    assert status == 0
+    words = " ".join(out.split())
+    assert f"in pose, with up to 40 N/m and 0.4 N·m/rad, {where}" in words
+    assert "stiffness [[40, 0, 0, 0, 0, 0], [0, 40," in words
+    assert "0.4]] in N, m, rad" in words
+    document = json.loads((tmp_path / "proof.json").read_text())
+    document["certificate"]["wall"]["stiffness_N_m_rad"][5][5] = "4000"
+    (tmp_path / "more.json").write_text(json.dumps(document))
+    assert run("verify", "more.json")[0] != 0
+
+
+def test_a_wall_by_matrices(run: Run, tmp_path: Path) -> None:
+    """A file with units in it says what the options say; couplings need a place of rest."""
+    pytest.importorskip("pinocchio")
+    random_arm(tmp_path / "arm.urdf", 4, 6)
+
+    def write() -> None:
+        path.write_text("[wall]\nstiffness = [" + ", ".join(f"[{', '.join(row)}]" for row in rows) + "]")
+
+    rows = [["0"] * 6 for _ in range(6)]
+    for i in range(6):
+        rows[i][i] = '"4 N/mm"' if i < 3 else '"40 N*m/rad"'
+    path = tmp_path / "wall.toml"
+    write()
+    by_file = run(*POSED, "--wall", "wall.toml")[1]
+    assert by_file == run(*POSED, "--stiffness", "4000", "--rotational-stiffness", "40")[1]
+    rows[0][4] = rows[4][0] = "20"
+    write()
+    assert "say where it rests" in run(*POSED, "--wall", "wall.toml")[2]
+    found = json.loads(run(*POSED, "--wall", "wall.toml", "--rest", "middle")[1])
+    assert "at rest with the joints at" in found["region"]
+    assert found["region"] != json.loads(run(*POSED, "--wall", "wall.toml", "--rest", "j0=0.2")[1])["region"]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("stiffness = [[1, 0], [0, 1]]", "it may be: wall"),
+        ("[wall]\ndamping = [[1, 0], [0, 1]]", "stiffness"),
+        ("[wall]\nstiffness = [[1, 0], [0]]", "square matrix"),
+        ("[wall]\nstiffness = [[1, 0], [0, -1]]", "negative eigenvalue"),
+        ('[wall]\nstiffness = [["1 N*m/rad", 0], [0, 1]]', "N/m"),
+        ("[wall]\nstiffness = [[1, 0], [0, 1]]\nmass = 3", "mass"),
+    ],
+)
+def test_a_file_that_is_no_wall(run: Run, tmp_path: Path, text: str, words: str) -> None:
+    """Status 2, and one line with the place and what is expected."""
+    (tmp_path / "wall.toml").write_text(text)
+    status, _, err = run("workspace", "two-link", "--joint-damping", "0.1", "--wall", "wall.toml")
+    assert status == 2
+    assert re.search(words, err)
+    assert err.count("\n") == 1
+
+
+def test_the_least_damping_is_shown(run: Run) -> None:
+    """Which joints, how much each, and how much together."""
+    words = " ".join(run(*HAPLY, "--stiffness", "800")[1].split())
+    assert re.search(r"least in all .* in joint 1, .* in joint 2, together", words)
+    one = run("workspace", "two-link", "--joint-damping", "0.02,0.012", "--stiffness", "800")[1]
+    assert re.search(r"least in all +[0-9.]+ N·m·s/rad more damping in joint 1\n", one)
+
+
+def test_a_wall_in_pose_is_reported_and_drawn(run: Run, tmp_path: Path) -> None:
+    """A planar chain: the margin in the joints, the factor, a picture."""
+    pose = ("workspace", "two-link", "--joint-damping", "0.02", "--pose", "--points", "20")
+    wall = ("--stiffness", "900", "--rotational-stiffness", "0.5 N*m/rad", "--plot", "map.png")
+    status, out, _ = run(*pose, *wall)
+    words = " ".join(out.split())
+    assert status == 1
+    assert "in the worst direction of the joints" in words
+    assert re.search("stiffness 0.9[0-9]* times everywhere", words)
+    assert "its stiffness times 0.9" in words
+    assert (tmp_path / "map.png").stat().st_size > 10_000

@@ -169,6 +169,6 @@ def test_a_motion_of_the_game_is_replayed_by_real_hands() -> None:
 
 
 def test_the_actuator_that_the_motion_asks_for_is_named() -> None:
-    lines = zw.check(PADDLE.replace(force_limit=2), STIFF).assumptions
-    assert "more than the actuator's 2 N" in lines[-1]
+    lines = zw.check(PADDLE.replace(force_limit="0.5"), STIFF).assumptions
+    assert "more than the actuator's 0.5 N" in lines[-1]
     assert "stays within" in zw.check(PADDLE.replace(force_limit=20), STIFF).assumptions[-1]

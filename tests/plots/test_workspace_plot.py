@@ -39,6 +39,34 @@ def test_every_arm_has_a_picture(name: str, tmp_path: Path) -> None:
         plots.save_workspace(_space(name, 100), path)
 
 
+def test_a_limit_that_is_nowhere_is_drawn_too() -> None:
+    """Without a wall any stiffness holds; the picture has no numbers, and no warning."""
+    assert plots.workspace_figure(_space("two-link", 0), "largest_stiffness").axes[0].collections
+
+
+def test_what_is_drawn_is_named() -> None:
+    """Strokes and the line at 0 in words, each where it is; a colour bar that ends early says so; units."""
+
+    def words(space: zw.Workspace) -> str:
+        return " ".join(text.get_text() for text in plots.workspace_figure(space).axes[0].texts)
+
+    limit = _space("haply-2diy", 100).data["largest_stiffness"]
+    assert words(_space("haply-2diy", 100)) == "strokes: the direction in which the margin is smallest"
+    crossing = words(_space("haply-2diy", float(limit.mean())))
+    figure = plots.workspace_figure(_space("haply-2diy", float(limit.mean())))
+    figure.canvas.draw()
+    low, high = figure.axes[1].get_ylim()
+    ticks = figure.axes[1].get_yticks()
+    assert low < ticks.min() < 0 < ticks.max() <= high
+    assert crossing.startswith("black line: margin 0; strokes")
+    figure = plots.workspace_figure(_space("haply-2diy", 100))
+    assert figure.axes[0].collections[0].colorbar.extend == "max"
+    assert plots.workspace_figure(_space("hapkit", 100)).axes[0].get_xlabel() == "joint q1 [rad]"
+    space = _space("hapkit", 100)
+    space.data["q1"].attrs["units"] = "m"  # as of a joint that slides
+    assert plots.workspace_figure(space).axes[0].get_xlabel() == "joint q1 [m]"
+
+
 def test_another_variable_can_be_drawn() -> None:
     """By its name; one that the map lacks is refused with those that it has."""
     space = _space("two-link", 100)
@@ -53,3 +81,15 @@ def test_three_joints_are_not_drawn() -> None:
     space = zw.workspace(arm, zw.Wall(100), rate=1000, points=20)
     with pytest.raises(zw.InputError, match="slice"):
         plots.workspace_figure(space)
+
+
+def test_a_hand_in_pose_is_drawn_by_its_joints() -> None:
+    """Without a margin at the hand the colours are those of the joints, over the plane of the hand."""
+    arm = PlanarChain(links=(0.1, 0.1), damping=(0.02, 0.02), joint_range=((0, 1), (0.5, 2)), pose=True)
+    space = zw.workspace(arm, zw.MatrixWall.in_pose(900, 0.5, planar=True), rate=1000, points=16)
+    figure, axes = plt.subplots()
+    plots.draw_workspace(axes, space)
+    drawn = np.sort(np.ma.getdata(axes.collections[0].get_array()).ravel())
+    assert drawn == pytest.approx(np.sort(space.data["margin_in_joints"].values.ravel()))
+    assert axes.get_xlabel() == "x [m]"
+    plt.close(figure)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import zwidth as zw
 from zwidth import plots
@@ -11,16 +12,19 @@ from zwidth import plots
 PADDLE = zw.catalogue.device("haptic-paddle")
 
 
-def legend(axes: object) -> list[str]:
-    """The words of the legend."""
-    return [text.get_text() for text in axes.get_legend().get_texts()]
+def words(figure: Figure) -> list[str]:
+    """Of the one legend, which stands beside the axes and covers nothing."""
+    assert not any(axes.get_legend() for axes in figure.axes)
+    (legend,) = figure.legends
+    return [text.get_text() for text in legend.get_texts()]
 
 
 def test_regions_curves_and_free_air() -> None:
     """The map, a close-up of what is passive in it, and the lower end of the Z-width under it."""
     found = zw.z_width(PADDLE, (0, 30000), (0, 90), (900, 3000))
-    whole, near = plots.z_width_figure(found).axes
-    assert legend(whole) == [
+    figure = plots.z_width_figure(found)
+    whole, near = figure.axes
+    assert words(figure) == [
         "no hand up to 0.5 m/s gains", "passive with every hand",
         "no hand: stable below", "finger: stable below", "dowel: stable below",
     ]  # fmt: skip
@@ -34,8 +38,9 @@ def test_regions_curves_and_free_air() -> None:
 def test_no_close_up_where_the_map_is_one() -> None:
     """Passive walls fill the picture: one pair of axes; a hand that is stable everywhere has no curve."""
     found = zw.z_width(PADDLE, (0, 300), (0, "0.15"), (40, 40))
-    (axes,) = plots.z_width_figure(found).axes
-    assert "finger: stable everywhere here" in legend(axes)
+    figure = plots.z_width_figure(found)
+    (axes,) = figure.axes
+    assert "finger: stable everywhere here" in words(figure)
     assert not [line for line in axes.lines if np.size(line.get_xdata())]
 
 
@@ -47,10 +52,20 @@ def test_a_close_up_needs_cells() -> None:
 
 
 def test_speeds_are_written_on_their_contours() -> None:
-    """In the close-up the contour of 1 m/s says so."""
+    """In the close-up the contour of 1 m/s says so; one a cell away from the passive walls is not drawn."""
     found = zw.z_width(PADDLE, (0, 3000), (0, 5), (300, 300))
     _, near = plots.z_width_figure(found).axes
-    assert "1 m/s" in {text.get_text() for text in near.texts}
+    numbers = {text.get_text() for text in near.texts}
+    assert "1 m/s" in numbers
+    assert "10 m/s" not in numbers
+
+
+def test_a_close_up_without_speeds_says_so() -> None:
+    """With a part of a sample of delay none is known: what is passive while contact lasts is all."""
+    found = zw.z_width(PADDLE.replace(delay=0.0005), (0, 3000), (0, 5), (300, 300))
+    _, near = plots.z_width_figure(found).axes
+    assert near.get_title(loc="left") == "close-up of what is passive"
+    assert not near.texts
 
 
 def test_only_maps_are_drawn() -> None:

@@ -344,7 +344,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "examples:\n"
             "  zwidth workspace haply-2diy --joint-damping 0.003 --stiffness 500 --plot map.png\n"
             "  zwidth workspace two-link --joint-damping 0.02,0.01 --stiffness 500 --rate '2 kHz'\n"
-            "  zwidth workspace my-arm.urdf --stiffness 500",
+            "  zwidth workspace my-arm.urdf --stiffness 500\n"
+            "  zwidth workspace my-arm.urdf --pose --stiffness 500 --rotational-stiffness '20 N*m/rad'",
             _configure_workspace,
             _workspace,
         ),

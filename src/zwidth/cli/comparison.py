@@ -13,6 +13,7 @@ from zwidth.cli.output import print_json, quiet_pipe, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+from zwidth.writing import writing_whole
 
 if TYPE_CHECKING:
     from zwidth.bench import LawComparison
@@ -72,8 +73,8 @@ def run_compare(arguments: argparse.Namespace) -> int:
     laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
     found = compare(loop.device, loop.environment, laws, fastest=_speed(arguments.fastest))
     if save is not None:
-        with writing(save):
-            save.write_text(_json(found) + "\n", encoding="utf-8")
+        with writing_whole(save) as unfinished:
+            unfinished.write_text(_json(found) + "\n", encoding="utf-8")
     if plot is not None:
         with writing(plot):
             found.plot(plot)

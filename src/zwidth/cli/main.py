@@ -52,6 +52,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             print(f"zwidth: {plain(str(error), _LONGEST_MESSAGE)}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
+        with quiet_pipe(sys.stderr):
+            print("zwidth: interrupted", file=sys.stderr)
         return INTERRUPTED
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.options import Once, Parameter, add_all, device_parameters, given
 from zwidth.cli.output import print_json, quiet_pipe, targets, writing
 from zwidth.cli.specification import read_tables, specified_device
@@ -76,7 +78,14 @@ def run_map(arguments: argparse.Namespace) -> int:
     device = _device(arguments)
     options = _options(arguments, device.motion)
     warn_of_compiling_the_map()
-    found = z_width(device, **options)
+    try:
+        found = z_width(device, **options)
+    except KeyboardInterrupt:
+        if arguments.save is not None and Path(arguments.save).exists():
+            print(
+                f"zwidth: {arguments.save} keeps what is finished; the same command goes on", file=sys.stderr
+            )
+        raise
     if plot is not None:
         from zwidth.plots import save_z_width  # matplotlib takes its time
 
@@ -169,15 +178,15 @@ def _whole(typed: str, option: str) -> int:
 
 def _report(found: xr.Dataset) -> str:
     """The regions, widest claim first, and what is felt in free air."""
-    unit = found["largest_stiffness"].attrs["units"]
+    unit = unit_text(found["largest_stiffness"].attrs["units"])
     lines = [f"{'region':<28}{'largest K [' + unit + ']':>24}{'area of the map':>18}"]
     cells = found["passive"].size
     for name in found["region"].values:
-        one = found.sel(region=name)
-        share = int(found[str(name)].values.sum()) / cells
-        lines.append(f"{_region(str(name), found):<28}{float(one['largest_stiffness']):>24.6g}{share:>18.1%}")
+        count = int(found[str(name)].values.sum())
+        largest = f"{float(found['largest_stiffness'].sel(region=name)):.6g}" if count else "none"
+        lines.append(f"{_region(str(name), found):<28}{largest:>24}{count / cells:>18.1%}")
     free = [
-        f"{float(found[key]):g} {found[key].attrs['units']}"
+        shown(float(found[key]), found[key].attrs["units"])
         for key in ("free_mass", "free_damping", "free_friction")
     ]
     lines.append(f"free air: {', '.join(free)}")

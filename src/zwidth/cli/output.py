@@ -129,6 +129,11 @@ def targets(
         raise InputError(f"--plot: the file must end in {', '.join(PICTURES)}, got {str(picture)!r}")
     if picture is not None and picture == document:
         raise InputError(f"--plot and {option} name the same file")
+    if document is not None and document.suffix.lower() in PICTURES:
+        raise InputError(
+            f"{option}: {document.name!r} is the name of a picture, and what is saved is none; "
+            "for a picture give --plot"
+        )
     for path in (picture, document):
         if path is not None:
             check_new(path, force)

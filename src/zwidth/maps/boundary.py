@@ -70,7 +70,7 @@ def stability_boundary(
     given = device if delay is None else device.replace(delay=delay)
     motion = motion_of(given, as_hand(hand))
     if not motion.is_certain:
-        raise InputError("a boundary is of one device and one hand; stability covers intervals")
+        raise InputError("a boundary is of one device and one hand; robust_boundary covers intervals")
     velocity = BackwardDifference() if velocity_filter is None else velocity_filter
     with precision(PRECISIONS[0]):
         polynomials = plain(family(motion, velocity.transfer(motion.period)))

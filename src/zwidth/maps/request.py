@@ -130,7 +130,9 @@ def request(
     known = tuple((name, as_hand(hand)) for name, hand in named.items())
     for name, hand in known:
         if not motion_of(device, hand).is_certain:
-            raise InputError(f"hand {name}: a map needs one value of each number; stability covers intervals")
+            raise InputError(
+                f"hand {name}: a map needs one value of each number; robust_boundary covers intervals"
+            )
     velocity = BackwardDifference() if velocity_filter is None else velocity_filter
     Wall(1, 1, velocity_filter=velocity)  # says what is wrong with it
     k = _read_axis("stiffness", stiffness, cells[0])

@@ -19,7 +19,7 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity import checker
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import exact_text, to_json, unit_key, unit_suffix
+from zwidth.passivity.document import exact_text, save_json, unit_key, unit_suffix
 from zwidth.quantity.glossary import GLOSSARY
 
 ROUNDOFF = Fraction(1, 2**53)
@@ -61,7 +61,7 @@ class Bounding:
 
     def save(self, path: str | Path) -> None:
         """Write it as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+        save_json(path, self.to_dict())
 
     def __repr__(self) -> str:
         return f"<Bounding {self.outcome}: {self.claim}>"

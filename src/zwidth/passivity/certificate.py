@@ -19,7 +19,7 @@ from zwidth.passivity import checker
 from zwidth.passivity.contact import DampedWall, Decay
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.delay_interval import Piece
-from zwidth.passivity.document import exact_text, loop_document, to_json, unit_key
+from zwidth.passivity.document import exact_text, loop_document, save_json, unit_key
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.one_norm import NormBound
 from zwidth.passivity.positivity import Positivity
@@ -67,7 +67,7 @@ class Certificate:
 
     def save(self, path: str | Path) -> None:
         """Write the certificate as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+        save_json(path, self.to_dict())
 
     def _repr_html_(self) -> str:
         state = "accepted" if self.verify() else "rejected"

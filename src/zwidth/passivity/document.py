@@ -10,10 +10,12 @@ import json
 from collections.abc import Mapping, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 from zwidth.passivity.loop import LinearLoop
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.writing import writing_whole
 
 
 def unit_key(name: str, motion: str = "linear") -> str:
@@ -69,6 +71,18 @@ def as_decimal(value: Fraction) -> Decimal | None:
     places = max(twos, fives)
     digits = value.numerator * 10**places // value.denominator
     return Decimal((int(digits < 0), tuple(int(d) for d in str(abs(digits))), -places))
+
+
+def save_json(path: str | Path, document: object) -> None:
+    """Write a document whole, or not at all.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    with writing_whole(Path(path)) as unfinished:
+        unfinished.write_text(to_json(document) + "\n", encoding="utf-8")
 
 
 def to_json(document: object, indent: int | None = 2) -> str:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Literal, Protocol
 
 from zwidth.passivity import checker
-from zwidth.passivity.document import to_json
+from zwidth.passivity.document import save_json
 from zwidth.passivity.port import Time
 
 
@@ -94,7 +94,7 @@ class Extraction(ABC):
 
     def save(self, path: str | Path) -> None:
         """Write it as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(self.document) + "\n", encoding="utf-8")
+        save_json(path, self.document)
 
     def describe(self) -> str:
         """The motion in a sentence."""

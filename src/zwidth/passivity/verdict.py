@@ -18,7 +18,7 @@ from zwidth.passivity.advice import Advice, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.document import to_json, unit_suffix
+from zwidth.passivity.document import save_json, to_json, unit_suffix
 from zwidth.passivity.stability_plane import admissible_speed
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
@@ -215,7 +215,7 @@ class Verdict:
         document = {**self.to_dict(), **(reports or {})}
         if self.worst_hand is not None and self.witness is None:
             document["worst_hand"] = self.worst_hand.to_dict()
-        Path(path).write_text(to_json(document) + "\n", encoding="utf-8")
+        save_json(path, document)
 
     def __repr__(self) -> str:
         return f"<Verdict {self.outcome}: {self.claim}>"

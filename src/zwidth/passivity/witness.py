@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.passivity import checker
-from zwidth.passivity.document import loop_document, to_json, unit_key
+from zwidth.passivity.document import loop_document, save_json, unit_key
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion
 
@@ -153,7 +153,7 @@ class Witness:
 
     def save(self, path: str | Path) -> None:
         """Write the witness as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(rounded_energy(self.to_dict())) + "\n", encoding="utf-8")
+        save_json(path, rounded_energy(self.to_dict()))
 
     def _repr_html_(self) -> str:
         return f"<p>{self.describe()}</p>"

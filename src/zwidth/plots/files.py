@@ -11,6 +11,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from zwidth.errors import InputError
+from zwidth.writing import writing_whole
 
 ENDINGS = ("png", "svg", "pdf")
 
@@ -39,12 +40,7 @@ def save_figure(draw: Callable[[], Figure], path: str | Path, overwrite: bool = 
     picture = BytesIO()
     with rc_context({"svg.hashsalt": "zwidth"}):
         draw().savefig(picture, format=ending, dpi=160, metadata=_METADATA[ending])
-    try:
-        with target.open("wb" if overwrite else "xb") as file:
-            file.write(picture.getvalue())
-    except FileExistsError:
-        raise InputError(
-            f"{target} exists already and is not replaced; give another name or remove it first"
-        ) from None
-    except (OSError, ValueError) as error:  # ValueError: a name that no file can have
-        raise InputError(f"{target} cannot be written: {getattr(error, 'strerror', error)}") from None
+    if target.exists() and not overwrite:
+        raise InputError(f"{target} exists already and is not replaced; give another name or remove it first")
+    with writing_whole(target) as unfinished:
+        unfinished.write_bytes(picture.getvalue())

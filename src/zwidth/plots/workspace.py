@@ -11,6 +11,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from zwidth.errors import InputError
 from zwidth.passivity.arms import Workspace
@@ -38,7 +39,7 @@ def save_workspace(space: Workspace, path: str | Path, overwrite: bool = False) 
 
 
 @rc_context(LOOK)
-def workspace_figure(space: Workspace, variable: str = "margin") -> Figure:
+def workspace_figure(space: Workspace, variable: str | None = None) -> Figure:
     """One variable of the map, in colours; red where there is too little of it.
 
     Parameters
@@ -46,7 +47,7 @@ def workspace_figure(space: Workspace, variable: str = "margin") -> Figure:
     space
         What `zwidth.workspace` returned.
     variable
-        A name in `space.data`. Default "margin".
+        A name in `space.data`. Default "margin", of a wall in pose "margin_in_joints".
     """
     figure = new_figure(6.4, 5.0)
     axes = figure.add_subplot()
@@ -58,7 +59,7 @@ def workspace_figure(space: Workspace, variable: str = "margin") -> Figure:
     return figure
 
 
-def draw_workspace(axes: Axes, space: Workspace, variable: str = "margin") -> None:
+def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) -> None:
     """Draw one variable of the map on axes of your own.
 
     Parameters
@@ -68,14 +69,16 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str = "margin") -> No
     space
         What `zwidth.workspace` returned.
     variable
-        A name in `space.data`.
+        A name in `space.data`. Default "margin", of a wall in pose "margin_in_joints".
     """
+    least = "margin" if "margin" in space.data else "margin_in_joints"
+    variable = least if variable is None else variable
     if variable not in space.data:
         raise InputError(f"the map has no {variable!r}; it has {', '.join(map(str, space.data))}")
     data = space.data[variable]
     label = f"{variable.replace('_', ' ')} [{pretty(data.attrs.get('units', '1'))}]"
     if data.ndim == 1:
-        _line(axes, data, label)
+        _line(axes, space, data, label)
         return
     if data.ndim > 2:
         raise InputError("a map of more than two joints cannot be drawn; take a slice of `data`")
@@ -84,23 +87,32 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str = "margin") -> No
     # The cells of a chain are bent: their colours run from middle to middle.
     shading: Any = "nearest" if "x" in space.data.coords or names != ("x", "y") else "gouraud"
     colours = axes.pcolormesh(across, up, values, shading=shading, rasterized=True, **_colours(values))
-    axes.figure.colorbar(colours, ax=axes, label=label)
-    margin = space.data["margin"].values
+    beyond = float(np.nanmax(values)) > colours.get_clim()[1] * (1 + 1e-9)
+    bar = axes.figure.colorbar(colours, ax=axes, label=label, extend="max" if beyond else "neither")
+    low, high = colours.get_clim()
+    if low < 0 < high:  # the two sides of 0 have scales of their own, and numbers of their own
+        sides = [MaxNLocator(4).tick_values(*side) for side in ((low, 0.0), (0.0, high))]
+        bar.set_ticks([v for v in np.unique(np.concatenate(sides)) if low <= v <= high])
+    margin, notes = space.data[least].values, []
     if np.nanmin(margin) < 0 < np.nanmax(margin):
         axes.contour(across, up, margin, levels=[0.0], colors=[BLACK], linewidths=1.5)
-        note(axes, "black: where the margin ends; strokes: the direction in which it is smallest")
+        notes.append("black line: margin 0")
     if names == ("x", "y"):
-        _directions(axes, space, across, up)
         axes.set_aspect("equal")
-    axes.set_xlabel(_axis(names[0]))
-    axes.set_ylabel(_axis(names[1]))
+        if least == "margin":
+            _directions(axes, space, across, up)
+            notes.append("strokes: the direction in which the margin is smallest")
+    if notes:
+        note(axes, "; ".join(notes))
+    axes.set_xlabel(_axis(space, names[0]))
+    axes.set_ylabel(_axis(space, names[1]))
 
 
-def _line(axes: Axes, data: Any, label: str) -> None:
+def _line(axes: Axes, space: Workspace, data: Any, label: str) -> None:
     name = str(data.dims[0])
     axes.plot(data[name], data.values, color=OUTCOME["passive"] if data.min() >= 0 else RED)
     axes.axhline(0, color=GREY, linewidth=0.8)
-    axes.set_xlabel(_axis(name))
+    axes.set_xlabel(_axis(space, name))
     axes.set_ylabel(label)
 
 
@@ -111,12 +123,13 @@ def _coordinates(space: Workspace) -> tuple[Any, Any, tuple[str, str]]:
         return (*np.meshgrid(data["x"], data["y"], indexing="ij"), ("x", "y"))
     if "hand_x" in data.coords and "hand_z" not in data.coords:
         return data["hand_x"].values, data["hand_y"].values, ("x", "y")
-    first, second = (str(name) for name in data["margin"].dims)
+    first, second = (str(name) for name in data["margin_in_joints"].dims)
     return (*np.meshgrid(data[first], data[second], indexing="ij"), (first, second))
 
 
 def _colours(values: Any) -> dict[str, Any]:
-    low, high = float(np.nanmin(values)), float(np.nanpercentile(values, 95))
+    known = values[np.isfinite(values)]
+    low, high = (float(known.min()), float(np.percentile(known, 95))) if known.size else (0.0, 0.0)
     if low < 0:
         return {"cmap": "RdBu", "norm": TwoSlopeNorm(0.0, low, max(high, -low / 2))}
     return {"cmap": "viridis", "vmin": low, "vmax": max(high, low + 1e-300)}
@@ -131,5 +144,7 @@ def _directions(axes: Axes, space: Workspace, across: Any, up: Any) -> None:
     )  # fmt: skip
 
 
-def _axis(name: str) -> str:
-    return f"{name} [m]" if name in ("x", "y") else f"joint {name} [rad]"
+def _axis(space: Workspace, name: str) -> str:
+    if name in ("x", "y"):
+        return f"{name} [m]"
+    return f"joint {name} [{pretty(space.data[name].attrs['units'])}]"

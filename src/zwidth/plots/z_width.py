@@ -47,6 +47,9 @@ _SPEEDS = (0.1, 0.2, 0.5, 1, 2, 5, 10)
 _SEEN = 10
 """Cells along each axis that a region needs for a close-up: fewer would show the cells and not the region."""
 
+_APART = 3
+"""Cells between a contour of the speed and what is passive, along K and along B: with fewer it breaks up."""
+
 _HAND_COLOURS = (BLUE, RED, PURPLE, ORANGE, BLACK)
 _LINES = ("-", "--", "-.", ":", (0, (1, 3)))
 
@@ -88,16 +91,31 @@ def z_width_figure(found: xr.Dataset) -> Figure:
     if "passive" not in found or "admissible_speed" not in found:
         raise InputError("this is no Z-width map: z_width makes one")
     near = _corner(found)
-    figure = new_figure(10.4 if near is not None else 6.0, 4.6)
+    figure = new_figure(12.4 if near is not None else 8.0, 4.6)
     axes = figure.subplots(1, 2 if near is not None else 1, squeeze=False)[0]
     draw_z_width(axes[0], found)
     axes[0].set_title(f"{found.attrs['device']}: stable with a known hand", parse_math=False)
     note(axes[0], _free(found))
     if near is not None:
         draw_z_width(axes[1], near)
-        _speeds(axes[1], near)
-        axes[1].set_title("close-up: how fast a hand may be before it gains energy")
+        drawn = _speeds(axes[1], near)
+        axes[1].set_title(
+            "close-up: how fast a hand may be before it gains energy"
+            if drawn
+            else "close-up of what is passive"
+        )
+    _legend_beside(figure)
     return figure
+
+
+def _legend_beside(figure: Figure) -> None:
+    """The legend of the whole map to the right of the picture, where no curve runs, for the close-up too."""
+    handles, words = figure.axes[0].get_legend_handles_labels()
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        if legend is not None:
+            legend.remove()
+    figure.legend(handles, words, loc="outside right upper")
 
 
 def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
@@ -163,23 +181,25 @@ def _outline(axes: Axes, found: xr.Dataset, name: str, place: int) -> None:
     )  # fmt: skip
 
 
-def _speeds(axes: Axes, found: xr.Dataset) -> None:
-    """Contours of the admissible speed, each with its value."""
+def _speeds(axes: Axes, found: xr.Dataset) -> bool:
+    """Contours of the admissible speed, each with its value; False where there is none to draw."""
     values = found["admissible_speed"].values
     shown = np.log10(np.where(np.isfinite(values) & (values > 0), values, np.nan))
     inside = [
         level
         for level in _SPEEDS
-        if np.nanmin(shown, initial=9) < log10(level) < np.nanmax(shown, initial=-9)
+        if np.nanmin(shown, initial=9) < log10(level)
+        and min((shown > log10(level)).sum(axis=along).max() for along in (0, 1)) >= _APART
     ]
     if not inside or min(shown.shape) < 2:
-        return
+        return False
     drawn = axes.contour(
         found["virtual_damping"], found["stiffness"], shown, levels=[log10(level) for level in inside],
         colors=[GREY], linewidths=0.7, linestyles="-",
     )  # fmt: skip
     unit = pretty(found["admissible_speed"].attrs["units"])
     axes.clabel(drawn, fontsize=7.5, fmt=lambda level: f"{number(10**level)} {unit}")
+    return True
 
 
 def _corner(found: xr.Dataset) -> xr.Dataset | None:

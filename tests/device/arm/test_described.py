@@ -91,6 +91,14 @@ def test_sliding_joints_and_joints_that_are_held(tmp_path: Path) -> None:
         read_arm(path, hold={})
 
 
+def test_a_joint_may_have_the_name_of_its_link(urdf: Path) -> None:
+    """The hand is at the link."""
+    q = [0.4, 0.9]
+    expected = read_arm(urdf, frame="tip").forward(q)
+    urdf.write_text(urdf.read_text().replace('joint name="hand"', 'joint name="tip"'))
+    assert read_arm(urdf, frame="tip").forward(q) == pytest.approx(expected)
+
+
 def test_mjcf_is_read_too(tmp_path: Path) -> None:
     """One hinge; its damping is given by the caller."""
     path = tmp_path / "one.xml"
@@ -113,7 +121,7 @@ def test_what_cannot_be_read_is_said_in_one_message(tmp_path: Path, urdf: Path) 
     undamped.write_text(urdf.read_text().replace("damping", "nothing"))
     for path, words in (
         (tmp_path / "none.urdf", "no file"),
-        (broken, "cannot be read"),
+        (broken, "broken.urdf cannot be read: it is no XML"),
         (tmp_path / "arm.step", "described in"),
         (undamped, "any damping"),
     ):
@@ -121,3 +129,38 @@ def test_what_cannot_be_read_is_said_in_one_message(tmp_path: Path, urdf: Path) 
             read_arm(path)
     with pytest.raises(zw.InputError, match="no frame"):
         read_arm(urdf, frame="hook")
+
+
+def test_the_words_of_the_parsers_are_in_the_message_alone(
+    tmp_path: Path, urdf: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """URDF: a link that is not there, named; MJCF: what it is not, without places in C++ files."""
+    lost = tmp_path / "lost.urdf"
+    lost.write_text(urdf.read_text().replace(LINK.format("tip"), ""))
+    empty = tmp_path / "empty.xml"
+    empty.write_text('<robot name="another format"/>')
+    with pytest.raises(zw.InputError, match=r"^lost.urdf cannot be read: .*tip.* not found$"):
+        read_arm(lost)
+    with pytest.raises(zw.InputError, match=r"^empty.xml cannot be read: This is not a standard mujoco"):
+        read_arm(empty)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_joint_is_held_where_it_can_be(tmp_path: Path, urdf: Path) -> None:
+    """At an end of its range, not past it, as degrees would be; a rail without limits anywhere."""
+    assert read_arm(urdf, hold={"elbow": 2.4}).sites(3).region == (
+        "shoulder from 0.2 to 2.4 rad; elbow held at 2.4 rad"
+    )
+    for value in (2.4001, 30, float("nan")):
+        with pytest.raises(zw.InputError, match=r"elbow can be from 0.2 to 2.4 rad, got"):
+            read_arm(urdf, hold={"elbow": value})
+    rail = tmp_path / "rail.xml"
+    rail.write_text(
+        '<mujoco><compiler angle="radian"/><worldbody><body name="car">'
+        '<joint name="rail" type="slide" axis="1 0 0"/>'
+        '<geom type="sphere" size="0.1"/><body name="arm"><joint name="turn" type="hinge" axis="0 0 1" '
+        'range="0 1" damping="0.1"/><geom type="sphere" size="0.1"/></body></body></worldbody></mujoco>'
+    )
+    with pytest.raises(zw.InputError, match="slides without limits"):
+        read_arm(rail)
+    assert read_arm(rail, hold={"rail": 7}).sites(3).region == "rail held at 7 m; turn from 0 to 1 rad"

@@ -34,6 +34,16 @@ def case(request):
     return request.param, zw.absolute_stability(plant, motions=False)
 
 
+def test_a_result_shows_in_a_line(case):
+    """What each criterion proves and what is refuted, without the certificates' numbers."""
+    _, result = case
+    words = repr(result)
+    assert words.startswith(
+        f"<AbsoluteStability proved: circle {float(result.slope('circle')):.6g}; Tsypkin "
+    )
+    assert words.endswith(f"refuted: {result.linear_limit.slope:.6g}>")
+
+
 def test_slopes_are_the_published_ones(case):
     """Circle, Tsypkin and odd Zames–Falb agree with the paper to three digits."""
     number, result = case

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -212,8 +213,7 @@ def test_part_of_a_sample_late() -> None:
 def test_a_clamped_wall_is_covered_with_contact_broken() -> None:
     """The linear criterion says nothing of it; the conditions for contact do."""
     found = zw.tolerated_activity(paddle(), zw.Wall(100, 0.05, clamped=True))
-    assert found.activity is None
-    assert found.with_contact_broken == pytest.approx(0.05)
+    assert found.activity == found.with_contact_broken == pytest.approx(0.05)
 
 
 def test_rotary() -> None:
@@ -249,6 +249,25 @@ def test_band_out_of_bounds(below: float, words: str) -> None:
     """The band lies between 0 and the Nyquist frequency."""
     with pytest.raises(zw.InputError, match=words):
         zw.tolerated_activity(paddle(), zw.Wall(100), below)
+
+
+def test_the_band_may_be_a_text() -> None:
+    """With a unit, as on the command line; another unit is refused by name; the result shows in a line."""
+    found = zw.tolerated_activity(paddle(), zw.Wall(100), "0.01 kHz")
+    assert found.below == 10
+    assert repr(found).startswith("<ToleratedActivity below 10 Hz: up to 0.1 N*s/m, contact kept; at any")
+    with pytest.raises(zw.InputError, match=r'below is in Hz; got "10 s", a time'):
+        zw.tolerated_activity(paddle(), zw.Wall(100), "10 s")
+
+
+def test_slow_growth_is_told_in_minutes_and_hours() -> None:
+    """A hand at the limit takes that long; a quick one is told in seconds."""
+    found = zw.tolerated_activity(paddle(), zw.Wall(290))
+    assert found.hand is not None
+    assert found.hand.describe().endswith(f"doubles every {found.hand.doubling_time / 3600:.3g} h")
+    quick = replace(found.hand, doubling_time=100.0)
+    assert quick.describe().endswith("doubles every 100 s")
+    assert replace(quick, doubling_time=150.0).describe().endswith("doubles every 2.5 min")
 
 
 def test_intervals_are_refused() -> None:

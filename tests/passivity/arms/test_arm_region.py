@@ -39,6 +39,13 @@ def test_both_sides_of_the_largest_stiffness(name: str) -> None:
     assert under.certificate.verify()
 
 
+def test_a_map_shows_in_a_line() -> None:
+    """Outcome, claim and the stiffest wall, without the map."""
+    space = _space("hapkit", 100)
+    assert repr(space).startswith("<Workspace passive: No motion of the hand takes energy out with q1")
+    assert repr(space).endswith(f"Stiffest wall at every point: {space.largest_stiffness:.6g} N/m>")
+
+
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_the_advice_is_enough(name: str) -> None:
     """With the damping it asks for, in all joints or in one, the region is proved."""
@@ -218,6 +225,64 @@ def test_a_redundant_arm_is_proved_but_never_refuted() -> None:
     assert zw.workspace(arm, zw.Wall(limit * 2), rate=1000, points=60).outcome == "undecided"
 
 
+def test_a_hand_that_nothing_moves_has_no_limit() -> None:
+    """The hand on the axis of the only joint: any wall holds, and the margin is without bound."""
+    arm = _Raised(links=(0.1,), damping=(0.05,), joint_range=((0, 1),))
+    still = zw.workspace(_Still(**vars(arm)), zw.Wall(500), rate="1 kHz", delay="2 ms", points=10)
+    assert (still.outcome, still.largest_stiffness, still.delay_samples) == ("theorem", np.inf, 2)
+    assert (still.data["margin"] == np.inf).all()
+
+
+class _Raised(PlanarChain):
+    """A chain in the plane whose hand is told with a third coordinate, as descriptions do."""
+
+    def forward(self, joints: Any) -> Any:
+        flat = super().forward(joints)
+        return np.concatenate([flat, 0.3 + 0 * flat[..., :1]], axis=-1) @ TILT.T
+
+    def jacobian(self, joints: Any) -> Any:
+        flat = super().jacobian(joints)
+        return TILT @ np.concatenate([flat, 0 * flat[..., :1, :]], axis=-2)
+
+    def sites(self, points: int) -> Any:
+        found = super().sites(points)
+        return found._replace(positions=self.forward(found.joints), jacobians=self.jacobian(found.joints))
+
+
+class _Still(_Raised):
+    """The hand on the axis of the only joint."""
+
+    def jacobian(self, joints: Any) -> Any:
+        return 0 * super().jacobian(joints)
+
+
+TILT = np.linalg.qr(np.array([[1.0, 0.3, 0.2], [0.1, 2.0, -0.4], [-0.5, 0.3, 1.4]]))[0]
+
+
+def test_an_arm_that_cannot_leave_its_plane_has_the_margins_in_it() -> None:
+    """Three joints and three coordinates, and J of rank two: the margin is 1/λ(J δ_m⁻¹ Jᵀ) less KT/2."""
+    b = (0.05, 0.03, 0.02)
+    arm = _Raised(links=(0.1, 0.08, 0.05), damping=b, joint_range=((0.3, 0.9),) * 3)
+    space = zw.workspace(arm, zw.Wall(100), rate=1000, points=12)
+    j = arm.sites(12).jacobians
+    felt = 1 / np.linalg.eigvalsh(j / np.array(b) @ np.swapaxes(j, -1, -2))[..., -1]
+    assert space.data["margin"].values == pytest.approx(felt - 100 * 0.001 / 2, rel=1e-5)
+    assert space.data["largest_stiffness"].values == pytest.approx(felt * 2 / 0.001, rel=1e-5)
+    across = zw.workspace(arm, zw.MatrixWall(900 * np.outer(*2 * [TILT[:, 2]])), rate=1000, points=12)
+    assert across.largest_stiffness > 1e12
+    assert across.outcome != "undecided"
+
+
+def test_an_undamped_joint_is_refuted_and_told_what_it_lacks() -> None:
+    """No stiffness holds; damping in that joint alone would do."""
+    arm = PlanarChain(links=(0.1, 0.1), damping=(0.02, 0.0), joint_range=((0, 1), (1, 2)))
+    space = zw.workspace(arm, zw.Wall(500), rate=1000, points=30)
+    assert (space.outcome, space.largest_stiffness) == ("active", 0)
+    assert space.additions[0] == np.inf
+    better = arm.replace(damping=(0.02, space.additions[1]))
+    assert zw.workspace(better, zw.Wall(500), rate=1000, points=30).outcome in ("passive", "theorem")
+
+
 def test_a_motion_is_counted_exactly() -> None:
     """On a straight line, one joint and long radius, the energy is that of the scalar law."""
     arm = PlanarChain(links=(100.0,), damping=(1e4 * 0.2,), joint_range=((-1e-5, 1e-5),))
@@ -275,6 +340,8 @@ def test_the_map_is_labelled() -> None:
         ({"rate": 1000, "delay": -1}, "delay"),
         ({"rate": 1000, "points": 1}, "points"),
         ({"rate": 1000, "torque_held_up_to": -1}, "largest force"),
+        ({"rate": 1000, "torque_held_up_to": "much"}, "largest force"),
+        ({"rate": 1000, "torque_held_up_to": (1, 2)}, "largest force"),
         ({"rate": 1000, "torque_held_up_to": 1, "delay": 0.001}, "without delay"),
     ],
 )

@@ -250,3 +250,10 @@ def test_what_a_claim_rests_on() -> None:
     assert "not asked to pull" in notes
     assert str(found).startswith("stable: ")
     assert found.margin == pytest.approx(1 - found.spectral_radius)
+
+
+def test_a_result_shows_in_a_line() -> None:
+    """Outcome, claim and the largest stiffness, without the certificate's numbers."""
+    found = zw.stability(PADDLE, zw.Wall(3000, 1), Finger())
+    assert repr(found).startswith("<Stability stable: device and hand come to rest")
+    assert repr(found).endswith(f"stiffest {found.max_stiffness:.6g}>")

@@ -36,7 +36,8 @@ class Sites(NamedTuple):
 
     `joints` (…, m), `positions` (…, n) and `jacobians` (…, n, m) are NaN where
     the arm does not reach.  `change` (…) bounds ‖J(q) − J‖₂ from the middle
-    to any other point of the cell; ∞ where no bound is known.
+    to any other point of the cell; ∞ where no bound is known.  Of a hand in pose
+    `parts` (…, 2) bounds the same for the rows of translation and for those of rotation.
     """
 
     axes: tuple[Axis, ...]
@@ -45,6 +46,7 @@ class Sites(NamedTuple):
     jacobians: Array
     change: Array
     region: str
+    parts: Array | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,9 +91,23 @@ class Arm(ABC):
     def joint_count(self) -> int:
         """m, the joints that have a motor or move freely."""
 
+    @property
+    def turns(self) -> int:
+        """How many of the hand's coordinates, the last ones, are rotations; 0: the hand is a point."""
+        return 0
+
+    @property
+    def rests_anywhere(self) -> bool:
+        """Whether `sites` are for walls in every orientation of rest, where it makes a difference."""
+        return False
+
+    def resting(self, joints: npt.ArrayLike) -> Arm:
+        """The same arm, with the wall at rest at these joints if it may rest anywhere."""
+        return self
+
     @abstractmethod
     def forward(self, joints: npt.ArrayLike) -> Array:
-        """The point that the hand holds, (…, m) → (…, n) [m]."""
+        """The point that the hand holds, (…, m) → (…, n) [m]; its rotation comes last [rad]."""
 
     @abstractmethod
     def jacobian(self, joints: npt.ArrayLike) -> Array:
@@ -99,7 +115,12 @@ class Arm(ABC):
 
     @property
     def curvature(self) -> float | None:
-        """h with |Σ ∂²p/∂q_i∂q_j w_i w_j| ≤ h |w|² everywhere [m/rad²]; None: no bound is known."""
+        """h with |Σ ∂²p/∂q_i∂q_j w_i w_j| ≤ h |w|² for the point p, everywhere [m/rad²]; None: unknown."""
+        return None
+
+    @property
+    def turning_curvature(self) -> float | None:
+        """The same of the rotations at the hand [1/rad]; None: no bound is known."""
         return None
 
     @abstractmethod
@@ -136,7 +157,7 @@ def _numbers(values: Sequence[float], key: str, count: int, needed: bool = False
     if not numbers and not needed:
         return ()
     if len(numbers) != count:
-        raise InputError(f"{key}: this arm has {count} joints, got {len(numbers)} numbers; give one for each")
+        raise InputError(f"{key}: give one for each joint, {count} in all; got {len(numbers)}")
     if any(not isfinite(v) or v < 0 for v in numbers):
         raise InputError(f"{key} must be finite and ≥ 0 in every joint, got {numbers}")
     return numbers

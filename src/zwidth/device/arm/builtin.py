@@ -36,8 +36,8 @@ def built_in(name: str, *, damping: float | Sequence[float], **numbers: Any) -> 
         Viscous friction of each joint, or one number for all [N·m·s/rad]; no source gives it.
     numbers
         Other arguments of the arm: coulomb_friction [N·m], resolution [rad], torque_limit [N·m], or what
-        belongs to its geometry, such as `lower` and `upper` [m] or `joint_range` [rad]. One number stands
-        for all joints.
+        belongs to its geometry, such as `lower` and `upper` [m], `joint_range` [rad] or `pose`, of a chain.
+        One number stands for all joints.
 
     Raises
     ------
@@ -47,6 +47,11 @@ def built_in(name: str, *, damping: float | Sequence[float], **numbers: Any) -> 
     if name not in BUILT_IN:
         raise InputError(f"there is no arm {str(name)[:40]!r}; built in are {', '.join(BUILT_IN)}")
     kind, given = BUILT_IN[name]()
+    if "pose" in numbers and kind is not PlanarChain:
+        raise InputError(
+            f"{name} has no pose: the hand holds a point and its joints do not turn the handle; "
+            "in pose there are hapkit, two-link and robot descriptions"
+        )
     joints = len(given.get("links", given.get("legs", ())))
     merged = {"name": name, **given, "damping": damping, **numbers}
     for key in ("damping", "coulomb_friction", "resolution", "torque_limit"):

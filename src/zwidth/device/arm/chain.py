@@ -3,6 +3,8 @@
     p = Σ_k l_k (cos φ_k, sin φ_k),   φ_k = q_1 + … + q_k
     ∂p/∂q_i = Σ_{k ≥ i} l_k (−sin φ_k, cos φ_k)
 
+In pose the angle of the last link, φ_m, is the third coordinate.
+
 The Hapkit or any paddle is the chain of one link.  Between two positions the
 Jacobian cannot change quickly: the derivative of column i by joint j is the
 vector from joint max(i, j) to the end turned by 180°, never longer than the
@@ -49,6 +51,8 @@ class PlanarChain(Arm):
     joint_range
         (low, high) of each joint [rad], its region of work; empty: a full
         turn of the first joint, and of the others 0 to π.
+    pose
+        The hand holds the last link and turns with it: (x, y, angle). Default: it holds a point.
     damping, coulomb_friction, resolution, torque_limit, name
         As of `Arm`, [N·m·s/rad], [N·m], [rad], [N·m].
 
@@ -60,6 +64,7 @@ class PlanarChain(Arm):
 
     links: Sequence[float]
     joint_range: Sequence[tuple[float, float]] = ()
+    pose: bool = False
 
     def __post_init__(self) -> None:
         links = tuple(float(length) for length in self.links)
@@ -77,16 +82,23 @@ class PlanarChain(Arm):
     def joint_count(self) -> int:
         return len(self.links)
 
+    @property
+    def turns(self) -> int:
+        """1 in pose."""
+        return int(self.pose)
+
     def forward(self, joints: npt.ArrayLike) -> Array:
-        """p (…, 2) [m]."""
-        steps = self._links(as_joints(joints, self.joint_count))
-        return np.asarray(steps.sum(axis=-2))
+        """p (…, 2) [m]; in pose (x, y, angle) [m, m, rad]."""
+        q = as_joints(joints, self.joint_count)
+        point = self._links(q).sum(axis=-2)
+        return np.concatenate([point, q.sum(axis=-1, keepdims=True)], axis=-1) if self.pose else point
 
     def jacobian(self, joints: npt.ArrayLike) -> Array:
-        """J (…, 2, m) [m/rad]."""
-        steps = self._links(as_joints(joints, self.joint_count))
-        arms = np.cumsum(steps[..., ::-1, :], axis=-2)[..., ::-1, :]  # from joint i to the end
-        return np.stack([-arms[..., 1], arms[..., 0]], axis=-2)
+        """J (…, 2, m) [m/rad]; in pose a row of ones more."""
+        q = as_joints(joints, self.joint_count)
+        arms = np.cumsum(self._links(q)[..., ::-1, :], axis=-2)[..., ::-1, :]  # from joint i to the end
+        rows = [-arms[..., 1], arms[..., 0]] + [np.ones_like(q)] * self.turns
+        return np.stack(rows, axis=-2)
 
     def placements(self) -> tuple[list[Placed], Array]:
         """Each joint at the end of the link before it, and the hand in the frame of the last one [m]."""
@@ -107,20 +119,26 @@ class PlanarChain(Arm):
         )
         q = np.stack(np.meshgrid(*(a.middles for a in axes), indexing="ij"), axis=-1)
         halves = np.array([(high - low) / (2 * count) for low, high in self.joint_range])
-        jacobians = self.jacobian(q)
+        change = np.full(q.shape[:-1], np.linalg.norm(self._rates() @ halves))
         return Sites(
             axes,
             q,
             self.forward(q),
-            jacobians,
-            np.full(q.shape[:-1], np.linalg.norm(self._rates() @ halves)),
+            self.jacobian(q),
+            change,
             "; ".join(f"q{i + 1} from {a:.4g} to {b:.4g} rad" for i, (a, b) in enumerate(self.joint_range)),
+            np.stack([change, np.zeros_like(change)], axis=-1) if self.pose else None,
         )
 
     @property
     def curvature(self) -> float:
         """h [m/rad²]."""
         return float(np.linalg.eigvalsh(self._rates())[-1])
+
+    @property
+    def turning_curvature(self) -> float | None:
+        """0 in pose: the angle is the sum of the joints."""
+        return 0.0 if self.pose else None
 
     def _rates(self) -> Array:
         """|∂²p/∂q_i∂q_j| is not longer than the links beyond joint max(i, j)."""

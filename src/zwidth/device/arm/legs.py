@@ -114,7 +114,9 @@ class LeggedArm(Arm):
             raise InputError("a parallel arm has two legs in the plane or three in space")
         low, high = np.asarray(self.lower, dtype=np.float64), np.asarray(self.upper, dtype=np.float64)
         if low.shape != (dim,) or high.shape != (dim,) or not (low[:2] < high[:2]).all():
-            raise InputError(f"lower and upper are the corners of the region, {dim} coordinates each [m]")
+            raise InputError(
+                f"lower and upper are the corners of the region, {dim} coordinates each [m], lower < upper"
+            )
         object.__setattr__(self, "lower", tuple(map(float, low)))
         object.__setattr__(self, "upper", tuple(map(float, high)))
 

@@ -18,7 +18,7 @@ from zwidth.passivity.absolute.proof import proved
 from zwidth.passivity.absolute.search import largest_slope
 from zwidth.passivity.absolute.terms import CRITERIA, Criterion
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import to_json
+from zwidth.passivity.document import save_json
 from zwidth.quantity.exact import Exact
 
 _MOST = 1e9
@@ -56,6 +56,10 @@ class AbsoluteStability:
     pressing: PeriodicMotion | None
     resting: PeriodicMotion | None
     plant: Plant
+
+    def __repr__(self) -> str:
+        slopes = "; ".join(f"{row.criterion} {float(row.slope):.6g}" for row in self.proved)
+        return f"<AbsoluteStability proved: {slopes}; refuted: {self.refuted:.6g}>"
 
     def slope(self, criterion: Criterion) -> Exact:
         """The largest K that the criterion proves."""
@@ -96,7 +100,7 @@ class AbsoluteStability:
 
     def save(self, path: str | Path) -> None:
         """Write it as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+        save_json(path, self.to_dict())
 
     def __str__(self) -> str:
         lines = [f"{row.criterion:16} {float(row.slope):.7g}" for row in self.proved]

@@ -85,11 +85,17 @@ class ShakingHand:
         damping, mass, stiffness = (self._unit(name) for name in ("damping", "mass", "stiffness"))
         return (
             f"{self.activity:.6g} {damping} at {self.frequency:.4g} Hz, {self.mass:.4g} {mass} on "
-            f"{self.stiffness:.6g} {stiffness}: the swing doubles every {self.doubling_time:.3g} s"
+            f"{self.stiffness:.6g} {stiffness}: the swing doubles every {_spoken(self.doubling_time)}"
         )
 
     def _unit(self, name: str) -> str:
         return GLOSSARY[name].unit_for(self.motion)
+
+
+def _spoken(seconds: float) -> str:
+    """A time as it is said: in hours and minutes where there are many seconds."""
+    size, unit = next(((s, u) for s, u in ((3600, "h"), (60, "min")) if seconds >= 2 * s), (1, "s"))
+    return f"{seconds / size:.3g} {unit}"
 
 
 def tolerance(loop: LinearLoop, angles: np.ndarray) -> np.ndarray:

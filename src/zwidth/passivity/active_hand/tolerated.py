@@ -33,11 +33,12 @@ from zwidth.passivity.active_hand.shaking import ShakingHand, shaking_hand, tole
 from zwidth.passivity.boundary import largest_holding
 from zwidth.passivity.certificate import FORMAT, Certificate, certify, linear_proof, positivity_document
 from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.document import exact_text, loop_document, to_json, unit_suffix
+from zwidth.passivity.document import exact_text, loop_document, save_json, unit_suffix
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.loop import LinearLoop
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.units import parse_number
 
 Array = npt.NDArray[np.float64]
 
@@ -131,10 +132,13 @@ class ToleratedActivity:
 
     def save(self, path: str | Path) -> None:
         """Write it as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+        save_json(path, self.to_dict())
 
     def __str__(self) -> str:
         return self.claim
+
+    def __repr__(self) -> str:
+        return f"<ToleratedActivity {'; '.join(f'{name}: {text}' for name, text in self.rows())}>"
 
 
 def tolerated_activity(
@@ -149,7 +153,7 @@ def tolerated_activity(
     environment
         An `Environment`, or a system of python-control or scipy.signal.
     below
-        f₀, 0 < f₀ ≤ 1/(2T) [Hz].  People are passive above some 10 Hz, the default.
+        f₀, 0 < f₀ ≤ 1/(2T) [Hz], or a text such as "10 Hz", the default: people are passive above some 10 Hz.
 
     Raises
     ------
@@ -157,9 +161,11 @@ def tolerated_activity(
         If a parameter is an interval, f₀ is outside its bound, or the environment cannot be sampled.
     """
     law = as_environment(environment)
-    band = band_of(Exact(below).fraction, device.exact("sample_period"))
+    band = band_of(parse_number(below, "Hz", "below").fraction, device.exact("sample_period"))
     decision = decide(device, law)
     kept, broken = _kept(device, law, decision, band), _throughout(device, law, contact=True)
+    if broken is not None and (kept is None or broken[0] > kept[0]):
+        kept = broken  # what may leave the wall may stay
     hand = None
     if kept is not None and device.mass is not None and not decision.loop.part_delay:
         hand = shaking_hand(decision.loop, float(device.exact("mass")), band, device.motion)

@@ -8,6 +8,7 @@ from zwidth.passivity.arms.joints import (
     joint_margin,
     sampled_jacobian_damping,
 )
+from zwidth.passivity.arms.least import least_additions
 from zwidth.passivity.arms.need import WallNeed, damping_at, wall_need
 from zwidth.passivity.arms.region import Workspace, workspace
 from zwidth.passivity.arms.replay import ArmMotion
@@ -22,6 +23,7 @@ __all__ = [
     "end_effector_inertia",
     "end_effector_resolution",
     "joint_margin",
+    "least_additions",
     "sampled_jacobian_damping",
     "wall_need",
     "workspace",

@@ -2,11 +2,13 @@
 
 The document lists what the arm is made of, as decimals: for a chain the fixed placement of
 each joint, which turns or slides along the z axis of its own frame, for a parallel arm its legs; the
-wall, T, d, and the region.  A stands for |B|: any A with A ± B ⪰ 0 does.
+wall, T, d, and the region; in pose the joints at which the wall's rotation rests, or that it may
+anywhere.  A stands for |B|: any A with A ± B ⪰ 0 does.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import Any
@@ -15,7 +17,7 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
-from zwidth.device.arm import Arm, DescribedArm, LeggedArm, PlanarChain
+from zwidth.device.arm import Arm, DescribedArm, LeggedArm, PlanarChain, PosedArm
 from zwidth.environment.environment import certain
 from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
@@ -23,14 +25,14 @@ from zwidth.passivity import checker
 from zwidth.passivity.arms.joints import as_matrix, surplus
 from zwidth.passivity.arms.need import wall_matrices, wall_need
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.checker.arm import matrix_at
+from zwidth.passivity.checker.arm import KEYS, POSE_KEYS, matrix_at
 from zwidth.passivity.document import exact_text
 
 Array = npt.NDArray[np.float64]
 Written = LeggedArm | PlanarChain | DescribedArm
 
 _MARGIN = 1e-12
-"""Of the largest entry: what is added so that rounded matrices are ⪰ 0 to the last digit."""
+"""Of the largest entry of its unit: what is added so that rounded matrices are ⪰ 0 to the last digit."""
 _POINTS = 8
 """Of the arm, at which the document's matrix is compared with the arm's own."""
 _SAME = 1e-9
@@ -40,7 +42,7 @@ _CURVED = 2e-6
 
 
 def arm_certificate(
-    arm: Arm, wall: Wall | MatrixWall, rate: float, delay_samples: int, held: float | None
+    arm: Arm, wall: Wall | MatrixWall, rate: float, delay_samples: int, held: float | Sequence[float] | None
 ) -> tuple[Certificate | None, str]:
     """A certificate that the checker accepts, and its words; or None, and why there is none."""
     if not isinstance(arm, (LeggedArm, PlanarChain, DescribedArm)):
@@ -49,7 +51,7 @@ def arm_certificate(
         "format": FORMAT,
         "kind": "arm",
         "arm": _legs_document(arm) if isinstance(arm, LeggedArm) else _chain_document(arm),
-        "wall": _wall_document(wall, delay_samples, arm.sites(2).jacobians.shape[-2]),
+        "wall": _wall_document(wall, arm.sites(2).jacobians.shape[-2]) | _pose_of(arm),
         "loop": _loop_document(arm, rate, delay_samples, held),
     }
     if not _is_of(document, arm, wall, 1 / rate, delay_samples):
@@ -108,32 +110,48 @@ def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
     for at in placements:
         low, high = arm.joint_range[at.joint]
         unit, per = ("m", "N_s_per_m") if at.slides else ("rad", "N_m_s_per_rad")
-        joints.append(
-            {
-                "kind": "prismatic" if at.slides else "revolute",
-                "rotation": [_texts(row) for row in at.rotation],
-                "translation_m": _texts(at.translation),
-                f"low_{unit}": _text(low),
-                f"high_{unit}": _text(high),
-                f"damping_{per}": _text(arm.damping[at.joint]),
-            }
-        )
+        joint = {
+            "kind": "prismatic" if at.slides else "revolute",
+            "rotation": [_texts(row) for row in at.rotation],
+            "translation_m": _texts(at.translation),
+            f"low_{unit}": _text(low),
+            f"high_{unit}": _text(high),
+            f"damping_{per}": _text(arm.damping[at.joint]),
+        }
+        rest = arm.rest if isinstance(arm, PosedArm) else None
+        joints.append(joint if rest is None or at.slides else {**joint, "rest_rad": _text(rest[at.joint])})
     return {"geometry": "chain", "joints": joints, "end_m": _texts(end)}
 
 
-def _wall_document(wall: Wall | MatrixWall, delay_samples: int, size: int) -> dict[str, Any]:
+def _pose_of(arm: Arm) -> dict[str, Any]:
+    """How many coordinates of the wall are rotations, and where it rests: nothing of a point."""
+    if not arm.turns:
+        return {}
+    given = isinstance(arm, PosedArm) and arm.rest is not None
+    return {"turns": arm.turns, "rest": "given" if given else "every orientation"}
+
+
+def _wall_document(wall: Wall | MatrixWall, size: int) -> dict[str, Any]:
     if isinstance(wall, Wall):
         spring, damper = certain(wall.stiffness, "stiffness"), certain(wall.damping, "damping")
-        stiffness, damping, bound = (_scalar(x, size) for x in (spring, damper, abs(damper)))
+        matrices = [_scalar(x, size) for x in (spring, damper, abs(damper))]
     else:
         k, b = wall_matrices(wall, size)
-        stiffness = _matrix(k if _is_semidefinite(k) else _raised(k))
-        damping, bound = _matrix(b), _matrix(_raised(wall_need(wall, 1.0, delay_samples, size).bound))
-    return {
-        "stiffness_N_per_m": stiffness,
-        "virtual_damping_N_s_per_m": damping,
-        "damping_bound_N_s_per_m": bound,
-    }
+        stiffness = k if _is_semidefinite(k) else _raised(k, wall.turns)
+        bound = _raised(_absolute(b, wall.turns), wall.turns)
+        matrices = [_matrix(m) for m in (stiffness, b, bound)]
+    keys = POSE_KEYS if isinstance(wall, MatrixWall) and wall.turns else KEYS
+    return dict(zip(keys, matrices, strict=True))
+
+
+def _absolute(matrix: Array, turns: int) -> Array:
+    """|B|, of forces and turns each by itself where B does not couple them: nor does rounding then."""
+    point, bound = len(matrix) - turns, np.zeros_like(matrix)
+    coupled = turns == 0 or matrix[:point, point:].any()
+    for part in (slice(None),) if coupled else (slice(point), slice(point, None)):
+        values, vectors = np.linalg.eigh(matrix[part, part])
+        bound[part, part] = (vectors * np.abs(values)) @ vectors.T
+    return bound
 
 
 def _is_semidefinite(matrix: Array) -> bool:
@@ -147,11 +165,17 @@ def _is_semidefinite(matrix: Array) -> bool:
     )
 
 
-def _raised(matrix: Array) -> Array:
-    return np.asarray(matrix + _MARGIN * np.abs(matrix).max() * np.eye(len(matrix)))
+def _raised(matrix: Array, turns: int) -> Array:
+    """With a little more on the diagonal; forces and turns, in units of their own, each by their own size."""
+    more, point = np.empty(len(matrix)), len(matrix) - turns
+    for part in (slice(point), slice(point, None)):
+        more[part] = _MARGIN * np.abs(matrix[part, part]).max(initial=0.0)
+    return np.asarray(matrix + np.diag(more))
 
 
-def _loop_document(arm: Arm, rate: float, delay_samples: int, held: float | None) -> dict[str, Any]:
+def _loop_document(
+    arm: Arm, rate: float, delay_samples: int, held: float | Sequence[float] | None
+) -> dict[str, Any]:
     loop: dict[str, Any] = {
         "sample_period_s": exact_text(1 / _exact(rate)),
         "delay_samples": delay_samples,
@@ -160,8 +184,11 @@ def _loop_document(arm: Arm, rate: float, delay_samples: int, held: float | None
     }
     if held is not None:
         assert arm.curvature is not None
-        loop["largest_force_N"] = _text(held)
+        force, *moment = np.atleast_1d(held)
+        loop["largest_force_N"] = _text(force)
         loop["curvature_m_per_rad2"] = _text(arm.curvature * (1 + _CURVED))
+        if moment:
+            loop["largest_moment_N_m"] = _text(moment[0])
     return loop
 
 

@@ -22,6 +22,9 @@ from zwidth.errors import InputError
 
 Array = npt.NDArray[np.float64]
 
+_ROUNDING = 1e-13
+"""Of the largest eigenvalue: a smallest one below this is none, and Cholesky's root is not taken."""
+
 
 def end_effector_damping(
     jacobian: npt.ArrayLike, damping: npt.ArrayLike, as_published: bool = False
@@ -29,6 +32,7 @@ def end_effector_damping(
     """δ, the damping that a hand feels which moves the end, n × n [N·s/m].
 
     In directions in which the arm cannot move, δ is 0 here: the hand cannot move there either.
+    In pose its blocks are in N·s/m, N·s/rad and N·m·s/rad.
 
     Parameters
     ----------
@@ -90,7 +94,8 @@ def single_additions(matrices: Array) -> Array:
 
 def largest_scale(base: Array, load: Array) -> Array:
     """The largest s ≥ 0 with base − s·load ⪰ 0 (…), for load ⪰ 0; 0 where base is not ≻ 0, ∞ without load."""
-    positive = np.linalg.eigvalsh(base)[..., 0] > 0
+    values = np.linalg.eigvalsh(base)
+    positive = values[..., 0] > _ROUNDING * np.abs(values[..., -1])
     safe = np.where(positive[..., None, None], base, np.eye(base.shape[-1]))
     root = np.linalg.inv(np.linalg.cholesky(safe))
     most = np.linalg.eigvalsh(root @ load @ np.swapaxes(root, -1, -2))[..., -1]
@@ -104,7 +109,8 @@ def end_effector_resolution(
     """What one step of every encoder moves the reading at the hand by, at most (…) [m].
 
     The readings that stand for one position fill the zonotope J·[0, Δ]; this is its width
-    Σᵢ |u·Jᵢ| Δᵢ in a direction u, or its largest width.
+    Σᵢ |u·Jᵢ| Δᵢ in a direction u, or its largest width.  In pose give the rows of the translation or
+    those of the rotation, [rad]: a width across metres and radians has no unit.
     """
     steps = np.asarray(jacobian) * np.asarray(resolution, dtype=np.float64)
     if direction is not None:
@@ -121,7 +127,8 @@ def end_effector_friction(
     """The largest force of the hand that Coulomb friction holds (…) [N].
 
     The forces that move no joint are those with |Jᵢ·F| ≤ f_c,i; along a direction u they end at
-    min f_c,i/|Jᵢ·u|, and in the weakest direction at min f_c,i/|Jᵢ|.
+    min f_c,i/|Jᵢ·u|, and in the weakest direction at min f_c,i/|Jᵢ|.  In pose give the rows of the
+    translation, of forces without a moment, or those of the rotation, of moments without a force [N·m].
     """
     j, f = np.asarray(jacobian, dtype=np.float64), np.asarray(friction, dtype=np.float64)
     if direction is None:
@@ -145,6 +152,8 @@ def friction_surplus(jacobian: Array, stiffness: Array, friction: Array, resolut
 
 def end_effector_inertia(jacobian: npt.ArrayLike, inertia: npt.ArrayLike) -> Array:
     """(J M⁻¹ Jᵀ)⁻¹, the mass that the hand feels, n × n [kg]; 0 where the arm cannot move.
+
+    In pose its blocks are in kg, kg·m and kg·m².
 
     Parameters
     ----------

@@ -19,12 +19,16 @@ from zwidth.passivity.arms.joints import (
     surplus,
 )
 from zwidth.passivity.arms.need import WallNeed, wall_matrices
+from zwidth.passivity.arms.pose import motion_at_hand
 
 Array = npt.NDArray[np.float64]
 Truth = npt.NDArray[np.bool_]
 
-_SINGULAR = 1e-9
-"""Singular values of J below this part of the largest count as this: damping there is as good as infinite."""
+_SINGULAR = 1e-4
+"""Singular values of J below this part of the largest count as this, with the wall's share cut alike: damping
+there is as good as infinite, yet leaves room for the digits of what is finite."""
+_BLOCKED = 1e-12
+"""Singular values of J below this part of the largest are rounding: the arm cannot move there."""
 
 Column = tuple[Array, str, str]
 
@@ -32,56 +36,108 @@ Column = tuple[Array, str, str]
 def columns_of(
     arm: Arm, damping: Array, wall: Wall | MatrixWall, need: WallNeed, jacobians: Array
 ) -> dict[str, Column]:
-    """What is mapped; at the hand in the directions U in which the arm can move."""
-    spring, damper = need.stiffness_share, need.bound
-    lacking = surplus(jacobians, damping, spring + damper)
+    """What is mapped; of a hand in pose the margin is one of the joints, as metres and radians do not mix."""
+    lacking = surplus(jacobians, damping, need.stiffness_share + need.bound)
     alone = single_additions(lacking)
-    frame, at_hand = _at_hand(jacobians, damping)
-    turned = np.swapaxes(frame, -1, -2)
-    values, vectors = np.linalg.eigh(at_hand - turned @ (spring + damper) @ frame)
-    worst = (frame @ vectors[..., :, :1])[..., 0]
-    stiffness = wall_matrices(wall, frame.shape[-2])[0]
-    scale = largest_scale(at_hand - turned @ damper @ frame, turned @ spring @ frame)
-    largest = float(np.linalg.norm(stiffness, 2))
-    stiffest = np.where(np.isfinite(scale), scale, 0.0) * largest + np.where(np.isfinite(scale), 0.0, np.inf)
-    in_joints = np.asarray(np.linalg.eigvalsh(lacking)[:, 0], dtype=np.float64)
-    columns: dict[str, Column] = {
-        "margin": (values[..., 0], "N*s/m", "damping at the hand beyond need, in the worst direction"),
-        "largest_stiffness": (stiffest, "N/m", "stiffest passive wall here"),
-        "margin_in_joints": (in_joints, "N*m*s/rad", "smallest eigenvalue of damping less need"),
+    factor = stiffness_factors(damping, need, jacobians)
+    in_joints, vectors = np.linalg.eigh(lacking)
+    if arm.turns:
+        own = _in_pose(jacobians, vectors[..., :, 0], arm.turns)
+    else:
+        own = _at_point(jacobians, damping, need)
+        stiffest = scaled_stiffness(wall, factor, jacobians.shape[-2])
+        own["largest_stiffness"] = (stiffest, "N/m", "stiffest passive wall here")
+    shared: dict[str, Column] = {
+        "stiffness_factor": (factor, "1", "the wall may be this many times as stiff here"),
+        "margin_in_joints": (in_joints[..., 0], "N*m*s/rad", "smallest eigenvalue of damping less need"),
         "addition_to_one": (alone.min(axis=-1), "N*m*s/rad", "smallest damping added to one joint"),
         "joint_to_damp": (_joint(alone), "1", "joint that needs it, from 1; 0: none, -1: one is not enough"),
     }  # fmt: skip
+    return {**own, **shared, **_held(arm, wall, jacobians)}
+
+
+def stiffness_factors(damping: Array, need: WallNeed, jacobians: Array) -> Array:
+    """By how much K may be multiplied (…); 0 where virtual damping alone asks for too much, ∞ without K."""
+    load = np.swapaxes(jacobians, -1, -2) @ need.stiffness_share @ jacobians
+    return largest_scale(surplus(jacobians, damping, need.bound), load)
+
+
+def scaled_stiffness(wall: Wall | MatrixWall, factor: Array, size: int) -> Array:
+    """The largest stiffness of any direction of the wall with `factor` times its K [N/m]."""
+    largest = float(np.linalg.norm(wall_matrices(wall, size)[0], 2))
+    finite = np.isfinite(factor)
+    return np.where(finite, np.where(finite, factor, 0.0) * largest, np.inf)
+
+
+def _at_point(jacobians: Array, damping: Array, need: WallNeed) -> dict[str, Column]:
+    """The margin at the hand, in the directions U in which the arm can move."""
+    frame, seen, at_hand = _at_hand(jacobians, damping)
+    turned = np.swapaxes(seen, -1, -2)
+    values, vectors = np.linalg.eigh(at_hand - turned @ (need.stiffness_share + need.bound) @ seen)
+    worst = (frame @ vectors[..., :, :1])[..., 0]
+    least = np.where(seen.any(axis=(-1, -2)), values[..., 0], np.inf)
+    columns: dict[str, Column] = {
+        "margin": (least, "N*s/m", "damping at the hand beyond need, in the worst direction")
+    }
     for name, component in zip("xyz", np.moveaxis(worst, -1, 0), strict=False):
         columns[f"direction_{name}"] = (component, "1", "unit vector of the worst direction")
-    if arm.resolution:
-        step = end_effector_resolution(jacobians, arm.resolution)
-        columns["resolution"] = (step, "m", "largest step of the reading at the hand")
-    if arm.coulomb_friction:
-        held = end_effector_friction(jacobians, arm.coulomb_friction)
-        columns["friction"] = (held, "N", "force that friction holds in every direction")
+    return columns
+
+
+def _in_pose(jacobians: Array, worst: Array, turns: int) -> dict[str, Column]:
+    """The direction of the joints in which the margin is smallest, and what the hand does in it."""
+    moves, turned = motion_at_hand(worst, jacobians, turns)
+    columns: dict[str, Column] = {
+        "worst_translation": (moves, "m/rad", "how the hand moves in the worst direction of the joints"),
+        "worst_rotation": (turned, "1", "how the hand turns in the worst direction of the joints"),
+    }
+    for i, component in enumerate(np.moveaxis(worst, -1, 0), start=1):
+        columns[f"direction_{i}"] = (component, "1", "unit vector of the worst direction of the joints")
+    return columns
+
+
+def _held(arm: Arm, wall: Wall | MatrixWall, jacobians: Array) -> dict[str, Column]:
+    """Encoder steps, friction and motors: of forces, and in pose of moments apart."""
+    columns: dict[str, Column] = {}
+    point = jacobians.shape[-2] - arm.turns
+    parts = [("", jacobians[..., :point, :], "m", "N", "force")]
+    if arm.turns:
+        parts.append(("rotational_", jacobians[..., point:, :], "rad", "N*m", "moment"))
+    for prefix, rows, step_unit, unit, kind in parts:
+        if arm.resolution:
+            step = end_effector_resolution(rows, arm.resolution)
+            columns[f"{prefix}resolution"] = (step, step_unit, "largest step of the reading at the hand")
+        if arm.coulomb_friction:
+            held = end_effector_friction(rows, arm.coulomb_friction)
+            columns[f"{prefix}friction"] = (held, unit, f"{kind} that friction holds in every direction")
+        if arm.torque_limit:
+            given = end_effector_friction(rows, arm.torque_limit)
+            columns[f"{prefix}force_limit"] = (given, unit, f"{kind} that every direction gets")
     if arm.coulomb_friction and arm.resolution:
+        stiffness = wall_matrices(wall, jacobians.shape[-2])[0]
         left = friction_surplus(
             jacobians, stiffness, np.array(arm.coulomb_friction), np.array(arm.resolution)
         )
         columns["friction_margin"] = (left, "N*m", "Coulomb friction beyond what the encoder steps ask for")
-    if arm.torque_limit:
-        columns["force_limit"] = (
-            end_effector_friction(jacobians, arm.torque_limit), "N", "force that every direction gets",
-        )  # fmt: skip
     return columns
 
 
-def _at_hand(jacobians: Array, damping: Array) -> tuple[Array, Array]:
-    """U (…, n, r) and δ in its axes (…, r, r), from J = U S Vᵀ: (S Vᵀ δ_m⁻¹ V S)⁻¹."""
+def _at_hand(jacobians: Array, damping: Array) -> tuple[Array, Array, Array]:
+    """U (…, n, r), U P and P δ P in its axes (…, r, r), from J = U S Vᵀ and δ = (S Vᵀ δ_m⁻¹ V S)⁻¹.
+
+    P = 1 but for directions in which the arm can hardly move, where S/P is raised to a floor: δ − UᵀRU ⪰ 0
+    exactly if PδP − PUᵀRUP ⪰ 0, and no entry is so large that the others drown in its rounding.
+    """
     u, s, vt = np.linalg.svd(jacobians, full_matrices=False)
-    s = np.maximum(s, _SINGULAR * s[..., :1])
+    raised = np.maximum(s, _SINGULAR * s[..., :1])
+    raised = np.where(raised > 0, raised, 1.0)  # the hand on the axis of the only joint: nothing moves it
+    share = np.where(s > _BLOCKED * s[..., :1], s / raised, 0.0)
     v = np.swapaxes(vt, -1, -2)
     if jacobians.shape[-1] <= jacobians.shape[-2]:
         inner = vt @ damping @ v
     else:
         inner = np.linalg.inv(vt @ np.linalg.inv(damping) @ v)
-    return u, inner / (s[..., :, None] * s[..., None, :])
+    return u, u * share[..., None, :], inner / (raised[..., :, None] * raised[..., None, :])
 
 
 def _joint(alone: Array) -> Array:
@@ -90,7 +146,7 @@ def _joint(alone: Array) -> Array:
     return np.where(least == 0, 0.0, np.where(np.isfinite(least), best, -1.0))
 
 
-def dataset(sites: Sites, reached: Truth, proved: Truth, columns: dict[str, Column]) -> Any:
+def dataset(arm: Arm, sites: Sites, reached: Truth, proved: Truth, columns: dict[str, Column]) -> Any:
     import xarray
 
     dims = tuple(axis.name for axis in sites.axes)
@@ -106,7 +162,8 @@ def dataset(sites: Sites, reached: Truth, proved: Truth, columns: dict[str, Colu
     }
     variables["proved"] = (dims, proved, {"long_name": "the condition is proved in the whole cell"})
     coordinates: dict[str, Any] = {a.name: (a.name, a.middles, {"units": a.unit}) for a in sites.axes}
-    for name, values in zip("xyz", np.moveaxis(sites.positions, -1, 0), strict=False):
+    point = sites.positions[..., : sites.positions.shape[-1] - arm.turns]
+    for name, values in zip("xyz", np.moveaxis(point, -1, 0), strict=False):
         if name not in coordinates:
             coordinates[f"hand_{name}"] = (dims, values, {"units": "m"})
     return xarray.Dataset(variables, coordinates, {"region": sites.region})

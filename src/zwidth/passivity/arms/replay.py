@@ -32,6 +32,8 @@ _AMPLITUDES = (1e-3, 3e-3, 1e-2, 3e-2, 1e-1)
 """Of the joints [rad; m]; larger ones only where Coulomb friction eats the small ones."""
 _HELD = 1e-3
 """Smallest ratio of the singular values of J at which a hand is taken to hold every joint."""
+_NOTHING = 1e-6
+"""Rows of J that are smaller [m/rad; 1] do not move the hand."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +45,7 @@ class ArmMotion:
     joints
         q(k), N × m [rad; m].
     positions
-        p(k), N × n [m].
+        p(k), N × n [m]; in pose its rotation comes last [rad].
     work
         Of the hand against the wall's force, over one round [J].
     loss
@@ -98,9 +100,9 @@ def refuting_motion(
     torque_held: bool = False,
 ) -> ArmMotion | None:
     """A motion near the joints `at` that takes energy out; None where none was found."""
+    arm = arm.resting(at)
     jacobian = arm.jacobian(at)
-    singular = np.linalg.svd(jacobian, compute_uv=False)
-    if jacobian.shape[1] > jacobian.shape[0] or singular[-1] < _HELD * singular[0]:
+    if not _held(jacobian, arm.turns):
         return None
     samples, shape = _worst(arm, wall, sample_period, delay_samples, jacobian)
     turn = np.cos(2 * np.pi / samples * np.arange(samples))
@@ -112,6 +114,15 @@ def refuting_motion(
         if motion.energy < -1e-9 * (abs(motion.work) + motion.loss):
             return motion
     return None
+
+
+def _held(jacobian: Array, turns: int) -> bool:
+    """Whether a hand at the end holds every joint; rows of metres and rows of radians each by their size."""
+    point = len(jacobian) - turns
+    parts = [part for part in (jacobian[:point], jacobian[point:]) if len(part)]
+    rows = np.concatenate([part / max(float(np.linalg.norm(part, 2)), _NOTHING) for part in parts])
+    singular = np.linalg.svd(rows, compute_uv=False)
+    return bool(jacobian.shape[1] <= jacobian.shape[0] and singular[-1] >= _HELD * singular[0])
 
 
 def _worst(

@@ -6,6 +6,8 @@
 K and B of the wall, d whole samples of delay, T the period. A stands for |B|: all that the proof takes from
 it is aᵀAa + bᵀAb ± 2aᵀBb ≥ 0. c = h F T/2 where the torque is held over a period, else 0: h bounds the second
 derivatives of the hand's position, F the force of the wall. The hand's position is read without steps.
+In pose the last coordinates are rotations, `arm_pose`, and c = (h F + h_e M) T/2: M bounds what the wall
+gives for them, no less than its moment.
 """
 
 from __future__ import annotations
@@ -17,10 +19,13 @@ from typing import Any, NamedTuple
 from .arm_cells import Function, positive_in
 from .arm_chain import bends, chain_surplus, read_chain, vector
 from .arm_legs import legs_surplus, read_legs
+from .arm_pose import Pose, for_every_rest, in_words, read_pose, turning, turning_bend
 from .enclosure import ONE, Jet, enclosed
 from .reading import Invalid, get, integer, number
 
 MOST_DELAY = 10**6
+KEYS = ("stiffness_N_per_m", "virtual_damping_N_s_per_m", "damping_bound_N_s_per_m")
+POSE_KEYS = ("stiffness_N_m_rad", "virtual_damping_N_m_s_rad", "damping_bound_N_m_s_rad")
 
 Matrix = list[list[Fraction]]
 
@@ -46,20 +51,25 @@ def matrix_at(document: Mapping[str, Any], place: Sequence[Fraction]) -> list[li
 
 
 def _claim(document: Mapping[str, Any]) -> Claim:
-    machine, loop = get(document, "arm"), get(document, "loop")
-    need = [[enclosed(x) for x in row] for row in _need(get(document, "wall"), loop)]
-    force, geometry = _held_force(loop), get(machine, "geometry")
+    machine, wall, loop = (get(document, key) for key in ("arm", "wall", "loop"))
+    pose, force, geometry = read_pose(wall), _held_force(loop), get(machine, "geometry")
+    need = [[enclosed(x) for x in row] for row in for_every_rest(_need(wall, loop, pose), pose)]
     torque = "follows the arm" if force is None else f"is held, for forces up to {float(force):g} N"
     words = "no motion of the hand with {} takes energy out, read without encoder steps; the torque " + torque
     if geometry == "chain":
         chain = read_chain(machine)
-        if len(need) > 3:
-            raise Invalid("the wall has more coordinates than the hand")
         price = Fraction(0) if force is None else _price(bends(chain), loop, force)
+        if pose.turns and force is not None:
+            moment = _moment(loop)
+            price += turning_bend(chain, pose) * moment * number(get(loop, "sample_period_s")) / 2
+            words += f" and moments up to {float(moment):g} N·m"
         box = [(joint.low, joint.high) for joint in chain.joints]
-        return Claim(box, chain_surplus(chain, need, price), words.format("every joint in its range"))
+        matrix = chain_surplus(chain, need, price, turning(machine, chain, pose) if pose.turns else None)
+        return Claim(box, matrix, words.format("every joint in its range") + in_words(wall, pose))
     if geometry != "legs":
         raise Invalid("the geometry is chain or legs")
+    if pose.turns:
+        raise Invalid("a parallel arm holds a point, and no pose")
     legs = read_legs(machine)
     if len(need) != len(legs.legs):
         raise Invalid("the wall has as many coordinates as the arm has legs")
@@ -69,17 +79,15 @@ def _claim(document: Mapping[str, Any]) -> Claim:
     return Claim(box, legs_surplus(legs, need), words.format("its position in the box"))
 
 
-def _need(wall: Mapping[str, Any], loop: Mapping[str, Any]) -> Matrix:
-    """R [N·s/m]."""
+def _need(wall: Mapping[str, Any], loop: Mapping[str, Any], pose: Pose) -> Matrix:
+    """R [N·s/m; in pose N·s/rad and N·m·s/rad, too]."""
     if get(loop, "encoder") != "ideal":
         raise Invalid("the proof is of an ideal encoder")
     period, delay = number(get(loop, "sample_period_s")), integer(get(loop, "delay_samples"))
     if period <= 0 or delay > MOST_DELAY:
         raise Invalid("T must be > 0, and the delay not too many samples")
-    stiffness = _symmetric(get(wall, "stiffness_N_per_m"))
-    damping, bound = (
-        _symmetric(get(wall, f"{name}_N_s_per_m")) for name in ("virtual_damping", "damping_bound")
-    )
+    keys = POSE_KEYS if pose.turns else KEYS
+    stiffness, damping, bound = (_symmetric(get(wall, key), pose.sizes) for key in keys)
     if not len(stiffness) == len(damping) == len(bound):
         raise Invalid("the matrices of the wall differ in size")
     if not _semidefinite(stiffness):
@@ -110,9 +118,16 @@ def _price(most: Matrix, loop: Mapping[str, Any], force: Fraction) -> Fraction:
     return curvature * force * number(get(loop, "sample_period_s")) / 2
 
 
-def _symmetric(rows: Any) -> Matrix:
-    if not isinstance(rows, list) or not 1 <= len(rows) <= 3:
-        raise Invalid("a matrix of the wall has from 1 to 3 rows")
+def _moment(loop: Mapping[str, Any]) -> Fraction:
+    moment = number(get(loop, "largest_moment_N_m"))
+    if moment < 0:
+        raise Invalid("a held torque needs a largest moment ≥ 0")
+    return moment
+
+
+def _symmetric(rows: Any, sizes: range) -> Matrix:
+    if not isinstance(rows, list) or len(rows) not in sizes:
+        raise Invalid(f"a matrix of the wall has {' or '.join(map(str, sizes))} rows")
     matrix = [vector(row, len(rows)) for row in rows]
     if any(matrix[i][k] != matrix[k][i] for i in range(len(rows)) for k in range(i)):
         raise Invalid("a matrix of the wall is not symmetric")

@@ -21,7 +21,7 @@ from .enclosure import BITS, ONE, ZERO, Jet, NotPositive, Range
 from .reading import Invalid
 
 MOST_WORK = 200_000
-"""Cells, times entries of S, times a value and the slopes of each: some ten seconds."""
+"""Cells, times entries of S, times a value and the slopes of each: some ten seconds, in pose twenty."""
 MOST_MOVING = 8
 
 Cell = tuple[Range, ...]

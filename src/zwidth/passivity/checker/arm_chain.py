@@ -75,9 +75,13 @@ def vector(values: Any, size: int) -> list[Fraction]:
 
 
 def chain_surplus(
-    chain: Chain, need: list[list[Range]], price: Fraction
+    chain: Chain,
+    need: list[list[Range]],
+    price: Fraction,
+    turning: Callable[[Sequence[Jet]], list[list[Jet]]] | None = None,
 ) -> Callable[[Sequence[Jet]], list[list[Jet]]]:
-    """δ_m − c − JᵀRJ, its rows from the diagonal on; R of the hand's first coordinates, c of every joint."""
+    """δ_m − c − JᵀRJ, its rows from the diagonal on; R of the hand's first coordinates, c of every joint.
+    `turning` gives what comes after the point in each column of J."""
     fixed = [
         ([[enclosed(x) for x in row] for row in j.rotation], [Jet(enclosed(x)) for x in j.translation])
         for j in chain.joints
@@ -96,7 +100,10 @@ def chain_surplus(
                 for v in vectors
             ]
             point = [x + t for x, t in zip(point, translation, strict=True)]
-        columns = [column[: len(need)] for column in columns]
+        turned = turning(joints) if turning else [[] for _ in joints]
+        columns = [
+            [*column[: len(need) - len(more)], *more] for column, more in zip(columns, turned, strict=True)
+        ]
         loads = [[total([x.scaled(r) for x, r in zip(v, row, strict=True)]) for row in need] for v in columns]
         return [
             [

@@ -78,6 +78,10 @@ class Stability:
         """1 − spectral radius: > 0 for a loop that decays."""
         return 1 - self.spectral_radius
 
+    def __repr__(self) -> str:
+        limit = "" if self.max_stiffness is None else f", stiffest {self.max_stiffness:.6g}"
+        return f"<Stability {self.outcome}: {self.claim}; spectral radius {self.spectral_radius:.6g}{limit}>"
+
     def verify(self) -> bool:
         """True when there is a certificate and the independent checker accepts it."""
         return self.certificate is not None and self.certificate.verify()
@@ -90,9 +94,9 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
     """Whether device, known hand and wall come to rest in sustained contact.
 
     ``(m + m_h) ẍ + (b + c) ẋ + k x = −f``,  f = H(z) x sampled, delayed and held.  Decided exactly: in
-    rational arithmetic without spring and damper, else in balls that hold the true coefficients.  A passive
-    loop is stable with every passive hand; this one answers for loops that are not passive.  What is said has
-    been confirmed by the independent checker.
+    rational arithmetic without spring and damper, else in balls that hold the true coefficients.  What is
+    said has been confirmed by the independent checker, and of intervals proved by it alone.  A passive loop
+    is stable with every passive hand; this one answers for loops that are not passive.
 
     Parameters
     ----------

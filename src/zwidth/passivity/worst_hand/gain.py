@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.passivity import checker
-from zwidth.passivity.document import to_json, unit_key
+from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.motion import Motion, Repeat
 from zwidth.passivity.witness import FORMAT, rounded_energy
 from zwidth.passivity.worst_hand.board import Board
@@ -97,7 +97,7 @@ class Gain:
 
     def save(self, path: str | Path) -> None:
         """Write the motion as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(rounded_energy(self.document)) + "\n", encoding="utf-8")
+        save_json(path, rounded_energy(self.document))
 
     def describe(self) -> str:
         """The motion in a sentence."""

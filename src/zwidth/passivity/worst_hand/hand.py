@@ -15,7 +15,7 @@ from zwidth.environment.hunt_crossley import DIGITS
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import to_json
+from zwidth.passivity.document import save_json
 from zwidth.passivity.verdict import Outcome
 from zwidth.passivity.witness import rounded_energy
 from zwidth.passivity.worst_hand.board import Board, Domain
@@ -117,7 +117,7 @@ class WorstHand:
 
     def save(self, path: str | Path) -> None:
         """Write the outcome with its evidence as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+        save_json(path, self.to_dict())
 
     def __repr__(self) -> str:
         return f"<WorstHand {self.outcome}: {self.claim}>"

@@ -19,7 +19,7 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.document import to_json, unit_suffix
+from zwidth.passivity.document import save_json, unit_suffix
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.worst_hand.gain import Gain
 from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of, patience
@@ -121,7 +121,7 @@ class Bracket:
 
     def save(self, path: str | Path) -> None:
         """Write the bracket with its evidence as JSON for `zwidth verify`."""
-        Path(path).write_text(to_json(self.to_dict()) + "\n", encoding="utf-8")
+        save_json(path, self.to_dict())
 
     def __repr__(self) -> str:
         return f"<Bracket {self.describe()}>"

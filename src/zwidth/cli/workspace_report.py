@@ -1,0 +1,103 @@
+"""What `zwidth workspace` prints: the verdict, the numbers, what to change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from math import isfinite
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from zwidth.passivity.arms import Workspace
+
+_SHOWN = 1e-6
+"""Of the sum: what one joint gets less than this is the room for rounding."""
+
+
+def print_workspace(space: Workspace) -> None:
+    """Print the verdict and what to change on standard output."""
+    from rich.padding import Padding
+    from rich.table import Table
+    from rich.text import Text
+
+    from zwidth.cli.report import COLOURS, page, section
+
+    with page() as out:
+        head = Table.grid(padding=(0, 1))
+        badge = Text(f" {space.outcome.upper()} ", style=f"bold white on {COLOURS[space.outcome]}")
+        head.add_row(badge, Text(space.claim, style="bold"))
+        out.print(Padding(head, (0, 0, 1, 0)))
+        out.print(Padding(_grid(_numbers(space)), (0, 0, 1, 0)))
+        changes = list(_changes(space))
+        section(out, "what to change", [_grid(changes)] if changes else [])
+
+
+def _grid(rows: Iterable[tuple[str, str]]) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    grid = Table.grid(padding=(0, 2))
+    for name, text in rows:
+        grid.add_row(Text(name, style="dim"), Text(text))
+    return grid
+
+
+def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
+    from zwidth.cli.numerals import shown
+
+    data, motion = space.data, space.motion
+    count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
+    yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
+    kind, unit, where = ("margin", "N*s/m", "at the hand")
+    if space.arm.turns:
+        kind, unit, where = ("margin_in_joints", "N*m*s/rad", "in the worst direction of the joints")
+    low, high = (shown(float(v), unit) for v in (data[kind].min(), data[kind].max()))
+    yield "margin", f"{low} to {high} {where}"
+    if space.largest_stiffness is None:
+        factors = f"{space.stiffness_factor:.4g} times everywhere"
+        yield "stiffness", f"{factors}, {float(data['stiffness_factor'].max()):.4g} times at the best point"
+    else:
+        best = shown(float(data["largest_stiffness"].max()), "N/m")
+        everywhere = shown(space.largest_stiffness, "N/m")
+        yield "largest stiffness", f"{everywhere} everywhere, {best} at the best point"
+    if motion is not None:
+        middle = ", ".join(f"{q:.4g}" for q in motion.joints.mean(axis=0))
+        gain = shown(-motion.energy, "J")
+        yield "motion", f"{len(motion.joints)} samples round the joints at {middle} take {gain} out"
+    if "resolution" in data:
+        turned = ""
+        if "rotational_resolution" in data:
+            turned = f" and {shown(float(data['rotational_resolution'].max()), 'rad')}"
+        yield "encoder step", f"up to {shown(float(data['resolution'].max()), 'm')}{turned} at the hand"
+    if space.encoder_friction:
+        enough = ", ".join(shown(f, "N*m") if isfinite(f) else "none" for f in space.encoder_friction)
+        own = space.arm.coulomb_friction
+        has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "what it has is not known"
+        yield "Coulomb friction", f"{enough} covers the steps in joint {_joints(space)}; {has}"
+
+
+def _joints(space: Workspace) -> str:
+    return ", ".join(str(joint) for joint in range(1, space.arm.joint_count + 1))
+
+
+def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
+    from zwidth.cli.numerals import shown
+
+    if space.addition_to_all == 0:
+        return
+    if space.largest_stiffness is None and space.stiffness_factor > 0:
+        yield "wall", f"its stiffness times {space.stiffness_factor:.4g}, and no more"
+    elif space.largest_stiffness:
+        yield "wall", f"no stiffer than {shown(space.largest_stiffness, 'N/m')}"
+    total = sum(space.least_additions)
+    parts = [
+        f"{shown(addition, 'N*m*s/rad')} more damping in joint {joint}"
+        for joint, addition in enumerate(space.least_additions, start=1)
+        if addition > _SHOWN * total
+    ]
+    yield "least in all", ", ".join(parts) + (f", together {shown(total, 'N*m*s/rad')}" if parts[1:] else "")
+    yield "all joints", f"{shown(space.addition_to_all, 'N*m*s/rad')} more damping in each"
+    for joint, addition in enumerate(space.additions, start=1):
+        if isfinite(addition):
+            yield f"joint {joint} alone", f"{shown(addition, 'N*m*s/rad')} more damping"

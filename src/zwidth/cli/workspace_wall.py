@@ -1,0 +1,95 @@
+"""The wall of `zwidth workspace`: as stiff in every direction by options, or given by matrices in a file.
+
+    [wall]
+    stiffness = [["500 N/m", 0, 0], [0, "200 N/m", 0], [0, 0, "5 N*m/rad"]]
+    damping = [[0.1, 0, 0], [0, 0, 0], [0, 0, 0.002]]
+
+Numbers are in N, m, s and rad.  In pose the last rows and columns are rotations.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from zwidth.cli.table import located
+from zwidth.errors import InputError
+from zwidth.quantity.units import parse_number
+
+WALL_OPTIONS = (
+    ("--stiffness", "VALUE", "of the wall, in every direction [N/m]"),
+    ("--rotational-stiffness", "VALUE", "of a wall in pose, about every axis [N*m/rad] (default: 0)"),
+    ("--virtual-damping", "VALUE", "of the wall, in every direction [N*s/m] (default: 0)"),
+    ("--rotational-damping", "VALUE", "of a wall in pose, about every axis [N*m*s/rad] (default: 0)"),
+    ("--wall", "FILE", "matrices in the place of these: a .toml file with stiffness and damping in [wall]"),
+)
+_UNITS = {
+    "stiffness": ("N/m", "N/rad", "N*m/rad"),
+    "damping": ("N*s/m", "N*s/rad", "N*m*s/rad"),
+}
+"""Of translations, between the two, of rotations."""
+
+
+def wall_of(arguments: argparse.Namespace, turns: int) -> Any:
+    """The wall for a hand with so many rotations, 0: a point."""
+    from zwidth.environment.matrix_wall import MatrixWall
+    from zwidth.environment.wall import Wall
+
+    given = {
+        key: getattr(arguments, key)
+        for key in ("stiffness", "rotational_stiffness", "virtual_damping", "rotational_damping")
+        if getattr(arguments, key) is not None
+    }
+    if arguments.wall is not None:
+        if given:
+            option = next(iter(given)).replace("_", "-")
+            raise InputError(f"--wall FILE says what the wall is; leave out --{option}")
+        return read_wall(Path(arguments.wall), turns)
+    if not turns and (found := [key for key in given if key.startswith("rotational")]):
+        raise InputError(f"--{found[0].replace('_', '-')}: a point does not turn; add --pose")
+    if not {"stiffness", "rotational_stiffness"} & given.keys():
+        raise InputError("which wall? Give its stiffness [N/m], for example --stiffness 500")
+
+    def value(key: str, unit: str) -> Any:
+        return parse_number(given.get(key, "0"), unit, key)
+
+    k, b = value("stiffness", "N/m"), value("virtual_damping", "N*s/m")
+    if not turns:
+        return Wall(stiffness=k, damping=b)
+    k_turn = value("rotational_stiffness", "N*m/rad")
+    b_turn = value("rotational_damping", "N*m*s/rad")
+    return MatrixWall.in_pose(float(k), float(k_turn), float(b), float(b_turn), planar=turns == 1)
+
+
+def read_wall(path: Path, turns: int) -> Any:
+    """A `MatrixWall` from the table [wall] of a TOML file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or a matrix in it cannot be used.
+    """
+    from zwidth.cli.specification import read_tables
+    from zwidth.environment.matrix_wall import MatrixWall
+
+    table = read_tables([path], ("wall",))["wall"]
+    table.check_keys(_UNITS, "a wall given by matrices")
+    if "stiffness" not in table.values:
+        raise InputError(f"{table.label}: stiffness = [[…], …] is missing")
+    with located(table.label):
+        matrices = {key: _matrix(rows, key, turns) for key, rows in table.values.items()}
+        return MatrixWall(matrices["stiffness"], matrices.get("damping"), turns=turns)
+
+
+def _matrix(rows: object, key: str, turns: int) -> list[list[float]]:
+    if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) == len(rows) for row in rows):
+        raise InputError(f"{key} is a square matrix, [[…, …], […, …]]")
+    point = len(rows) - turns
+    return [
+        [
+            float(parse_number(entry, _UNITS[key][(i >= point) + (j >= point)], key))
+            for j, entry in enumerate(row)
+        ]
+        for i, row in enumerate(rows)
+    ]
