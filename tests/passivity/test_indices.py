@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import deepcopy
 from fractions import Fraction
 from math import inf, isclose, pi, sqrt
 
@@ -12,6 +11,7 @@ import pytest
 import scipy.signal
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tampered import tampered
 
 import zwidth as zw
 from zwidth.passivity import checker
@@ -377,16 +377,6 @@ def test_what_is_refused(arguments, message):
     """Each refusal says what was given and what to try."""
     with pytest.raises(zw.InputError, match=message):
         zw.passivity_indices(*arguments)
-
-
-def tampered(document, path, value):
-    """The document with one entry changed."""
-    changed = deepcopy(document)
-    inner = changed
-    for key in path[:-1]:
-        inner = inner[key]
-    inner[path[-1]] = value
-    return changed
 
 
 def test_the_checker_refuses_a_false_proof():

@@ -5,8 +5,8 @@ With H = K + B V(z) and g = (1 − z⁻¹) z⁻ᵈ (1 − α + α z⁻¹) the cr
     b² − b (T/2) Re{g H}/(1 − cos ωT) − ¼ T² α(1−α) |H|² ≥ 0,
 
 concave in (K, B), and ‖h‖₁, which Coulomb friction has to cover, is convex: between two walls with
-one B that are proved every wall is passive too.  Floats say where the interval may end; its
-ends are decided exactly, and what lies between need not be.
+one B that are proved every wall is passive too.  Floats say where the interval may end; its ends
+are decided exactly and accepted by the independent checker, and what lies between need not be.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from zwidth.environment import Wall
 from zwidth.maps.request import Array, Request
-from zwidth.passivity.decision import decide
+from zwidth.passivity.certificate import Certificate, certify
+from zwidth.passivity.decision import Decision, decide
 from zwidth.quantity.exact import Exact
 
 Proved = Callable[[int], bool]
@@ -34,7 +35,7 @@ def sustained_walls(asked: Request) -> NDArray[np.int64]:
     for j, (low, high) in enumerate(_by_floats(asked, b).T):
         first, past = np.searchsorted(k, low, side="left"), np.searchsorted(k, high, side="right")
         if first < past:
-            found[:, j] = _exactly(_decision(asked, float(b[j])), int(first), int(past))
+            found[:, j] = _column(asked, float(b[j]), int(first), int(past))
     return found
 
 
@@ -77,14 +78,22 @@ def _between(c2: float, c1: Array, c0: Array) -> tuple[Array, Array]:
     return np.where(never, np.inf, low), np.where(never, -np.inf, high)
 
 
-def _decision(asked: Request, damping: float) -> Proved:
+def _column(asked: Request, damping: float, first: int, past: int) -> tuple[int, int]:
+    """The walls of one B that are proved, both ends with a certificate; 0, 0 without one."""
     k = asked.stiffness.values
 
-    def proved(i: int) -> bool:
+    def decided(i: int) -> Decision:
         wall = Wall(Exact(float(k[i])), Exact(damping), velocity_filter=asked.velocity_filter)
-        return decide(asked.device, wall).is_provable
+        return decide(asked.device, wall)
 
-    return proved
+    def proved(i: int) -> bool:
+        return decided(i).is_provable
+
+    def accepted(i: int) -> bool:
+        return Certificate((certify(decided(i)),)).verify()
+
+    low, high = _exactly(proved, first, past)
+    return (low, high) if low < high and accepted(low) and accepted(high - 1) else (0, 0)
 
 
 def _exactly(proved: Proved, first: int, past: int) -> tuple[int, int]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from cmath import exp
-from copy import deepcopy
 from fractions import Fraction
 from itertools import combinations
 from math import cos, sin
@@ -11,6 +10,7 @@ from math import cos, sin
 import numpy as np
 import pytest
 from flint import fmpq, fmpq_mat
+from tampered import tampered
 
 import zwidth as zw
 from zwidth.passivity import checker
@@ -21,16 +21,6 @@ from zwidth.passivity.multiport.leverrier import leverrier, multiplied
 pytest.importorskip("control")
 
 from matrix_systems import matrix, random_system
-
-
-def tampered(document, path, value):
-    """The document with one entry changed."""
-    changed = deepcopy(document)
-    inner = changed
-    for key in path[:-1]:
-        inner = inner[key]
-    inner[path[-1]] = value
-    return changed
 
 
 def proved():

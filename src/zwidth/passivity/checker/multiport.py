@@ -17,7 +17,7 @@ from itertools import count
 from math import lcm
 from typing import Any, NamedTuple
 
-from .port import MOST_WORK, _horner, _in_left_half_plane, _inside, _trimmed
+from .port import MOST_WORK, _horner, _in_left_half_plane, _inside, _trimmed, system_of
 from .proofs import _multiply, _strictly_positive, _sum
 from .reading import Invalid, common_scale, get, integer, number, numbers
 
@@ -41,10 +41,7 @@ class _Ports(NamedTuple):
 
 def read_ports(document: Mapping[str, Any]) -> _Ports:
     """D = d and N = G d for the input index; exchanged for the output index."""
-    system = get(document, "system")
-    time, which = get(system, "time"), get(document, "index")
-    if time not in ("continuous", "discrete") or which not in ("input", "output"):
-        raise Invalid("the time must be continuous or discrete, the index input or output")
+    system, time, which = system_of(document)
     d = _trimmed(numbers(get(system, "denominator")))
     n = [[_trimmed(p) for p in row] for row in _square(get(system, "numerators"))]
     if not d:

@@ -8,7 +8,17 @@ from math import comb, lcm, pi
 from typing import Any
 
 from .multiport import Polynomial, _Ports, read_ports
-from .port import MOST_POWER, MOST_WORK, _horner, _operated, _part, _short, bounded_lines, bounded_terms
+from .port import (
+    MOST_POWER,
+    MOST_WORK,
+    _horner,
+    _operated,
+    _part,
+    _short,
+    bounded_lines,
+    bounded_terms,
+    taken_out,
+)
 from .proofs import _multiply, _sum
 from .reading import MOST_COEFFICIENTS, MOST_SAMPLES, Invalid, common_scale, get, integer, number, numbers
 
@@ -16,18 +26,12 @@ from .reading import MOST_COEFFICIENTS, MOST_SAMPLES, Invalid, common_scale, get
 def matrix_extraction(document: Mapping[str, Any]) -> tuple[str, Fraction]:
     """What a motion from rest takes out above the level; it must be more than nothing."""
     p, motion = read_ports(document), get(document, "motion")
-    kind = get(motion, "kind")
-    if kind == "burst" and p.continuous:
-        absorbed = _burst(p, motion) * Fraction(pi)  # the sign is that of the exact factor of π
-    elif kind == "polynomial" and p.continuous:
-        absorbed = _polynomial(p, motion)
-    elif kind == "sequence" and not p.continuous:
-        absorbed = _sequence(p, _axes(p, get(motion, "latent"), MOST_SAMPLES))
-    else:
-        raise Invalid(f"no {str(kind)[:20]!r} motion in this time")
-    if absorbed >= 0:
-        raise Invalid(f"the motion takes out {float(-absorbed):g}: none comes out")
-    return f"the {get(document, 'index')} index is less than {float(p.level):g}", -absorbed
+    weights = {
+        "burst": lambda: _burst(p, motion) * Fraction(pi),  # the sign is that of the exact factor of π
+        "polynomial": lambda: _polynomial(p, motion),
+        "sequence": lambda: _sequence(p, _axes(p, get(motion, "latent"), MOST_SAMPLES)),
+    }
+    return taken_out(document, weights, p.continuous, p.level)
 
 
 def _axes(p: _Ports, values: Any, most: int) -> list[list[Fraction]]:

@@ -6,7 +6,7 @@ table for the roots.  A motion is run from rest and what it takes out is summed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from math import comb, lcm, pi
 from typing import Any, NamedTuple
@@ -32,10 +32,7 @@ class _Port(NamedTuple):
 
 def _read(document: Mapping[str, Any]) -> _Port:
     """F is G for the input index and 1/G for the output index."""
-    system = get(document, "system")
-    time, which = get(system, "time"), get(document, "index")
-    if time not in ("continuous", "discrete") or which not in ("input", "output"):
-        raise Invalid("the time must be continuous or discrete, the index input or output")
+    system, time, which = system_of(document)
     n, d = (_trimmed(numbers(get(system, key))) for key in ("numerator", "denominator"))
     if not d:
         raise Invalid("the denominator is zero")
@@ -50,6 +47,15 @@ def _read(document: Mapping[str, Any]) -> _Port:
     if order > MOST_ORDER:
         raise Invalid(f"the order is {order}, more than {MOST_ORDER}")
     return _Port(n, d, time == "continuous", number(get(document, "level")), order)
+
+
+def system_of(document: Mapping[str, Any]) -> tuple[Any, str, str]:
+    """The system, its time and which index is meant."""
+    system = get(document, "system")
+    time, which = get(system, "time"), get(document, "index")
+    if time not in ("continuous", "discrete") or which not in ("input", "output"):
+        raise Invalid("the time must be continuous or discrete, the index input or output")
+    return system, time, which
 
 
 def _trimmed(descending: list[Fraction]) -> list[Fraction]:
@@ -126,18 +132,28 @@ def _binomial(power: int, sign: int) -> list[Fraction]:
 def extraction(document: Mapping[str, Any]) -> tuple[str, Fraction]:
     """What a motion from rest takes out above the level; it must be more than nothing."""
     p, motion = _read(document), get(document, "motion")
-    kind = get(motion, "kind")
-    if kind == "burst" and p.continuous:
-        absorbed = _burst(p, motion) * Fraction(pi)  # the sign is that of the exact factor of π
-    elif kind == "polynomial" and p.continuous:
-        absorbed = _polynomial(p, motion)
-    elif kind == "sequence" and not p.continuous:
-        absorbed = _sequence(p, numbers(get(motion, "latent"), MOST_SAMPLES))
-    else:
+    weights = {
+        "burst": lambda: _burst(p, motion) * Fraction(pi),  # the sign is that of the exact factor of π
+        "polynomial": lambda: _polynomial(p, motion),
+        "sequence": lambda: _sequence(p, numbers(get(motion, "latent"), MOST_SAMPLES)),
+    }
+    return taken_out(document, weights, p.continuous, p.level)
+
+
+def taken_out(
+    document: Mapping[str, Any],
+    weights: Mapping[str, Callable[[], Fraction]],
+    continuous: bool,
+    level: Fraction,
+) -> tuple[str, Fraction]:
+    """What the motion of a document takes out; `weights` says of each kind of motion what it puts in."""
+    kind = get(get(document, "motion"), "kind")
+    if kind not in (("burst", "polynomial") if continuous else ("sequence",)):
         raise Invalid(f"no {str(kind)[:20]!r} motion in this time")
+    absorbed = weights[kind]()
     if absorbed >= 0:
         raise Invalid(f"the motion takes out {float(-absorbed):g}: none comes out")
-    return f"the {get(document, 'index')} index is less than {float(p.level):g}", -absorbed
+    return f"the {get(document, 'index')} index is less than {float(level):g}", -absorbed
 
 
 def _burst(p: _Port, motion: Mapping[str, Any]) -> Fraction:
