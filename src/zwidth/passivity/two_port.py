@@ -31,6 +31,7 @@ from scipy.optimize import minimize_scalar
 
 from zwidth.device import Device
 from zwidth.errors import InputError
+from zwidth.passivity.frequencies import sampled_frequencies
 from zwidth.passivity.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, positive
 from zwidth.quantity.exact import RealLike
 
@@ -41,8 +42,6 @@ if TYPE_CHECKING:
     Complex = NDArray[np.complex128]
 
 Hold = Literal["average", "exact"]
-
-_POINTS = 2000
 
 _ROUNDING = 1e-9
 """Relative difference that counts as equality."""
@@ -90,7 +89,7 @@ def impedance_display(
     """
     t, b = float(device.exact("sample_period")), float(device.exact("damping"))
     k, d = _coupling(stiffness, damping)
-    hertz = _frequencies(frequencies, t)
+    hertz = sampled_frequencies(frequencies, t)
     z = np.exp(2j * np.pi * hertz * t)
     mobility = (1 - 1 / z) / (k * t + d * (1 - 1 / z))
     between, size = _hold(device, hold, z, hertz)
@@ -159,7 +158,7 @@ def admittance_display(
         float(nonnegative(name, gain, why))
         for name, gain in (("velocity_gain", velocity_gain), ("position_gain", position_gain))
     )
-    hertz = _frequencies(frequencies, t)
+    hertz = sampled_frequencies(frequencies, t)
     z = np.exp(2j * np.pi * hertz * t)
     between, _ = _hold(device, "average", z, hertz)
     follow = between * (p + i * t * z / (z - 1))
@@ -213,16 +212,6 @@ def _coupling(stiffness: RealLike, damping: RealLike) -> tuple[float, float]:
     if k == d == 0:
         raise InputError("stiffness and damping are both 0: a coupling of nothing connects nothing")
     return float(k), float(d)
-
-
-def _frequencies(given: ArrayLike | None, period: float) -> NDArray[np.float64]:
-    nyquist = 0.5 / period
-    if given is None:
-        return np.asarray((np.arange(_POINTS) + 0.5) * (nyquist / _POINTS), dtype=np.float64)
-    hertz = np.atleast_1d(np.asarray(given, dtype=np.float64))
-    if hertz.ndim != 1 or not np.all((hertz > 0) & (hertz <= nyquist * (1 + 1e-12))):
-        raise InputError(f"frequencies must lie above 0 and up to half the rate, {nyquist:g} Hz")
-    return hertz
 
 
 def _hold(device: Device, hold: str, z: Complex, hertz: NDArray[np.float64]) -> tuple[Complex, Any]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from zwidth.device import Device
 from zwidth.environment import as_environment
-from zwidth.errors import InputError
+from zwidth.passivity.frequencies import sampled_frequencies
 from zwidth.passivity.hypotheses import NO_CLOCK, positive
 from zwidth.passivity.loop_transformation.slopes import whole_delay
 from zwidth.quantity.exact import RealLike
@@ -24,8 +24,6 @@ from zwidth.quantity.exact import RealLike
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike, NDArray
-
-_POINTS = 2000
 
 
 def delay_sum(
@@ -82,7 +80,7 @@ def transformed_blocks(device: Device, environment: Any, frequencies: ArrayLike 
     b = float(positive("damping", device.exact("damping"), "nothing pays for the hold without it"))
     period = device.exact("sample_period")
     late = 1 + whole_delay(device.exact("delay"), period)
-    hertz = _frequencies(frequencies, float(period))
+    hertz = sampled_frequencies(frequencies, float(period))
     z = np.exp(2j * np.pi * hertz * float(period))
     h = as_environment(environment).pulse_transfer_function(period)
     force = np.polyval([float(c) for c in h.numerator], z) / np.polyval([float(c) for c in h.denominator], z)
@@ -99,16 +97,6 @@ def _mobility(device: Device, b: float, period: float, z: NDArray[np.complex128]
         return np.full_like(z, 1 / b)
     decay = np.exp(-b * period / mass)
     return np.asarray((1 - mass / (b * period) * (1 - decay) * (z - 1) / (z - decay)) / b)
-
-
-def _frequencies(given: ArrayLike | None, period: float) -> NDArray[np.float64]:
-    nyquist = 0.5 / period
-    if given is None:
-        return np.asarray((np.arange(_POINTS) + 0.5) * (nyquist / _POINTS), dtype=np.float64)
-    hertz = np.atleast_1d(np.asarray(given, dtype=np.float64))
-    if hertz.ndim != 1 or not np.all((hertz > 0) & (hertz <= nyquist * (1 + 1e-12))):
-        raise InputError(f"frequencies must lie above 0 and up to half the rate, {nyquist:g} Hz")
-    return hertz
 
 
 def _dataset(
