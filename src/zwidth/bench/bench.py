@@ -25,6 +25,7 @@ from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check
+from zwidth.passivity.wording import describe_hands
 from zwidth.passivity.worst_hand import worst_hand
 from zwidth.rendering.rendered import Rendered
 from zwidth.rendering.stage import Surroundings
@@ -195,15 +196,13 @@ def _status(device: Device, law: Environment, found: Attack) -> tuple[str, str]:
         return "active", str(found)
     if not isinstance(law, Rendered):
         verdict = check(device, law)
-        proof = verdict.certificate
-        if verdict.outcome == "passive" and not (proof is not None and proof.covers_contact):
-            return "undecided", f"{verdict.claim} Making and breaking contact is not covered."
+        if verdict.outcome == "passive in contact":
+            return "undecided", verdict.claim
         return verdict.outcome, verdict.claim
     covering = _covering(law)
     if covering is not None:
         verdict = check(device, covering)
-        proof = verdict.certificate
-        if verdict.outcome == "passive" and proof is not None and proof.covers_contact:
+        if verdict.outcome == "passive":
             return "passive", (
                 f"What the laws add is never more than that of {covering.damping} N·s/m, and every such "
                 f"force is covered, contact made and broken: {verdict.claim}"
@@ -229,7 +228,10 @@ def _by_the_game(device: Device, law: Rendered, found: Attack) -> tuple[str, str
         return "active", f"{found}; but the game of the worst hand finds more. {played.claim}"
     if played.outcome == "undecided":
         return "undecided", f"{no_proof}; nor does the game of the worst hand decide it"
-    return "undecided", f"{no_proof}; {played.hand} take no energy out, proved; others may"
+    return (
+        "undecided",
+        f"{no_proof}; {describe_hands(played.scope.hands, played.scope.motion)} take no energy out, proved; others may",
+    )
 
 
 def _cause(error: InputError) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from zwidth.cli.options import Once, add_parameters, overrides, refuse_laws
+from zwidth.cli.options import Once, add_contact_option, add_parameters, contact, overrides, refuse_laws
 from zwidth.cli.output import print_json, targets, writing
 
 if TYPE_CHECKING:
@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     from zwidth.passivity.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
     from zwidth.passivity.verdict import Verdict
-
-STATUS = {"passive": 0, "active": 1, "undecided": 3}
-"""Exit status of `check` by outcome; 2 is bad input."""
 
 
 class Command(NamedTuple):
@@ -33,7 +30,7 @@ class Command(NamedTuple):
 def _configure_check(parser: argparse.ArgumentParser) -> None:
     parser.usage = (
         "%(prog)s [SOURCE ...] [--PARAMETER VALUE ...] [--json] [--plot FILE] [--replay] "
-        "[--active-below FREQUENCY] [-o FILE] [--force]"
+        "[--active-below FREQUENCY] [--contact KIND] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -41,6 +38,7 @@ def _configure_check(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both",
     )
+    add_contact_option(parser)
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the verdict as JSON, units in the keys")
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
@@ -71,7 +69,7 @@ def _check(arguments: argparse.Namespace) -> int:
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     loop = load(arguments.sources, overrides(arguments))
     active = _tolerated(loop, arguments.active_below)
-    verdict = decided(loop)
+    verdict = decided(loop, contact(arguments))
     if save is not None:
         with writing(save):
             verdict.save(save, {} if active is None else {"active_hand": active.to_dict()})
@@ -86,16 +84,23 @@ def _check(arguments: argparse.Namespace) -> int:
         from zwidth.cli.report import print_verdict
 
         print_verdict(verdict, real_hand, active)
-    return STATUS[verdict.outcome]
+    return exit_status(verdict.outcome)
 
 
-def decided(loop: Specification) -> Verdict:
+def exit_status(outcome: str) -> int:
+    """What a command returns that ends in an outcome."""
+    from zwidth.passivity.outcome import TOLD
+
+    return TOLD[outcome].status
+
+
+def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
     """What `zwidth.check` says, with a word to people who wait for the game."""
     from zwidth.passivity.check import check_by_closed_forms
     from zwidth.passivity.game import has_gap, with_game
 
-    verdict = check_by_closed_forms(loop.device, loop.environment)
-    if not has_gap(loop.device, loop.environment, verdict):
+    verdict = check_by_closed_forms(loop.device, loop.environment, contact=contact)
+    if contact == "kept" or not has_gap(loop.device, loop.environment, verdict):
         return verdict
     from zwidth.cli.patience import warn_of_compiling_the_game
     from zwidth.traces.progress import progress_bar
@@ -266,7 +271,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "say what limits it, by how much, and what to change.",
             "A plain number is SI; others carry a unit, as in --rate '1 kHz' or --resolution '22.4 um'.\n"
             "An interval, as in --damping '0.1 .. 0.2', stands for every value in it.\n\n"
-            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided\n\n"
+            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided, 4 passive for a hand that keeps contact\n"
+            "only, and of one that touches and leaves nothing is known; with --contact kept that is 0\n\n"
             "examples:\n"
             "  zwidth check haptic-paddle --stiffness 300\n"
             "  zwidth check my-wheel.toml my-bumpstop.toml --json\n"
@@ -340,7 +346,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "where does an arm of several joints render a wall passively?",
             "Map over the workspace of an arm whether the damping of its joints pays for a wall; prove it\n"
             "between the points too, or show a motion that takes energy out; say which joint to damp.",
-            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided\n\n"
+            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided, 4 by a proof on paper alone\n\n"
             "examples:\n"
             "  zwidth workspace haply-2diy --joint-damping 0.003 --stiffness 500 --plot map.png\n"
             "  zwidth workspace two-link --joint-damping 0.02,0.01 --stiffness 500 --rate '2 kHz'\n"
@@ -356,7 +362,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "A log is text, Parquet, HDF5, NetCDF, MATLAB, a ROS bag or a trace. Columns whose names are\n"
             "not recognised are named: --column position=enc --unit position=counts.\n\n"
             "exit status: 0 identified, 2 bad input; with an environment that of zwidth check at the stated\n"
-            "confidence: 0 passive, 1 active, 3 undecided\n\n"
+            "confidence: 0 passive, 1 active, 3 undecided, 4 passive while contact is kept\n\n"
             "examples:\n"
             "  zwidth identify session.csv -o my-device.toml --plot fig.png\n"
             "  zwidth identify session.csv --column position=enc --unit position=counts "

@@ -106,7 +106,7 @@ def _behind(parameter: Any) -> Any:
 
 def run_identify(arguments: argparse.Namespace) -> int:
     """`zwidth identify`: 0; with an environment that of `zwidth check`, "undecided" of a wrong model."""
-    from zwidth.cli.commands import STATUS
+    from zwidth.cli.commands import exit_status
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() != ".toml":
@@ -128,7 +128,7 @@ def run_identify(arguments: argparse.Namespace) -> int:
         print_identified(found, [path for path in (save, plot) if path is not None])
     if found.environment is None:
         return 0
-    return STATUS["undecided" if found.verdict is None else found.verdict.outcome]
+    return exit_status("undecided" if found.verdict is None else found.verdict.outcome)
 
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:

@@ -12,12 +12,13 @@ from rich.text import Text
 from zwidth.cli.description import environment_line
 from zwidth.cli.identification import Result
 from zwidth.cli.numerals import shown
-from zwidth.cli.report import COLOURS, page, section
+from zwidth.cli.report import page, section
 from zwidth.environment import Wall
 from zwidth.identification.device.identified import MOST_CONFIDENCE
 from zwidth.identification.device.limits import advice, percent
 from zwidth.identification.device.table import rows, source_name
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
 
 _SHOWN = 0.95
@@ -120,7 +121,7 @@ def _checked(found: Result, verdict: Verdict) -> Iterator[Text]:
     yield Text(_for_how_much(found.passive_for), style="bold")
     yield Text(
         f"{verdict.outcome} at {percent(found.confidence)}: {verdict.claim}",
-        style=COLOURS[verdict.outcome],
+        style=TOLD[verdict.outcome].terminal,
     )
 
 

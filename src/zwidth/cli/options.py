@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from zwidth.cli.environments import TYPES, option_keys
 from zwidth.cli.laws import LAWS, NOT_PROVED
 from zwidth.cli.specification import DEVICE_KEYS, ROTARY_KEYS
+from zwidth.cli.table import quoted
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -93,6 +94,28 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
     for parameter in environment_parameters():
         inner = parameter._replace(key=BEHIND + parameter.key, help=argparse.SUPPRESS)
         add_all(environment, (parameter, inner))
+
+
+def add_contact_option(parser: argparse.ArgumentParser) -> None:
+    """The option that says which contact is asked about."""
+    parser.add_argument(
+        "--contact",
+        metavar="KIND",
+        action=Once,
+        help="made-and-broken, as a hand does (default), or kept: the hand never leaves the wall",
+    )
+
+
+def contact(arguments: argparse.Namespace) -> str:
+    """The contact that is asked about, as `zwidth.check` takes it."""
+    typed = arguments.contact
+    if typed is None or typed == "kept":
+        return typed or "made and broken"
+    if typed.replace("-", " ") == "made and broken":
+        return "made and broken"
+    raise InputError(
+        f"--contact is made-and-broken, for a hand that touches and leaves, or kept, got {quoted(typed)}"
+    )
 
 
 def add_law_option(parser: argparse.ArgumentParser) -> None:

@@ -23,17 +23,17 @@ from zwidth.cli.motion import joules, motion_lines
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.output import encodes, quiet_pipe
 from zwidth.passivity.advice import Advice
+from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.wording import intervals
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
     from zwidth.passivity.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
 
-COLOURS = {"passive": "green", "theorem": "blue", "active": "red", "undecided": "yellow"}
 _WIDEST = 100
 _LONGEST_BAR = 34
-_INTERVALS = "holds for every value"
 _ORDER = (
     "stiffness", "virtual_damping", "velocity_filter", "time_constant", "rate", "delay", "damping",
     "resolution", "coulomb_friction",
@@ -73,7 +73,8 @@ def print_verdict(
             section(out, "an active hand", _table(active_hand.rows()))
         section(out, *_advice(verdict))
         section(out, "actuator", _actuator(verdict))
-        section(out, "assumes", assumption_lines(verdict.assumptions))
+        beside_the_loop = intervals(verdict.scope, verdict.outcome)
+        section(out, "assumes", assumption_lines(a for a in verdict.assumptions if a != beside_the_loop))
 
 
 def _table(rows: Iterable[tuple[str, str]]) -> Iterator[Table]:
@@ -84,7 +85,7 @@ def _table(rows: Iterable[tuple[str, str]]) -> Iterator[Table]:
 
 
 def _headline(verdict: Verdict) -> Padding:
-    colour = COLOURS[verdict.outcome]
+    colour = TOLD[verdict.outcome].terminal
     grid = Table.grid(padding=(0, 1))
     badge = Text(f" {verdict.outcome.upper()} ", style=f"bold white on {colour}")
     grid.add_row(badge, Text(_claim(verdict), style="bold"))
@@ -102,9 +103,9 @@ def _loop(verdict: Verdict) -> Padding:
     motion = verdict.device.motion
     grid.add_row(Text("device", style="dim"), Text(device_line(verdict.device)))
     grid.add_row(Text("environment", style="dim"), Text(environment_line(verdict.environment, motion)))
-    intervals = next((a for a in verdict.assumptions if a.startswith(_INTERVALS)), None)
-    if intervals is not None:
-        grid.add_row(Text("intervals", style="dim"), Text(intervals, style="yellow"))
+    between = intervals(verdict.scope, verdict.outcome)
+    if between is not None:
+        grid.add_row(Text("intervals", style="dim"), Text(between, style="yellow"))
     return _spaced(grid)
 
 
@@ -170,7 +171,7 @@ def _balance(
 
 
 def _advice(verdict: Verdict) -> tuple[str, Iterator[Text]]:
-    title = "slack" if verdict.outcome == "passive" else "what to change, any one of"
+    title = "slack" if verdict.is_proved else "what to change, any one of"
     return title, _advice_lines(verdict.advice)
 
 
@@ -211,8 +212,7 @@ def _actuator(verdict: Verdict) -> Iterator[Text]:
 def assumption_lines(assumptions: Iterable[str]) -> Iterator[Text]:
     """What is taken for granted, line by line."""
     for line in assumptions:
-        if not line.startswith(_INTERVALS):  # that one stands beside the loop
-            yield _item(line, "dim")
+        yield _item(line, "dim")
 
 
 def _item(text: str, style: str = "") -> Text:

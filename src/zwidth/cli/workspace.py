@@ -15,7 +15,6 @@ from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 from zwidth.writing import writing_whole
 
-STATUS = {"passive": 0, "theorem": 0, "active": 1, "undecided": 3}
 _RATE = "1 kHz"
 _SAVED = (".json", ".nc")
 
@@ -78,7 +77,7 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
 
 
 def run_workspace(arguments: argparse.Namespace) -> int:
-    """`zwidth workspace`: 0 passive, 1 active, 3 undecided, as `check`."""
+    """`zwidth workspace`: 0 passive, 1 active, 3 undecided, 4 by a proof on paper alone."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() not in _SAVED:
         raise InputError(
@@ -86,6 +85,7 @@ def run_workspace(arguments: argparse.Namespace) -> int:
             f"got {save.name!r}"
         )
     from zwidth.passivity.arms import workspace
+    from zwidth.passivity.outcome import TOLD
 
     arm = _arm(arguments)
     space = workspace(
@@ -111,7 +111,7 @@ def run_workspace(arguments: argparse.Namespace) -> int:
         print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
     else:
         print_workspace(space)
-    return STATUS[space.outcome]
+    return TOLD[space.outcome].status
 
 
 def _arm(arguments: argparse.Namespace) -> Any:

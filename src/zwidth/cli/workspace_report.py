@@ -21,11 +21,12 @@ def print_workspace(space: Workspace) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from zwidth.cli.report import COLOURS, page, section
+    from zwidth.cli.report import page, section
+    from zwidth.passivity.outcome import TOLD
 
     with page() as out:
         head = Table.grid(padding=(0, 1))
-        badge = Text(f" {space.outcome.upper()} ", style=f"bold white on {COLOURS[space.outcome]}")
+        badge = Text(f" {space.outcome.upper()} ", style=f"bold white on {TOLD[space.outcome].terminal}")
         head.add_row(badge, Text(space.claim, style="bold"))
         out.print(Padding(head, (0, 0, 1, 0)))
         out.print(Padding(_grid(_numbers(space)), (0, 0, 1, 0)))

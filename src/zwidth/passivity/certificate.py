@@ -16,6 +16,7 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.passivity import checker
+from zwidth.passivity.checker.scope import weakest
 from zwidth.passivity.contact import DampedWall, Decay
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.delay_interval import Piece
@@ -42,17 +43,18 @@ class Certificate:
 
     def verify(self) -> bool:
         """True when the independent checker accepts every proof."""
-        return all(checker.verify(document).valid for document in self.documents)
+        return self.covered() is not None
+
+    def covered(self) -> checker.Scope | None:
+        """What the proofs cover together, as the independent checker finds it; None where it rejects one."""
+        found = [checker.verify(document).scope for document in self.documents]
+        accepted = [scope for scope in found if scope is not None]
+        return weakest(accepted) if found and len(accepted) == len(found) else None
 
     @property
     def kind(self) -> str:
         """Of the first document: "spring", "contact", "linear", "positive real", "stability", …"""
         return str(self.documents[0]["kind"])
-
-    @property
-    def covers_contact(self) -> bool:
-        """True when every part covers contact made and broken."""
-        return all(d["kind"] in ("spring", "contact", "force bounding") for d in self.documents)
 
     @property
     def is_of_springs(self) -> bool:
@@ -172,7 +174,8 @@ def verify_document(document: object) -> checker.Verification:
     if failed is not None:
         return failed
     energy = next((r.energy for r in results if r.energy is not None), None)
-    return checker.Verification(True, "; and ".join(r.reason for r in results), energy)
+    scope = results[0].scope if len(results) == 1 else None  # of several, each has its own
+    return checker.Verification(True, "; and ".join(r.reason for r in results), energy, scope)
 
 
 def evidence(document: object) -> list[Mapping[str, Any]]:
@@ -211,8 +214,11 @@ def _verify_corners(corners: object) -> checker.Verification:
         raise InputError("corners must be a list of certificates")
     results = [checker.verify(corner) for corner in corners]
     failed = next((r for r in results if not r.valid or r.energy is not None), None)
-    reasons = dict.fromkeys(r.reason for r in results)
-    return failed or checker.Verification(True, f"all {len(results)} corners: {'; or '.join(reasons)}")
+    if failed is not None:
+        return failed
+    reasons = "; or ".join(dict.fromkeys(r.reason for r in results))
+    scope = weakest([r.scope for r in results if r.scope is not None])
+    return checker.Verification(True, f"all {len(results)} corners: {reasons}", scope=scope)
 
 
 def read_document(path: str | Path) -> object:

@@ -14,20 +14,20 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate, certify, certify_delays
-from zwidth.passivity.claims import assumptions, beyond_the_actuator, open_claim
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.game import has_gap, with_game
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.refutation import refute_friction, refute_linear
+from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
 from zwidth.passivity.supremum import tightest
-from zwidth.passivity.verdict import Outcome, Verdict
+from zwidth.passivity.verdict import Finding, Verdict
 from zwidth.passivity.witness import Witness
 from zwidth.quantity.exact import Exact, ends
 
 
-def check(device: Device, environment: Environment | Any) -> Verdict:
+def check(device: Device, environment: Environment | Any, *, contact: str = "made and broken") -> Verdict:
     """Decide whether a hand can ever take energy out of the sampled loop.
 
     Passive means ∫ f_h v dt + E(0) ≥ 0 for every motion, E(0) finite.  For a
@@ -49,19 +49,28 @@ def check(device: Device, environment: Environment | Any) -> Verdict:
         The device; where parameters are intervals the verdict holds for all values.
     environment
         An `Environment`, or a discrete python-control or scipy.signal system H(z).
+    contact
+        "made and broken": a one-sided law is "passive" if no hand gains that touches and leaves at will, and
+        "passive in contact" if this is proved only of hands that stay inside.  "kept": the question is about
+        those alone.
 
     Raises
     ------
     InputError
         If the environment cannot be sampled at this rate or is not an environment.
     """
-    verdict = check_by_closed_forms(device, environment)
+    verdict = check_by_closed_forms(device, environment, contact=contact)
     law = as_environment(environment)
-    return with_game(device, law, verdict) if has_gap(device, law, verdict) else verdict
+    if as_contact(contact) == "kept" or not has_gap(device, law, verdict):
+        return verdict
+    return with_game(device, law, verdict)
 
 
-def check_by_closed_forms(device: Device, environment: Environment | Any) -> Verdict:
+def check_by_closed_forms(
+    device: Device, environment: Environment | Any, *, contact: str = "made and broken"
+) -> Verdict:
     """`check` without the game: exact, in milliseconds, of every hand."""
+    asked = as_contact(contact)
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
     law = as_environment(environment)
@@ -71,15 +80,15 @@ def check_by_closed_forms(device: Device, environment: Environment | Any) -> Ver
     if not failing:
         proofs = _proofs(device, law, corners, decisions)
         if proofs is not None:
-            return _passive(device, law, corners, decisions, proofs)
-        return _between(device, law, corners[0], decisions[0])
+            return _passive(device, law, corners, decisions, proofs, asked)
+        return _undecided(device, law, corners[0], decisions[0], "between corners")
     worst = failing[0]
     witness = _refute(decisions[worst])
-    outcome: Outcome = "undecided"
     least = witness if len(corners) == 1 and device.is_certain else _best_witness(device, law)
     if witness is not None and least is not None:
-        outcome, witness = "active", least
-    return _not_passive(outcome, device, law, corners[worst], decisions[worst], witness)
+        return _active(device, law, corners[worst], decisions[worst], least)
+    finding: Finding = "open" if witness is None else "depends on values"
+    return _undecided(device, law, corners[worst], decisions[worst], finding, witness)
 
 
 def _proofs(
@@ -112,29 +121,38 @@ def _passive(
     corners: list[Loop],
     decisions: list[Decision],
     proofs: list[dict[str, Any]],
+    asked: Contact,
 ) -> Verdict:
     certificate = Certificate(tuple(proofs))
     tight = _tightest(decisions)
     at, decision = corners[tight], decisions[tight]
-    if not certificate.verify():  # nothing is claimed that the checker does not accept
-        claim = "A proof was found, but the independent checker did not confirm it within its bounds."
-        assumed = assumptions("undecided", device, law, decision)
-        return Verdict("undecided", claim, assumed, *at, decision, None, None)
-    everywhere = certificate.covers_contact or not law.unilateral
-    kept = "" if everywhere else " that keeps contact"
-    claim = f"No motion of the hand{kept}, however fast or skilled, can take energy out of this loop"
-    if any(_at_limit(d) for d in decisions):
-        claim += "; it is exactly at its limit, equality included"
-    assumed = assumptions("passive", device, law, decision, certificate)
-    return Verdict("passive", f"{claim}.", assumed, *at, decision, certificate, None)
-
-
-def _between(device: Device, law: Environment, corner: tuple[Device, Environment], at: Decision) -> Verdict:
-    claim = (
-        "Passive at every corner of the intervals; that every value between them is too is not proved "
-        "for intervals of these parameters together."
+    covered = certificate.covered()
+    if covered is None:  # nothing is claimed that the checker does not accept
+        return _undecided(device, law, at, decision, "unconfirmed")
+    scope = _scope(device, law, decision).replace(contact=covered.contact, also=_also(certificate, law))
+    return Verdict(
+        "passive in contact" if covered.contact == "kept" != asked else "passive",
+        scope,
+        *at,
+        decision,
+        certificate,
+        None,
+        at_limit=any(_at_limit(d) for d in decisions),
     )
-    return Verdict("undecided", claim, assumptions("undecided", device, law, at), *corner, at, None, None)
+
+
+def _also(certificate: Certificate, law: Environment) -> tuple[Also, ...]:
+    """What else a proof of this kind covers."""
+    if certificate.is_of_springs:
+        return ("springs",)
+    return ("clamped",) if certificate.kind == "contact" and not law.clamped else ()
+
+
+def _scope(device: Device, law: Environment, at: Decision) -> Scope:
+    """What is asked, with the friction of the corner that the numbers speak of."""
+    return scope_of(device, law).replace(
+        damping=float(at.loop.damping), coulomb_friction=float(at.setting.coulomb_friction)
+    )
 
 
 def _at_limit(decision: Decision) -> bool:
@@ -185,23 +203,18 @@ def _best_witness(device: Device, law: Environment) -> Witness | None:
     return None if decision.is_provable else _refute(decision)
 
 
-def _not_passive(
-    outcome: Outcome,
+def _active(device: Device, law: Environment, corner: Loop, decision: Decision, witness: Witness) -> Verdict:
+    scope = _scope(device, law, decision).replace(contact=witness.contact)
+    return Verdict("active", scope, *corner, decision, None, witness)
+
+
+def _undecided(
     device: Device,
     law: Environment,
-    corner: tuple[Device, Environment],
+    corner: Loop,
     decision: Decision,
-    witness: Witness | None,
+    finding: Finding,
+    witness: Witness | None = None,
 ) -> Verdict:
-    if outcome == "active":
-        assert witness is not None
-        claim = f"A motion of the hand takes energy out of this loop: {witness.describe()}."
-    elif witness is not None:
-        claim = (
-            "The answer depends on where in its intervals the loop lies: a motion takes energy out at the "
-            "worst corner, and for other values none is known to."
-        )
-    else:
-        claim = open_claim(decision)
-    assumed = assumptions(outcome, device, law, decision) + beyond_the_actuator(device, witness)
-    return Verdict(outcome, claim, assumed, *corner, decision, None, witness)
+    scope = _scope(device, law, decision)
+    return Verdict("undecided", scope, *corner, decision, None, witness, finding=finding)

@@ -1,30 +1,73 @@
-"""What a verdict says in words: the claim, and what it takes for granted."""
+"""What a verdict says in words, made from its data: the claim, and what it takes for granted."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
-from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
-from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear import LinearRefutation
-from zwidth.passivity.verdict import Outcome
 from zwidth.passivity.witness import Witness
-from zwidth.quantity.exact import Interval, ends
+from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
+from zwidth.quantity.exact import ends
 
 if TYPE_CHECKING:
+    from zwidth.passivity.verdict import Verdict
     from zwidth.passivity.worst_hand.gain import Gain
 
-NOT_COVERED = "; making and breaking contact is not covered"
-"""How the first assumption of a proof in sustained contact ends."""
+
+def claim(verdict: Verdict) -> str:
+    """The verdict in a sentence or two."""
+    if verdict.outcome == "active":
+        assert verdict.witness is not None
+        return f"A motion of the hand takes energy out of this loop: {verdict.witness.describe()}."
+    if verdict.outcome == "undecided":
+        return " ".join([_undecided(verdict), *_by_bounded_hands(verdict)])
+    proved = claim_of_passivity(verdict.scope, verdict.at_limit)
+    if verdict.outcome == "passive":
+        return proved
+    open_still = ["Of one that touches and leaves nothing is proved or refuted."]
+    return " ".join([proved, *(list(_by_bounded_hands(verdict)) or open_still)])
 
 
-def open_claim(decision: Decision) -> str:
+def assumptions(verdict: Verdict) -> tuple[str, ...]:
+    """What the claim covers and takes for granted, line by line."""
+    between = intervals(verdict.scope, verdict.outcome)
+    return (
+        *lines(verdict.scope, verdict.outcome),
+        *_beyond_the_actuator(verdict),
+        *([] if between is None else [between]),
+    )
+
+
+def _by_bounded_hands(verdict: Verdict) -> Iterator[str]:
+    """What is proved of hands within bounds, contact made and broken."""
+    found = verdict.worst_hand
+    if found is not None and found.outcome == "passive":
+        hands = describe_hands(found.scope.hands, found.scope.motion)
+        yield f"Contact made and broken: proved passive for {hands}."
+
+
+def _undecided(verdict: Verdict) -> str:
+    if verdict.finding == "unconfirmed":
+        return "A proof was found, but the independent checker did not confirm it within its bounds."
+    if verdict.finding == "between corners":
+        return (
+            "Passive at every corner of the intervals; that every value between them is too is not proved "
+            "for intervals of these parameters together."
+        )
+    if verdict.finding == "depends on values":
+        return (
+            "The answer depends on where in its intervals the loop lies: a motion takes energy out at the "
+            "worst corner, and for other values none is known to."
+        )
+    return _open(verdict.decision)
+
+
+def _open(decision: Decision) -> str:
     """What is proved on both sides where the loop itself is neither proved nor refuted."""
     if decision.is_clamped:
-        return _clamped_claim(decision)
+        return _clamped(decision)
     if isinstance(decision.viscous, LinearRefutation):
         if decision.viscous.reason == "criterion":
             return (
@@ -52,7 +95,7 @@ def open_claim(decision: Decision) -> str:
     )
 
 
-def _clamped_claim(decision: Decision) -> str:
+def _clamped(decision: Decision) -> str:
     """What is known of a clamped law that is not proved."""
     damping, friction = decision.contact_damping, decision.contact_friction
     if damping is None or friction is None:
@@ -66,80 +109,20 @@ def _clamped_claim(decision: Decision) -> str:
     return f"The linear criterion does not cover a law whose force is clamped, {known}"
 
 
-def assumptions(
-    outcome: Outcome,
-    device: Device,
-    law: Environment,
-    decision: Decision,
-    certificate: Certificate | None = None,
-) -> tuple[str, ...]:
-    """What the claim covers and takes for granted; `certificate` is its proof, if there is one."""
-    unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
-    loop = decision.loop
-    lines = [
-        _surface(outcome, device, law, decision, certificate),
-        f"the device takes out at least b = {float(loop.damping):.6g} {unit['b']} of viscous and "
-        f"f_c = {float(decision.setting.coulomb_friction):.6g} {unit['N']} of Coulomb friction",
-        "a hand without limits on speed and force; the mass of the device plays no part",
-        "ideal actuator: force limit, converter steps, current rise and added filters are not in the claim",
-        "a constant sample period and delay, no missed samples",
-    ]
-    if decision.setting.resolution:
-        lines.append("encoder counts of one size, their phase against the surface unknown")
-    else:
-        lines.append("ideal position sensor: no quantization")
-    lines.extend(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed)
-    if law.coefficients_rounded:
-        lines.append("H(z) has the coefficients of its discretization rounded to double precision")
-    intervals = [k for k, v in device.parameters().items() if isinstance(v, Interval)]
-    if intervals or not law.is_certain:
-        named = ", ".join(intervals) or "the environment's intervals"
-        holds = "" if outcome == "undecided" else f"holds for every value within {named}; "
-        lines.append(holds + "numbers are given for the worst corner of the intervals")
-    return tuple(lines)
-
-
-def _surface(
-    outcome: Outcome,
-    device: Device,
-    law: Environment,
-    decision: Decision,
-    certificate: Certificate | None,
-) -> str:
-    """Whether the hand may leave the law and come back."""
-    anywhere = "contact made and broken at any instant"
-    covered = decision.is_spring if certificate is None else certificate.covers_contact
-    if not covered and decision.is_clamped:
-        return f"{anywhere}; the law never pulls: a force below 0 is given as 0"
-    if not covered:
-        inside = "sustained contact: the law is linear while the hand stays inside"
-        if outcome == "passive" and _only_relaxes(law) and ends(device.delay)[1] == 0:
-            return f"{inside}; contact made and broken is covered by a proof on paper, without a certificate"
-        return f"{inside}{NOT_COVERED}"
-    if certificate is not None and not certificate.is_of_springs:
-        return f"{anywhere}; also for a wall that is clamped so that it never pulls"
-    more = "; the same holds for every spring law of slope 0 to K" if outcome == "passive" else ""
-    return f"{anywhere}{more}"
-
-
-def _only_relaxes(law: Environment) -> bool:
-    """True for solids that are fed with the penetration and have h_j ≤ 0 for all j ≥ 1 (theory/contact)."""
-    solids = (Maxwell, StandardLinearSolid, GeneralizedMaxwell)
-    return isinstance(law, solids) and law.discretization == "backward" and not law.clamped
-
-
-def beyond_the_actuator(device: Device, witness: Witness | Gain | None) -> tuple[str, ...]:
+def _beyond_the_actuator(verdict: Verdict) -> Iterator[str]:
     """Says where the motion asks for more force than the actuator has."""
-    if witness is None or device.force_limit is None:
-        return ()
+    device, witness = verdict.device, verdict.witness
+    if witness is None or device.force_limit is None or verdict.scope.force_limit:
+        return
     unit = "N·m" if device.motion == "rotary" else "N"
     most, needed = float(ends(device.force_limit)[1]), _peak_force(witness)
     if needed <= most:
-        return (f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}",)
-    return (
-        f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
-        "limit respected no motion is shown, and none is excluded",
-    )
+        yield f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}"
+    else:
+        yield (
+            f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
+            "limit respected no motion is shown, and none is excluded"
+        )
 
 
 def _peak_force(witness: Witness | Gain) -> float:

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any, Literal
 from zwidth.device import Device
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.environment.environment import Environment
-from zwidth.passivity import limits
+from zwidth.passivity import claims, limits
 from zwidth.passivity.advice import Advice, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import save_json, to_json, unit_suffix
+from zwidth.passivity.outcome import TOLD, Outcome
+from zwidth.passivity.scope import Scope
 from zwidth.passivity.stability_plane import admissible_speed
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
@@ -27,26 +29,27 @@ if TYPE_CHECKING:
     from zwidth.passivity.worst_hand import WorstHand
     from zwidth.passivity.worst_hand.gain import Gain
 
-Outcome = Literal["passive", "active", "undecided"]
+Finding = Literal["open", "unconfirmed", "between corners", "depends on values"]
+"""Why a loop is undecided: neither shown; a proof that the checker did not confirm; proved at the corners of
+intervals and not between them; active at one corner and not at others."""
 
 
 @dataclass(frozen=True)
 class Verdict:
     """Whether a hand can take energy out of a sampled loop.
 
-    "passive" stands on a `certificate` that the independent checker accepted,
-    "active" on a `witness` that it recomputed; "undecided" says what is known.
+    "passive" stands on a `certificate` that the independent checker accepted, with contact made and broken,
+    or as it was asked; "passive in contact" on one for hands that never leave the wall; "active" on a
+    `witness` that it recomputed; "undecided" says what is known.
     For parameters given as intervals the verdict holds for every value; the
     numbers below then speak of the worst case (`device`, `environment`).
 
     Attributes
     ----------
     outcome
-        "passive", "active" or "undecided".
-    claim
-        The claim in a sentence.
-    assumptions
-        What the claim covers and takes for granted.
+        "passive", "passive in contact", "active" or "undecided".
+    scope
+        What it is about: hands, contact, encoder, actuator.
     device, environment
         The loop decided: the worst corner where intervals were given.
     certificate, witness
@@ -54,17 +57,37 @@ class Verdict:
     worst_hand
         What the game of the worst hand adds, where the closed forms leave a gap: a motion,
         then also the `witness`; or a proof for hands within bounds.
+    finding
+        Why it is undecided.
+    at_limit
+        True where the least less of b or f_c would lose the proof.
     """
 
     outcome: Outcome
-    claim: str
-    assumptions: tuple[str, ...]
+    scope: Scope
     device: Device
     environment: Environment
     decision: Decision
     certificate: Certificate | None
     witness: Witness | Gain | None
     worst_hand: WorstHand | None = None
+    finding: Finding = "open"
+    at_limit: bool = False
+
+    @property
+    def claim(self) -> str:
+        """The verdict in a sentence or two."""
+        return claims.claim(self)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted, line by line."""
+        return claims.assumptions(self)
+
+    @property
+    def is_proved(self) -> bool:
+        """True for "passive" and for "passive in contact"."""
+        return self.outcome in ("passive", "passive in contact")
 
     @cached_property
     def budget(self) -> Budget:
@@ -92,7 +115,7 @@ class Verdict:
 
         None when passive, and for a motion that has to touch and leave.
         """
-        if self.outcome == "passive" or self._in_contact_only:
+        if self.is_proved or self._in_contact_only:
             return None
         return "active tactile" if self.limit == QUANTIZATION else "closed-loop instability"
 
@@ -156,7 +179,7 @@ class Verdict:
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
         """The smallest single changes that would do, or the slack of each parameter."""
-        return advise(self.device, self.environment, self.outcome == "passive", self._in_contact_only)
+        return advise(self.device, self.environment, self.is_proved, self._in_contact_only)
 
     @cached_property
     def actuator(self) -> tuple[ActuatorCheck, ...]:
@@ -183,6 +206,7 @@ class Verdict:
             "format": "zwidth verdict 1",
             "outcome": self.outcome,
             "claim": self.claim,
+            "scope": self.scope.to_dict(),
             "assumptions": list(self.assumptions),
             "limit": self.limit,
             "mode": self.mode,
@@ -221,7 +245,7 @@ class Verdict:
         return f"<Verdict {self.outcome}: {self.claim}>"
 
     def _repr_html_(self) -> str:
-        colour = {"passive": "#2a7d4f", "active": "#b3261e", "undecided": "#8a6d00"}[self.outcome]
+        colour = TOLD[self.outcome].colour
         rows = "".join(f"<tr><th align='left'>{k}</th><td align='left'>{v}</td></tr>" for k, v in self.rows())
         assumed = "".join(f"<li>{a}</li>" for a in self.assumptions)
         return (

@@ -29,11 +29,12 @@ from .proofs import PROOFS
 from .reading import Invalid, get, number
 from .rest import instability, stability
 from .row_motion import row_motion_energy
+from .scope import Scope, scope_of
 from .storage_proof import storage
 from .storage_row import storage_of_row
 from .vibration import vibration
 
-__all__ = ["Verification", "verify"]
+__all__ = ["Scope", "Verification", "verify"]
 
 _KINDS = {
     **PROOFS,
@@ -53,34 +54,40 @@ _KINDS = {
 
 
 class Verification(NamedTuple):
-    """What the checker found: whether the document holds, why, and a motion's joules."""
+    """What the checker found: whether the document holds, why, a motion's joules, and what it is about."""
 
     valid: bool
     reason: str
     energy: Fraction | None = None
+    scope: Scope | None = None
 
 
 def verify(document: Mapping[str, Any]) -> Verification:
     """Check one certificate or witness, given as plain JSON data."""
     try:
-        kind = get(document, "kind")
-        if kind == "motion":
-            return _motion(document)
-        if kind == "contact motion":
-            return _round_again(contact_motion_energy(document))
-        if kind == "row motion":
-            return _round_again(row_motion_energy(document))
-        if kind == "extraction":
-            return Verification(True, *extraction(document))
-        if kind == "matrix extraction":
-            return Verification(True, *matrix_extraction(document))
-        if not isinstance(kind, str) or kind not in _KINDS:
-            raise Invalid(f"kind must be motion, extraction, {', '.join(_KINDS)}; got {str(kind)[:40]!r}")
-        return Verification(True, _KINDS[kind](document))
+        found = _verified(document)
+        return found._replace(scope=scope_of(document)) if found.valid else found
     except Invalid as error:
         return Verification(False, str(error))
     except (TypeError, KeyError, ValueError, IndexError, OverflowError, ZeroDivisionError) as error:
         return Verification(False, f"the document is malformed: {str(error)[:200]}")
+
+
+def _verified(document: Mapping[str, Any]) -> Verification:
+    kind = get(document, "kind")
+    if kind == "motion":
+        return _motion(document)
+    if kind == "contact motion":
+        return _round_again(contact_motion_energy(document))
+    if kind == "row motion":
+        return _round_again(row_motion_energy(document))
+    if kind == "extraction":
+        return Verification(True, *extraction(document))
+    if kind == "matrix extraction":
+        return Verification(True, *matrix_extraction(document))
+    if not isinstance(kind, str) or kind not in _KINDS:
+        raise Invalid(f"kind must be motion, extraction, {', '.join(_KINDS)}; got {str(kind)[:40]!r}")
+    return Verification(True, _KINDS[kind](document))
 
 
 def _motion(document: Mapping[str, Any]) -> Verification:
