@@ -24,6 +24,7 @@ from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
 from .multiport import positive_real_matrix
 from .multiport_motion import matrix_extraction
+from .nonlinear_spring import nonlinear_spring
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
@@ -44,6 +45,7 @@ _KINDS = {
     "contact": contact,
     "force bounding": force_bounding,
     "instability": instability,
+    "nonlinear spring": nonlinear_spring,
     "positive real": positive_real,
     "positive real matrix": positive_real_matrix,
     "stability": stability,

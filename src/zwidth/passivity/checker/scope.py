@@ -135,6 +135,7 @@ def _port(shows: str) -> Callable[[Mapping[str, Any]], Scope]:
 _SCOPES: dict[str, Callable[[Mapping[str, Any]], Scope]] = {
     "spring": _of_every_hand(broken=True),
     "contact": _of_every_hand(broken=True),
+    "nonlinear spring": lambda document: Scope(PASSIVE, encoder=_encoder(document["loop"])),
     "linear": _of_every_hand(broken=False),
     "quantized": _of_every_hand(broken=False),
     "delays": _of_every_hand(broken=False),

@@ -1,0 +1,88 @@
+"""A spring given by points, proved from its slopes: detents, bump stops, magnets.
+
+    b ≥ (L/2 + d s) T      f_c ≥ s Δ/2
+
+L ≥ 0 is the largest slope, s the largest |slope|, d whole samples of delay.  Negative slopes cost nothing
+without delay, as long as the potential has a lowest value: beyond its ends the spring must not pull away.
+The proof is in the documentation; the steepest parts make both conditions necessary where they are long enough.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from zwidth.device import Device
+from zwidth.environment.nonlinear_spring import NonlinearSpring
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.document import exact_text, unit_key
+
+
+@dataclass(frozen=True)
+class SpringNeed:
+    """What a nonlinear spring asks of a device, as far as it is proved.
+
+    Parameters
+    ----------
+    largest_slope
+        L ≥ 0, what the hold multiplies [N/m; N·m/rad].
+    steepest
+        s, the largest |slope|, what an encoder count multiplies [N/m; N·m/rad].
+    damping
+        b that is enough [N·s/m; N·m·s/rad]; None with a delay of part of a sample.
+    coulomb_friction
+        f_c that is enough [N; N·m].
+    bounded
+        True if the potential has a lowest value; else no friction is enough here.
+    """
+
+    largest_slope: Fraction
+    steepest: Fraction
+    damping: Fraction | None
+    coulomb_friction: Fraction
+    bounded: bool
+
+
+def spring_need(device: Device, spring: NonlinearSpring) -> SpringNeed:
+    """What the slopes of a spring ask of a device.
+
+    Raises
+    ------
+    InputError
+        If a number of the device is an interval.
+    """
+    points = list(zip(spring.positions, spring.forces, strict=True))
+    slopes = [
+        (f1.fraction - f0.fraction) / (x1.fraction - x0.fraction) for (x0, f0), (x1, f1) in pairwise(points)
+    ]
+    largest, steepest = max(*slopes, Fraction(0)), max(map(abs, slopes))
+    period = device.exact("sample_period")
+    samples = device.exact("delay") / period
+    whole = samples.denominator == 1
+    return SpringNeed(
+        largest_slope=largest,
+        steepest=steepest,
+        damping=(largest / 2 + samples * steepest) * period if whole else None,
+        coulomb_friction=steepest * device.exact("resolution") / 2,
+        bounded=spring.forces[0] <= 0 <= spring.forces[-1],
+    )
+
+
+def certify_spring(device: Device, spring: NonlinearSpring) -> Certificate:
+    """The loop and the points; the checker evaluates the conditions."""
+    names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
+    loop = {unit_key(name, device.motion): exact_text(device.exact(name)) for name in names}
+    units = "rad_N_m" if device.motion == "rotary" else "m_N"
+    points = [
+        [exact_text(x.fraction), exact_text(f.fraction)]
+        for x, f in zip(spring.positions, spring.forces, strict=True)
+    ]
+    document: dict[str, Any] = {
+        "format": FORMAT,
+        "kind": "nonlinear spring",
+        "loop": loop,
+        "law": {f"points_{units}": points},
+    }
+    return Certificate((document,))
