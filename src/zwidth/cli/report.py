@@ -74,7 +74,8 @@ def print_verdict(
         section(out, *_advice(verdict))
         section(out, "actuator", _actuator(verdict))
         beside_the_loop = intervals(verdict.scope, verdict.outcome)
-        section(out, "assumes", assumption_lines(a for a in verdict.assumptions if a != beside_the_loop))
+        assumed = (line for line in verdict.assumptions if line != beside_the_loop)
+        section(out, "assumes", assumption_lines((*assumed, *verdict.demand)))
 
 
 def _table(rows: Iterable[tuple[str, str]]) -> Iterator[Table]:
@@ -93,9 +94,11 @@ def _headline(verdict: Verdict) -> Padding:
 
 
 def _claim(verdict: Verdict) -> str:
-    if verdict.outcome == "active" and verdict.witness is not None:
-        return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
-    return verdict.claim
+    if verdict.outcome != "active":
+        return verdict.claim
+    if verdict.witness is None:
+        return f"{verdict.claim} No motion that shows it was found short enough to be written down."
+    return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
 
 
 def _loop(verdict: Verdict) -> Padding:

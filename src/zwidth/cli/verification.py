@@ -79,7 +79,7 @@ def _misfit(covered: Scope | None, outcome: str, told: Mapping[str, Any]) -> str
     if outcome == "active":
         return None if covered.shows == "active" else "is a proof of passivity"
     if covered.shows == "active":
-        return "is a motion that extracts energy"
+        return "shows that energy comes out"
     if covered.contact == "kept" and outcome == "passive" and _contact(told) != "kept":
         return "covers a hand that keeps contact only"
     return None
@@ -123,6 +123,8 @@ def _head(covered: Scope, kind: str) -> str:
     if covered.shows in ("index at least", "index below"):
         return "Of the port below, proved"
     kept = " as long as contact is kept" if covered.contact == "kept" else ""
+    if covered.shows == "active":
+        return "A hand can take any amount of energy out of the loop below, proved"
     if covered.hands == "bounded":
         return "No hand within these bounds takes energy out of the loop below, proved"
     if covered.hands == "activity":

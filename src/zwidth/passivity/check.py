@@ -1,7 +1,8 @@
 """The main verb: is this device, rendering this environment, passive?
 
 Nothing is claimed on the prover's word: "passive" needs a certificate that
-the independent checker accepts, "active" a motion whose energy it recomputes.
+the independent checker accepts, "active" a violation that it confirms or a
+motion whose energy it recomputes.
 """
 
 from __future__ import annotations
@@ -19,12 +20,15 @@ from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.game import has_gap, with_game
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
-from zwidth.passivity.refutation import refute_friction, refute_linear
+from zwidth.passivity.refutation import refute_friction
 from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
 from zwidth.passivity.supremum import tightest
 from zwidth.passivity.verdict import Finding, Verdict
+from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness
 from zwidth.quantity.exact import Exact, ends
+
+Evidence = Violation | Witness
 
 
 def check(device: Device, environment: Environment | Any, *, contact: str = "made and broken") -> Verdict:
@@ -59,8 +63,8 @@ def check(device: Device, environment: Environment | Any, *, contact: str = "mad
     InputError
         If the environment cannot be sampled at this rate or is not an environment.
     """
-    verdict = check_by_closed_forms(device, environment, contact=contact)
-    law = as_environment(environment)
+    law = _as_law(device, environment)
+    verdict = check_by_closed_forms(device, law, contact=contact)
     if as_contact(contact) == "kept" or not has_gap(device, law, verdict):
         return verdict
     return with_game(device, law, verdict)
@@ -70,10 +74,7 @@ def check_by_closed_forms(
     device: Device, environment: Environment | Any, *, contact: str = "made and broken"
 ) -> Verdict:
     """`check` without the game: exact, in milliseconds, of every hand."""
-    asked = as_contact(contact)
-    if not isinstance(device, Device):
-        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
-    law = as_environment(environment)
+    asked, law = as_contact(contact), _as_law(device, environment)
     corners = worst_corners(device, law)
     decisions = [decide(*corner) for corner in corners]
     failing = [k for k, d in enumerate(decisions) if not d.is_provable]
@@ -83,12 +84,20 @@ def check_by_closed_forms(
             return _passive(device, law, corners, decisions, proofs, asked)
         return _undecided(device, law, corners[0], decisions[0], "between corners")
     worst = failing[0]
-    witness = _refute(decisions[worst])
-    least = witness if len(corners) == 1 and device.is_certain else _best_witness(device, law)
-    if witness is not None and least is not None:
+    certain = device.is_certain and len(corners) == 1
+    least = _refute(decisions[worst]) if certain else _refute_best(device, law)
+    if least is not None:
         return _active(device, law, corners[worst], decisions[worst], least)
-    finding: Finding = "open" if witness is None else "depends on values"
-    return _undecided(device, law, corners[worst], decisions[worst], finding, witness)
+    at_worst = None if certain else _refute(decisions[worst])
+    finding: Finding = "open" if at_worst is None else "depends on values"
+    return _undecided(device, law, corners[worst], decisions[worst], finding, at_worst)
+
+
+def _as_law(device: Device, environment: Environment | Any) -> Environment:
+    """The environment, once what comes first is a device."""
+    if not isinstance(device, Device):
+        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+    return as_environment(environment)
 
 
 def _proofs(
@@ -136,7 +145,6 @@ def _passive(
         *at,
         decision,
         certificate,
-        None,
         at_limit=any(_at_limit(d) for d in decisions),
     )
 
@@ -183,19 +191,18 @@ def _tightest(decisions: list[Decision]) -> int:
     )
 
 
-def _refute(decision: Decision) -> Witness | None:
-    """A checked motion that takes energy out, or None."""
-    if decision.is_clamped:  # a motion in the linear law says nothing of it
+def _refute(decision: Decision) -> Evidence | None:
+    """A checked violation, or a checked motion, of which either shows that the loop is active; or None."""
+    if decision.is_clamped:  # what is proved of the linear law says nothing of it
         return None
-    if isinstance(decision.viscous, LinearProof) and decision.friction_covers:
-        return None
-    if isinstance(decision.viscous, LinearRefutation):
-        return refute_linear(decision.setting, decision.viscous.reason)
-    return refute_friction(decision.setting)
+    if isinstance(decision.viscous, LinearProof):
+        return None if decision.friction_covers else refute_friction(decision.setting)
+    violation = Violation(decision.setting, decision.viscous)
+    return violation if violation.verify() else violation.witness
 
 
-def _best_witness(device: Device, law: Environment) -> Witness | None:
-    """A motion that takes energy out even at the best values within the intervals, or None."""
+def _refute_best(device: Device, law: Environment) -> Evidence | None:
+    """What shows that the loop is active even at the best values within the intervals, or None."""
     best = best_corner(device, law)
     if best is None:
         return None
@@ -203,9 +210,9 @@ def _best_witness(device: Device, law: Environment) -> Witness | None:
     return None if decision.is_provable else _refute(decision)
 
 
-def _active(device: Device, law: Environment, corner: Loop, decision: Decision, witness: Witness) -> Verdict:
-    scope = _scope(device, law, decision).replace(contact=witness.contact)
-    return Verdict("active", scope, *corner, decision, None, witness)
+def _active(device: Device, law: Environment, corner: Loop, decision: Decision, shown: Evidence) -> Verdict:
+    scope = _scope(device, law, decision).replace(contact=shown.contact)
+    return Verdict("active", scope, *corner, decision, **_as_evidence(shown))
 
 
 def _undecided(
@@ -214,7 +221,12 @@ def _undecided(
     corner: Loop,
     decision: Decision,
     finding: Finding,
-    witness: Witness | None = None,
+    shown: Evidence | None = None,
 ) -> Verdict:
     scope = _scope(device, law, decision)
-    return Verdict("undecided", scope, *corner, decision, None, witness, finding=finding)
+    return Verdict("undecided", scope, *corner, decision, finding=finding, **_as_evidence(shown))
+
+
+def _as_evidence(shown: Evidence | None) -> dict[str, Any]:
+    """Where a verdict keeps it."""
+    return {"violation": shown} if isinstance(shown, Violation) else {"motion": shown}

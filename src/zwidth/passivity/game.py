@@ -45,7 +45,7 @@ def with_game(
             outcome="active",
             scope=verdict.scope.replace(contact=found.scope.contact, also=()),
             certificate=None,
-            witness=found.witness,
+            motion=found.witness,
             worst_hand=found,
             at_limit=False,
         )

@@ -14,6 +14,7 @@ from zwidth.device import Device
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.environment.environment import Environment
 from zwidth.passivity import claims, limits
+from zwidth.passivity.actuator_demand import actuator_demand
 from zwidth.passivity.advice import Advice, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.certificate import Certificate
@@ -22,6 +23,7 @@ from zwidth.passivity.document import save_json, to_json, unit_suffix
 from zwidth.passivity.outcome import TOLD, Outcome
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.stability_plane import admissible_speed
+from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -40,7 +42,7 @@ class Verdict:
 
     "passive" stands on a `certificate` that the independent checker accepted, with contact made and broken,
     or as it was asked; "passive in contact" on one for hands that never leave the wall; "active" on a
-    `witness` that it recomputed; "undecided" says what is known.
+    `violation` that it accepted or a motion, the `witness`, that it recomputed; "undecided" says what is known.
     For parameters given as intervals the verdict holds for every value; the
     numbers below then speak of the worst case (`device`, `environment`).
 
@@ -52,8 +54,13 @@ class Verdict:
         What it is about: hands, contact, encoder, actuator.
     device, environment
         The loop decided: the worst corner where intervals were given.
-    certificate, witness
-        The evidence; the one that does not apply is None.
+    certificate
+        The proof of "passive"; else None.
+    violation
+        What of the linear criterion is violated, a proof of "active"; or so at the worst corner
+        of an interval.  None for a loop that is active by its encoder, or by contact made and broken.
+    motion
+        The motion, where it was needed to decide; see `witness`.
     worst_hand
         What the game of the worst hand adds, where the closed forms leave a gap: a motion,
         then also the `witness`; or a proof for hands within bounds.
@@ -68,8 +75,9 @@ class Verdict:
     device: Device
     environment: Environment
     decision: Decision
-    certificate: Certificate | None
-    witness: Witness | Gain | None
+    certificate: Certificate | None = None
+    violation: Violation | None = None
+    motion: Witness | Gain | None = None
     worst_hand: WorstHand | None = None
     finding: Finding = "open"
     at_limit: bool = False
@@ -88,6 +96,16 @@ class Verdict:
     def is_proved(self) -> bool:
         """True for "passive" and for "passive in contact"."""
         return self.outcome in ("passive", "passive in contact")
+
+    @cached_property
+    def witness(self) -> Witness | Gain | None:
+        """The motion that takes energy out, made when it is first asked for.
+
+        None where the loop is not active, or no motion that was found is short enough to be written down.
+        """
+        if self.motion is not None or self.violation is None:
+            return self.motion
+        return self.violation.witness
 
     @cached_property
     def budget(self) -> Budget:
@@ -188,6 +206,12 @@ class Verdict:
         positive = stiffness is not None and stiffness > 0
         return actuator_checks(self.device, stiffness if positive else None)
 
+    @cached_property
+    def demand(self) -> tuple[str, ...]:
+        """What the motion asks of the actuator, where there is one and the actuator's limit is known."""
+        said = None if self.witness is None else actuator_demand(self.device, self.witness)
+        return () if said is None else (said,)
+
     def curve(self, points: int = 400) -> tuple[list[float], list[float]]:
         """(frequency [Hz], damping the criterion asks for there [N·s/m]), for plotting only."""
         loop = self.decision.loop
@@ -207,7 +231,7 @@ class Verdict:
             "outcome": self.outcome,
             "claim": self.claim,
             "scope": self.scope.to_dict(),
-            "assumptions": list(self.assumptions),
+            "assumptions": [*self.assumptions, *self.demand],
             "limit": self.limit,
             "mode": self.mode,
         }
@@ -224,6 +248,8 @@ class Verdict:
         document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
         if self.certificate is not None:
             document["certificate"] = self.certificate.to_dict()
+        if self.violation is not None:
+            document["violation"] = self.violation.to_dict()
         if self.witness is not None:
             document["witness"] = rounded_energy(self.witness.to_dict())
         if self.worst_hand is not None:
@@ -247,7 +273,7 @@ class Verdict:
     def _repr_html_(self) -> str:
         colour = TOLD[self.outcome].colour
         rows = "".join(f"<tr><th align='left'>{k}</th><td align='left'>{v}</td></tr>" for k, v in self.rows())
-        assumed = "".join(f"<li>{a}</li>" for a in self.assumptions)
+        assumed = "".join(f"<li>{a}</li>" for a in (*self.assumptions, *self.demand))
         return (
             f"<div><b style='color:{colour}'>{self.outcome}</b> {self.claim}"
             f"<table>{rows}</table><details><summary>assumptions</summary><ul>{assumed}</ul></details></div>"

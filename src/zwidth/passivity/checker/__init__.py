@@ -1,4 +1,4 @@
-"""The independent checker: re-proves a certificate, recomputes a witness.
+"""The independent checker: re-proves a certificate or a violation, recomputes a witness.
 
 Written from the mathematics alone, with other algorithms than the prover's: Chebyshev sums for the criterion,
 Bernstein coefficients for its sign, Routh's table for stability, Schur and Cohn's recursion where a hand is
@@ -34,6 +34,7 @@ from .scope import Scope, scope_of
 from .storage_proof import storage
 from .storage_row import storage_of_row
 from .vibration import vibration
+from .violation import violation
 
 __all__ = ["Scope", "Verification", "verify"]
 
@@ -52,6 +53,7 @@ _KINDS = {
     "storage": storage,
     "row storage": storage_of_row,
     "vibration": vibration,
+    "violation": violation,
 }
 
 
@@ -65,7 +67,7 @@ class Verification(NamedTuple):
 
 
 def verify(document: Mapping[str, Any]) -> Verification:
-    """Check one certificate or witness, given as plain JSON data."""
+    """Check one certificate, violation or witness, given as plain JSON data."""
     try:
         found = _verified(document)
         return found._replace(scope=scope_of(document)) if found.valid else found

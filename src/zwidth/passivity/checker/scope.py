@@ -72,12 +72,11 @@ def _encoder(loop: Mapping[str, Any]) -> str:
     return COUNTED if any(Fraction(str(step)) for step in steps) else IDEAL
 
 
-def _of_every_hand(broken: bool) -> Callable[[Mapping[str, Any]], Scope]:
+def _of_every_hand(touched: Contact, shows: str = PASSIVE) -> Callable[[Mapping[str, Any]], Scope]:
     def scope(document: Mapping[str, Any]) -> Scope:
         loop = document["loop"]
-        touched: Contact = BROKEN if broken else KEPT
         contact = touched if loop["unilateral"] else BOTH_SIDES
-        return Scope(PASSIVE, "every", contact, _encoder(loop))
+        return Scope(shows, "every", contact, _encoder(loop))
 
     return scope
 
@@ -133,17 +132,18 @@ def _port(shows: str) -> Callable[[Mapping[str, Any]], Scope]:
 
 
 _SCOPES: dict[str, Callable[[Mapping[str, Any]], Scope]] = {
-    "spring": _of_every_hand(broken=True),
-    "contact": _of_every_hand(broken=True),
+    "spring": _of_every_hand(BROKEN),
+    "contact": _of_every_hand(BROKEN),
     "nonlinear spring": lambda document: Scope(PASSIVE, encoder=_encoder(document["loop"])),
-    "linear": _of_every_hand(broken=False),
-    "quantized": _of_every_hand(broken=False),
-    "delays": _of_every_hand(broken=False),
+    "linear": _of_every_hand(KEPT),
+    "quantized": _of_every_hand(KEPT),
+    "delays": _of_every_hand(KEPT),
     "force bounding": _force_bounding,
     "storage": _on_a_grid(PASSIVE),
     "row storage": _of_a_table(PASSIVE),
     "active hand": _activity,
     "arm": lambda document: Scope(PASSIVE),
+    "violation": _of_every_hand(KEPT, ACTIVE),
     "motion": _motion,
     "contact motion": _on_a_grid(ACTIVE),
     "row motion": _of_a_table(ACTIVE),
