@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
-from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear import LinearRefutation
+from zwidth.passivity.relaxing_contact import RelaxingLaw
 from zwidth.passivity.verdict import Outcome
 from zwidth.passivity.witness import Witness
 from zwidth.quantity.exact import Interval, ends
@@ -112,20 +112,14 @@ def _surface(
     if not covered and decision.is_clamped:
         return f"{anywhere}; the law never pulls: a force below 0 is given as 0"
     if not covered:
-        inside = "sustained contact: the law is linear while the hand stays inside"
-        if outcome == "passive" and _only_relaxes(law) and ends(device.delay)[1] == 0:
-            return f"{inside}; contact made and broken is covered by a proof on paper, without a certificate"
-        return f"{inside}{NOT_COVERED}"
+        return f"sustained contact: the law is linear while the hand stays inside{NOT_COVERED}"
+    if isinstance(decision.wall, RelaxingLaw):
+        never = "; the law never pulls" if law.clamped else ""
+        return f"{anywhere}; the law is fed with the {decision.wall.fed_with}{never}"
     if certificate is not None and not certificate.is_of_springs:
         return f"{anywhere}; also for a wall that is clamped so that it never pulls"
     more = "; the same holds for every spring law of slope 0 to K" if outcome == "passive" else ""
     return f"{anywhere}{more}"
-
-
-def _only_relaxes(law: Environment) -> bool:
-    """True for solids that are fed with the penetration and have h_j ≤ 0 for all j ≥ 1 (theory/contact)."""
-    solids = (Maxwell, StandardLinearSolid, GeneralizedMaxwell)
-    return isinstance(law, solids) and law.discretization == "backward" and not law.clamped
 
 
 def beyond_the_actuator(device: Device, witness: Witness | Gain | None) -> tuple[str, ...]:

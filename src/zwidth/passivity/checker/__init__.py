@@ -27,6 +27,7 @@ from .multiport_motion import matrix_extraction
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
+from .relaxing_contact import relaxing_contact
 from .rest import instability, stability
 from .row_motion import row_motion_energy
 from .storage_proof import storage
@@ -41,6 +42,7 @@ _KINDS = {
     "active hand": active_hand,
     "arm": arm,
     "contact": contact,
+    "relaxing contact": relaxing_contact,
     "force bounding": force_bounding,
     "instability": instability,
     "positive real": positive_real,

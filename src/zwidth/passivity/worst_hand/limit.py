@@ -33,9 +33,6 @@ from zwidth.rendering.rendered import Rendered
 MORE_IS_SAFER = frozenset({"device.damping", "device.coulomb_friction", "device.rate"})
 """Parameters of which a loop needs enough; of all others it may have too much."""
 
-COVERS_CONTACT = frozenset({"spring", "contact"})
-"""Kinds of certificate that cover contact made and broken, and any hand."""
-
 _FARTHEST = 60
 """Doublings from the first guess after which there is no limit."""
 
@@ -255,7 +252,7 @@ class _Search:
 
         def proved(value: Exact) -> bool:
             found = verdict(value)
-            return found.outcome == "passive" and found.certificate.kind in COVERS_CONTACT
+            return found.outcome == "passive" and found.certificate.covers_contact
 
         def refuted(value: Exact) -> bool:
             return bool(verdict(value).outcome == "active")
