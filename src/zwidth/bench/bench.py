@@ -228,10 +228,8 @@ def _by_the_game(device: Device, law: Rendered, found: Attack) -> tuple[str, str
         return "active", f"{found}; but the game of the worst hand finds more. {played.claim}"
     if played.outcome == "undecided":
         return "undecided", f"{no_proof}; nor does the game of the worst hand decide it"
-    return (
-        "undecided",
-        f"{no_proof}; {describe_hands(played.scope.hands, played.scope.motion)} take no energy out, proved; others may",
-    )
+    hands = describe_hands(played.scope.hands, played.scope.motion)
+    return "undecided", f"{no_proof}; {hands} take no energy out, proved; others may"
 
 
 def _cause(error: InputError) -> str:

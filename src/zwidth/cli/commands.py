@@ -271,8 +271,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "say what limits it, by how much, and what to change.",
             "A plain number is SI; others carry a unit, as in --rate '1 kHz' or --resolution '22.4 um'.\n"
             "An interval, as in --damping '0.1 .. 0.2', stands for every value in it.\n\n"
-            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided, 4 passive for a hand that keeps contact\n"
-            "only, and of one that touches and leaves nothing is known; with --contact kept that is 0\n\n"
+            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided, 4 passive as long as contact is kept\n"
+            "(nothing is known of a hand that touches and leaves); with --contact kept that is 0\n\n"
             "examples:\n"
             "  zwidth check haptic-paddle --stiffness 300\n"
             "  zwidth check my-wheel.toml my-bumpstop.toml --json\n"

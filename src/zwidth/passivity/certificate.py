@@ -24,6 +24,7 @@ from zwidth.passivity.document import exact_text, loop_document, save_json, unit
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.one_norm import NormBound
 from zwidth.passivity.positivity import Positivity
+from zwidth.passivity.relaxing_contact import RelaxingLaw
 
 FORMAT = "zwidth certificate 1"
 LARGEST_FILE = 200_000_000
@@ -82,9 +83,10 @@ def certify(decision: Decision) -> dict[str, Any]:
     """The proof document of a provable decision."""
     kind = decision.kind
     document = _document(decision, kind)
-    if kind == "contact":
-        assert decision.wall is not None
+    if isinstance(decision.wall, DampedWall) and kind == "contact":
         document["law"] = _law(decision.wall, decision.setting.motion)
+    elif isinstance(decision.wall, RelaxingLaw) and kind == "relaxing contact":
+        document["law"] = _relaxing_law(decision.wall, decision.setting.motion)
     elif kind != "spring":
         document["proof"] = linear_proof(decision)
     return document
@@ -118,6 +120,16 @@ def _law(wall: DampedWall, motion: str) -> dict[str, Any]:
         unit_key("stiffness", motion): exact_text(wall.stiffness),
         unit_key("virtual_damping", motion): exact_text(wall.damping),
         "weights": weights,
+    }
+
+
+def _relaxing_law(law: RelaxingLaw, motion: str) -> dict[str, Any]:
+    stiffness = unit_key("stiffness", motion)
+    return {
+        stiffness: exact_text(law.stiffness),
+        "parts": [{"pole": str(p.pole), stiffness: exact_text(p.stiffness)} for p in law.parts],
+        "fed_with": law.fed_with,
+        "never_pulls": law.never_pulls,
     }
 
 

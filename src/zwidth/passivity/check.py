@@ -138,7 +138,9 @@ def _passive(
     covered = certificate.covered()
     if covered is None:  # nothing is claimed that the checker does not accept
         return _undecided(device, law, at, decision, "unconfirmed")
-    scope = _scope(device, law, decision).replace(contact=covered.contact, also=_also(certificate, law))
+    scope = _scope(device, law, decision).replace(
+        contact=covered.contact, fed_with=covered.fed_with, also=_also(certificate, law)
+    )
     return Verdict(
         "passive in contact" if covered.contact == "kept" != asked else "passive",
         scope,

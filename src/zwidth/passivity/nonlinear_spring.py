@@ -4,7 +4,7 @@
 
 L ≥ 0 is the largest slope, s the largest |slope|, d whole samples of delay.  Negative slopes cost nothing
 without delay, as long as the potential has a lowest value: beyond its ends the spring must not pull away.
-The proof is in the documentation; the steepest parts make both conditions necessary where they are long enough.
+The proof is in the documentation; where its steepest part is long enough, both conditions are necessary.
 """
 
 from __future__ import annotations

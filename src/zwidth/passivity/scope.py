@@ -26,6 +26,9 @@ Encoder = Literal["ideal", "counted", "not counted"]
 Sampling = Literal["constant", "any"]
 """A constant period and delay; or whatever the clock does."""
 
+FedWith = Literal["position", "penetration", ""]
+"""Its memory hears the position outside too, or the depth max(x, 0); or that makes no difference."""
+
 Law = Literal["rounded coefficients", "rounded power", "table", "doubles", "any before the last"]
 """What of the law is not exact, or not looked at."""
 
@@ -92,6 +95,8 @@ class Scope:
         it, or where there are several joints.
     friction
         The measured curve in the place of both, or None.
+    fed_with
+        What a law with a memory must be fed with for a proof to hold; "": either.
     clamped
         True if the law never pulls: a force below 0 is given as 0.
     region
@@ -118,6 +123,7 @@ class Scope:
     damping: float | None = None
     coulomb_friction: float | None = None
     friction: FrictionCurve | None = None
+    fed_with: FedWith = ""
     clamped: bool = False
     region: str | None = None
     intervals: tuple[str, ...] = ()

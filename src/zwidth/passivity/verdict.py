@@ -42,7 +42,8 @@ class Verdict:
 
     "passive" stands on a `certificate` that the independent checker accepted, with contact made and broken,
     or as it was asked; "passive in contact" on one for hands that never leave the wall; "active" on a
-    `violation` that it accepted or a motion, the `witness`, that it recomputed; "undecided" says what is known.
+    `violation` that it accepted or a motion, the `witness`, that it recomputed; "undecided" says what is
+    known.
     For parameters given as intervals the verdict holds for every value; the
     numbers below then speak of the worst case (`device`, `environment`).
 

@@ -76,6 +76,7 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
     yield "; ".join(
         [
             (_OF_A_MOTION if active else _CONTACT)[scope.contact],
+            *([f"the law is fed with the {scope.fed_with}"] if scope.fed_with else []),
             *(["the law never pulls: a force below 0 is given as 0"] if scope.clamped else []),
             *(_ALSO[more] for more in scope.also),
         ]
@@ -184,6 +185,8 @@ def document(scope: Scope) -> dict[str, Any]:
         "sampling": scope.sampling,
         "clamped": scope.clamped,
     }
+    if scope.fed_with:
+        written["fed_with"] = scope.fed_with
     for name in ("damping", "coulomb_friction"):
         written[unit_key(name, scope.motion)] = getattr(scope, name)
     if scope.largest_force is not None:

@@ -28,6 +28,7 @@ from .nonlinear_spring import nonlinear_spring
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
+from .relaxing_contact import relaxing_contact
 from .rest import instability, stability
 from .row_motion import row_motion_energy
 from .scope import Scope, scope_of
@@ -44,6 +45,7 @@ _KINDS = {
     "active hand": active_hand,
     "arm": arm,
     "contact": contact,
+    "relaxing contact": relaxing_contact,
     "force bounding": force_bounding,
     "instability": instability,
     "nonlinear spring": nonlinear_spring,

@@ -2,8 +2,8 @@
 
     b ≥ (L/2 + d s) T      f_c ≥ s Δ/2
 
-L ≥ 0 the largest slope, s the largest |slope|, d whole samples of delay; beyond its ends the spring does not pull
-away, so that its potential Φ has a lowest value.  With x̃ = x − Δ/2 the storage
+L ≥ 0 the largest slope, s the largest |slope|, d whole samples of delay; beyond its ends the spring does
+not pull away, so that its potential Φ has a lowest value.  With x̃ = x − Δ/2 the storage
 V = Φ(x̃) + (s/2) Σ_{i<d} (d − i) Δx²_{n−i} pays for every move:
 
     φ(q_{n−d}) D ≥ φ(x̃_n) D − (s Δ/2 + s Σ|Δx|) |D|,     φ(x̃) D ≥ Φ(x̃ + D) − Φ(x̃) − (L/2) D²

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Any, Literal, NamedTuple
 
 Contact = Literal["made and broken", "kept", "both sides"]
+FedWith = Literal["position", "penetration", ""]
 BROKEN: Contact = "made and broken"
 KEPT: Contact = "kept"
 BOTH_SIDES: Contact = "both sides"
@@ -39,6 +40,8 @@ class Scope(NamedTuple):
         "ideal", or "counted": its steps are in the proof.
     force_limit, force_steps
         Whether the actuator's limit, and its converter's steps, are in the proof.
+    fed_with
+        What a law with a memory must be fed with for the proof to hold, "position" or "penetration"; or "".
     """
 
     shows: str
@@ -47,6 +50,7 @@ class Scope(NamedTuple):
     encoder: str = IDEAL
     force_limit: bool = False
     force_steps: bool = False
+    fed_with: FedWith = ""
 
 
 def scope_of(document: Mapping[str, Any]) -> Scope:
@@ -134,6 +138,9 @@ def _port(shows: str) -> Callable[[Mapping[str, Any]], Scope]:
 _SCOPES: dict[str, Callable[[Mapping[str, Any]], Scope]] = {
     "spring": _of_every_hand(BROKEN),
     "contact": _of_every_hand(BROKEN),
+    "relaxing contact": lambda document: _of_every_hand(BROKEN)(document)._replace(
+        fed_with=document["law"]["fed_with"]
+    ),
     "nonlinear spring": lambda document: Scope(PASSIVE, encoder=_encoder(document["loop"])),
     "linear": _of_every_hand(KEPT),
     "quantized": _of_every_hand(KEPT),
