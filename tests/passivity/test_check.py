@@ -199,8 +199,8 @@ def test_what_is_no_device_is_refused():
 
 
 KEYS = {
-    "outcome", "claim", "scope", "assumptions", "limit", "max_stiffness_N_per_m", "required_damping_N_s_per_m",
-    "critical_frequency_Hz", "margins", "advice",
+    "outcome", "claim", "scope", "assumptions", "limit", "max_stiffness_N_per_m", "margins", "advice",
+    "required_damping_N_s_per_m", "critical_frequency_Hz",
 }  # fmt: skip
 
 

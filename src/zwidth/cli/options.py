@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from zwidth.cli.environments import TYPES, option_keys
-from zwidth.cli.laws import LAWS, NOT_PROVED
+from zwidth.cli.laws import LAWS
 from zwidth.cli.specification import DEVICE_KEYS, ROTARY_KEYS
 from zwidth.cli.table import quoted
 from zwidth.errors import InputError
@@ -119,24 +119,13 @@ def contact(arguments: argparse.Namespace) -> str:
 
 
 def add_law_option(parser: argparse.ArgumentParser) -> None:
-    """Give a command that simulates the option `--law`."""
+    """Give a command the option `--law`."""
     parser.add_argument(
         "--law",
         metavar="NAMES",
         action="append",
         help=f"laws in a row behind the environment, with their defaults: {', '.join(LAWS)}",
     )
-
-
-def refuse_laws(parser: argparse.ArgumentParser) -> None:
-    """Let a command that proves say why it has no `--law`."""
-    parser.add_argument("--law", action=_NotProved, help=argparse.SUPPRESS)
-
-
-class _NotProved(argparse.Action):
-    def __call__(self, *_: object) -> None:
-        """Refuse the option."""
-        raise InputError(f"--law: {NOT_PROVED}")
 
 
 def overrides(arguments: argparse.Namespace) -> dict[str, str]:

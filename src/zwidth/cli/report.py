@@ -23,6 +23,7 @@ from zwidth.cli.motion import joules, motion_lines
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.output import encodes, quiet_pipe
 from zwidth.passivity.advice import Advice
+from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.wording import intervals
@@ -64,15 +65,17 @@ def print_verdict(
         out.print(_headline(verdict))
         out.print(_loop(verdict))
         out.print(_numbers(verdict))
-        section(out, "budget", _budget(verdict, fancy))
+        if isinstance(verdict, LinearVerdict):
+            section(out, "budget", _budget(verdict, fancy))
         if verdict.witness is not None:
             section(out, "the motion", motion_lines(verdict.witness, fancy))
         if real_hand is not None:
             section(out, "a real hand", _table(real_hand.rows()))
         if active_hand is not None:
             section(out, "an active hand", _table(active_hand.rows()))
-        section(out, *_advice(verdict))
-        section(out, "actuator", _actuator(verdict))
+        if isinstance(verdict, LinearVerdict):
+            section(out, *_advice(verdict))
+            section(out, "actuator", _actuator(verdict))
         beside_the_loop = intervals(verdict.scope, verdict.outcome)
         assumed = (line for line in verdict.assumptions if line != beside_the_loop)
         section(out, "assumes", assumption_lines((*assumed, *verdict.demand)))
@@ -119,12 +122,12 @@ def _numbers(verdict: Verdict) -> Padding:
             continue  # it has a section of its own
         style = "bold" if name == "limit" else "red" if text.startswith("-") else ""
         grid.add_row(Text(_spelled(name), style="dim"), Text(unit_text(text), style=style))
-    if verdict.mode is not None:
+    if isinstance(verdict, LinearVerdict) and verdict.mode is not None:
         grid.add_row(Text("shows itself as", style="dim"), Text(verdict.mode))
     return _spaced(grid)
 
 
-def _budget(verdict: Verdict, fancy: bool) -> Iterator[Table]:
+def _budget(verdict: LinearVerdict, fancy: bool) -> Iterator[Table]:
     """Each leak on top of the one before, and below them what the device dissipates."""
     account, motion = verdict.budget, verdict.device.motion
     scale = max(account.hold, account.hold + account.dynamics, account.required, account.damping)
@@ -144,7 +147,7 @@ def _budget(verdict: Verdict, fancy: bool) -> Iterator[Table]:
         yield _friction(verdict, fancy)
 
 
-def _friction(verdict: Verdict, fancy: bool) -> Table:
+def _friction(verdict: LinearVerdict, fancy: bool) -> Table:
     account, unit = verdict.budget, GLOSSARY["coulomb_friction"].unit_for(verdict.device.motion)
     grid = _account("Coulomb, K Δ/2 against f_c" if verdict.decision.is_spring else "Coulomb")
     need = account.friction_required
@@ -173,7 +176,7 @@ def _balance(
     grid.add_row(name, picture, shown(have, unit))
 
 
-def _advice(verdict: Verdict) -> tuple[str, Iterator[Text]]:
+def _advice(verdict: LinearVerdict) -> tuple[str, Iterator[Text]]:
     title = "slack" if verdict.is_proved else "what to change, any one of"
     return title, _advice_lines(verdict.advice)
 
@@ -206,7 +209,7 @@ def _named(text: str) -> str:
     return text.replace("coulomb", "Coulomb")
 
 
-def _actuator(verdict: Verdict) -> Iterator[Text]:
+def _actuator(verdict: LinearVerdict) -> Iterator[Text]:
     for check in verdict.actuator:
         mark, style = {True: ("✓", "green"), False: ("✗", "red"), None: ("·", "dim")}[check.ok]
         yield Text.assemble((f"{mark} ", style), f"{check.name}: {check.text}")

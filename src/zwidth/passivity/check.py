@@ -7,8 +7,9 @@ motion whose energy it recomputes.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
@@ -20,6 +21,8 @@ from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.game import has_gap, with_game
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.other_laws import check_other
 from zwidth.passivity.refutation import refute_friction
 from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
 from zwidth.passivity.supremum import tightest
@@ -28,10 +31,33 @@ from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness
 from zwidth.quantity.exact import Exact, ends
 
+if TYPE_CHECKING:
+    from zwidth.device.arm import Arm
+    from zwidth.environment import Wall
+    from zwidth.environment.matrix_wall import MatrixWall
+    from zwidth.passivity.arms import Workspace
+
 Evidence = Violation | Witness
 
 
-def check(device: Device, environment: Environment | Any, *, contact: str = "made and broken") -> Verdict:
+@overload
+def check(
+    device: Device,
+    environment: Environment | Any,
+    *,
+    contact: str = ...,
+    progress: Callable[[int], None] | None = ...,
+) -> Verdict: ...
+@overload
+def check(device: Arm, environment: Wall | MatrixWall, **of_an_arm: Any) -> Workspace: ...
+def check(
+    device: Device | Arm,
+    environment: Environment | Any,
+    *,
+    contact: str = "made and broken",
+    progress: Callable[[int], None] | None = None,
+    **of_an_arm: Any,
+) -> Verdict | Workspace:
     """Decide whether a hand can ever take energy out of the sampled loop.
 
     Passive means ∫ f_h v dt + E(0) ≥ 0 for every motion, E(0) finite.  For a
@@ -45,34 +71,62 @@ def check(device: Device, environment: Environment | Any, *, contact: str = "mad
     (Abbott & Okamura 2005).  Equality counts as passive.  A damped wall is
     covered with contact made and broken where b ≥ (2d + 1) K T/2 + |B| Σ|w_j| and
     f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.  Where these conditions leave a gap
-    the game of `worst_hand` is played, for some seconds at most.
+    values are iterated as in `worst_hand`, for some seconds at most.
+
+    Laws without H(z) are decided too: nonlinear springs by their slopes, laws in a row by the force bounding
+    that ends them or a wall that covers them, all by value iteration; `decided_by` says which.
 
     Parameters
     ----------
     device
-        The device; where parameters are intervals the verdict holds for all values.
+        The device; where parameters are intervals the verdict holds for all values.  An arm of several joints
+        is answered by `workspace`, whose further arguments (rate, delay, …) are given by name.
     environment
-        An `Environment`, or a discrete python-control or scipy.signal system H(z).
+        Whatever can be rendered: an `Environment`, what `render` gives, a discrete python-control or
+        scipy.signal system H(z); for an arm a `Wall` or a `MatrixWall`.
     contact
         "made and broken": a one-sided law is "passive" if no hand gains that touches and leaves at will, and
         "passive in contact" if this is proved only of hands that stay inside.  "kept": the question is about
         those alone.
+    progress
+        Told the number of states that still improve, where values are iterated.
 
     Raises
     ------
     InputError
         If the environment cannot be sampled at this rate or is not an environment.
     """
+    if not isinstance(device, Device):
+        return _check_arm(device, environment, of_an_arm)
+    if of_an_arm:
+        raise InputError(
+            f"{', '.join(of_an_arm)}: of an arm; a device of one axis has its rate and delay in itself"
+        )
     law = _as_law(device, environment)
+    if not law.has_transfer_function:
+        return check_other(device, law, check_by_closed_forms, progress)
     verdict = check_by_closed_forms(device, law, contact=contact)
     if as_contact(contact) == "kept" or not has_gap(device, law, verdict):
         return verdict
-    return with_game(device, law, verdict)
+    return with_game(device, law, verdict, progress)
+
+
+def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:
+    """The verdict on a device of several joints."""
+    from zwidth.device.arm import Arm  # numpy takes its time
+
+    if not isinstance(arm, Arm):
+        raise InputError(f"the first argument is a Device or an arm, got {type(arm).__name__}")
+    from zwidth.passivity.arms import workspace
+
+    if "rate" not in further:
+        raise InputError('an arm has no rate of its own: give rate=…, such as rate="1 kHz"')
+    return workspace(arm, wall, **further)
 
 
 def check_by_closed_forms(
     device: Device, environment: Environment | Any, *, contact: str = "made and broken"
-) -> Verdict:
+) -> LinearVerdict:
     """`check` without the game: exact, in milliseconds, of every hand."""
     asked, law = as_contact(contact), _as_law(device, environment)
     corners = worst_corners(device, law)
@@ -97,6 +151,8 @@ def _as_law(device: Device, environment: Environment | Any) -> Environment:
     """The environment, once what comes first is a device."""
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+    if type(environment).__name__ == "MatrixWall":
+        raise InputError("a MatrixWall is of several coordinates: give an arm in the place of the device")
     return as_environment(environment)
 
 
@@ -131,23 +187,23 @@ def _passive(
     decisions: list[Decision],
     proofs: list[dict[str, Any]],
     asked: Contact,
-) -> Verdict:
+) -> LinearVerdict:
     certificate = Certificate(tuple(proofs))
     tight = _tightest(decisions)
     at, decision = corners[tight], decisions[tight]
     covered = certificate.covered()
-    if covered is None:  # nothing is claimed that the checker does not accept
+    if covered is None or covered.shows != "passive":  # nothing is claimed that the checker does not accept
         return _undecided(device, law, at, decision, "unconfirmed")
     scope = _scope(device, law, decision).replace(
         contact=covered.contact, fed_with=covered.fed_with, also=_also(certificate, law)
     )
-    return Verdict(
+    return LinearVerdict(
         "passive in contact" if covered.contact == "kept" != asked else "passive",
         scope,
         *at,
-        decision,
         certificate,
         at_limit=any(_at_limit(d) for d in decisions),
+        decision=decision,
     )
 
 
@@ -212,9 +268,11 @@ def _refute_best(device: Device, law: Environment) -> Evidence | None:
     return None if decision.is_provable else _refute(decision)
 
 
-def _active(device: Device, law: Environment, corner: Loop, decision: Decision, shown: Evidence) -> Verdict:
+def _active(
+    device: Device, law: Environment, corner: Loop, decision: Decision, shown: Evidence
+) -> LinearVerdict:
     scope = _scope(device, law, decision).replace(contact=shown.contact)
-    return Verdict("active", scope, *corner, decision, **_as_evidence(shown))
+    return LinearVerdict("active", scope, *corner, decision=decision, **_as_evidence(shown))
 
 
 def _undecided(
@@ -224,9 +282,11 @@ def _undecided(
     decision: Decision,
     finding: Finding,
     shown: Evidence | None = None,
-) -> Verdict:
+) -> LinearVerdict:
     scope = _scope(device, law, decision)
-    return Verdict("undecided", scope, *corner, decision, finding=finding, **_as_evidence(shown))
+    return LinearVerdict(
+        "undecided", scope, *corner, decision=decision, finding=finding, **_as_evidence(shown)
+    )
 
 
 def _as_evidence(shown: Evidence | None) -> dict[str, Any]:

@@ -20,6 +20,8 @@ def claim(verdict: Verdict) -> str:
             return f"The hand can take any amount of energy out of this loop: {verdict.violation.describe()}."
         assert verdict.witness is not None
         return f"A motion of the hand takes energy out of this loop: {verdict.witness.describe()}."
+    if verdict.outcome == "theorem":
+        return f"By a proof on paper, without a certificate: {verdict.theorem}."
     if verdict.outcome == "undecided":
         return " ".join([_undecided(verdict), *_by_bounded_hands(verdict)])
     proved = claim_of_passivity(verdict.scope, verdict.at_limit)
@@ -36,6 +38,33 @@ def assumptions(verdict: Verdict) -> tuple[str, ...]:
         *lines(verdict.scope, verdict.outcome),
         *([] if between is None else [between]),
     )
+
+
+_ROADS = {
+    "spring": "the closed conditions of a spring",
+    "contact": "the closed conditions of a damped wall, contact made and broken",
+    "relaxing contact": "the closed conditions of a law that relaxes, contact made and broken",
+    "linear": "the linear criterion",
+    "quantized": "the linear criterion, and a bound on the force error of the encoder",
+    "delays": "the linear criterion, for every delay of the interval",
+    "nonlinear spring": "the slopes of the spring",
+    "force bounding": "force bounding, the last law in the row",
+}
+"""By kind of certificate."""
+
+
+def decided_by(verdict: Verdict) -> str:
+    """The road on which the outcome was found."""
+    if verdict.certificate is not None:
+        documents = verdict.certificate.documents
+        return "; ".join(dict.fromkeys(_ROADS.get(d["kind"], d["kind"]) for d in documents))
+    if verdict.outcome == "theorem":
+        return "a proof on paper"
+    if verdict.outcome == "undecided":
+        return "nothing"
+    if verdict.violation is not None:
+        return "the linear criterion" if hasattr(verdict, "decision") else "the ends of the spring"
+    return "a motion" if verdict.worst_hand is None else "a motion found by value iteration"
 
 
 def _by_bounded_hands(verdict: Verdict) -> Iterator[str]:
@@ -59,7 +88,24 @@ def _undecided(verdict: Verdict) -> str:
             "The answer depends on where in its intervals the loop lies: a motion takes energy out at the "
             "worst corner, and for other values none is known to."
         )
-    return _open(verdict.decision)
+    if verdict.finding == "no lowest energy":
+        return (
+            "Beyond an end the spring pulls away, with no more than Coulomb friction holds: its potential "
+            "has no lowest value, and no proof for that is known."
+        )
+    decision: Decision | None = getattr(verdict, "decision", None)  # of laws with H(z)
+    return _not_found(verdict) if decision is None else _open(decision)
+
+
+def _not_found(verdict: Verdict) -> str:
+    """What is known of a law without H(z)."""
+    found = "Neither a proof for every hand nor a motion that takes energy out was found"
+    lacking = [
+        f"{need.name.replace('_', ' ')} of {need.needed:.6g} is proved enough, and there is {need.has:.6g}"
+        for need in verdict.needs
+        if need.has < need.needed
+    ]
+    return f"{'; '.join([found, *lacking])}."
 
 
 def _open(decision: Decision) -> str:

@@ -16,8 +16,10 @@ from typing import Any
 
 from zwidth.device import Device
 from zwidth.environment.nonlinear_spring import NonlinearSpring
+from zwidth.passivity import checker
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.scope import Contact
 
 
 @dataclass(frozen=True)
@@ -70,8 +72,61 @@ def spring_need(device: Device, spring: NonlinearSpring) -> SpringNeed:
     )
 
 
+@dataclass(frozen=True)
+class EndlessPull:
+    """A proof that a spring gives out energy without end: it pulls away, and friction holds less.
+
+    Parameters
+    ----------
+    document
+        The loop and the points, for the checker.
+    pull
+        The force with which it does [N; N·m].
+    unit
+        Of it.
+    """
+
+    document: dict[str, Any]
+    pull: float
+    unit: str
+
+    @property
+    def witness(self) -> None:
+        """No motion ends it: the hand lets itself be pulled, slowly, as far as it likes."""
+        return None
+
+    @property
+    def contact(self) -> Contact:
+        """The spring has no surface."""
+        return "both sides"
+
+    def verify(self) -> bool:
+        """True when the independent checker accepts it."""
+        return checker.verify(self.document).valid
+
+    def to_dict(self) -> dict[str, Any]:
+        """The proof as plain data."""
+        return self.document
+
+    def describe(self) -> str:
+        """What is wrong, in words."""
+        return f"beyond an end the spring pulls away with {self.pull:.6g} {self.unit} for ever"
+
+
+def refute_spring(device: Device, spring: NonlinearSpring) -> EndlessPull | None:
+    """The proof that a spring pulls away for ever, if it does and the checker accepts it."""
+    pull = max(spring.forces[0].fraction, -spring.forces[-1].fraction)
+    unit = "N·m" if device.motion == "rotary" else "N"
+    found = EndlessPull(_document(device, spring, "endless pull"), float(pull), unit)
+    return found if found.verify() else None
+
+
 def certify_spring(device: Device, spring: NonlinearSpring) -> Certificate:
     """The loop and the points; the checker evaluates the conditions."""
+    return Certificate((_document(device, spring, "nonlinear spring"),))
+
+
+def _document(device: Device, spring: NonlinearSpring, kind: str) -> dict[str, Any]:
     names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
     loop = {unit_key(name, device.motion): exact_text(device.exact(name)) for name in names}
     units = "rad_N_m" if device.motion == "rotary" else "m_N"
@@ -79,10 +134,4 @@ def certify_spring(device: Device, spring: NonlinearSpring) -> Certificate:
         [exact_text(x.fraction), exact_text(f.fraction)]
         for x, f in zip(spring.positions, spring.forces, strict=True)
     ]
-    document: dict[str, Any] = {
-        "format": FORMAT,
-        "kind": "nonlinear spring",
-        "loop": loop,
-        "law": {f"points_{units}": points},
-    }
-    return Certificate((document,))
+    return {"format": FORMAT, "kind": kind, "loop": loop, "law": {f"points_{units}": points}}

@@ -29,7 +29,9 @@ Sampling = Literal["constant", "any"]
 FedWith = Literal["position", "penetration", ""]
 """Its memory hears the position outside too, or the depth max(x, 0); or that makes no difference."""
 
-Law = Literal["rounded coefficients", "rounded power", "table", "doubles", "any before the last"]
+Law = Literal[
+    "rounded coefficients", "rounded power", "table", "doubles", "any before the last", "covered by a wall"
+]
 """What of the law is not exact, or not looked at."""
 
 Also = Literal["springs", "clamped"]
@@ -160,7 +162,7 @@ def scope_of(device: Device, environment: Environment) -> Scope:
         encoder="counted" if ends(device.resolution)[1] else "ideal",
         damping=float(device.exact("damping") if certain else damping),
         coulomb_friction=float(device.exact("coulomb_friction") if certain else friction),
-        clamped=environment.clamped,
+        clamped=environment.clamped and not environment.spring,
         intervals=named + (() if environment.is_certain else ("the environment's intervals",)),
         assumed=device.assumed,
         law=("rounded coefficients",) if environment.coefficients_rounded else (),

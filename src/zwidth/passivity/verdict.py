@@ -4,39 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
-from math import cos, pi
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from zwidth.device import Device
-from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.environment.environment import Environment
-from zwidth.passivity import claims, limits
+from zwidth.passivity import claims
 from zwidth.passivity.actuator_demand import actuator_demand
-from zwidth.passivity.advice import Advice, advise
-from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.decision import Decision
-from zwidth.passivity.document import save_json, to_json, unit_suffix
+from zwidth.passivity.document import save_json, to_json, unit_key
 from zwidth.passivity.outcome import TOLD, Outcome
 from zwidth.passivity.scope import Scope
-from zwidth.passivity.stability_plane import admissible_speed
 from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
+    from zwidth.passivity.nonlinear_spring import EndlessPull
     from zwidth.passivity.worst_hand import WorstHand
     from zwidth.passivity.worst_hand.gain import Gain
 
-Finding = Literal["open", "unconfirmed", "between corners", "depends on values"]
+Finding = Literal["open", "unconfirmed", "between corners", "depends on values", "no lowest energy"]
 """Why a loop is undecided: neither shown; a proof that the checker did not confirm; proved at the corners of
-intervals and not between them; active at one corner and not at others."""
+intervals and not between them; active at one corner and not at others; a spring that pulls away for ever, but
+no more than Coulomb friction holds."""
 
 
-@dataclass(frozen=True)
+class Need(NamedTuple):
+    """What is enough of "damping" [N·s/m; N·m·s/rad] or "coulomb_friction" [N; N·m], and what there is."""
+
+    name: str
+    needed: float
+    has: float
+
+
+@dataclass(frozen=True, repr=False)
 class Verdict:
     """Whether a hand can take energy out of a sampled loop.
 
@@ -50,7 +53,7 @@ class Verdict:
     Attributes
     ----------
     outcome
-        "passive", "passive in contact", "active" or "undecided".
+        "passive", "passive in contact", "theorem", "active" or "undecided".
     scope
         What it is about: hands, contact, encoder, actuator.
     device, environment
@@ -69,19 +72,24 @@ class Verdict:
         Why it is undecided.
     at_limit
         True where the least less of b or f_c would lose the proof.
+    theorem
+        What is proved on paper, where the outcome is "theorem".
+    needs
+        What of the device is proved to be enough, where that is known.
     """
 
     outcome: Outcome
     scope: Scope
     device: Device
     environment: Environment
-    decision: Decision
     certificate: Certificate | None = None
-    violation: Violation | None = None
+    violation: Violation | EndlessPull | None = None
     motion: Witness | Gain | None = None
     worst_hand: WorstHand | None = None
     finding: Finding = "open"
     at_limit: bool = False
+    theorem: str = ""
+    needs: tuple[Need, ...] = ()
 
     @property
     def claim(self) -> str:
@@ -108,104 +116,10 @@ class Verdict:
             return self.motion
         return self.violation.witness
 
-    @cached_property
-    def budget(self) -> Budget:
-        """Leaks against dissipation at the tightest frequency."""
-        return budget(self.decision)
-
-    @cached_property
-    def limit(self) -> str:
-        """The mechanism that binds: what is violated, or would be first."""
-        if self._in_contact_only:
-            return CONTACT
-        return binding_limit(self.decision, self.budget, self.environment)
-
     @property
-    def _in_contact_only(self) -> bool:
-        """True when a hand that stays inside gains nothing, and one that touches and leaves does.
-
-        What is required is then what is proved enough with contact made and broken.
-        """
-        return self.outcome == "active" and self.decision.is_provable
-
-    @property
-    def mode(self) -> str | None:
-        """How a violation shows itself (Abbott & Okamura 2005, section IV-C).
-
-        None when passive, and for a motion that has to touch and leave.
-        """
-        if self.is_proved or self._in_contact_only:
-            return None
-        return "active tactile" if self.limit == QUANTIZATION else "closed-loop instability"
-
-    @cached_property
-    def max_stiffness(self) -> float | None:
-        """Largest passive stiffness K, all else as given [N/m; N·m/rad].
-
-        inf if every stiffness is passive; None if none is, or the law has none
-        (see `max_gain`).
-        """
-        return limits.max_stiffness(self.device, self.environment, self._in_contact_only)
-
-    @cached_property
-    def max_gain(self) -> float | None:
-        """Largest passive factor on H(z), for a law without a stiffness of its own."""
-        return limits.max_gain(self.device, self.environment, self._in_contact_only)
-
-    @cached_property
-    def required_damping(self) -> float | None:
-        """Smallest device damping b that hold, delay and law need [N·s/m; N·m·s/rad].
-
-        None if no damping would do.  Coulomb friction is a need of its own: see `margins`.
-        """
-        return limits.required_damping(self.decision, self._in_contact_only)
-
-    @property
-    def critical_frequency(self) -> float:
-        """Frequency at which the linear criterion is tightest [Hz]."""
-        return self.budget.frequency
-
-    @cached_property
-    def admissible_speed(self) -> float | None:
-        """Hand speed up to which an active spring wall still gives out no energy [m/s; rad/s].
-
-        v = (2f_c − K Δ)/(K T − 2b), for mean speeds over a sample: Coulomb
-        friction outweighs the hold's leak of slow motions.  None where it does
-        not apply: a passive loop, another law, a delay.
-        """
-        spring, loop = self.decision.is_spring, self.decision.loop
-        if self.outcome != "active" or not spring or loop.whole_delay or loop.part_delay:
-            return None
-        stiffness = loop.static_stiffness
-        assert stiffness is not None
-        speed = float(admissible_speed(self.device, stiffness))
-        return speed if 0 < speed < float("inf") else None
-
-    @cached_property
-    def margins(self) -> Mapping[str, float | None]:
-        """What is left of damping and of Coulomb friction over what is needed; < 0 if too little.
-
-        Keys "damping" [N·s/m; N·m·s/rad] and "coulomb_friction" [N; N·m]; None where the need is unbounded.
-        """
-        need, friction = self.required_damping, self.decision.sufficient_friction
-        friction = self.decision.contact_friction if self._in_contact_only else friction
-        b, setting = self.decision.loop.damping, self.decision.setting
-        return {
-            "damping": None if need is None else _difference(b, need),
-            "coulomb_friction": None if friction is None else float(setting.coulomb_friction - friction),
-        }
-
-    @cached_property
-    def advice(self) -> tuple[Advice, ...]:
-        """The smallest single changes that would do, or the slack of each parameter."""
-        return advise(self.device, self.environment, self.is_proved, self._in_contact_only)
-
-    @cached_property
-    def actuator(self) -> tuple[ActuatorCheck, ...]:
-        """Is the actuator close to the ideal that the claim assumes?"""
-        stiffness = self.decision.loop.static_stiffness
-        positive = stiffness is not None and stiffness > 0
-        return actuator_checks(self.device, stiffness if positive else None)
+    def decided_by(self) -> str:
+        """The road on which the outcome was found."""
+        return claims.decided_by(self)
 
     @cached_property
     def demand(self) -> tuple[str, ...]:
@@ -213,40 +127,17 @@ class Verdict:
         said = None if self.witness is None else actuator_demand(self.device, self.witness)
         return () if said is None else (said,)
 
-    def curve(self, points: int = 400) -> tuple[list[float], list[float]]:
-        """(frequency [Hz], damping the criterion asks for there [N·s/m]), for plotting only."""
-        loop = self.decision.loop
-        turns = [(k + 0.5) / points / 2 for k in range(points)]
-        cosines = [Fraction(cos(2 * pi * t)) for t in turns]
-        return [t / float(loop.period) for t in turns], [loop.required_damping_at(c) for c in cosines]
-
     def to_dict(self) -> dict[str, Any]:
         """The whole verdict as plain data, a unit in every key of a physical quantity."""
-        motion = self.device.motion
-
-        def key(prefix: str, quantity: str) -> str:
-            return f"{prefix}_{unit_suffix(GLOSSARY[quantity].unit_for(motion))}"
-
         document: dict[str, Any] = {
             "format": "zwidth verdict 1",
             "outcome": self.outcome,
             "claim": self.claim,
+            "decided_by": self.decided_by,
             "scope": self.scope.to_dict(),
             "assumptions": [*self.assumptions, *self.demand],
-            "limit": self.limit,
-            "mode": self.mode,
+            **self.numbers(),
         }
-        document[key("max_stiffness", "stiffness")] = self.max_stiffness
-        if not limits.has_stiffness(self.environment):
-            document["max_gain"] = self.max_gain
-        document[key("required_damping", "damping")] = self.required_damping
-        document["critical_frequency_Hz"] = self.critical_frequency
-        if self.admissible_speed is not None:
-            speed_unit = "rad_per_s" if motion == "rotary" else "m_per_s"
-            document[f"admissible_speed_{speed_unit}"] = self.admissible_speed
-        document["margins"] = {key(name, name): value for name, value in self.margins.items()}
-        document["advice"] = [advice.to_dict() for advice in self.advice]
-        document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
         if self.certificate is not None:
             document["certificate"] = self.certificate.to_dict()
         if self.violation is not None:
@@ -280,33 +171,27 @@ class Verdict:
             f"<table>{rows}</table><details><summary>assumptions</summary><ul>{assumed}</ul></details></div>"
         )
 
+    def numbers(self) -> dict[str, Any]:
+        """What is needed and what there is, as plain data, a unit in every key of a physical quantity."""
+        return {
+            "margins": {unit_key(n.name, self.device.motion): n.has - n.needed for n in self.needs},
+        }
+
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
-        rows = [("limit", self.limit)]
-        if limits.has_stiffness(self.environment):
-            rows.append(("largest passive stiffness", _text(self.max_stiffness, unit["stiffness"])))
-        else:
-            rows.append(("largest passive gain", _text(self.max_gain, "times this law")))
-        rows.append(("required device damping", _text(self.required_damping, unit["damping"])))
-        rows.append(("critical frequency", _text(self.critical_frequency, "Hz")))
-        for name, value in self.margins.items():
-            margin_unit = GLOSSARY[name].unit_for(self.device.motion)
-            rows.append((f"margin of {name.replace('_', ' ')}", _text(value, margin_unit)))
-        if self.admissible_speed is not None:
-            per_second = "rad/s" if self.device.motion == "rotary" else "m/s"
-            rows.append(("slower hands are safe up to", _text(self.admissible_speed, per_second)))
+        rows = [("decided by", self.decided_by)]
+        for need in self.needs:
+            unit = GLOSSARY[need.name].unit_for(self.device.motion)
+            name = need.name.replace("_", " ")
+            rows.append((f"required {name}", as_text(need.needed, unit)))
+            rows.append((f"margin of {name}", as_text(need.has - need.needed, unit)))
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))
         return rows
 
 
-def _difference(b: Fraction, need: float) -> float:
-    """b − need exactly: 0 at the limit, whatever the rounding of either."""
-    return float(b - Fraction(repr(need)))
-
-
-def _text(value: float | None, unit: str) -> str:
+def as_text(value: float | None, unit: str) -> str:
+    """A number of six digits with its unit; "none" and "any" for what is no number."""
     if value is None:
         return "none"
     if value == float("inf"):

@@ -40,6 +40,7 @@ _LAW = {
         "the checker takes the table as it stands, same_law compares it with the law"
     ),
     "doubles": "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
+    "covered by a wall": "the laws add no more than the virtual damping of a wall, and that wall is proved",
     "any before the last": "any environment, and any laws before the last one in the row",
 }
 _ENCODER = {

@@ -24,7 +24,7 @@ from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
 from .multiport import positive_real_matrix
 from .multiport_motion import matrix_extraction
-from .nonlinear_spring import nonlinear_spring
+from .nonlinear_spring import endless_pull, nonlinear_spring
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
@@ -46,6 +46,7 @@ _KINDS = {
     "arm": arm,
     "contact": contact,
     "relaxing contact": relaxing_contact,
+    "endless pull": endless_pull,
     "force bounding": force_bounding,
     "instability": instability,
     "nonlinear spring": nonlinear_spring,

@@ -44,6 +44,24 @@ def nonlinear_spring(document: Mapping[str, Any]) -> str:
     return "the damping covers its largest slope, the Coulomb friction its steepest part, and it holds within"
 
 
+def endless_pull(document: Mapping[str, Any]) -> str:
+    """Beyond an end the spring pulls away with more than Coulomb friction holds: a slow hand gains on.
+
+    At a speed v the gain on a way s is (|f| − f_c − b v) s, > 0 for a small v, whatever b, T and the delay.
+    """
+    loop, law = get(document, "loop"), get(document, "law")
+    b, friction, _, period, _ = (_one(loop, name) for name in _NUMBERS)
+    with_no_more_than(loop, len(_NUMBERS))
+    with_no_more_than(law, 1)
+    if period <= 0 or min(b, friction) < 0:
+        raise Invalid("T must be > 0 and b and f_c ≥ 0")
+    points = _points(law)
+    pull = max(points[0][1], -points[-1][1])
+    if pull <= friction:
+        raise Invalid("Coulomb friction holds the spring beyond its ends")
+    return f"beyond an end the spring pulls away with {float(pull):g} for ever, and friction holds less"
+
+
 def _one(loop: Any, name: str) -> Fraction:
     if not isinstance(loop, Mapping) or not all(isinstance(key, str) for key in loop):
         raise Invalid("the loop must be an object")

@@ -58,10 +58,12 @@ def scope_of(document: Mapping[str, Any]) -> Scope:
     return _SCOPES[document["kind"]](document)
 
 
-def weakest(scopes: Sequence[Scope]) -> Scope:
-    """What proofs claim that only together cover something: the least of each."""
+def weakest(scopes: Sequence[Scope]) -> Scope | None:
+    """What proofs claim that cover something only together; None where they show different things."""
     contacts = {scope.contact for scope in scopes}
     first = scopes[0]
+    if {scope.shows for scope in scopes} != {first.shows}:
+        return None
     return first._replace(
         contact=next(c for c in (KEPT, BROKEN, BOTH_SIDES) if c in contacts),
         hands=next((s.hands for s in scopes if s.hands != "every"), "every"),
@@ -150,6 +152,7 @@ _SCOPES: dict[str, Callable[[Mapping[str, Any]], Scope]] = {
     "row storage": _of_a_table(PASSIVE),
     "active hand": _activity,
     "arm": lambda document: Scope(PASSIVE),
+    "endless pull": lambda document: Scope(ACTIVE, encoder=_encoder(document["loop"])),
     "violation": _of_every_hand(KEPT, ACTIVE),
     "motion": _motion,
     "contact motion": _on_a_grid(ACTIVE),
