@@ -118,7 +118,11 @@ def _surface(
         return f"{inside}{NOT_COVERED}"
     if certificate is not None and not certificate.is_of_springs:
         return f"{anywhere}; also for a wall that is clamped so that it never pulls"
-    more = "; the same holds for every spring law of slope 0 to K" if outcome == "passive" else ""
+    more = (
+        "; the same holds for every spring law of slope 0 to K that is 0 somewhere"
+        if outcome == "passive"
+        else ""
+    )
     return f"{anywhere}{more}"
 
 

@@ -49,6 +49,12 @@ class TransformedCondition:
         True when it is proved, by exact arithmetic.  False says that this theorem does not promise it.
     required_damping
         b that is enough, itself proved [N·s/m; N·m·s/rad]; None if none is.
+    contact
+        "made and broken": springs may be one-sided, and what the environments keep holds wherever they are.
+    encoder
+        "not counted" where the device has one with counts, else "ideal": the theorem knows exact positions.
+    hypothesis
+        What the environments must keep besides slopes or indices.
     binding
         What would have to change: the damping of the device, against hold and delay; or coupling and
         environment, which together must be strictly passive whatever the device.
@@ -70,6 +76,29 @@ class TransformedCondition:
             return None
         return float(self.device.exact("damping")) - self.required_damping
 
+    @property
+    def contact(self) -> Literal["made and broken"]:
+        return "made and broken"
+
+    @property
+    def encoder(self) -> Literal["ideal", "not counted"]:
+        return "not counted" if self.device.exact("resolution") else "ideal"
+
+    @property
+    def hypothesis(self) -> str:
+        if isinstance(self.environment, Slopes):
+            return "the potential of the spring is bounded below"
+        return "the energy that the environment has stored at first is bounded"
+
+    @property
+    def claim(self) -> str:
+        """What is proved, and for which environments."""
+        of = self.environment.describe(self.device.motion)
+        if not self.holds:
+            return f"No promise for {of}."
+        counts = "; the counts of the encoder are not in it" if self.encoder == "not counted" else ""
+        return f"Passive before {of}, contact made and broken{counts}."
+
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
         unit = GLOSSARY["damping"].unit_for(self.device.motion)
@@ -81,11 +110,14 @@ class TransformedCondition:
             ),
             ("device damping", f"{float(self.device.exact('damping')):.6g} {unit}"),
             ("binding inequality", self.binding),
+            ("contact", self.contact),
+            ("encoder", self.encoder),
+            ("hypothesis", self.hypothesis),
         ]
 
     def __repr__(self) -> str:
-        says = "holds for the whole class, by a proof on paper" if self.holds else "no promise"
-        return f"<TransformedCondition {says}: {'; '.join(f'{k} {v}' for k, v in self.rows())}>"
+        rows = "; ".join(f"{k} {v}" for k, v in self.rows())
+        return f"<TransformedCondition {self.claim} By a proof on paper: {rows}>"
 
 
 def transformed_condition(
@@ -96,7 +128,7 @@ def transformed_condition(
 ) -> TransformedCondition:
     """Is the loop passive for every environment of a class, felt as it is or behind a virtual coupling?
 
-    A sufficient condition; where it is exact, the documentation says so.
+    Of springs: for those whose potential is bounded below, as `Slopes` states.  A sufficient condition; where it is exact, the documentation says so.
 
     Parameters
     ----------
