@@ -1,7 +1,6 @@
-"""What the loop holds where a touch starts: a bound for every passive loop, and no touch is called active by it."""
+"""What the loop holds where a touch starts: a bound that every passive loop keeps, and no active one."""
 
 from __future__ import annotations
-
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ SPRING = zw.PulseTransferFunction(["100", 0], [1, 0])
 
 
 def passive_loop(random, kind):
-    """A device and a law that are proved passive, with little to spare; forces late by whole samples or not."""
+    """A device and a law that are proved passive, with little to spare; forces late or not."""
     period, delay = 1e-3, int(random.choice([0, 0, 1, 3]))
     count = float(random.choice([0.0, 1e-5, 1e-4]))
     k = float(10 ** random.uniform(1, 3.3))
@@ -105,7 +104,7 @@ def test_nearly_all_that_is_stored_can_be_got_out(start, count):
 @pytest.mark.parametrize("start", [-0.02, 0.0, 0.013])
 @pytest.mark.parametrize("damping", [0.49, 0.51])
 def test_what_exceeds_it_is_active(start, damping):
-    """K = 1000, T = 1 ms needs b = 0.5: below it one sample to and fro gains beyond any store, above it not."""
+    """K = 1000 at 1 kHz needs b = 0.5: below it a motion to and fro gains beyond any store, above it not."""
     device = zw.Device(mass=1e-4, damping=damping, sample_period="0.001")
     path = start + np.append(0.01 * (np.arange(1001) % 2), 0.0)
     law = zw.PulseTransferFunction([1000], [1])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.table import Table
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 _MOVING = 1e-9
 
 
-def print_trace(trace: xr.Dataset, files: list[Path]) -> None:
+def print_trace(trace: xr.Dataset) -> None:
     """Print the report of one trace."""
     with page() as out:
         out.print(_headline(trace))
@@ -33,9 +32,6 @@ def print_trace(trace: xr.Dataset, files: list[Path]) -> None:
         out.print()
         out.print(Text("energy", style="bold"))
         out.print(_grid((text, shown(value, "J")) for text, value in trace.zwidth.energy.rows()))
-        if files:
-            out.print()
-            out.print(_grid(("written", plain(str(path), 100)) for path in files))
 
 
 def print_comparison(comparison: Comparison) -> None:

@@ -88,7 +88,7 @@ class Operator(ABC):
         return self.initial_position != 0.0
 
     def starting_at(self, position: float) -> Operator:
-        """The same hand, whose touch begins at this position [m; rad], or at the surface if that is inside."""
+        """The same hand, whose touch begins here [m; rad], or at the surface if that is inside."""
         return self
 
     @abstractmethod

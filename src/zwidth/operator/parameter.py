@@ -66,7 +66,7 @@ class ParametricOperator(Operator):
         return self.initial_position != (starts[0] if starts else 0.0)
 
     def starting_at(self, position: float) -> Self:
-        """The same hand, whose touch begins at this position [m; rad], or at the surface if that is inside."""
+        """The same hand, whose touch begins here [m; rad], or at the surface if that is inside."""
         changes: dict[str, Any] = {"start": min(position, 0.0)} if hasattr(self, "start") else {}
         return replace(self, **changes)
 

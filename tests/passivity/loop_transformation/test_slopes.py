@@ -194,7 +194,7 @@ def test_what_does_not_fit_is_refused(arguments, words):
 
 
 def test_a_class_states_that_its_potentials_are_bounded_below():
-    """Where slopes do not force it, down from 0; from above 0 it is so by itself, and False is nobody's class."""
+    """Where slopes do not force it, from 0 down; above 0 it is so by itself, and False is nobody's class."""
     for least in (-100, 0):
         with pytest.raises(InputError, match="bounded_below=True"):
             zw.Slopes(least, 250)
@@ -205,7 +205,7 @@ def test_a_class_states_that_its_potentials_are_bounded_below():
 
 
 def test_the_spring_that_refutes_the_class_without_it():
-    """−100 N/m has slopes between −100 and 250; before it the device is active, and the claim leaves it out."""
+    """−100 N/m has slopes from −100 to 250; before it the device is active, and the claim leaves it out."""
     paddle = zw.catalogue.device("haptic-paddle").replace(coulomb_friction=0, resolution=0)
     assert zw.check(paddle, zw.PulseTransferFunction([-100], [1])).outcome == "active"
     found = zw.transformed_condition(paddle, zw.Slopes(-100, 250, bounded_below=True))

@@ -120,13 +120,14 @@ def _stated(least: Fraction, bounded_below: bool | None) -> bool:
         return True
     if bounded_below is None:
         raise InputError(
-            f"a spring with slopes down to {float(least):g} may lead away for ever, as a constant force does, "
-            "and give out energy without end: say bounded_below=True if the potential of every spring of the "
-            "class is bounded below, as of a wall that is touched and left; Slopes.of reads it off a spring"
+            f"a spring with slopes down to {float(least):g} may lead away for ever, as a constant force "
+            "does, and give out energy without end: say bounded_below=True if the potential of every spring "
+            "of the class is bounded below, as of a wall that is touched and left; Slopes.of reads it off a "
+            "spring"
         )
     raise InputError(
-        f"bounded_below is True or left out, got {bounded_below!r}: before springs that lead away for ever no "
-        "device is passive"
+        f"bounded_below is True or left out, got {bounded_below!r}: before springs that lead away for ever "
+        "no device is passive"
     )
 
 

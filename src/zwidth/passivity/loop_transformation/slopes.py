@@ -27,7 +27,8 @@ def required_damping_by_slopes(
     """The device damping that is enough for every static spring with slopes between μ and L and Φ ≥ Φ_min.
 
     Only for those whose potential Φ is bounded below: a spring that leads away for ever, as a constant force
-    or a negative spring does, gives out energy without end before every device.  (2d + 1) L T/2 as long as d |μ| ≤ (d + 1) L, and then exact.
+    or a negative spring does, gives out energy without end before every device.  (2d + 1) L T/2 as long as
+    d |μ| ≤ (d + 1) L, and then exact.
 
     Parameters
     ----------
