@@ -21,6 +21,7 @@ from zwidth.maps.request import CHUNK, request
 from zwidth.maps.store import FORMAT
 from zwidth.maps.sustained import _exactly
 from zwidth.operator import Dowel, Finger
+from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -335,3 +336,23 @@ def test_what_cannot_be_mapped(change: dict[str, object], message: str) -> None:
     given = {"device": PADDLE, "stiffness": (0, 10), "virtual_damping": (0, 1), "cells": (3, 3), **change}
     with pytest.raises(zw.InputError, match=message):
         zw.z_width(**given)
+
+
+def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
+    """A delay of part of a sample: the column at B = 0 ends where `check` does, from both sides."""
+    device = PADDLE.replace(delay="0.0005", coulomb_friction=1)
+    found = zw.z_width(device, (0, 300), ("-0.5", "0.5"), cells=(300, 3), hands={})
+    middle = found["passive"].values[:, 1]
+    k = found["stiffness"].values
+    limit = float(found["spring_limit"])
+    assert 0 < limit < 300
+    assert (middle == (k <= limit)).all()
+    assert not found["passive"].values[:, [0, 2]].any()
+    assert np.isinf(found["admissible_speed"].values[middle, 1]).all()
+    for share, outcome in ((1 - 1e-9, "passive"), (1 + 1e-6, "active")):
+        assert check_by_closed_forms(device, zw.Wall(limit * share)).outcome == outcome
+    assert "part of a sample" in found.attrs["not_covered"]
+    assert zw.z_width_certificate(device, found) is not None
+    coarse = zw.z_width(device.replace(coulomb_friction="0.001"), (0, 300), (0, 1), cells=(4, 4), hands={})
+    assert float(coarse["spring_limit"]) == pytest.approx(2 * 0.001 / 2.24e-5)
+    assert zw.z_width(PADDLE, (0, 300), (0, 1), cells=(4, 4), hands={}).attrs["not_covered"] == ""

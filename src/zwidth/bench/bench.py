@@ -155,7 +155,10 @@ def compare(
     if not isinstance(wall, Wall):
         raise InputError(f"the bench compares how a wall is rendered, got {wall.describe()}")
     if device.motion != "linear":
-        raise InputError("the touches of the bench are a finger's, in metres: give the device at its handle")
+        raise InputError(
+            "the touches of the bench are a finger's, in metres: give the device at its handle, by "
+            "zwidth.rotary(…, handle_radius=…) or --handle-radius"
+        )
     if device.mass is None:
         raise InputError("the touches are simulated and need the device's mass [kg]")
     chosen = standard_laws(device, wall) if laws is None else dict(laws)

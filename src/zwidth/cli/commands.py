@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.cli.options import Once, add_contact_option, add_law_option, add_parameters, contact, overrides
-from zwidth.cli.output import print_json, targets, writing
+from zwidth.cli.output import print_json, say_written, targets, writing
 
 if TYPE_CHECKING:
     from zwidth.cli.specification import Specification
@@ -82,6 +82,7 @@ def _check(arguments: argparse.Namespace) -> int:
         from zwidth.cli.report import print_verdict
 
         print_verdict(verdict, real_hand, active)
+        say_written(save, plot)
     return exit_status(verdict.outcome)
 
 

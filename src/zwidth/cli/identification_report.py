@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 from rich.padding import Padding
 from rich.table import Table
@@ -28,7 +27,7 @@ _WARNINGS = ("wrong model", "bent friction", "no damping", "no coulomb friction"
 """Kinds of findings that are coloured."""
 
 
-def print_identified(found: Result, written: Sequence[Path]) -> None:
+def print_identified(found: Result) -> None:
     """Print the report on standard output."""
     own = found.identified.findings[len(found.log.findings) :]
     with page() as out:
@@ -40,8 +39,6 @@ def print_identified(found: Result, written: Sequence[Path]) -> None:
             section(out, "the environment", _checked(found, found.verdict))
         section(out, "to know it better", _bullets(advice(found.identified, found.confidence)))
         section(out, "the log", _bullets(str(finding) for finding in found.log.findings))
-        for path in written:
-            out.print(Text(f"written: {path}", style="dim"))
 
 
 def _headline(found: Result) -> Padding:

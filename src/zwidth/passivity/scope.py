@@ -30,7 +30,14 @@ FedWith = Literal["position", "penetration", ""]
 """Its memory hears the position outside too, or the depth max(x, 0); or that makes no difference."""
 
 Law = Literal[
-    "rounded coefficients", "rounded power", "table", "doubles", "any before the last", "covered by a wall"
+    "rounded coefficients",
+    "rounded power",
+    "table",
+    "doubles",
+    "any before the last",
+    "covered by a wall",
+    "potential bounded below",
+    "energy at first bounded",
 ]
 """What of the law is not exact, or not looked at."""
 

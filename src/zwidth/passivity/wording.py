@@ -29,7 +29,7 @@ _OF_A_MOTION: dict[Contact, str] = {
     "both sides": _CONTACT["both sides"],
 }
 _ALSO = {
-    "springs": "the same holds for every spring law of slope 0 to K",
+    "springs": "the same holds for every spring law of slope 0 to K that is 0 somewhere",
     "clamped": "also for a wall that is clamped so that it never pulls",
 }
 _LAW = {
@@ -41,6 +41,8 @@ _LAW = {
     ),
     "doubles": "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
     "covered by a wall": "the laws add no more than the virtual damping of a wall, and that wall is proved",
+    "potential bounded below": "of springs: those whose potential is bounded below",
+    "energy at first bounded": "environments that have stored no more than a bounded energy at first",
     "any before the last": "any environment, and any laws before the last one in the row",
 }
 _ENCODER = {

@@ -205,6 +205,7 @@ def passive_limit(
         )
     if not isinstance(parameter, str):
         raise InputError(f"parameter is the name of one, such as 'stiffness', got {parameter!r}")
+    _refuse_without_part(parameter.removeprefix("device."), force_limit, force_resolution)
     law = as_environment(environment)
     search = _Search(
         _parameter(device, law, parameter), tolerance, time.monotonic(), patience(seconds), progress
@@ -441,6 +442,28 @@ def _plain(value: float | None) -> float | None:
 def _decimal(value: float) -> Exact:
     """A value of six digits, as a person would write it down."""
     return Exact(f"{value:.6g}")
+
+
+_NO_PART = {
+    "mass": "a hand without a limit on its force moves every mass as it likes",
+    "stiction": "only sliding friction is counted",
+    "motor_inductance": "the actuator is taken to give every force at once",
+    "supply_voltage": "the actuator is taken to give every force at once",
+    "current_limit": "the actuator is taken to give every force at once",
+}
+
+
+def _refuse_without_part(key: str, force_limit: bool, force_resolution: bool) -> None:
+    """Refuse a parameter on which no outcome depends."""
+    if key in _NO_PART:
+        raise InputError(
+            f"{key} plays no part, so it has no limit: {_NO_PART[key]}. Ask for damping, coulomb_friction, "
+            "resolution, delay or rate of the device, or for a parameter of the environment"
+        )
+    counted = {"force_limit": force_limit, "force_resolution": force_resolution}
+    if not counted.get(key, True):
+        option = f"--count-{key.replace('_', '-')}"
+        raise InputError(f"{key} plays no part unless it is counted in: give {key}=True, {option}")
 
 
 def _parameter(device: Device, environment: Environment, name: str) -> _Parameter:
