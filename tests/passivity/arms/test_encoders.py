@@ -12,7 +12,7 @@ from described_arms import random_arm
 
 import zwidth as zw
 from zwidth.device.arm import PlanarChain, read_arm
-from zwidth.passivity.arms.encoders import columns_in_cells, friction_for, size_bound
+from zwidth.passivity.arms.encoders import columns_in_cells, encoder_steps, friction_for, size_bound
 from zwidth.passivity.arms.replay import replay_cycle
 from zwidth.passivity.certificate import verify_document
 
@@ -107,25 +107,25 @@ def random_chain(rng: np.random.Generator) -> tuple[PlanarChain, zw.MatrixWall, 
     k = turn @ np.diag(10 ** rng.uniform(1.5, 3, 2)) @ turn.T
     wall = zw.MatrixWall(k, rng.choice([0.0, 2e-4]) * k)
     force = float(10 ** rng.uniform(0, 2.5))
-    unit = PlanarChain(damping=(1.0,) * m, **numbers)
-    factor = zw.workspace(unit, wall, rate=1 / PERIOD, points=10).stiffness_factor
-    held = unit.curvature * force * PERIOD / 2
-    damping = tuple(rng.uniform(1, 2, m) * (1.2 / factor + 1.01 * held))
-    bare = PlanarChain(**numbers, damping=damping)
-    steps = zw.workspace(bare, wall, rate=1 / PERIOD, points=10).encoder_steps
+    bare = PlanarChain(damping=(1.0,) * m, **numbers)
+    jacobians = bare.sites(20).jacobians
+    load = np.swapaxes(jacobians, -1, -2) @ (k * PERIOD / 2 + np.array(wall.damping)) @ jacobians
+    need = 1.2 * np.linalg.eigvalsh(load).max() + 1.01 * bare.curvature * force * PERIOD / 2
+    steps = encoder_steps(bare, wall, PERIOD, bare.sites(40))
     assert steps is not None
-    enough = np.array(steps.friction_up_to(force)) * 1.00001
-    return PlanarChain(**numbers, damping=damping, coulomb_friction=tuple(enough)), wall, force
+    enough = tuple(1.00001 * np.array(steps.friction_up_to(force)))
+    return bare.replace(damping=tuple(rng.uniform(1, 2, m) * need), coulomb_friction=enough), wall, force
 
 
 def test_no_attack_gains_where_steps_are_counted() -> None:
-    """Random chains, walls and counts, the torque held at the readings: up to the force that is covered nothing is
-    taken out; with a third of the friction something is."""
+    """Random chains, walls and counts, the torque of the readings held or following them: up to the force that is
+    covered nothing is taken out; with a third of the friction something is."""
     rng, gained = np.random.default_rng(11), 0
     for _ in range(8):
         arm, wall, force = random_chain(rng)
         space = zw.workspace(arm, wall, rate=1 / PERIOD, points=10, torque_held_up_to=force)
         assert (space.outcome, space.encoder) == ("passive", "counted"), space.claim
+        assert space.largest_forces == (force,)
         k, b = np.array(wall.stiffness), np.array(wall.damping)
         weak = arm.replace(coulomb_friction=tuple(np.array(arm.coulomb_friction) / 3))
         for q in attacks(rng, arm, 40):
@@ -134,6 +134,8 @@ def test_no_attack_gains_where_steps_are_counted() -> None:
             kept = largest <= force
             assert (energy[kept] >= -1e-15).all(), (arm, wall, force)
             gained += int((put_in(weak, k, b, q, rest)[0][kept] < 0).sum())
+            found = replay_cycle(arm, wall, PERIOD, 0, q[0], counted=True, rest=rest[0])
+            assert found.largest_force > force or found.energy >= -1e-15, (arm, wall, force)
     assert gained > 100
 
 

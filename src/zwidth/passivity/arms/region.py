@@ -29,7 +29,7 @@ from zwidth.passivity.arms.least import least_additions
 from zwidth.passivity.arms.mapped import columns_of, dataset, scaled_stiffness, stiffness_factors
 from zwidth.passivity.arms.need import wall_need
 from zwidth.passivity.arms.pose import fits
-from zwidth.passivity.arms.replay import ArmMotion, refuting_motion, steps_of
+from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
 from zwidth.passivity.arms.report import workspace_document
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json
@@ -219,7 +219,8 @@ def workspace(
     if account.reached.all() and (account.margins > 0).all():
         certificate, words, encoder = _proof(arm, wall, hertz, samples, held_to, count, bool(asked))
     at = fine.joints[account.reached]
-    motion = _motion(arm, wall, period, samples, at, account.margins, bool(held_to), asked)
+    read = (True, False) if count.limits else (True,) if asked else (False,)
+    motion = _motion(arm, wall, period, samples, at, account.margins, bool(held_to), asked, read)
     if motion is None and asked and steps is not None and _within(steps.motion, asked):
         motion = steps.motion
     whole = np.zeros(account.reached.shape, dtype=bool)
@@ -327,11 +328,12 @@ def _motion(
     margins: Array,
     torque_held: bool,
     asked: tuple[float, ...],
+    read: tuple[bool, ...],
 ) -> ArmMotion | None:
-    """Near the worst points: with the arm's encoders, and if none is found, unless they are asked for, without."""
+    """Near the worst points, with the encoders counted or not, in the order of `read`."""
     failing = np.argsort(margins)[: int((margins < 0).sum())]
     tried = failing[:: max(1, len(failing) // _TRIES)][:_TRIES]
-    for counted in (True, False) if steps_of(arm).any() else (False,):
+    for counted in read:
         for k in tried:
             motion = refuting_motion(arm, wall, period, samples, joints[k], torque_held, counted=counted)
             if motion is not None and (not asked or _within(motion, asked)):

@@ -46,10 +46,7 @@ def arm(document: Mapping[str, Any]) -> str:
     box = tuple((enclosed(low)[0], enclosed(high)[1]) for low, high in claim.box)
     cells = positive_in(box, claim.matrix)
     if claim.columns is not None:
-        try:
-            cells += positive_in(box, claim.columns)
-        except Invalid as error:
-            raise Invalid(f"a column of the Jacobian may be longer than it is said to be: {error}") from None
+        cells += positive_in(box, claim.columns, "a column of the Jacobian is longer than it is said to be")
     return f"{claim.words}; {cells} cells"
 
 
@@ -119,7 +116,7 @@ def _limits(loop: Mapping[str, Any], pose: Pose) -> tuple[Fraction, Fraction]:
     force = number(get(loop, "largest_force_N"))
     moment = number(get(loop, "largest_moment_N_m")) if pose.turns else Fraction(0)
     if min(force, moment) < 0:
-        raise Invalid("the largest force and the largest moment are ≥ 0")
+        raise Invalid("forces are up to a largest force ≥ 0, and in pose to a largest moment ≥ 0")
     return force, moment
 
 
