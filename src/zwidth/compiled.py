@@ -60,5 +60,5 @@ F = TypeVar("F", bound=Callable[..., Any])
 def compiled(function: F) -> F:
     """Compile for the processor, kept on disk; the lock of Python is not held."""
     # nothing calls them by address: without the wrapper for that a tenth of the compiling is saved
-    options = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+    options: Any = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
     return cast(F, njit(**options)(function))

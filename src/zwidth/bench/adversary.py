@@ -226,5 +226,17 @@ def _taken(device: Device, environment: Environment, positions: Floats, rounds: 
     )
 
 
+def taken_out(device: Device, law: Environment, positions: Floats, switches: Floats | None) -> float:
+    """What a whole motion takes out, from rest to rest, by the simulator [J]."""
+    hand = PrescribedMotion(np.append(positions, positions[-1]), switch_positions=_stay(positions, switches))
+    trace = simulate(device, law, hand, len(positions) * device.exact("sample_period"))
+    return float(trace["kinetic_energy"][-1] - trace["hand_work"][-1])
+
+
+def _stay(positions: Floats, switches: Floats | None) -> Floats | None:
+    """The switch positions of a motion that stays for a sample at its end."""
+    return None if switches is None else np.append(switches, positions[-1])
+
+
 def _listed(positions: Floats, rounds: int) -> Floats:
     return np.concatenate([np.tile(positions, rounds), positions[:1]])

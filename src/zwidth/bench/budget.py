@@ -1,4 +1,4 @@
-"""How long a game is played: in moves that are looked at, not in seconds, so that it ends alike everywhere."""
+"""How long a game is played: in moves that are looked at, not in seconds, so that it ends alike anywhere."""
 
 from __future__ import annotations
 

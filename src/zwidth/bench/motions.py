@@ -75,7 +75,7 @@ def as_speed(device: Device, fastest: RealLike) -> Fraction:
         If it does not cross an edge of the encoder within a sample, or is no finite number.
     """
     least = 2.5 * EDGE * float(device.exact("resolution") / device.exact("sample_period"))
-    if not (isfinite(fastest) and fastest > 0 and fastest >= least):
+    if not (isfinite(float(fastest)) and float(fastest) > 0 and float(fastest) >= least):
         raise InputError(
             f"fastest is the speed of a hand [m/s], finite and at least {least:.3g} to cross an edge of the "
             f"encoder and come back, got {fastest}: a hand reaches about 1 m/s"
@@ -296,7 +296,9 @@ def _worst(device: Device, wall: Wall, speed: Fraction) -> Floats | None:
         game = game_of(device, wall, deep, bounded)
         assert isinstance(game, Game)  # a wall is no row
         told = budget_of(game, GAME)
-        played = worst_hand(device, wall, speed=bounded, penetration=deep, seconds=float("inf"), progress=told)
+        played = worst_hand(
+            device, wall, speed=bounded, penetration=deep, seconds=float("inf"), progress=told
+        )
     except (InputError, Spent):  # an ideal encoder, a board that is too large or too small
         return None
     return None if played.witness is None else np.array(played.witness.cycle[:-1])

@@ -82,7 +82,7 @@ def run_rounds(
 @compiled
 def unchanged(memory: Array, before: Array) -> bool:
     """True if every number is the same."""
+    same = True
     for i in range(memory.shape[0]):
-        if memory[i] != before[i]:
-            return False
-    return True
+        same = same and memory[i] == before[i]
+    return same

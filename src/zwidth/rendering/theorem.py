@@ -56,13 +56,12 @@ class Theorem:
             (self.counts_force_limit, device.force_limit is not None, "the force limit"),
             (self.counts_current_rise, _rises_slowly(device), "a current that rises slowly"),
         )
-        lacking = [f"{what}, which it does not count" for counted, there, what in record if there and not counted]
-        has = device.exact("coulomb_friction")
+        lacking = [f"{what}, not counted by the proof" for counts, there, what in record if there > counts]
+        has, unit = device.exact("coulomb_friction"), "N·m" if device.motion == "rotary" else "N"
         if has < self.coulomb_friction:
-            unit = "N·m" if device.motion == "rotary" else "N"
             lacking.append(
-                f"Coulomb friction of {float(has):.6g} {unit}, less than the {float(self.coulomb_friction):.6g} "
-                f"{unit} that it takes"
+                f"Coulomb friction of {float(has):.6g} {unit}, less than the "
+                f"{float(self.coulomb_friction):.6g} {unit} that the converter's steps take"
             )
         return tuple(lacking)
 
