@@ -14,8 +14,9 @@ limit, the way of the fastest hand in a sample.  So the same loop in other units
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
+from functools import lru_cache
 from math import cos, floor, isfinite, pi
 
 import numpy as np
@@ -54,6 +55,9 @@ SMALL = 16
 
 STEPS = (1, 2, 4, 8, 16, 32)
 """Steps of the converter over which a hand goes."""
+
+BESIDE = 100
+"""Times that a hand goes to and fro half a step from where it began, for laws that count from there."""
 
 _MARGIN = 1 - 1e-9
 """Of the speed: what reaches it exactly is left out, whichever way it is rounded."""
@@ -103,35 +107,41 @@ def fixed_motions(
         What is rendered, laws in a row included: how deep a step of the converter and the force limit
         are; None: motions in counts only.
     """
+    stiffnesses = () if environment is None else _stiffnesses(device, environment)
+    return dict(_fixed(device, Exact(fastest).fraction, stiffnesses))
+
+
+@lru_cache(maxsize=16)  # many laws are met by the same hand
+def _fixed(device: Device, fastest: Fraction, stiffnesses: tuple[Fraction, ...]) -> dict[str, Floats]:
     count, period = count_of(device, fastest), device.exact("sample_period")
-    way = Exact(fastest).fraction * period / count
+    way = fastest * period / count
     found = _scaled(_in_counts([floor(way * USUAL), floor(way)]), float(count))
-    found.update(_scaled({f"{name}, in counts": x for name, x in _small(0.0)}, float(count)))
-    stiffnesses = [] if environment is None else _stiffnesses(device, environment)
+    found.update(_scaled({f"{name}, in counts": x for name, x in _small()}, float(count)))
     for length in _step_depths(device, stiffnesses):
         found.update(_scaled(_in_steps(float(length)), float(length)))
     for length in _limit_depths(device, stiffnesses):
         found.update(_scaled(_about_the_limit(float(length)), float(length)))
     found["as far as the fastest hand reaches, inside"] = np.array([1.0, 2.0 - 1e-6]) * float(way * count)
-    return {name: x for name, x in found.items() if speed_of(x, float(period)) <= float(fastest) * _MARGIN}
+    most = float(fastest) * _MARGIN
+    return {name: x for name, x in found.items() if speed_of(x, float(period)) <= most}
 
 
-def _scaled(motions: Mapping[str, Floats], length: float) -> dict[str, Floats]:
-    return {name: length * x for name, x in motions.items()}
+def _scaled(motions: Iterable[tuple[str, Floats]] | Mapping[str, Floats], length: float) -> dict[str, Floats]:
+    return {name: length * x for name, x in dict(motions).items()}
 
 
-def _stiffnesses(device: Device, environment: Environment) -> list[Fraction]:
+def _stiffnesses(device: Device, environment: Environment) -> tuple[Fraction, ...]:
     """K of a wall, and for laws that soften it the most that the device's damping pays for, 2b/T."""
     inner = environment.environment if isinstance(environment, Rendered) else environment
     own = inner.stiffness if isinstance(inner, Wall) else None
     if not isinstance(own, Exact) or own <= 0:
-        return []
+        return ()
     paid = 2 * device.exact("damping") / device.exact("sample_period")
-    softer = [paid] if isinstance(environment, Rendered) and 0 < paid < own.fraction else []
-    return [own.fraction, *softer]
+    softer = (paid,) if isinstance(environment, Rendered) and 0 < paid < own.fraction else ()
+    return (own.fraction, *softer)
 
 
-def _step_depths(device: Device, stiffnesses: list[Fraction]) -> list[Fraction]:
+def _step_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Fraction]:
     """ΔF/K, where the encoder is not coarser."""
     if device.force_resolution is None:
         return []
@@ -139,7 +149,7 @@ def _step_depths(device: Device, stiffnesses: list[Fraction]) -> list[Fraction]:
     return [depth for depth in depths if 2 * depth > device.exact("resolution")]
 
 
-def _limit_depths(device: Device, stiffnesses: list[Fraction]) -> list[Fraction]:
+def _limit_depths(device: Device, stiffnesses: tuple[Fraction, ...]) -> list[Fraction]:
     """F/K."""
     if device.force_limit is None:
         return []
@@ -163,13 +173,16 @@ def _in_steps(length: float) -> dict[str, Floats]:
     of = f"steps of {length:.3g} m"
     for n in STEPS:
         found.update(_strokes(n, of))
-        found.update(_sinusoids(n, of))
+        found.update(_scaled(_sinusoids(n, of), 1.03))  # never half a step from turn to turn
+    for part in (0.02, 0.05, 0.1, 0.2):
+        beside = np.tile([0.5 - part, 0.5 + part], BESIDE)
+        found[f"in, then {BESIDE} times {part:g} to either side of half {of}"] = np.append(0.0, beside)
     for start in (0, 1, 5):
-        for part in (0.02, 0.1, 0.25, 0.4):
+        for part in (0.002, 0.02, 0.1, 0.23, 0.4):
             found[f"{part:g} to either side of step {start + 1} of {length:.3g} m"] = np.array(
                 [start - part, start + part]
             )
-    found.update({f"{name}, in {of}": x for name, x in _small(0.0)})
+    found.update({f"{name}, in {of}": x for name, x in _small()})
     return {name: x + 0.5 for name, x in found.items()}
 
 
@@ -183,17 +196,17 @@ def _about_the_limit(length: float) -> dict[str, Floats]:
         found[f"from {low:g} to {high:g} {of} and back"] = there
         found[f"from {low:g} to {high:g} {of}, slowly in and fast out"] = np.concatenate([way, there[:1]])
         found[f"from {low:g} to {high:g} {of}, slowly both ways"] = np.concatenate([way, way[-2:0:-1]])
-    found.update({f"{name} {of}": 1 + 0.1 * x for name, x in _small(0.0)})
+    found.update({f"{name} {of}": 1 + 0.1 * x for name, x in _small()})
     return found
 
 
-def _small(edge: float) -> Iterator[tuple[str, Floats]]:
+def _small() -> Iterator[tuple[str, Floats]]:
     """Rounds of a few samples at random beside an edge, in units of the way from one to the next."""
     rng = np.random.default_rng(1)  # the same for every loop
     for number in range(SMALL):
         samples, at = int(rng.integers(2, 11)), int(rng.integers(0, 4))
         size = 10 ** rng.uniform(-2, 0.5)
-        yield f"small round {number + 1}", edge + at + size * rng.uniform(-1, 1, samples)
+        yield f"small round {number + 1}", at + size * rng.uniform(-1, 1, samples)
 
 
 def _amplitudes(reach: list[int]) -> list[int]:

@@ -116,10 +116,9 @@ def _by_a_covering_wall(device: Device, law: Environment) -> Standing | list[str
     if covering is None:
         return []
     verdict, why_not = _with_the_actuator(device, covering)
+    added = f"What the laws add is never more than that of {covering.damping} N·s/m"
     if verdict is None:
-        return (
-            [f"What the laws add is that of {covering.damping} N·s/m at most. {why_not}"] if why_not else []
-        )
+        return [f"{added}. {why_not}"] if why_not else []
     return Standing(
         status="passive",
         reason=f"{added}, and every such force is covered, contact made and broken: "
