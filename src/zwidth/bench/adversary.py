@@ -3,25 +3,31 @@
     gain = −∮ f_h dx      per round, once the law has settled to the motion
 
 A fixed set of motions and what is found against the wall alone; up to the speed of a hand, and
-where nothing gains, faster.  A gain is a witness, replayed in the simulator by its very making; no
+where nothing gains, faster.  A gain is a witness, replayed in the simulator before it is told; no
 gain is no proof.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, isfinite
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.bench.motions import REALISTIC, as_speed, fixed_motions, speed_of
+from zwidth.bench.motions import USUAL, as_speed, fixed_motions, speed_of
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.loop.law import PHASE, RESOLUTION, measured
+from zwidth.loop.plant import STATE_SIZE
+from zwidth.loop.rounds import run_rounds
+from zwidth.loop.setup import prepare, resting_memory
 from zwidth.loop.simulate import simulate
 from zwidth.operator import PrescribedMotion
+from zwidth.quantity.exact import RealLike
 
 ROUNDS = 150
 """Rounds of each motion at first; more where it gains but has not yet earned what its beginning cost."""
@@ -34,6 +40,9 @@ LONGEST = 400_000
 
 FASTEST = 10.0
 """Speed that is not exceeded [m/s], unless another is given."""
+
+REALISTIC = 1.0
+"""Speed about which a hand reaches [m/s]: of faster motions it is said how fast they are."""
 
 Floats = NDArray[np.float64]
 
@@ -101,11 +110,15 @@ class _Played(NamedTuple):
         return self.gain > 0 and self.total > 0
 
 
+Play = Callable[[Floats, int], _Played]
+"""Tries so many rounds of a motion."""
+
+
 def attack(
     device: Device,
     environment: Environment,
     *,
-    fastest: float = FASTEST,
+    fastest: RealLike = FASTEST,
     known: Mapping[str, Floats] | None = None,
 ) -> Attack:
     """Try all motions on a loop.
@@ -117,8 +130,8 @@ def attack(
     environment
         Any that can be simulated, laws in a row included.
     fastest
-        Speed of the fastest hand [m/s], > 0.  Beyond 1 m/s, about what a hand reaches, motions are tried
-        only where no slower one gains.
+        Speed of the fastest hand [m/s], > 0.  Beyond a tenth of it, of 10 m/s about what a hand reaches,
+        motions are tried only where no slower one gains.
     known
         More motions by name, a round each at the samples [m], as `motions.found_motions` gives them.
 
@@ -128,20 +141,22 @@ def attack(
         If the speed is too low for any motion, or infinite.
     """
     limit, period = as_speed(device, fastest), float(device.exact("sample_period"))
-    motions = {**fixed_motions(device, limit), **(known or {})}
+    law = as_environment(environment)
+    motions = {**fixed_motions(device, limit, law), **(known or {})}
+    play = _player(device, law)
+    speeds = {name: speed_of(positions, period) for name, positions in motions.items()}
     tried: dict[str, _Played] = {}
-    for reach in sorted({min(REALISTIC, limit), limit}):
+    for reach in (float(USUAL * limit), float(limit)):
         for name, positions in motions.items():
-            if name not in tried and speed_of(positions, period) <= reach:
-                tried[name] = _played(device, environment, positions)
+            if name not in tried and speeds[name] <= reach:
+                tried[name] = _played(play, positions)
         if any(played.extracts for played in tried.values()):
             break
-    name = max(tried, key=lambda n: (tried[n].extracts, tried[n].gain))
-    best, positions = tried[name], motions[name]
+    name, best = _replayed(device, law, motions, tried)
     return Attack(
         name=name,
-        positions=tuple(map(float, positions)),
-        speed=speed_of(positions, period),
+        positions=tuple(map(float, motions[name])),
+        speed=speeds[name],
         gain=best.gain,
         total=best.total,
         rounds=best.rounds,
@@ -149,17 +164,55 @@ def attack(
     )
 
 
-def _played(device: Device, environment: Environment, positions: Floats) -> _Played:
+def _replayed(
+    device: Device, law: Environment, motions: Mapping[str, Floats], tried: Mapping[str, _Played]
+) -> tuple[str, _Played]:
+    """The best motion, as the simulator finds it; the next one where that does not gain after all."""
+    ranked = sorted(tried, key=lambda name: (tried[name].extracts, tried[name].gain), reverse=True)
+    for name in ranked:
+        again = _taken(device, law, motions[name], tried[name].rounds)
+        if again.extracts or not tried[name].extracts:
+            return name, again
+    return ranked[0], _taken(device, law, motions[ranked[0]], tried[ranked[0]].rounds)
+
+
+def _played(play: Play, positions: Floats) -> _Played:
     """All rounds of a motion; more of them where it gains and has not yet earned its beginning."""
-    played = _taken(device, environment, positions, ROUNDS)
+    played = play(positions, ROUNDS)
     if played.gain > 0 >= played.total:
         rounds = ROUNDS + ceil(-1.5 * played.total / played.gain)
         if rounds * len(positions) <= LONGEST:
-            return _taken(device, environment, positions, rounds)
+            return play(positions, rounds)
     return played
 
 
+def _player(device: Device, law: Environment) -> Play:
+    """Tries motions on a loop that is laid out once; what grows without bound is left to the simulator."""
+    setup = prepare(device, law, PrescribedMotion(np.zeros(2)), device.exact("sample_period"))
+    frame, numbers = setup.frame, setup.law
+    coulomb, drag = frame.plant.coulomb, frame.plant.damping / float(frame.period)
+    share = frame.offset / float(frame.period)
+    late = int(device.exact("delay") // frame.period)
+    resting: dict[float, Floats] = {}
+
+    def play(positions: Floats, rounds: int) -> _Played:
+        reading = measured(positions[0], numbers[RESOLUTION], numbers[PHASE])
+        if reading not in resting:
+            resting[reading] = resting_memory(setup, reading)
+        memory, taken = resting[reading].copy(), np.zeros(rounds)
+        scratch = np.empty(len(memory)), np.zeros(STATE_SIZE), np.zeros(late + 2)
+        lost = run_rounds(positions, numbers, memory, *scratch, late, share, coulomb, drag, taken)
+        total, half = float(taken[-1]), max(rounds // 2, 1)
+        if not isfinite(total):
+            return _taken(device, law, positions, rounds)
+        since = float(taken[-1 - half]) if half < rounds else 0.0
+        return _Played((total - since) / half, total if abs(total) > ROUNDING * lost else 0.0, rounds)
+
+    return play
+
+
 def _taken(device: Device, environment: Environment, positions: Floats, rounds: int) -> _Played:
+    """The same by the simulator."""
     path = _listed(positions, rounds)
     period = device.exact("sample_period")
     trace = simulate(device, environment, PrescribedMotion(path), (len(path) - 1) * period)
@@ -171,6 +224,18 @@ def _taken(device: Device, environment: Environment, positions: Floats, rounds: 
     return _Played(
         float(taken[-1] - taken[since]) / half, total if abs(total) > ROUNDING * lost else 0.0, rounds
     )
+
+
+def taken_out(device: Device, law: Environment, positions: Floats, switches: Floats | None) -> float:
+    """What a whole motion takes out, from rest to rest, by the simulator [J]."""
+    hand = PrescribedMotion(np.append(positions, positions[-1]), switch_positions=_stay(positions, switches))
+    trace = simulate(device, law, hand, len(positions) * device.exact("sample_period"))
+    return float(trace["kinetic_energy"][-1] - trace["hand_work"][-1])
+
+
+def _stay(positions: Floats, switches: Floats | None) -> Floats | None:
+    """The switch positions of a motion that stays for a sample at its end."""
+    return None if switches is None else np.append(switches, positions[-1])
 
 
 def _listed(positions: Floats, rounds: int) -> Floats:

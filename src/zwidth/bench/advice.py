@@ -30,14 +30,7 @@ def advice(comparison: LawComparison) -> str:
         if limit
         else "The device alone renders no wall passively."
     ]
-    proved = scores.where(scores["status"].isin(["passive", "theorem"]), drop=True)
-    if proved.sizes["law"]:
-        best = _stiffest(proved)
-        felt = float(proved["static_stiffness"].sel(law=best))
-        paper = " on paper" if str(proved["status"].sel(law=best).item()) == "theorem" else ""
-        words.append(f"Proved{paper} for every hand, the stiffest here is {best!r}: {felt:.4g} N/m are felt.")
-    else:
-        words.append("None of these laws is proved for every hand.")
+    words += _proved(scores)
     quiet = scores.where(scores["tap_chatter"] <= QUIET * scores["peak_force"], drop=True)
     if quiet.sizes["law"]:
         best = min(
@@ -50,7 +43,9 @@ def advice(comparison: LawComparison) -> str:
             f"Quiet under a fast finger and closest to what is wanted is {best!r} with {felt:.4g} N/m"
             + (
                 ""
-                if status in ("passive", "theorem")
+                if status == "passive"
+                else "; for every hand it is proved on paper, without a certificate"
+                if status == "theorem"
                 else f"; it is {status}: a skilled hand takes energy out, an ordinary one did not"
                 if status == "active"
                 else "; for every hand it is undecided"
@@ -67,6 +62,21 @@ def advice(comparison: LawComparison) -> str:
     if broken:
         words.append(f"The promise of {_listed(broken)} does not hold: a motion takes energy out.")
     return " ".join(words)
+
+
+def _proved(scores: xr.Dataset) -> list[str]:
+    """The stiffest law with a certificate, and a stiffer one that is proved on paper alone."""
+    words, most = [], 0.0
+    for status, how in (("passive", "Proved"), ("theorem", "Proved on paper, without a certificate,")):
+        some = scores.where(scores["status"] == status, drop=True)
+        if not some.sizes["law"]:
+            continue
+        best = _stiffest(some)
+        felt = float(some["static_stiffness"].sel(law=best))
+        if felt > most:
+            words.append(f"{how} for every hand, the stiffest here is {best!r}: {felt:.4g} N/m are felt.")
+            most = felt
+    return words or ["None of these laws is proved for every hand."]
 
 
 def _stiffest(scores: xr.Dataset) -> str:

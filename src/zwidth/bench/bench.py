@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,6 +14,7 @@ from zwidth.bench import scores
 from zwidth.bench.adversary import FASTEST, Attack, attack
 from zwidth.bench.laws import standard_laws
 from zwidth.bench.motions import found_motions
+from zwidth.bench.standing import Standing, standing
 from zwidth.bench.touches import Touch, standard_touches
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
@@ -23,18 +23,10 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
-from zwidth.passivity.bounding import check_bounding, is_bounded
-from zwidth.passivity.check import check
-from zwidth.passivity.wording import describe_hands
-from zwidth.passivity.worst_hand import worst_hand
-from zwidth.rendering.rendered import Rendered
-from zwidth.rendering.stage import Surroundings
+from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_PATIENCE = 5.0
-"""Time for the game of a law that nothing else decides [s]."""
 
 _TIMED = 20_000
 """Samples over which a step is timed."""
@@ -75,12 +67,12 @@ class LawComparison:
     scores
         Dimension `law`; the variables of `SCORES`, units and meanings in the attributes, and
         `gain`, energy that the worst motion takes out in a round [J], `step_time` [s],
-        `status`: "passive" with a certificate, "theorem" by a proof on paper alone, "active" with a
-        motion, or "undecided".
+        `status`: "passive" with a certificate, "theorem" by a proof on paper, no certificate, "active" with
+        a motion, or "undecided".
     attacks
         The motion of each law that took out most.
-    evidence
-        Of each law, why its status is what it is, in a sentence.
+    standings
+        What is known of each law for every hand: its status, why, and what of the device that counts.
     traces
         Of each law and touch.
     device, environment
@@ -89,10 +81,15 @@ class LawComparison:
 
     scores: xr.Dataset
     attacks: Mapping[str, Attack]
-    evidence: Mapping[str, str]
+    standings: Mapping[str, Standing]
     traces: Mapping[str, Mapping[str, xr.Dataset]]
     device: Device
     environment: Environment
+
+    @property
+    def evidence(self) -> dict[str, str]:
+        """Of each law, why its status is what it is."""
+        return {name: known.evidence for name, known in self.standings.items()}
 
     @property
     def advice(self) -> str:
@@ -126,7 +123,7 @@ def compare(
     environment: Wall | Any,
     laws: Mapping[str, Environment] | None = None,
     *,
-    fastest: float = FASTEST,
+    fastest: RealLike = FASTEST,
     progress: Callable[[int, int], None] | None = None,
 ) -> LawComparison:
     """Put laws on the bench: three touches, a stroke in free air, and a hand that tries to take energy out.
@@ -168,21 +165,21 @@ def compare(
     known = found_motions(device, wall, fastest)
     traces: dict[str, dict[str, xr.Dataset]] = {}
     attacks: dict[str, Attack] = {}
-    status: dict[str, tuple[str, str]] = {}
+    known_of: dict[str, Standing] = {}
     times: dict[str, float] = {}
     for done, (name, law) in enumerate(chosen.items()):
         if progress is not None:
             progress(done, len(chosen))
         traces[name] = {key: _touched(device, law, touch) for key, touch in touches.items()}
         attacks[name] = attack(device, law, fastest=fastest, known=known)
-        status[name] = _status(device, law, attacks[name])
+        known_of[name] = standing(device, law, attacks[name])
         times[name] = _step_time(device, law, touches["press"])
     if progress is not None:
         progress(len(chosen), len(chosen))
     return LawComparison(
-        scores=_dataset(traces, attacks, status, times),
+        scores=_dataset(traces, attacks, known_of, times),
         attacks=attacks,
-        evidence={name: why for name, (_, why) in status.items()},
+        standings=known_of,
         traces=traces,
         device=device,
         environment=wall,
@@ -191,65 +188,6 @@ def compare(
 
 def _touched(device: Device, law: Environment, touch: Touch) -> xr.Dataset:
     return simulate(device, law, touch.hand, touch.duration)
-
-
-def _status(device: Device, law: Environment, found: Attack) -> tuple[str, str]:
-    """What is known of a law for every hand, contact made and broken, and why."""
-    if found.extracts:
-        return "active", str(found)
-    if not isinstance(law, Rendered):
-        verdict = check(device, law)
-        if verdict.outcome == "passive in contact":
-            return "undecided", verdict.claim
-        return verdict.outcome, verdict.claim
-    covering = _covering(law)
-    if covering is not None:
-        verdict = check(device, covering)
-        if verdict.outcome == "passive":
-            return "passive", (
-                f"What the laws add is never more than that of {covering.damping} N·s/m, and every such "
-                f"force is covered, contact made and broken: {verdict.claim}"
-            )
-    if is_bounded(law):
-        bounding = check_bounding(device, law)
-        if bounding.outcome == "passive":
-            return "passive", bounding.claim
-    reason = law.stages[-1].theorem(Surroundings(device, law.environment))
-    if reason is not None:
-        return "theorem", f"By a proof on paper, without a certificate: {reason}."
-    return _by_the_game(device, law, found)
-
-
-def _by_the_game(device: Device, law: Rendered, found: Attack) -> tuple[str, str]:
-    """What the game on a small board adds: a motion refutes; a proof is one of hands on that board."""
-    no_proof = f"{found}; no criterion covers this law"
-    try:
-        played = worst_hand(device, law, seconds=_PATIENCE)
-    except InputError as error:
-        return "undecided", f"{no_proof}; the game of the worst hand was not played: {_cause(error)}"
-    if played.outcome == "active":
-        return "active", f"{found}; but the game of the worst hand finds more. {played.claim}"
-    if played.outcome == "undecided":
-        return "undecided", f"{no_proof}; nor does the game of the worst hand decide it"
-    hands = describe_hands(played.scope.hands, played.scope.motion)
-    return "undecided", f"{no_proof}; {hands} take no energy out, proved; others may"
-
-
-def _cause(error: InputError) -> str:
-    """What is wrong, without what to try."""
-    return str(error).partition(";")[0]
-
-
-def _covering(law: Rendered) -> Wall | None:
-    """A wall whose proof, for |f − K u| ≤ B |v|, is one of a wall with laws that add no more than that."""
-    if not isinstance(law.environment, Wall):
-        return None
-    if law.environment.damping or law.environment.clamped:
-        return None
-    bounds = [stage.most_damping() for stage in law.stages]
-    if any(bound is None for bound in bounds):
-        return None
-    return law.environment.replace(damping=sum((b.fraction for b in bounds if b is not None), Fraction(0)))
 
 
 def _step_time(device: Device, law: Environment, touch: Touch) -> float:
@@ -268,7 +206,7 @@ def _step_time(device: Device, law: Environment, touch: Touch) -> float:
 def _dataset(
     traces: Mapping[str, Mapping[str, xr.Dataset]],
     attacks: Mapping[str, Attack],
-    status: Mapping[str, tuple[str, str]],
+    standings: Mapping[str, Standing],
     times: Mapping[str, float],
 ) -> xr.Dataset:
     import xarray as xr
@@ -284,6 +222,6 @@ def _dataset(
     data["gain"].attrs = {"units": "J", "long_name": "taken out by a round of the worst motion"}
     data["step_time"] = ("law", [times[name] for name in names])
     data["step_time"].attrs = {"units": "s", "long_name": "time of a simulated sample"}
-    data["status"] = ("law", [status[name][0] for name in names])
+    data["status"] = ("law", [standings[name].status for name in names])
     data["status"].attrs = {"long_name": "what is known for every hand"}
     return data

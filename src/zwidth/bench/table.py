@@ -36,6 +36,10 @@ COLUMNS = (
 )
 
 
+ON_PAPER = "on paper"
+"""What the table calls a proof on paper, no certificate."""
+
+
 def rows(comparison: LawComparison) -> list[list[str]]:
     """Headings, units, and a row for each law."""
     scores = comparison.scores
@@ -46,8 +50,15 @@ def rows(comparison: LawComparison) -> list[list[str]]:
     for name in scores["law"].values:
         one = scores.sel(law=name)
         cells = [_number(float(one[c.variable]) * c.factor) for c in COLUMNS]
-        table.append([str(name), str(one["status"].item()), *cells])
+        status = str(one["status"].item())
+        table.append([str(name), ON_PAPER if status == "theorem" else status, *cells])
     return table
+
+
+def legend(comparison: LawComparison) -> str:
+    """What a word of the table means that is not clear by itself; empty where none is there."""
+    on_paper = (comparison.scores["status"] == "theorem").any()
+    return f"{ON_PAPER}: a theorem, by a proof on paper, no certificate" if on_paper else ""
 
 
 def as_text(comparison: LawComparison) -> str:
@@ -62,7 +73,8 @@ def as_text(comparison: LawComparison) -> str:
         for row in table
     ]
     title = f"{comparison.environment.describe()} on {comparison.device.name or 'the device'}"
-    return "\n".join([title, "", *lines, "", comparison.advice])
+    below = [text for text in (legend(comparison), comparison.advice) if text]
+    return "\n".join([title, "", *lines, "", *below])
 
 
 def as_html(comparison: LawComparison) -> str:
@@ -73,7 +85,8 @@ def as_html(comparison: LawComparison) -> str:
         return "<tr>" + "".join(f"<{tag}>{text(c)}</{tag}>" for c in cells) + "</tr>"
 
     inner = row(head, "th") + row(units, "th") + "".join(row(cells, "td") for cells in body)
-    return f"<div><table>{inner}</table><p>{escape(comparison.advice)}</p></div>"
+    below = "".join(f"<p>{escape(text)}</p>" for text in (legend(comparison), comparison.advice) if text)
+    return f"<div><table>{inner}</table>{below}</div>"
 
 
 def _number(value: float) -> str:

@@ -113,7 +113,13 @@ def _json(found: LawComparison) -> str:
     rows = {}
     for name in found.scores["law"].values:
         one = found.scores.sel(law=name)
-        row: dict[str, Any] = {"status": str(one["status"].item()), "evidence": found.evidence[str(name)]}
+        known = found.standings[str(name)]
+        row: dict[str, Any] = {
+            "status": known.status,
+            "proof": known.proof,
+            "evidence": known.evidence,
+            "withheld": list(known.withheld),
+        }
         for key, value in one.data_vars.items():
             if key != "status":
                 unit = value.attrs["units"]

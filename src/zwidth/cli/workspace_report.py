@@ -105,13 +105,18 @@ def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]
     enough = ", ".join(shown(f, "N*m") for f in steps.friction)
     more = ", ".join(shown(f, "N*m") for f in steps.friction_per_force)
     has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "it has none that is known"
-    yield "Coulomb friction", (
-        f"{enough} in joint {_joints(space)}, and {more} more for each newton of the wall, cover the steps; {has}"
+    yield (
+        "Coulomb friction",
+        (
+            f"{enough} in joint {_joints(space)}, and {more} more for each newton of the wall, cover the steps; {has}"
+        ),
     )
     from zwidth.passivity.arms.held import in_words
 
     covered = f"covered up to {in_words(steps.covered)}" if steps.covered else "covered at no force"
-    known = "" if steps.refuted is None else f"; from {shown(steps.refuted, 'N')} on a motion takes energy out"
+    known = (
+        "" if steps.refuted is None else f"; from {shown(steps.refuted, 'N')} on a motion takes energy out"
+    )
     yield "encoder steps", covered + (known if own else "")
 
 

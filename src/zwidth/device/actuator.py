@@ -50,7 +50,7 @@ def actuator_checks(device: Device, stiffness: Parameter | None = None) -> tuple
     stiffness
         K of the wall [N/m; N·m/rad]; None where the law has none.
     """
-    return _force_resolution(device, stiffness), _rise_time(device)
+    return _force_resolution(device, stiffness), current_rise(device)
 
 
 def _force_resolution(device: Device, stiffness: Parameter | None) -> ActuatorCheck:
@@ -77,7 +77,8 @@ def _force_resolution(device: Device, stiffness: Parameter | None) -> ActuatorCh
     return _check(name, unit, count, step, ratio >= FINE, f"{text}, {verdict}")
 
 
-def _rise_time(device: Device) -> ActuatorCheck:
+def current_rise(device: Device) -> ActuatorCheck:
+    """Compare the time that the current takes to rise with T."""
     parts = {k: getattr(device, k) for k in ("motor_inductance", "supply_voltage", "current_limit")}
     missing = [key for key, value in parts.items() if value is None]
     if missing:

@@ -317,6 +317,13 @@ def _section(environment: Environment, period: Fraction) -> list[float]:
     return [float(order), *map(float, b), *map(float, a)]
 
 
+def resting_memory(setup: Setup, reading: float) -> Array:
+    """What the law of a setup remembers after the hand has been at a reading for ever."""
+    row = setup.environment.stages if isinstance(setup.environment, Rendered) else ()
+    slots = [number for stage in row for number in stage.rested(reading)]
+    return np.array([*at_rest(setup.law, reading), *([0.0] if row else []), *slots])
+
+
 def at_rest(law: Array, reading: float) -> Array:
     """The law's memory after it has read this position for ever; 0 where it would not settle."""
     gate, at = law[laws.GATE], laws.HEADER

@@ -26,6 +26,9 @@ from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Need, Verdict
 from zwidth.quantity.exact import Exact, ends
 
+_ACTUATOR = ("force_limit", "force_resolution", "motor_inductance", "supply_voltage", "current_limit")
+"""What a device states of its actuator."""
+
 Progress = Callable[[int], None]
 Closed = Callable[[Device, Environment], Verdict]
 """How a law with H(z) is decided."""
@@ -141,7 +144,10 @@ def _on_paper(verdict: Verdict) -> Verdict | None:
     law = verdict.environment
     assert isinstance(law, Rendered)
     theorem = law.stages[-1].theorem(Surroundings(verdict.device, law.environment))
-    return None if theorem is None else replace(verdict, outcome="theorem", theorem=theorem)
+    ideal = verdict.device.replace(**dict.fromkeys(_ACTUATOR))  # the scope says that the actuator is
+    if theorem is None or not theorem.holds_on(ideal):
+        return None
+    return replace(verdict, outcome="theorem", theorem=theorem.statement)
 
 
 def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:

@@ -25,6 +25,7 @@ _ROW = 0.62
 """Part of a row that the median of the largest forces fills."""
 
 _MARKS = {"passive": "o", "theorem": "s", "active": "X", "undecided": "D"}
+_LABELS = {"theorem": "theorem, on paper: no certificate"}
 _GUIDE = "#dddddd"
 
 
@@ -53,7 +54,8 @@ def laws_figure(comparison: Any) -> Figure:
     felt.set_yticks(range(len(names)), names)
     felt.set_ylim(len(names) - 0.4, -0.9)
     handles = [
-        felt.plot([], [], mark, color=OUTCOME[status], label=status)[0] for status, mark in _MARKS.items()
+        felt.plot([], [], mark, color=OUTCOME[status], label=_LABELS.get(status, status))[0]
+        for status, mark in _MARKS.items()
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure

@@ -23,6 +23,7 @@ from zwidth.quantity.exact import Exact, RealLike
 from zwidth.rendering.passivity_controller import UNLIMITED
 from zwidth.rendering.reading import count, damping_per_sample, one_of
 from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.theorem import Theorem, half_a_step
 
 DUAL_RATE = 24.0
 
@@ -36,9 +37,9 @@ class DualRate(Stage):
 
     Proved, where κ ≤ 2b/T and updates are "continuous": no motion of any hand takes energy out, whatever
     the environment and however large N.  Refuted for "jump".  Hypotheses: the device takes at least b; an
-    encoder without counts; no delay, regular samples, no law behind this one, an amplifier without lag or
-    steps, with no other force limit than the device's.  Where the environment is unilateral, its forces
-    below 0 are 0.
+    encoder without counts; no delay, regular samples, no law behind this one, an amplifier without lag, with
+    no other force limit than the device's, whose steps ΔF, if it has any, cost f_c ≥ ΔF/2.  Where the
+    environment is unilateral, its forces below 0 are 0.
 
     Parameters
     ----------
@@ -98,15 +99,18 @@ class DualRate(Stage):
         """No spring yet, and an update is due."""
         return [0.0, reading, 0.0, 1.0, 0.0]
 
-    def theorem(self, at: Surroundings) -> str | None:
-        """Where nothing is late, the encoder has no counts, and the device can pay for the local spring."""
-        device = at.device
-        ideal = device.exact("resolution") == 0 and device.exact("delay") == 0
+    def theorem(self, at: Surroundings) -> Theorem | None:
+        """Where the device can pay for the local spring, and friction for the steps of the converter."""
         slope = 0 if self.slope is None else self.slope.fraction
-        paid = slope <= 2 * device.exact("damping") / device.exact("sample_period")
-        if not (ideal and paid and self.updates == "continuous"):
+        paid = slope <= 2 * at.device.exact("damping") / at.device.exact("sample_period")
+        if not (paid and self.updates == "continuous"):
             return None
-        return "a local spring of at most 2b/T whose force is paid for at every update"
+        return Theorem(
+            statement="a local spring of at most 2b/T whose force is paid for at every update",
+            counts_force_steps=True,
+            counts_force_limit=True,
+            coulomb_friction=half_a_step(at.device),
+        )
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""

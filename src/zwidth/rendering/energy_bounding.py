@@ -22,6 +22,7 @@ from typing import ClassVar
 from zwidth.compiled import Array, compiled
 from zwidth.rendering.reading import damping_per_sample, half_step
 from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.theorem import Theorem
 
 ENERGY_BOUNDING = 22.0
 
@@ -56,11 +57,13 @@ class EnergyBounding(Stage):
         """
         return [2 * damping_per_sample(at, "energy bounding"), half_step(at)]
 
-    def theorem(self, at: Surroundings) -> str | None:
-        """Where nothing is late and the encoder has no counts."""
-        if at.device.exact("resolution") != 0 or at.device.exact("delay") != 0:
-            return None
-        return "energy bounding: what the next move can take out grows by no more than what came in"
+    def theorem(self, at: Surroundings) -> Theorem:
+        """Half a step of the converter is kept below the bound, and the law is told what was applied."""
+        return Theorem(
+            statement="energy bounding: what the next move can take out grows by no more than what came in",
+            counts_force_steps=True,
+            counts_force_limit=True,
+        )
 
     def describe(self, motion: str = "linear") -> str:
         """The law in a few words."""

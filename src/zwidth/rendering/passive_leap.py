@@ -26,6 +26,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.rendering.reading import damping_per_sample, truth
 from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.theorem import Theorem, half_a_step
 
 PASSIVE_LEAP = 23.0
 
@@ -40,7 +41,7 @@ class PassiveLeap(Stage):
     Proved: no hand takes out more than f² (T/(4b) − 1/(2K)), f the largest force, at any time; nothing
     where K ≤ 2b/T.  Refuted for stiffer walls: one leap out takes just that (where f_c = 0).  Hypotheses:
     the device takes at least b and f_c; an encoder without counts; no delay, regular samples, no law
-    behind this one, an amplifier without lag or steps.
+    behind this one, an amplifier without lag; for steps ΔF of the converter K ≤ 2b/T and f_c ≥ ΔF/2.
 
     Parameters
     ----------
@@ -87,12 +88,18 @@ class PassiveLeap(Stage):
         friction = float(at.device.exact("coulomb_friction"))
         return [stiffness, damping_per_sample(at, "a passive leap"), friction, float(self.resets)]
 
-    def theorem(self, at: Surroundings) -> str | None:
-        """Where nothing is late, the encoder has no counts, and the device renders the spring anyway."""
+    def theorem(self, at: Surroundings) -> Theorem | None:
+        """Where the device renders the spring anyway, and friction pays for the steps of the converter."""
+        own = self.stiffness if self.stiffness is not None else getattr(at.environment, "stiffness", None)
         limit = 2 * at.device.exact("damping") / at.device.exact("sample_period")
-        stiffness = at.stiffness if self.stiffness is None else float(self.stiffness)
-        ideal = at.device.exact("resolution") == 0 and at.device.exact("delay") == 0
-        return "K ≤ 2b/T: the wall is passive and unchanged" if ideal and stiffness <= limit else None
+        if not isinstance(own, Exact) or own.fraction > limit:
+            return None
+        return Theorem(
+            statement="K ≤ 2b/T: no move takes out more than what the spring is known to hold",
+            counts_force_steps=True,
+            counts_force_limit=True,
+            coulomb_friction=half_a_step(at.device),
+        )
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""

@@ -17,6 +17,7 @@ from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.theorem import Theorem
 
 
 class Surroundings(NamedTuple):
@@ -69,10 +70,11 @@ class Stage(ABC):
         """
         return None
 
-    def theorem(self, at: Surroundings) -> str | None:
+    def theorem(self, at: Surroundings) -> Theorem | None:
         """Why no hand takes energy out with this law last in the row, by a proof on paper; None without one.
 
-        No certificate comes with it: what can be checked by a machine says `check`.
+        What the proof counts of the device is in it; whether that is enough says `Theorem.unmet`.  No
+        certificate comes with it: what can be checked by a machine says `check`.
         """
         return None
 

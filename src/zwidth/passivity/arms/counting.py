@@ -14,7 +14,6 @@ from zwidth.errors import InputError
 from zwidth.passivity.arms.edges import first_motion
 from zwidth.passivity.arms.encoders import EncoderSteps, encoder_steps, with_encoders
 from zwidth.passivity.arms.held import in_words
-from zwidth.passivity.arms.replay import ArmMotion
 
 Array = npt.NDArray[np.float64]
 
@@ -88,7 +87,9 @@ def with_motion(
 
 
 def _too_small(steps: EncoderSteps, asked: tuple[float, ...]) -> str:
-    up_to = f"Coulomb friction covers them up to {in_words(steps.covered)}" if steps.covered else (
-        "Coulomb friction is too small for them at any force"
+    up_to = (
+        f"Coulomb friction covers them up to {in_words(steps.covered)}"
+        if steps.covered
+        else ("Coulomb friction is too small for them at any force")
     )
     return f"{up_to}, and not up to {in_words(asked)}"

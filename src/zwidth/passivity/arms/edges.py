@@ -214,6 +214,5 @@ def _rectangle(arm: Chain, corner: Corner, period: float, force: float) -> Array
     along = np.where(np.arange(len(steps)) == i, 1.0, 0.0)
     near, far = small * length * along, -length * along
     return np.asarray(
-        [near + small * across, far + small * across, far - small * across, near - small * across]
-        + corner.at
+        [near + small * across, far + small * across, far - small * across, near - small * across] + corner.at
     )

@@ -81,9 +81,7 @@ class EncoderSteps:
     def friction_up_to(self, force: float, moment: float = 0.0) -> tuple[float, ...]:
         """Coulomb friction of each joint that covers the steps up to a force [N] and a moment [N·m] of the wall."""
         each = zip(self.friction, self.friction_per_force, self.friction_per_moment, strict=True)
-        return tuple(
-            own + (force * f if f else 0.0) + (moment * m if m else 0.0) for own, f, m in each
-        )
+        return tuple(own + (force * f if f else 0.0) + (moment * m if m else 0.0) for own, f, m in each)
 
 
 def encoder_steps(arm: Arm, wall: Wall | MatrixWall, period: float, sites: Sites) -> EncoderSteps | None:

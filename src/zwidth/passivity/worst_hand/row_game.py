@@ -115,10 +115,12 @@ def row_game(
     force_resolution: bool = False,
     friction: FrictionCurve | None = None,
     boards: Sequence[tuple[int, int]] = COUNTS,
+    most: int = MOST_STATES,
 ) -> RowGame:
     """The game of laws in a row; arguments as for `worst_hand`.
 
-    `boards` are tried for what is not given: counts on either side, and counts a sample.
+    `boards` are tried for what is not given: counts on either side, and counts a sample.  On the last
+    of them the law may have so many states as `most`.
 
     Raises
     ------
@@ -134,13 +136,13 @@ def row_game(
     for far, reach in tried:
         depth = deepest or Fraction(far)
         highest = max(1, ceil(depth) - 1)
-        most = ceil(fastest) if fastest else min(reach, 2 * highest + 1)
-        domain = Domain(-highest - 1, highest, most, depth, fastest or None)
+        longest = ceil(fastest) if fastest else min(reach, 2 * highest + 1)
+        domain = Domain(-highest - 1, highest, longest, depth, fastest or None)
         law = row_law(
             device, environment, domain.lowest, force_limit=force_limit, force_resolution=force_resolution
         )
         last = (far, reach) == tried[-1]
-        most_states = MOST_STATES if last else USUAL_STATES
+        most_states = most if last else USUAL_STATES
         game = RowGame(device, environment, law, losses, domain, (far, reach), most_states)
         try:
             _ = game.table

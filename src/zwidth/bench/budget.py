@@ -1,0 +1,58 @@
+"""How long a game is played: in moves that are looked at, not in seconds, so that it ends alike anywhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from zwidth.errors import InputError
+from zwidth.passivity.worst_hand.hand import Game
+
+KNOTS = 9
+"""Places in a cell, about."""
+
+
+class Spent(Exception):
+    """The budget is used up: the game was not finished."""
+
+
+@dataclass
+class Budget:
+    """What is told of each round of a game, and stops it.
+
+    Parameters
+    ----------
+    rounds
+        How many there may be.
+    """
+
+    rounds: float
+
+    def __call__(self, improved: int) -> None:
+        """One round more.
+
+        Raises
+        ------
+        Spent
+            If that was one too many.
+        """
+        self.rounds -= 1
+        if self.rounds < 0:
+            raise Spent
+
+
+def budget_of(game: Game, moves: float) -> Budget:
+    """For so many moves in a game against one law.
+
+    Raises
+    ------
+    InputError
+        If not even one round is within them.
+    """
+    width = 2 * game.domain.reach + 1
+    states = game.domain.cells * width ** (game.law.memory + game.losses.delay)
+    if game.law.relaxing is not None:
+        states *= game.domain.cells
+    rounds = moves // (states * width * KNOTS)
+    if rounds < 1:
+        raise InputError(f"the board of {states:,} states is too large to be played here")
+    return Budget(rounds)

@@ -1,0 +1,110 @@
+"""What the game of the worst hand adds to the bench, played with the actuator that the device states.
+
+It ends after so many states and so many moves, not after some time: the same loop gets the same answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from zwidth.bench.adversary import Attack
+from zwidth.bench.budget import KNOTS, Budget, Spent, budget_of
+from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.errors import InputError
+from zwidth.passivity.wording import describe_hands
+from zwidth.passivity.worst_hand import worst_hand
+from zwidth.passivity.worst_hand.gain import Gain
+from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, game_of
+from zwidth.passivity.worst_hand.row_game import COUNTS, RowGame, row_game
+from zwidth.passivity.worst_hand.row_table import DoesNotClose
+from zwidth.rendering.rendered import Rendered
+
+MOVES = 4e9
+"""Moves that are looked at in a game."""
+
+STATES = 20_000
+"""States that a law in a row may have on its board."""
+
+
+def by_the_game(device: Device, law: Environment, found: Attack) -> tuple[bool, str]:
+    """Whether a motion refutes the law, and what is known; a proof is one of hands on a small board."""
+    no_proof = f"{found}; no criterion covers this law"
+    try:
+        refuted, said = _of_a_row(device, law) if isinstance(law, Rendered) else _of_a_law(device, law)
+    except InputError as error:
+        return False, f"{no_proof}; the game of the worst hand was not played: {_cause(error)}"
+    except Spent:
+        return False, f"{no_proof}; nor does the game of the worst hand decide it"
+    if refuted:
+        return True, f"{found}; but the game of the worst hand finds more. {said}"
+    return False, f"{no_proof}; {said}"
+
+
+def _of_a_law(device: Device, law: Environment) -> tuple[bool, str]:
+    """Played by `worst_hand`."""
+    actuator = _actuator(device)
+    game = game_of(device, law, **actuator)
+    assert isinstance(game, Game)  # it is no row
+    told = budget_of(game, MOVES)
+    played = worst_hand(device, law, **actuator, seconds=float("inf"), progress=told)
+    if played.outcome == "undecided":
+        return False, "nor does the game of the worst hand decide it"
+    return played.outcome == "active", played.claim if played.outcome == "active" else _proved(game)
+
+
+def _of_a_row(device: Device, law: Rendered) -> tuple[bool, str]:
+    """Played on the largest board on which the law closes."""
+    game = _largest(device, law)
+    width = game.table.successors.shape[1]
+    told = Budget(MOVES // (game.table.states * width * KNOTS**2))
+    for outcome in _rounds(game, told):
+        if isinstance(outcome, Gain):
+            return True, f"A motion of the hand takes energy out of this loop: {outcome.describe()}."
+        if outcome:
+            return False, _proved(game)
+    return False, "nor does the game of the worst hand decide it"
+
+
+def _rounds(game: RowGame, told: Budget) -> Iterator[bool | Gain | None]:
+    """On finer and finer steps: whether it is proved, or a motion."""
+    for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
+        storage = game.prove(steps, tell=told)
+        yield storage is not None and storage.certificate().verify()
+        yield None if fine is None else game.refute(fine, tell=told)
+
+
+def _largest(device: Device, law: Rendered) -> RowGame:
+    """The game on the largest board with no more than `STATES`; a larger board has no fewer.
+
+    Raises
+    ------
+    DoesNotClose
+        If there are more on the smallest one.
+    """
+    game = None
+    for board in reversed(COUNTS):
+        try:
+            game = row_game(device, law, boards=(board,), most=STATES, **_actuator(device))
+        except DoesNotClose:
+            if game is None:
+                raise
+            break
+    assert game is not None
+    return game
+
+
+def _actuator(device: Device) -> Any:
+    """What of the actuator is counted: all that is known."""
+    return {key: getattr(device, key) is not None for key in ("force_limit", "force_resolution")}
+
+
+def _proved(game: Game | RowGame) -> str:
+    hands = describe_hands(game.hands, game.motion)
+    return f"{hands} take no energy out, proved; others may"
+
+
+def _cause(error: InputError) -> str:
+    """What is wrong, without what to try."""
+    return str(error).partition(";")[0]
