@@ -119,6 +119,7 @@ def _json(found: LawComparison) -> str:
             "proof": known.proof,
             "evidence": known.evidence,
             "withheld": list(known.withheld),
+            "scope": known.scope.to_dict(),
         }
         for key, value in one.data_vars.items():
             if key != "status":
