@@ -28,7 +28,7 @@ from zwidth.passivity.relaxing_contact import RelaxingLaw
 FORMAT = "zwidth certificate 1"
 LARGEST_FILE = 200_000_000
 
-COVERS_CONTACT = frozenset({"spring", "contact", "relaxing contact", "force bounding"})
+COVERS_CONTACT = frozenset({"spring", "contact", "relaxing contact", "multiplier contact", "force bounding"})
 """Kinds of certificate that speak of contact made and broken."""
 
 
@@ -86,6 +86,8 @@ def certify(decision: Decision) -> dict[str, Any]:
         document["law"] = _law(decision.wall, decision.setting.motion)
     elif isinstance(decision.wall, RelaxingLaw) and kind == "relaxing contact":
         document["law"] = _relaxing_law(decision.wall, decision.setting.motion)
+    elif kind == "multiplier contact":
+        document |= _multiplier(decision)
     elif kind != "spring":
         document["proof"] = linear_proof(decision)
     return document
@@ -130,6 +132,18 @@ def _relaxing_law(law: RelaxingLaw, motion: str) -> dict[str, Any]:
         "fed_with": law.fed_with,
         "never_pulls": law.never_pulls,
     }
+
+
+def _multiplier(decision: Decision) -> dict[str, Any]:
+    law = decision.multiplier
+    assert law is not None and law.choice is not None, "only a provable decision is certified"
+    sign = law.proof(law.choice[0], law.left(decision.loop))
+    assert sign is not None, "more damping than is needed keeps the sign"
+    proof: dict[str, Any] = {"multiplier": str(law.choice[0]), "positivity": positivity_document(sign)}
+    if decision.setting.resolution:
+        assert law.norm is not None
+        proof["norm"] = _norm(law.norm)
+    return {"law": {"fed_with": "position", "never_pulls": law.never_pulls}, "proof": proof}
 
 
 def certify_delays(decision: Decision, pieces: Sequence[Piece], longest: Fraction) -> dict[str, Any]:

@@ -113,7 +113,7 @@ def _surface(
         return f"{anywhere}; the law never pulls: a force below 0 is given as 0"
     if not covered:
         return f"sustained contact: the law is linear while the hand stays inside{NOT_COVERED}"
-    if isinstance(decision.wall, RelaxingLaw):
+    if isinstance(decision.wall, RelaxingLaw) and not decision.is_spring:
         never = "; the law never pulls" if law.clamped else ""
         return f"{anywhere}; the law is fed with the {decision.wall.fed_with}{never}"
     if certificate is not None and not certificate.is_of_springs:

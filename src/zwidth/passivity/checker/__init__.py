@@ -24,6 +24,7 @@ from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
 from .multiport import positive_real_matrix
 from .multiport_motion import matrix_extraction
+from .multiplier_contact import multiplier_contact
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
@@ -32,6 +33,7 @@ from .rest import instability, stability
 from .row_motion import row_motion_energy
 from .storage_proof import storage
 from .storage_row import storage_of_row
+from .touching_motion import touching_motion_energy
 from .vibration import vibration
 
 __all__ = ["Verification", "verify"]
@@ -45,6 +47,7 @@ _KINDS = {
     "relaxing contact": relaxing_contact,
     "force bounding": force_bounding,
     "instability": instability,
+    "multiplier contact": multiplier_contact,
     "positive real": positive_real,
     "positive real matrix": positive_real_matrix,
     "stability": stability,
@@ -67,7 +70,9 @@ def verify(document: Mapping[str, Any]) -> Verification:
     try:
         kind = get(document, "kind")
         if kind == "motion":
-            return _motion(document)
+            return _motion(document, motion_energy(document), stored_at_start(document))
+        if kind == "touching motion":
+            return _motion(document, touching_motion_energy(document), Fraction(0))
         if kind == "contact motion":
             return _round_again(contact_motion_energy(document))
         if kind == "row motion":
@@ -85,9 +90,8 @@ def verify(document: Mapping[str, Any]) -> Verification:
         return Verification(False, f"the document is malformed: {str(error)[:200]}")
 
 
-def _motion(document: Mapping[str, Any]) -> Verification:
+def _motion(document: Mapping[str, Any], energy: Fraction, stored: Fraction) -> Verification:
     """A motion is a witness if more energy comes out than was in, and as much as it says."""
-    energy, stored = motion_energy(document), stored_at_start(document)
     claimed = number(get(document, "energy_J"))
     if energy <= stored:
         reason = (
