@@ -137,9 +137,9 @@ def _relaxing_law(law: RelaxingLaw, motion: str) -> dict[str, Any]:
 def _multiplier(decision: Decision) -> dict[str, Any]:
     law = decision.multiplier
     assert law is not None and law.choice is not None, "only a provable decision is certified"
-    sign = law.proof(law.choice[0], law.left(decision.loop))
+    sign = law.memory.proof(law.choice.multiplier, law.left(decision.loop))
     assert sign is not None, "more damping than is needed keeps the sign"
-    proof: dict[str, Any] = {"multiplier": str(law.choice[0]), "positivity": positivity_document(sign)}
+    proof: dict[str, Any] = {"multiplier": str(law.choice.multiplier), "positivity": positivity_document(sign)}
     if decision.setting.resolution:
         assert law.norm is not None
         proof["norm"] = _norm(law.norm)

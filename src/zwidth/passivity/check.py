@@ -6,6 +6,7 @@ the independent checker accepts, "active" a motion whose energy it recomputes.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -14,7 +15,7 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate, certify, certify_delays
-from zwidth.passivity.claims import assumptions, beyond_the_actuator, open_claim
+from zwidth.passivity.claims import ANYWHERE, assumptions, beyond_the_actuator, open_claim
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.delay_interval import prove_delays
@@ -22,6 +23,7 @@ from zwidth.passivity.game import has_gap, with_game
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.refutation import refute_friction, refute_linear
 from zwidth.passivity.supremum import tightest
+from zwidth.passivity.touching import refute_touching
 from zwidth.passivity.verdict import Outcome, Verdict
 from zwidth.passivity.witness import Witness
 from zwidth.quantity.exact import Exact, ends
@@ -71,7 +73,8 @@ def check_by_closed_forms(device: Device, environment: Environment | Any) -> Ver
     if not failing:
         proofs = _proofs(device, law, corners, decisions)
         if proofs is not None:
-            return _passive(device, law, corners, decisions, proofs)
+            found = _passive(device, law, corners, decisions, proofs)
+            return _touched(device, law, found) or found
         return _between(device, law, corners[0], decisions[0])
     worst = failing[0]
     witness = _refute(decisions[worst])
@@ -79,7 +82,24 @@ def check_by_closed_forms(device: Device, environment: Environment | Any) -> Ver
     least = witness if len(corners) == 1 and device.is_certain else _best_witness(device, law)
     if witness is not None and least is not None:
         outcome, witness = "active", least
-    return _not_passive(outcome, device, law, corners[worst], decisions[worst], witness)
+    found = _not_passive(outcome, device, law, corners[worst], decisions[worst], witness)
+    return (outcome == "undecided" and _touched(device, law, found)) or found
+
+
+def _touched(device: Device, law: Environment, verdict: Verdict) -> Verdict | None:
+    """Active, by a motion that touches and leaves, where a proof is of kept contact only; or None."""
+    covered = verdict.certificate is not None and verdict.certificate.covers_contact
+    if covered or not (law.unilateral and device.is_certain and law.is_certain):
+        return None
+    witness = refute_touching(verdict.decision.setting, law)
+    if witness is None:
+        return None
+    claim = f"A motion of the hand that touches and leaves takes energy out of this loop: {witness.describe()}."
+    said = (ANYWHERE, *assumptions("active", device, law, verdict.decision)[1:])
+    said += beyond_the_actuator(device, witness)
+    return replace(
+        verdict, outcome="active", claim=claim, assumptions=said, certificate=None, witness=witness
+    )
 
 
 def _proofs(

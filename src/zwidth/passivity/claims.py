@@ -21,6 +21,10 @@ NOT_COVERED = "; making and breaking contact is not covered"
 """How the first assumption of a proof in sustained contact ends."""
 
 
+ANYWHERE = "contact made and broken at any instant"
+"""Where a motion or a proof lets the hand touch and leave as it likes."""
+
+
 def open_claim(decision: Decision) -> str:
     """What is proved on both sides where the loop itself is neither proved nor refuted."""
     if decision.is_clamped:
@@ -107,7 +111,7 @@ def _surface(
     certificate: Certificate | None,
 ) -> str:
     """Whether the hand may leave the law and come back."""
-    anywhere = "contact made and broken at any instant"
+    anywhere = ANYWHERE
     covered = decision.is_spring if certificate is None else certificate.covers_contact
     if not covered and decision.is_clamped:
         return f"{anywhere}; the law never pulls: a force below 0 is given as 0"

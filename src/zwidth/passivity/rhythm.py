@@ -16,19 +16,26 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import sqrt
+from typing import NamedTuple
 
 from zwidth.passivity.loop import LinearLoop
 
 Row = list[float]
 Matrix = list[Row]
 
-_ROUNDS = (1, 2, 3, 5, 8, 14, 25, 45)
+_ROUNDS = (1, 2, 4, 8, 16, 32)
 """How often a rhythm is repeated."""
 
 _LONGEST_RUN = 1500
 _LARGEST_STATE = 14
-_ENOUGH = 0.05
-"""Energy out over what viscous friction takes, at which a motion is good enough to stop the search."""
+_ENOUGH = 1.1
+"""What is got at the surface over what the way in costs, at which the search stops."""
+
+_TRIED, _HOPELESS, _FEW = 3, 0.75, 4
+"""Rhythms after which the search ends if the best pays for less than this share; motions tried in the end."""
+
+_SETTLED = 1.002
+"""By how much more rounds must pay better to go on."""
 
 
 @dataclass(frozen=True)
@@ -89,29 +96,40 @@ class Surface:
 
 
 def rhythms(surface: Surface) -> Iterator[list[float]]:
-    """Motions that gain, better ones first where a rhythm gains clearly."""
+    """Motions that gain: the first of a rhythm that gains clearly, else a few of the best."""
     model = _Model(surface)
-    if model.size > _LARGEST_STATE:
+    if model.size > _LARGEST_STATE or not model.may_be_loaded:
         return
-    best: tuple[float, list[float]] | None = None
-    for cycle in _cycles(surface.loop):
-        for positions in _played(model, cycle):
-            spent = surface.cost * sum((b - a) ** 2 for a, b in pairwise(positions))
-            share = surface.energy(positions) / spent if spent > 0 else 0.0
-            if share > _ENOUGH:
-                yield positions
-            if share > 1e-9 and (best is None or share > best[0]):
-                best = share, positions
-    if best is not None:
-        yield best[1]
+    found: list[_Played] = []
+    cycles = _cycles(surface.loop)
+    for done, cycle in enumerate(cycles):
+        if done == max(_TRIED, len(cycles) // 2) and max((p.pays for p in found), default=0.0) < _HOPELESS:
+            return
+        best = max(_played(model, cycle), key=lambda played: played.pays, default=None)
+        if best is None:
+            continue
+        found.append(best)
+        if best.pays > _ENOUGH:
+            yield from _gaining(model, [best])
+    found.sort(key=lambda played: -played.pays)
+    yield from _gaining(model, [played for played in found[:_FEW] if 1 < played.pays <= _ENOUGH])
+
+
+def _gaining(model: _Model, found: list[_Played]) -> Iterator[list[float]]:
+    for played in found:
+        positions = _forward(model, _way_in(model, played), played.symbols, played.gains)
+        if model.surface.energy(positions) > 0:
+            yield positions
 
 
 def _cycles(loop: LinearLoop) -> list[str]:
     """Rhythms: T at the surface, just inside; I inside at any depth; O outside."""
-    cycles = ["TO", "IO", "TOO", "TIO", "ITO", "IOO", "TTO", "IIO"]
+    cycles = ["TO", "TOO", "TOOITO", "TIO", "IO", "ITO", "TTO", "IIO"]
     late = loop.whole_delay + (1 if loop.part_delay else 0)
-    waits = range(1, late + 3) if late else ()
-    return cycles + [a * i + "O" * o for i in waits for o in waits for a in "TI" if i + o > 3]
+    if not late:
+        return cycles
+    stays = [f"T{'I' * i}T" for i in range(2 * late + 1)] + ["I" * i for i in range(1, late + 3)]
+    return [stay + "O" * away for away in sorted({1, late, late + 1}) for stay in stays] + cycles
 
 
 class _Model:
@@ -173,40 +191,70 @@ class _Model:
             rows += [[(1 + self.memory + i, 1.0)] for i in range(self.pending - 1)]
         return rows, [1.0, moved, *[0.0] * (self.size - 2)]
 
-    def run_up(self) -> list[float]:
+    @property
+    def may_be_loaded(self) -> bool:
+        """False where the memory of a law fed with the position has no Gramian to speak of."""
+        return self.surface.penetration or bool(self.factor)
+
+    @cached_property
+    def response(self) -> Row:
         """1/D: what one increment leaves in w, sample by sample."""
         response, past = [], [0.0] * len(self.back)
         for k in range(_LONGEST_RUN):
             w = (1.0 if k == 0 else 0.0) - sum(a * v for a, v in zip(self.back, past, strict=True))
             past = [w, *past[:-1]] if past else past
             response.append(w)
-            if k > self.memory and max(map(abs, response[-self.memory :])) < 1e-3:
+            if k > self.memory and max(map(abs, response[-self.memory :])) < 3e-3:
                 break
         return response
 
+    @cached_property
+    def factor(self) -> Matrix:
+        """L of the Gramian W = L Lᵀ of (w_k … w_{k−m+1}); empty where there is none."""
+        m, response = self.memory, self.response
+        lags = [sum(a * b for a, b in zip(response, response[i:], strict=False)) for i in range(m)]
+        return _cholesky([[lags[abs(i - j)] for j in range(m)] for i in range(m)]) or []
 
-def _played(model: _Model, cycle: str) -> Iterator[list[float]]:
-    """Positions in a rhythm done once, twice and more often."""
+
+class _Played(NamedTuple):
+    """A rhythm, from the first sample inside: its moves, the best memory and depth to begin with.
+
+    `pays` is what is got over what the way in costs.
+    """
+
+    pays: float
+    symbols: str
+    gains: list[Row]
+    direction: Row
+    depth: float
+
+
+def _played(model: _Model, cycle: str) -> Iterator[_Played]:
+    """A rhythm done once, twice and more often, as long as more rounds pay better."""
     value = [[0.0] * model.size for _ in range(model.size)]
     gains: list[Row] = []
-    symbols = "O"
-    for _ in range(model.pending):
-        gain = _earlier(model, value, "O", "O")
-        if gain is None:
+    symbols, before = "O", 0.0
+    for symbol in "O" * model.pending:
+        earlier = _earlier(model, value, symbol, "O")
+        if earlier is None:
             return
-        gains.insert(0, gain[1])
-        value, symbols = gain[0], "O" + symbols
+        value, symbols = earlier[0], symbol + symbols
+        gains.insert(0, earlier[1])
     for rounds in range(1, _ROUNDS[-1] + 1):
         for symbol in reversed(cycle if rounds > 1 else cycle.rstrip("O")):
-            gain = _earlier(model, value, symbol, symbols[0])
-            if gain is None:
+            earlier = _earlier(model, value, symbol, symbols[0])
+            if earlier is None:
                 return
-            gains.insert(0, gain[1])
-            value, symbols = gain[0], symbol + symbols
+            value, symbols = earlier[0], symbol + symbols
+            gains.insert(0, earlier[1])
         if rounds in _ROUNDS:
             start = _start(model, value, cycle[0])
-            if start is not None:
-                yield _forward(model, start, symbols, gains)
+            if start is None:
+                return
+            yield _Played(start[0], symbols, list(gains), *start[1:])
+            if start[0] < before * _SETTLED:
+                return
+            before = start[0]
 
 
 def _earlier(model: _Model, value: Matrix, symbol: str, after: str) -> tuple[Matrix, Row] | None:
@@ -239,40 +287,36 @@ def _earlier(model: _Model, value: Matrix, symbol: str, after: str) -> tuple[Mat
     return before, gain
 
 
-def _start(model: _Model, value: Matrix, first: str) -> list[float] | None:
-    """Positions up to the first sample inside that pay best; None if none does."""
+def _start(model: _Model, value: Matrix, first: str) -> tuple[float, Row, float] | None:
+    """What the best beginning pays, the direction of its memory, its depth; None where no depth is best."""
+    cost, m = model.surface.cost, model.memory
     if model.surface.penetration:
-        x = 1.0
-        moved = value[0][0] + 2 * value[0][1] + value[1][1] if first == "I" else 0.0
-        return [0.0, x] if moved > model.surface.cost * (1 + 1e-12) else None
-    m = model.memory
-    inner = [row[1 : 1 + m] for row in value[1 : 1 + m]]
+        return (value[0][0] + 2 * value[0][1] + value[1][1]) / cost, [], 1.0
+    inner, side = [row[1 : 1 + m] for row in value[1 : 1 + m]], value[0][1 : 1 + m]
     depth = value[0][0] if first == "I" else 0.0
     if first == "I":
         if depth >= 0:
             return None
-        side = value[0][1 : 1 + m]
         inner = [[inner[i][j] - side[i] * side[j] / depth for j in range(m)] for i in range(m)]
-    response = model.run_up()
+    largest, direction = _largest(inner, model.factor)
+    state = [sum(model.factor[i][j] * direction[j] for j in range(m)) for i in range(m)]
+    x = -sum(s * v for s, v in zip(side, state, strict=True)) / depth if depth else 0.0
+    return largest / cost, direction, x
+
+
+def _way_in(model: _Model, played: _Played) -> Row:
+    """Positions up to the first sample inside: the cheapest way to that memory, W⁻¹ s = L⁻ᵀ v for s = L v."""
+    if model.surface.penetration:
+        return [0.0, 1.0]
+    m, response = model.memory, model.response
     padded = [*[0.0] * (m - 1), *response]
-    lags = [sum(a * b for a, b in zip(response, response[i:], strict=False)) for i in range(m)]
-    factor = _cholesky([[lags[abs(i - j)] for j in range(m)] for i in range(m)])
-    if factor is None:
-        return None
-    largest, direction = _largest(inner, factor)
-    if largest <= model.surface.cost * (1 + 1e-9):
-        return None
-    dual = _solve_transposed(factor, direction)  # W⁻¹ s for s = L v
-    moves = [
-        sum(dual[i] * padded[m - 1 + k - i] for i in range(m)) for k in range(len(response))
-    ]
-    state = [sum(factor[i][j] * direction[j] for j in range(m)) for i in range(m)]
-    x = -sum(s * v for s, v in zip(value[0][1 : 1 + m], state, strict=True)) / depth if depth else 0.0
-    sign = -1.0 if x < 0 or (x == 0.0 and sum(moves) < 0) else 1.0
-    positions = [sign * x]
+    dual = _solve_transposed(model.factor, played.direction)
+    moves = [sum(dual[i] * padded[m - 1 + k - i] for i in range(m)) for k in range(len(response))]
+    sign = -1.0 if played.depth < 0 or (played.depth == 0.0 and sum(moves) < 0) else 1.0
+    x = [sign * played.depth]
     for move in moves:
-        positions.insert(0, positions[0] - sign * move)
-    return positions
+        x.append(x[-1] - sign * move)
+    return x[::-1]
 
 
 def _forward(model: _Model, start: list[float], symbols: str, gains: list[Row]) -> list[float]:

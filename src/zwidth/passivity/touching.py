@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import ceil
 from typing import Any
 
@@ -22,6 +22,7 @@ from zwidth.environment.environment import Environment
 from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion, round_up
+from zwidth.passivity.oscillation import oscillations
 from zwidth.passivity.rhythm import Surface, rhythms
 from zwidth.passivity.schur import is_schur
 from zwidth.passivity.witness import FORMAT, Setting, Witness
@@ -33,6 +34,8 @@ _FINENESS = (50, 200, 1000, 10_000)
 """Steps in which the largest position is counted; coarse ones make a smaller motion on counts."""
 
 _LONGEST_RETURN = 20_000
+
+_LONGEST_DEEP = 1000
 
 
 @dataclass(frozen=True)
@@ -97,8 +100,26 @@ def refute_touching(setting: Setting, environment: Environment) -> Witness | Non
         environment.clamped,
     )
     surface = Surface(loop, fed_with == "penetration", environment.clamped)
-    found = (_sized(touched, surface, positions) for positions in rhythms(surface))
+    motions = chain(rhythms(surface), _deep(surface))
+    found = (_sized(touched, surface, positions) for positions in motions)
     return next((witness for witness in found if witness is not None), None)
+
+
+def _deep(surface: Surface) -> Iterator[list[float]]:
+    """To and fro so deep inside that a law that never pulls is not clamped, at a frequency that gains."""
+    if not (surface.never_pulls and surface.static > 0):
+        return
+    free = Surface(surface.loop, surface.penetration, False)
+    for one in oscillations(surface.loop, _LONGEST_DEEP):
+        x = [float(v) for v in one.positions[1:-1]]
+        gained = free.energy([x[0], *x])
+        if gained <= 0:
+            continue
+        moved = free.forces([v - min(x) + 1 for v in x])
+        depth = 2 * max(map(abs, moved)) / surface.static
+        count = min(_LONGEST_RETURN, ceil(8 * surface.cost * depth * depth / gained))
+        ramp = [depth * k / count for k in range(count)]
+        yield [*ramp, *(depth + v - x[0] for v in x), *([depth + x[-1] - x[0]] if count else []), *ramp[::-1]]
 
 
 def _sized(setting: TouchedSetting, surface: Surface, positions: list[float]) -> Witness | None:
