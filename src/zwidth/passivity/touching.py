@@ -20,7 +20,6 @@ from typing import Any
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
 from zwidth.passivity.document import loop_document, unit_key
-from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion, round_up
 from zwidth.passivity.oscillation import oscillations
 from zwidth.passivity.rhythm import Surface, rhythms
@@ -133,7 +132,7 @@ def _sized(setting: TouchedSetting, surface: Surface, positions: list[float]) ->
         unit = _unit(setting, knots, surface, steps)
         if unit is None:
             continue
-        witness = setting.witness(_motion(setting.loop, knots, unit))
+        witness = setting.witness(_motion(setting, knots, unit))
         if witness is not None:
             return witness
     return None
@@ -165,8 +164,8 @@ def _unit(setting: TouchedSetting, knots: list[int], surface: Surface, steps: in
     return count * ceil(unit / count) if count else round_up(unit)
 
 
-def _motion(loop: LinearLoop, knots: list[int], unit: Fraction) -> Motion:
-    x = tuple(unit * k for k in knots)
-    if not loop.part_delay:
-        return Motion(x)
-    return Motion(x, tuple(a + loop.part_delay * (b - a) for a, b in pairwise(x)))
+def _motion(setting: Setting, knots: list[int], unit: Fraction) -> Motion:
+    """The positions, an eighth of a count off the edges of the encoder."""
+    x = tuple(unit * k + setting.resolution / 8 for k in knots)
+    part = setting.loop.part_delay
+    return Motion(x, tuple(a + part * (b - a) for a, b in pairwise(x)) if part else ())
