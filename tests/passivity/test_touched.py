@@ -82,7 +82,7 @@ SOLIDS = {
 @pytest.mark.parametrize("clamped", [False, True])
 @pytest.mark.parametrize("name", SOLIDS)
 def test_a_solid_is_proved_at_its_bounds_and_not_below(name, clamped):
-    """b = KT/2 + Σ gT/(1 + p) and f_c = ‖h‖₁ Δ/2: a certificate of contact made and broken, and none below."""
+    """b = KT/2 + Σ gT/(1 + p) and f_c = ‖h‖₁ Δ/2: a certificate, and none below."""
     law, k, parts = SOLIDS[name]
     law, step = law.replace(clamped=clamped), Fraction(1, 10**4)
     parts = [(Fraction(p), Fraction(g)) for p, g in parts]
@@ -100,7 +100,9 @@ def test_a_solid_is_proved_at_its_bounds_and_not_below(name, clamped):
         assert found.certificate is None or not found.certificate.covers_contact
 
 
-@pytest.mark.parametrize(("law", "part"), [(SOLIDS["standard linear"][0], "0.98"), (zw.Wall(100, "0.05"), "0.9")])
+@pytest.mark.parametrize(
+    ("law", "part"), [(SOLIDS["standard linear"][0], "0.98"), (zw.Wall(100, "0.05"), "0.9")]
+)
 def test_a_clamped_law_with_a_spring_is_active_below_its_bound(law, part):
     """Deep inside nothing is clamped: what sustained contact asks for is necessary."""
     need = decide(device(1), law).contact_damping
@@ -121,7 +123,7 @@ FILTERS = {
 @pytest.mark.parametrize("delay", [0, 2])
 @pytest.mark.parametrize("name", FILTERS)
 def test_a_filtered_wall_is_proved_at_the_bound_of_the_multiplier(name, delay):
-    """Less damping than KT/2 + |B| Σ|w| is enough, clamped or not; a millionth less has no such certificate."""
+    """Less damping than KT/2 + |B| Σ|w| is enough, clamped or not; a millionth less is not."""
     for clamped in (False, True):
         law = zw.Wall(10, "0.3", FILTERS[name], clamped=clamped)
         decision = decide(device(1, 1, "0.0001", delay), law)
@@ -148,7 +150,7 @@ def test_one_pole_in_closed_form(seed):
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_slow_filter_is_active_below_the_bound_of_the_page(seed):
-    """b < (B/2)√(T/(T + 2τ)), or < B/((1 + p)√(8(1 + p²))): active, whatever K, f_c and Δ are, clamped or not."""
+    """b < (B/2)√(T/(T + 2τ)), or < B/((1 + p)√(8(1 + p²))): active, whatever K, f_c and Δ, clamped or not."""
     random = Random(seed)
     b, tau = draw(random, 0.05, 3), draw(random, 1e-3, 0.02)
     p = float(tau / (T + tau))
@@ -166,7 +168,7 @@ def test_a_slow_filter_is_active_below_the_bound_of_the_page(seed):
 @pytest.mark.parametrize("delay", [0, 1, Fraction(1, 2)])
 @pytest.mark.parametrize("step", [0, "0.00001"])
 def test_the_simulator_takes_out_the_same(delay, step):
-    """A wall that was called passive, touched and left by the motion of the verdict: the energy is the same."""
+    """A wall that is passive in kept contact, touched and left by the motion of the verdict."""
     law = pole(10, "0.3", "0.01", clamped=bool(delay))
     loop = device("0.019" if delay else "0.025", "0.01" if step else 0, step, delay)
     verdict = check_by_closed_forms(loop, law)
@@ -206,7 +208,9 @@ def random_law(random):
 def wander(random, x, step):
     """A move: any, over an edge of the encoder, to the surface, or back and forth."""
     size = 10 ** random.uniform(-1, 2) * (step or 1e-4)
-    return random.choice((x + random.uniform(-size, size), random.uniform(-size, size), -1e-9, 1e-9 + step, -x))
+    return random.choice(
+        (x + random.uniform(-size, size), random.uniform(-size, size), -1e-9, 1e-9 + step, -x)
+    )
 
 
 @pytest.mark.parametrize("seed", range(60))

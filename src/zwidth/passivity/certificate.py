@@ -136,10 +136,12 @@ def _relaxing_law(law: RelaxingLaw, motion: str) -> dict[str, Any]:
 
 def _multiplier(decision: Decision) -> dict[str, Any]:
     law = decision.multiplier
-    assert law is not None and law.choice is not None, "only a provable decision is certified"
+    assert law is not None, "only a provable decision is certified"
+    assert law.choice is not None
     sign = law.memory.proof(law.choice.multiplier, law.left(decision.loop))
     assert sign is not None, "more damping than is needed keeps the sign"
-    proof: dict[str, Any] = {"multiplier": str(law.choice.multiplier), "positivity": positivity_document(sign)}
+    proof: dict[str, Any] = {"multiplier": str(law.choice.multiplier)}
+    proof["positivity"] = positivity_document(sign)
     if decision.setting.resolution:
         assert law.norm is not None
         proof["norm"] = _norm(law.norm)

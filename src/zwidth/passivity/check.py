@@ -94,7 +94,8 @@ def _touched(device: Device, law: Environment, verdict: Verdict) -> Verdict | No
     witness = refute_touching(verdict.decision.setting, law)
     if witness is None:
         return None
-    claim = f"A motion of the hand that touches and leaves takes energy out of this loop: {witness.describe()}."
+    motion = witness.describe()
+    claim = f"A motion of the hand that touches and leaves takes energy out of this loop: {motion}."
     said = (ANYWHERE, *assumptions("active", device, law, verdict.decision)[1:])
     said += beyond_the_actuator(device, witness)
     return replace(

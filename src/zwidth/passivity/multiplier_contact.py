@@ -46,7 +46,7 @@ class Choice(NamedTuple):
 
 @dataclass(frozen=True)
 class Memory:
-    """G = moved/bottom, ascending in ζ, whole numbers, `late` samples late: what a wall has besides its spring."""
+    """G = moved/bottom, ascending in ζ, `late` samples late: what a wall has besides its spring."""
 
     moved: tuple[int, ...]
     bottom: tuple[int, ...]

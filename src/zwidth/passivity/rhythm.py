@@ -142,9 +142,7 @@ class _Model:
         self.surface, loop = surface, surface.loop
         n, d, k = surface.numerator, surface.denominator, surface.static
         size = max(len(n), len(d))
-        rest = [
-            (n[i] if i < len(n) else 0.0) - k * (d[i] if i < len(d) else 0.0) for i in range(size)
-        ]
+        rest = [(n[i] if i < len(n) else 0.0) - k * (d[i] if i < len(d) else 0.0) for i in range(size)]
         running, c = 0.0, []
         for v in rest[:-1]:
             running += v
@@ -336,9 +334,7 @@ def _forward(model: _Model, start: list[float], symbols: str, gains: list[Row]) 
         goal = min(goal, 0.0) if after == "O" else 0.0 if after == "T" else max(goal, 0.0)
         rows, b = model.step(symbol != "O", after != "O")
         move = goal - state[0]
-        state = [
-            sum(a * state[j] for j, a in entries) + c * move for entries, c in zip(rows, b, strict=True)
-        ]
+        state = [sum(a * state[j] for j, a in entries) + c * move for entries, c in zip(rows, b, strict=True)]
         x.append(max(goal, least) if after != "O" else goal)
     return x
 

@@ -141,9 +141,7 @@ def _sized(setting: TouchedSetting, surface: Surface, positions: list[float]) ->
 def _knots(positions: list[float], steps: int) -> list[int]:
     """Whole numbers of the grid, each on its side of the surface: 1 at least inside, 0 at most outside."""
     size = max(map(abs, positions))
-    return [
-        max(1, round(steps * x / size)) if x > 0 else min(0, round(steps * x / size)) for x in positions
-    ]
+    return [max(1, round(steps * x / size)) if x > 0 else min(0, round(steps * x / size)) for x in positions]
 
 
 def _returned(knots: list[int], gained: float, cost: float) -> list[int]:

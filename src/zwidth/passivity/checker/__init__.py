@@ -22,9 +22,9 @@ from .contact_motion import contact_motion_energy
 from .contact_proof import contact
 from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
+from .multiplier_contact import multiplier_contact
 from .multiport import positive_real_matrix
 from .multiport_motion import matrix_extraction
-from .multiplier_contact import multiplier_contact
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number

@@ -28,7 +28,7 @@ def multiplier_contact(document: Mapping[str, Any]) -> str:
         raise Invalid("the delay is no whole number of samples")
     if not _inside_unit_circle(p.denominator):
         raise Invalid("H(z) has a pole outside or on the unit circle")
-    stiffness = sum(p.numerator) / sum(p.denominator)
+    stiffness = sum(p.numerator, Fraction(0)) / sum(p.denominator, Fraction(0))
     if stiffness < 0:
         raise Invalid("the static stiffness H(1) is negative")
     rest = [n - stiffness * d for n, d in zip(p.numerator, p.denominator, strict=True)]

@@ -254,7 +254,7 @@ class _Search:
 
         def proved(value: Exact) -> bool:
             found = verdict(value)
-            return found.outcome == "passive" and found.certificate.covers_contact
+            return bool(found.outcome == "passive" and found.certificate.covers_contact)
 
         def refuted(value: Exact) -> bool:
             return bool(verdict(value).outcome == "active")
