@@ -477,7 +477,7 @@ def test_rotary_advice_has_rotary_units():
 
 def test_assumptions_name_what_was_not_given():
     """Parameters taken as zero, the ideal sensor, sustained contact, and intervals are all said."""
-    loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.27", zw.Window(2))
+    loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.44", zw.Window(2))
     bare = zw.check(*loop, contact="kept")
     text = "\n".join(bare.assumptions)
     for line in ("coulomb friction was not given", "resolution was not given", "delay was not given"):

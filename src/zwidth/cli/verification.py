@@ -23,7 +23,8 @@ _TABLES = {
     **dict.fromkeys(
         ("positive real", "positive real matrix", "extraction", "matrix extraction"), ("system", "motion")
     ),
-    **dict.fromkeys(("contact", "relaxing contact", "force bounding", "nonlinear spring"), ("loop", "law")),
+    **dict.fromkeys(("contact", "relaxing contact", "multiplier contact", "force bounding"), ("loop", "law")),
+    "nonlinear spring": ("loop",),
     **dict.fromkeys(("storage", "row storage", "contact motion", "row motion"), ("loop", "law", "domain")),
 }
 """What a document of each kind is of, besides its loop: only what is checked is shown."""

@@ -103,7 +103,10 @@ def wall_in_words(wall: Wall | MatrixWall) -> str:
     """Stiffness and virtual damping, of one direction or as matrices."""
     from zwidth.environment.wall import Wall
 
-    parts: list[tuple[str, Any, int]] = [("stiffness", wall.stiffness, 0), ("virtual damping", wall.damping, 1)]
+    parts: list[tuple[str, Any, int]] = [
+        ("stiffness", wall.stiffness, 0),
+        ("virtual damping", wall.damping, 1),
+    ]
     if isinstance(wall, Wall):
         found = [f"{float(value):g} {('N/m', 'N·s/m')[i]}" for _, value, i in parts if float(value)]
         return ", ".join(found or ["0 N/m"]) + " in every direction"

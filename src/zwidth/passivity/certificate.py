@@ -87,6 +87,8 @@ def certify(decision: Decision) -> dict[str, Any]:
         document["law"] = _law(decision.wall, decision.setting.motion)
     elif isinstance(decision.wall, RelaxingLaw) and kind == "relaxing contact":
         document["law"] = _relaxing_law(decision.wall, decision.setting.motion)
+    elif kind == "multiplier contact":
+        document |= _multiplier(decision)
     elif kind != "spring":
         document["proof"] = linear_proof(decision)
     return document
@@ -131,6 +133,20 @@ def _relaxing_law(law: RelaxingLaw, motion: str) -> dict[str, Any]:
         "fed_with": law.fed_with,
         "never_pulls": law.never_pulls,
     }
+
+
+def _multiplier(decision: Decision) -> dict[str, Any]:
+    law = decision.multiplier
+    assert law is not None, "only a provable decision is certified"
+    assert law.choice is not None
+    sign = law.memory.proof(law.choice.multiplier, law.left(decision.loop))
+    assert sign is not None, "more damping than is needed keeps the sign"
+    proof: dict[str, Any] = {"multiplier": str(law.choice.multiplier)}
+    proof["positivity"] = positivity_document(sign)
+    if decision.setting.resolution:
+        assert law.norm is not None
+        proof["norm"] = _norm(law.norm)
+    return {"law": {"fed_with": "position", "never_pulls": law.never_pulls}, "proof": proof}
 
 
 def certify_delays(decision: Decision, pieces: Sequence[Piece], longest: Fraction) -> dict[str, Any]:

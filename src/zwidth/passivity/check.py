@@ -8,6 +8,7 @@ motion whose energy it recomputes.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, overload
 
@@ -26,6 +27,7 @@ from zwidth.passivity.other_laws import check_other
 from zwidth.passivity.refutation import refute_friction
 from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
 from zwidth.passivity.supremum import tightest
+from zwidth.passivity.touching import refute_touching
 from zwidth.passivity.verdict import Finding, Verdict
 from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness
@@ -135,7 +137,8 @@ def check_by_closed_forms(
     if not failing:
         proofs = _proofs(device, law, corners, decisions)
         if proofs is not None:
-            return _passive(device, law, corners, decisions, proofs, asked)
+            found = _passive(device, law, corners, decisions, proofs, asked)
+            return _touched(device, law, found) or found
         return _undecided(device, law, corners[0], decisions[0], "between corners")
     worst = failing[0]
     certain = device.is_certain and len(corners) == 1
@@ -144,7 +147,20 @@ def check_by_closed_forms(
         return _active(device, law, corners[worst], decisions[worst], least)
     at_worst = None if certain else _refute(decisions[worst])
     finding: Finding = "open" if at_worst is None else "depends on values"
-    return _undecided(device, law, corners[worst], decisions[worst], finding, at_worst)
+    found = _undecided(device, law, corners[worst], decisions[worst], finding, at_worst)
+    return (asked != "kept" and _touched(device, law, found)) or found
+
+
+def _touched(device: Device, law: Environment, verdict: LinearVerdict) -> LinearVerdict | None:
+    """Active, by a motion that touches and leaves, where no proof covers that; or None."""
+    open_still = verdict.outcome in ("passive in contact", "undecided")
+    if not (open_still and law.unilateral and device.is_certain and law.is_certain):
+        return None
+    witness = refute_touching(verdict.decision.setting, law)
+    if witness is None:
+        return None
+    scope = verdict.scope.replace(contact="made and broken", also=())
+    return replace(verdict, outcome="active", scope=scope, certificate=None, motion=witness, at_limit=False)
 
 
 def _as_law(device: Device, environment: Environment | Any) -> Environment:

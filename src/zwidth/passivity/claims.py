@@ -44,6 +44,7 @@ _ROADS = {
     "spring": "the closed conditions of a spring",
     "contact": "the closed conditions of a damped wall, contact made and broken",
     "relaxing contact": "the closed conditions of a law that relaxes, contact made and broken",
+    "multiplier contact": "a multiplier, contact made and broken",
     "linear": "the linear criterion",
     "quantized": "the linear criterion, and a bound on the force error of the encoder",
     "delays": "the linear criterion, for every delay of the interval",

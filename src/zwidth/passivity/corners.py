@@ -19,7 +19,9 @@ each of them separately, since such a function is largest at a corner:
   μ0 + 2μ1η1/(μ1T+η1), μ0 + μ1 max(1, 4η1/(μ1T+2η1)) and K + 2B/(T+τ);
 * every parameter of a wall without delay for which the conditions for contact
   made and broken hold at every corner: they increase in K and |B|, the one for
-  b in T, the one for f_c in 1/T and 1/(T+τ).
+  b in T, the one for f_c in 1/T and 1/(T+τ).  What the multiplier asks for is never
+  more, and does so as well: K T/2 + |B| times a number of the filter, for one pole
+  one that falls with τ/T.
 
 Elsewhere the corners are still looked at, but prove nothing for what is between.
 """

@@ -29,25 +29,31 @@ from zwidth.environment.environment import Environment
 from zwidth.passivity.contact import DampedWall, damped_wall
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.loop import LinearLoop, linear_loop
+from zwidth.passivity.multiplier_contact import MultiplierLaw, multiplier_law
 from zwidth.passivity.one_norm import NormBound, bound_one_norm
 from zwidth.passivity.relaxing_contact import RelaxingLaw, relaxing_law
 from zwidth.passivity.straddle import best_waits
 from zwidth.passivity.witness import Setting
 
-Kind = Literal["spring", "contact", "relaxing contact", "linear", "quantized"]
+Kind = Literal["spring", "contact", "relaxing contact", "multiplier contact", "linear", "quantized"]
+
+
+ContactLaw = DampedWall | RelaxingLaw | MultiplierLaw
+"""A law as one proof for contact made and broken sees it: the damping and the friction that it asks for."""
 
 
 @dataclass(frozen=True)
 class Decision:
     """What is known of one loop; nothing here is claimed before its proof or motion is checked.
 
-    `wall` is the law as the conditions for contact made and broken see it, None
-    for a law of which none are known; `never_pulls` says whether its force is clamped.
+    `wall` and `multiplier` are the law as the conditions for contact made and broken see
+    it, None for a law of which none are known; `never_pulls` says whether its force is clamped.
     """
 
     setting: Setting
     wall: DampedWall | RelaxingLaw | None = None
     never_pulls: bool = False
+    multiplier: MultiplierLaw | None = None
 
     @property
     def loop(self) -> LinearLoop:
@@ -66,6 +72,8 @@ class Decision:
         if self.is_spring:
             return "spring"
         if self.covers_contact:
+            if not self._covered_by(self.wall):
+                return "multiplier contact"
             return "relaxing contact" if isinstance(self.wall, RelaxingLaw) else "contact"
         return "quantized" if self.setting.resolution else "linear"
 
@@ -77,22 +85,35 @@ class Decision:
     @property
     def contact_damping(self) -> Fraction | None:
         """Device damping that covers a wall touched and left [N·s/m; N·m·s/rad]; None where none is known."""
-        return None if self.wall is None else self.wall.required_damping(self.loop)
+        return None if self._least_contact is None else self._least_contact.required_damping(self.loop)
 
     @property
     def contact_friction(self) -> Fraction | None:
         """The same for Coulomb friction and the encoder [N; N·m]."""
-        if self.wall is None:
+        if self._least_contact is None:
             return None
-        return self.wall.required_friction(self.setting.resolution, self.loop.period)
+        return self._least_contact.required_friction(self.setting.resolution, self.loop.period)
+
+    @cached_property
+    def _least_contact(self) -> ContactLaw | None:
+        """The conditions that ask for the least damping."""
+        laws = [law for law in (self.wall, self.multiplier) if law is not None]
+        needs = [(need, law) for law in laws if (need := law.required_damping(self.loop)) is not None]
+        return min(needs, key=lambda pair: pair[0], default=(None, None))[1]
+
+    def _covered_by(self, law: ContactLaw | None) -> bool:
+        if law is None:
+            return False
+        damping = law.required_damping(self.loop)
+        if damping is None or self.loop.damping < damping:
+            return False
+        friction = law.required_friction(self.setting.resolution, self.loop.period)
+        return friction is not None and self.setting.coulomb_friction >= friction
 
     @cached_property
     def covers_contact(self) -> bool:
         """True when both conditions for a wall touched and left hold."""
-        damping, friction = self.contact_damping, self.contact_friction
-        if damping is None or friction is None:
-            return False
-        return self.loop.damping >= damping and self.setting.coulomb_friction >= friction
+        return self._covered_by(self.wall) or self._covered_by(self.multiplier)
 
     @cached_property
     def viscous(self) -> LinearProof | LinearRefutation:
@@ -157,4 +178,4 @@ def decide(device: Device, environment: Environment) -> Decision:
         device.motion,
     )
     wall = damped_wall(environment, loop.period) or relaxing_law(environment, loop)
-    return Decision(setting, wall, environment.clamped)
+    return Decision(setting, wall, environment.clamped, multiplier_law(environment, loop))

@@ -7,7 +7,7 @@ arithmetic, and found energy to come out.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -36,7 +36,7 @@ class Setting:
 
     def ideal(self) -> Setting:
         """Without Coulomb friction and with an ideal encoder: energy is then quadratic in size."""
-        return Setting(self.loop, Fraction(0), Fraction(0), self.unilateral, self.motion)
+        return replace(self, coulomb_friction=Fraction(0), resolution=Fraction(0))
 
     def energy(self, motion: Motion) -> Fraction | None:
         """Energy the hand takes out [J], by the checker; None if the motion is not admitted."""
@@ -55,6 +55,19 @@ class Setting:
         """The motion as a witness if the checker finds that it takes out more than was stored."""
         energy = self.energy(motion)
         return None if energy is None or energy <= self.stored else Witness(self, motion, energy)
+
+    def peak_force(self, positions: tuple[Fraction, ...]) -> float:
+        """Largest force of the law at these positions, to rounding [N; N·m]."""
+        d = [c / self.loop.denominator[0] for c in self.loop.denominator[1:]]
+        n = [c / self.loop.denominator[0] for c in self.loop.numerator]
+        past = [0.0] * max(len(d), len(n) - 1)
+        peak = 0.0
+        for x in map(float, positions):
+            w = x - sum(a * v for a, v in zip(d, past, strict=False))
+            past = [w, *past]
+            peak = max(peak, abs(sum(a * v for a, v in zip(n, past, strict=False))))
+            past.pop()
+        return peak
 
     def document(self, motion: Motion, energy: Fraction) -> dict[str, Any]:
         """The motion in this setting as a document for the checker."""
@@ -138,18 +151,9 @@ class Witness:
     @property
     def peak_force(self) -> float:
         """Largest actuator force that the motion asks for, to rounding [N; N·m]."""
-        loop = self.setting.loop
-        d = [c / loop.denominator[0] for c in loop.denominator[1:]]
-        n = [c / loop.denominator[0] for c in loop.numerator]
-        past = [0.0] * max(len(d), len(n) - 1)
-        peak = 0.0
-        for x in self.positions:
-            w = x - sum(a * v for a, v in zip(d, past, strict=False))
-            past = [w, *past]
-            peak = max(peak, abs(sum(a * v for a, v in zip(n, past, strict=False))))
-            past.pop()
         # a part that moves on with every round is listed once: its depth is what counts
-        return max(peak, abs(float(loop.static_stiffness or 0)) * self.depth)
+        static = abs(float(self.setting.loop.static_stiffness or 0)) * self.depth
+        return max(self.setting.peak_force(self._told.positions), static)
 
     def verify(self) -> bool:
         """True when the independent checker finds the same energy, > 0."""

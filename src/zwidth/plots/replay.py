@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from zwidth.passivity.motion import Motion
+from zwidth.passivity.touching import TouchedSetting
 from zwidth.passivity.witness import Setting, Witness
 
 ROUNDS = 3
@@ -154,6 +155,8 @@ def _steps(setting: Setting, x: Sequence[Fraction], y: Sequence[Fraction]) -> li
 def _forces(setting: Setting, x: Sequence[Fraction]) -> list[_Real]:
     """f(k) by the direct form D w = x, f = N w, from the position that the encoder reads."""
     n, d, count = setting.loop.numerator, setting.loop.denominator, setting.resolution
+    if isinstance(setting, TouchedSetting):
+        return list(setting.forces(tuple(x)))
     zero: _Real = Fraction(0) if len(x) <= _EXACT else 0.0
     past: list[_Real] = []  # w, the newest last
     forces = []

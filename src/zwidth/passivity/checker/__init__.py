@@ -22,6 +22,7 @@ from .contact_motion import contact_motion_energy
 from .contact_proof import contact
 from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
+from .multiplier_contact import multiplier_contact
 from .multiport import positive_real_matrix
 from .multiport_motion import matrix_extraction
 from .nonlinear_spring import endless_pull, nonlinear_spring
@@ -34,6 +35,7 @@ from .row_motion import row_motion_energy
 from .scope import Scope, scope_of
 from .storage_proof import storage
 from .storage_row import storage_of_row
+from .touching_motion import touching_motion_energy
 from .vibration import vibration
 from .violation import violation
 
@@ -49,6 +51,7 @@ _KINDS = {
     "endless pull": endless_pull,
     "force bounding": force_bounding,
     "instability": instability,
+    "multiplier contact": multiplier_contact,
     "nonlinear spring": nonlinear_spring,
     "positive real": positive_real,
     "positive real matrix": positive_real_matrix,
@@ -83,7 +86,9 @@ def verify(document: Mapping[str, Any]) -> Verification:
 def _verified(document: Mapping[str, Any]) -> Verification:
     kind = get(document, "kind")
     if kind == "motion":
-        return _motion(document)
+        return _motion(document, motion_energy(document), stored_at_start(document))
+    if kind == "touching motion":
+        return _motion(document, touching_motion_energy(document), Fraction(0))
     if kind == "contact motion":
         return _round_again(contact_motion_energy(document))
     if kind == "row motion":
@@ -97,9 +102,8 @@ def _verified(document: Mapping[str, Any]) -> Verification:
     return Verification(True, _KINDS[kind](document))
 
 
-def _motion(document: Mapping[str, Any]) -> Verification:
+def _motion(document: Mapping[str, Any], energy: Fraction, stored: Fraction) -> Verification:
     """A motion is a witness if more energy comes out than was in, and as much as it says."""
-    energy, stored = motion_energy(document), stored_at_start(document)
     claimed = number(get(document, "energy_J"))
     if energy <= stored:
         reason = (

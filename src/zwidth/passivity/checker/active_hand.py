@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from .contact_proof import contact
+from .multiplier_contact import multiplier_contact
 from .proofs import PROOFS, _criterion, _friction, _linear_part, _positivity
 from .reading import Invalid, Loop, get, in_its_unit, number, read_loop
 from .relaxing_contact import relaxing_contact
@@ -41,9 +42,14 @@ def _activity(document: Mapping[str, Any]) -> Fraction:
 
 
 def _everywhere(p: Loop, activity: Fraction, reduced: Mapping[str, Any]) -> str:
-    kinds = {**PROOFS, "contact": contact, "relaxing contact": relaxing_contact}
+    kinds = {
+        **PROOFS,
+        "contact": contact,
+        "relaxing contact": relaxing_contact,
+        "multiplier contact": multiplier_contact,
+    }
     kind = get(reduced, "kind")
-    if kind not in ("spring", "contact", "relaxing contact", "linear", "quantized"):
+    if kind not in kinds or kind == "delays":
         raise Invalid("the loop with less damping needs a proof of passivity")
     reason = kinds[kind](reduced)
     less = read_loop(reduced)

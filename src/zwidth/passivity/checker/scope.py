@@ -87,6 +87,11 @@ def _of_every_hand(touched: Contact, shows: str = PASSIVE) -> Callable[[Mapping[
     return scope
 
 
+def _of_a_fed_law(document: Mapping[str, Any]) -> Scope:
+    """The proof holds for what its memory is fed with, and may fail for the other."""
+    return _of_every_hand(BROKEN)(document)._replace(fed_with=document["law"]["fed_with"])
+
+
 def _force_bounding(document: Mapping[str, Any]) -> Scope:
     """Whatever is commanded, contact or none; it reckons with its own limit and with half a step."""
     loop = document["loop"]
@@ -140,9 +145,9 @@ def _port(shows: str) -> Callable[[Mapping[str, Any]], Scope]:
 _SCOPES: dict[str, Callable[[Mapping[str, Any]], Scope]] = {
     "spring": _of_every_hand(BROKEN),
     "contact": _of_every_hand(BROKEN),
-    "relaxing contact": lambda document: _of_every_hand(BROKEN)(document)._replace(
-        fed_with=document["law"]["fed_with"]
-    ),
+    "relaxing contact": _of_a_fed_law,
+    "multiplier contact": _of_a_fed_law,
+    "touching motion": _of_every_hand(BROKEN, ACTIVE),
     "nonlinear spring": lambda document: Scope(PASSIVE, encoder=_encoder(document["loop"])),
     "linear": _of_every_hand(KEPT),
     "quantized": _of_every_hand(KEPT),

@@ -28,7 +28,7 @@ from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, game_of, g
 from zwidth.passivity.worst_hand.row_game import RowGame, row_game
 from zwidth.passivity.worst_hand.row_table import DoesNotClose
 from zwidth.passivity.worst_hand.storage import Storage
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.rendering.rendered import Rendered
 
@@ -215,8 +215,10 @@ def passive_limit(
     closed = not (force_limit or force_resolution or friction is not None)
     bracket = search.by_closed_forms() if closed else None
     bounded = penetration is not None or speed is not None
-    if bracket is not None and not bounded and bracket.relative_width <= tolerance:
-        return bracket
+    if bracket is not None and not bounded:
+        settled = bracket.passive is not None or bracket.active is not None
+        if bracket.relative_width <= tolerance or (settled and ends(device.resolution)[1] == 0):
+            return bracket  # with an ideal encoder there is no game that would narrow it
     known = (None, None) if bracket is None else (bracket.passive, bracket.active)
 
     counted = penetration, speed, force_limit, force_resolution, friction
