@@ -20,8 +20,8 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.hunt_crossley import HuntCrossley
 from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.errors import InputError
+from zwidth.passivity import game
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.game import SECONDS
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Need, Verdict
 from zwidth.quantity.exact import Exact, ends
@@ -155,7 +155,7 @@ def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
     from zwidth.passivity.worst_hand.hand import worst_hand  # numpy and numba take their time
 
     try:
-        found = worst_hand(verdict.device, verdict.environment, seconds=SECONDS, progress=progress)
+        found = worst_hand(verdict.device, verdict.environment, seconds=game.SECONDS, progress=progress)
     except InputError:  # an ideal encoder, or a law that remembers too much
         return verdict
     if found.witness is not None:
