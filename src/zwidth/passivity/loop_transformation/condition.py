@@ -49,12 +49,6 @@ class TransformedCondition:
         True when it is proved, by exact arithmetic.  False says that this theorem does not promise it.
     required_damping
         b that is enough, itself proved [N·s/m; N·m·s/rad]; None if none is.
-    contact
-        "made and broken": springs may be one-sided, and what the environments keep holds wherever they are.
-    encoder
-        "not counted" where the device has one with counts, else "ideal": the theorem knows exact positions.
-    hypothesis
-        What the environments must keep besides slopes or indices.
     binding
         What would have to change: the damping of the device, against hold and delay; or coupling and
         environment, which together must be strictly passive whatever the device.
@@ -78,14 +72,17 @@ class TransformedCondition:
 
     @property
     def contact(self) -> Literal["made and broken"]:
+        """Springs may be one-sided; what the environments keep holds wherever they are."""
         return "made and broken"
 
     @property
     def encoder(self) -> Literal["ideal", "not counted"]:
+        """Whether the device has counts, which the theorem leaves out: it knows exact positions."""
         return "not counted" if self.device.exact("resolution") else "ideal"
 
     @property
     def hypothesis(self) -> str:
+        """What the environments must keep besides slopes or indices."""
         if isinstance(self.environment, Slopes):
             return "the potential of the spring is bounded below"
         return "the energy that the environment has stored at first is bounded"
