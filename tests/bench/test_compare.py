@@ -244,3 +244,11 @@ def test_a_wheel_is_told_how_to_come_to_its_handle():
     wheel = zw.rotary(inertia=1e-4, damping="0.001", rate=1000)
     with pytest.raises(zw.InputError, match="--handle-radius"):
         zw.compare(wheel, zw.Wall(1))
+
+
+def test_what_was_stored_at_the_start_is_not_given_out():
+    """2 J of work, of which 1.5 J were in the spring when the touch began."""
+    trace = made([0.0, -1.0, -2.0], [1.0, 1.0, 1.0])
+    assert scores.generated_energy(trace) == pytest.approx(2.0)
+    loaded = trace.assign_attrs(stored_at_start_J=1.5)
+    assert scores.generated_energy(loaded) == pytest.approx(0.5)

@@ -131,8 +131,8 @@ def test_a_parameter_is_named_as_its_option(run: Run, parameter: str, low: float
 
 
 def test_one_side_is_status_three(run: Run) -> None:
-    """A mass takes no part: every value is passive."""
-    result = run("limit", "haptic-paddle", "--stiffness", "100", "--parameter", "mass", "--seconds", "0.5")
+    """Before no wall at all every damping of the device is passive."""
+    result = run("limit", "haptic-paddle", "--stiffness", "0", "--parameter", "damping", "--seconds", "0.5")
     assert result.status == 3
     assert result.out.startswith(" ONE SIDE ")
     assert "none known" in result.out

@@ -345,7 +345,7 @@ def test_slips_in_a_file(read: Load, content: str | bytes, part: str) -> None:
         ({"environment.stiffness": "1"}, "there is none"),
         ({"environment.stifness": "1"}, "there is no parameter"),
         ({"type": "spring"}, "there is no environment of type"),
-        ({"virtual_damping": "1"}, "needs stiffness"),
+        ({"virtual_damping": "1"}, "needs --stiffness"),
         ({}, "no environment is given"),
     ],
 )

@@ -82,6 +82,8 @@ class Start:
     resolution: float
     phase: float
     position: float
+    regular: bool = True
+    """False where samples may be late or missing."""
 
     @property
     def reading(self) -> float:
@@ -110,7 +112,8 @@ class Start:
     def is_paid(self, rise: float, slope: float) -> bool:
         """True where b ≥ L T/2 and f_c ≥ e: then a law without memory and delay gives no more than Φ."""
         enough = self.plant.damping >= 0.5 * rise * float(self.period)
-        return self.delay == 0 and enough and self.plant.coulomb >= self.error(slope)
+        at_once = self.regular and self.delay == 0
+        return at_once and enough and self.plant.coulomb >= self.error(slope)
 
 
 def rest_position(law: Environment, period: Fraction, start: float) -> float:

@@ -202,6 +202,7 @@ def _stored(setup: Setup, values: dict[str, Array]) -> dict[str, Any]:
         resolution=frame.resolution,
         phase=setup.encoder_phase,
         position=float(setup.state[POSITION]),
+        regular=setup.timing is None,
     )
     held = held_at_start(at, float(values["measured_position"].max()))
     whole = frame.arrivals.shape[1] == 0 and frame.offset == 0.0

@@ -50,9 +50,6 @@ class TransformedCondition:
         True when it is proved, by exact arithmetic.  False says that this theorem does not promise it.
     required_damping
         b that is enough, itself proved [N·s/m; N·m·s/rad]; None if none is.
-    scope
-        What it is about: springs may be one-sided, and what the environments keep holds wherever they are;
-        the theorem knows exact positions; what the environments must keep besides slopes or indices.
     binding
         What would have to change: the damping of the device, against hold and delay; or coupling and
         environment, which together must be strictly passive whatever the device.
@@ -76,7 +73,11 @@ class TransformedCondition:
 
     @property
     def scope(self) -> Scope:
-        """What it is about."""
+        """What it is about.
+
+        Springs may be one-sided, and what the environments keep holds wherever they are; the theorem knows
+        exact positions; `law` says what the environments must keep besides slopes or indices.
+        """
         slopes = isinstance(self.environment, Slopes)
         return Scope(
             contact="made and broken",
