@@ -1,6 +1,6 @@
 """One verdict against the referee: is it wrong?
 
-passive              the criterion holds at its tightest frequency, and no motion tried takes energy out
+passive, theorem     the criterion holds at its tightest frequency, and no motion tried takes energy out
 passive in contact   the same for motions that stay inside; whether one that touches does is counted
 active               the motion, run again, takes out what it is said to, and more than was stored; or the
                      criterion is violated, or H unstable, in numbers of the referee's own
@@ -23,8 +23,8 @@ from .loops import Case
 from .motions import ROUNDING, attack, refutes
 from .referee import PlainLoop, ball, differs, energies, largest_pole, needed, violated
 
-OUTCOMES = ("passive", "passive in contact", "active", "undecided", "refused")
-PASSIVE, KEPT, ACTIVE, UNDECIDED, REFUSED = OUTCOMES
+OUTCOMES = ("passive", "passive in contact", "theorem", "active", "undecided", "refused")
+PASSIVE, KEPT, THEOREM, ACTIVE, UNDECIDED, REFUSED = OUTCOMES
 
 LIGHT, HEAVY = (48, 100), (128, 600)
 """Motions drawn, and steps by which the best is improved."""
@@ -66,7 +66,7 @@ def judge(case: Case, rng: np.random.Generator) -> Judged:
         return Judged(case.kind, said, against_points(case, said))
     if said == ACTIVE:
         return Judged(case.kind, said, against_active(verdict, case.loop, rng))
-    if said in (PASSIVE, KEPT):
+    if said in (PASSIVE, THEOREM, KEPT):
         wrong, touched = against_passive(case.loop, rng, kept=said == KEPT)
         return Judged(case.kind, said, wrong, touched)
     return Judged(case.kind, said)
@@ -81,7 +81,7 @@ def decide(case: Case) -> Any:
 
 def against_passive(loop: PlainLoop, rng: np.random.Generator, *, kept: bool) -> tuple[str, bool]:
     """(what contradicts a proof or "", whether a hand that touches and leaves defeats it)."""
-    if not loop.clamped:
+    if loop.linear_inside:
         wrong = _criterion(loop)
         if wrong:
             return wrong, False
@@ -102,7 +102,7 @@ def against_passive(loop: PlainLoop, rng: np.random.Generator, *, kept: bool) ->
 def _criterion(loop: PlainLoop) -> str:
     """Whether the linear criterion is violated, or H unstable; "" if not."""
     asked, angle = needed(loop)
-    if asked > float(loop.damping) * (1 - 1e-4) and violated(loop, angle):
+    if asked > float(loop.damping) * (1 - 1e-6) and violated(loop, angle):
         return f"the criterion asks for {asked:.12g} at ωT = {angle:.6g}"
     if largest_pole(loop) > 1 + 1e-6:
         return "H(z) is unstable"
@@ -120,7 +120,7 @@ def against_active(verdict: Any, loop: PlainLoop, rng: np.random.Generator) -> s
     samples = getattr(motion, "samples", 0)
     if motion is not None and samples <= SHORT:
         return _run_again(verdict.witness, loop)
-    if not loop.clamped and _criterion(loop):
+    if loop.linear_inside and _criterion(loop):
         return ""
     if motion is not None and samples <= LONG:
         return _run_again(verdict.witness, loop)
@@ -183,6 +183,6 @@ def against_points(case: Case, said: str) -> str:
         except InputError:
             continue
         # kept contact is passive and a hand that touches and leaves gains: no contradiction
-        if (said, point) in ((PASSIVE, ACTIVE), (ACTIVE, PASSIVE)):
+        if {said, point} in ({PASSIVE, ACTIVE}, {THEOREM, ACTIVE}):
             return f"{said} for all values, {point} for {device!r}, {law!r}"
     return ""

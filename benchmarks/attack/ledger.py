@@ -99,9 +99,9 @@ def table(stretches: list[Stretch]) -> str:
     for s in stretches:
         all_of.merge(s)
     rows = [
-        "| kind | loops | passive | passive in contact | of these, defeated by touching | active | undecided "
-        "| refused | wrong |",
-        "|---|---:|---:|---:|---:|---:|---:|---:|---:|",
+        "| kind | loops | passive | passive in contact | of these, defeated by touching | theorem | active "
+        "| undecided | refused | wrong |",
+        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|",
     ]
     sums: Counter[str] = Counter()
     for kind, tally in sorted(all_of.kinds.items()):
@@ -114,8 +114,8 @@ def _row(kind: str, tally: Counter[str]) -> str:
     loops = sum(tally[o] for o in OUTCOMES)
     undecided = f"{tally['undecided']} ({100 * tally['undecided'] / max(loops, 1):.1f} %)"
     cells = (
-        kind, loops, tally["passive"], tally["passive in contact"], tally["touched"], tally["active"],
-        undecided, tally["refused"], tally["wrong"],
+        kind, loops, tally["passive"], tally["passive in contact"], tally["touched"], tally["theorem"],
+        tally["active"], undecided, tally["refused"], tally["wrong"],
     )  # fmt: skip
     return "| " + " | ".join(str(c) for c in cells) + " |"
 

@@ -106,4 +106,4 @@ def test_seeds_are_never_run_twice(tmp_path):
     read = ledger.read(path)
     assert [(s.first, s.last) for s in read] == [(0, 9), (20, 29)]
     assert ledger.next_seed(read) == 30
-    assert "| contact | 3 | 0 | 3 | 3 | 0 | 0 (0.0 %) | 0 | 0 |" in ledger.table(read)
+    assert "| contact | 3 | 0 | 3 | 3 | 0 | 0 | 0 (0.0 %) | 0 | 0 |" in ledger.table(read)
