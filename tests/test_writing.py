@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from pathlib import Path
 
 import pytest
@@ -49,7 +51,7 @@ def test_a_device_stays_a_device() -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device to write to")
 def test_a_full_device_is_one_message() -> None:
     """As for a full disk."""
-    with pytest.raises(zw.InputError, match="/dev/full cannot be written: No space left on device"):
+    with pytest.raises(zw.InputError, match=f"/dev/full cannot be written: {os.strerror(errno.ENOSPC)}"):
         save_json("/dev/full", {"whole": 1})
 
 
@@ -58,7 +60,7 @@ def test_a_place_that_is_not_there_is_said(tmp_path: Path) -> None:
     verdict = zw.check(*LOOP)
     assert verdict.certificate is not None
     for save in (verdict.save, verdict.certificate.save):
-        with pytest.raises(zw.InputError, match="cannot be written: No such file or directory"):
+        with pytest.raises(zw.InputError, match=f"cannot be written: {os.strerror(errno.ENOENT)}"):
             save(tmp_path / "none" / "proof.json")
     with pytest.raises(zw.InputError, match="cannot be written"):
         verdict.save(tmp_path / "zero\0byte.json")

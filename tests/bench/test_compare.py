@@ -237,3 +237,10 @@ def test_the_game_settles_what_the_adversary_does_not():
     assert "on either side of the surface take no energy out, proved; others may" in found.evidence["0.11"]
     assert "the game of the worst hand finds more" in found.evidence["0.14"]
     assert found.evidence["timed"].endswith("it remembers too much for the game")
+
+
+def test_a_wheel_is_told_how_to_come_to_its_handle():
+    """The message names the option that does it."""
+    wheel = zw.rotary(inertia=1e-4, damping="0.001", rate=1000)
+    with pytest.raises(zw.InputError, match="--handle-radius"):
+        zw.compare(wheel, zw.Wall(1))

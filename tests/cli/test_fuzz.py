@@ -21,7 +21,7 @@ from zwidth.cli.main import main
 from zwidth.cli.options import device_parameters, environment_parameters
 
 quick = settings(
-    max_examples=60, deadline=30_000, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
 OPTIONS = [p.option for p in (*device_parameters(), *environment_parameters())]
 

@@ -140,7 +140,7 @@ def test_one_side_is_status_three(run: Run) -> None:
 
 def test_the_force_limit_is_counted_in(run: Run) -> None:
     """What the actuator cannot push cannot be taken out."""
-    loop = (*BOUNDED, "--force-limit", "0.1 N", "--seconds", "2")
+    loop = (*BOUNDED, "--force-limit", "0.1 N")
     with_limit = json.loads(run(*loop, "--count-force-limit", "--json").out)
     without = json.loads(run(*loop, "--json").out)
     assert with_limit["proved_passive_N_per_m"] > without["proved_active_N_per_m"]
@@ -150,7 +150,7 @@ def test_the_force_limit_is_counted_in(run: Run) -> None:
 def test_the_converter_is_counted_in(run: Run) -> None:
     """Steps that the friction does not cover take the loop apart; without any there is nothing to count."""
     loop = ("limit", "haptic-paddle", "--stiffness", "100", "--speed", "0.1 m/s", "--penetration", "0.3 mm")
-    coarse = (*loop, "--force-resolution", "0.05 N", "--parameter", "coulomb-friction", "--seconds", "5")
+    coarse = (*loop, "--force-resolution", "0.05 N", "--parameter", "coulomb-friction")
     found = json.loads(run(*coarse, "--count-force-resolution", "--json").out)
     assert found["proved_active_N"] < 0.025 <= found["proved_passive_N"]
     assert any("the converter steps are counted in" in line for line in found["assumptions"])

@@ -391,3 +391,39 @@ def test_bars_fill_their_share() -> None:
 def test_levels_span_the_values() -> None:
     assert levels([0, 1, 0.5], fancy=True) == "▁█▅"
     assert levels([2, 2], fancy=False) == "__"
+
+
+def test_every_command_says_what_it_wrote_in_one_way(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`written: FILE`, a line each; nothing of it in JSON."""
+    monkeypatch.chdir(tmp_path)
+    ranges = ("--stiffness", "0:9", "--damping", "0:1", "--cells", "2x2")
+    touch = ("simulate", "haptic-paddle", "--stiffness", "300", "--operator", "dowel", "--duration", "0.02")
+    cases = (
+        ((*PASSIVE, "-o", "a.json", "--plot", "a.svg"), ("a.json", "a.svg")),
+        ((*touch, "-o", "t.csv"), ("t.csv",)),
+        (("traces", "t.csv", "--plot", "t.svg"), ("t.svg",)),
+        (("map", "haptic-paddle", *ranges, "--plot", "m.svg"), ("m.svg",)),
+    )
+    for command, files in cases:
+        assert [line for line in run(*command).out.splitlines() if "written" in line] == [
+            f"written: {name}" for name in files
+        ]
+    assert "written" not in run(*PASSIVE, "-o", "b.json", "--json").out
+
+
+def test_a_missing_number_is_named_as_its_option_is(run: Run) -> None:
+    """--damping is the device's: what a Maxwell solid lacks is --virtual-damping."""
+    lacking = run("check", "haptic-paddle", "--type", "maxwell", "--stiffness", "300")
+    assert lacking.status == 2
+    assert "needs --virtual-damping [N*s/m]" in lacking.err
+
+
+def test_a_long_delay_without_a_unit_is_questioned(run: Run) -> None:
+    """3 is three seconds; with its unit it is taken."""
+    asked = run(*PASSIVE, "--delay", "3")
+    assert asked.status == 2
+    assert 'delay 3 without a unit is 3 s between sample and force; write "3 ms", or "3 s"' in asked.err
+    assert "without a unit" not in run(*PASSIVE, "--delay", "3 s").err
+    assert run(*PASSIVE, "--delay", "0.003").status != 2

@@ -23,7 +23,9 @@ def test_the_report_and_the_json_say_the_same(capsys: pytest.CaptureFixture[str]
     assert document["regions"]["passive"] == {
         "largest_stiffness_N_per_m": found["largest_stiffness"].sel(region="passive").item(),
         "cells": int(found["passive"].sum()),
+        "covered": True,
     }
+    assert document["not_covered"] is None
     assert "passive, every hand" in report
     assert "298.5" in report
     assert "free air: 0.036 kg, 0.15 N·s/m, 0.12 N" in report
@@ -141,3 +143,37 @@ def test_a_region_without_walls_has_no_largest_one(capsys: pytest.CaptureFixture
     assert main(("map", "haptic-paddle", *arguments)) == 0
     (line,) = [row for row in capsys.readouterr().out.splitlines() if row.startswith("passive, every hand")]
     assert line.split()[-2:] == ["none", "0.0%"]
+
+
+def test_not_covered_is_not_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A wheel with a delay of part of a sample: report, JSON and picture say so and name the spring."""
+    wheel = tmp_path / "wheel.toml"
+    wheel.write_text(
+        '[device]\nmotion = "rotary"\ninertia = "0.0001 kg*m^2"\ndamping = "0.03 N*m*s/rad"\n'
+        'coulomb_friction = "0.1 N*m"\nresolution = "0.0015 rad"\nrate = "1 kHz"\ndelay = "0.5 ms"\n',
+        encoding="utf-8",
+    )
+    asked = [
+        "map",
+        str(wheel),
+        "--stiffness",
+        "0:100",
+        "--damping",
+        "0:0.2",
+        "--cells",
+        "10x4",
+        "--hands",
+        "none",
+    ]
+    assert main(asked) == 0
+    said = capsys.readouterr().out
+    assert "not covered" in said.splitlines()[1]
+    assert "a spring alone, B = 0, is passive up to 28.33 N·m/rad" in said
+    assert main([*asked, "--json", "--plot", str(tmp_path / "map.svg")]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["regions"]["passive"] == {
+        "largest_stiffness_N_m_per_rad": None,
+        "cells": 0,
+        "covered": False,
+    }
+    assert document["spring_limit_N_m_per_rad"] == pytest.approx(28.3282, rel=1e-5)

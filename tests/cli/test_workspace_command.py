@@ -37,7 +37,7 @@ def test_a_wall_that_holds_everywhere(run: Run) -> None:
     assert "PASSIVE No motion of the hand takes energy out with x from -0.05 to 0.05 m" in words
     assert "what to change" not in words
     assert "haply-2diy, 2 joints, 1 kHz" in words
-    assert "Encoder steps are not counted." in words
+    assert "The arm is taken to be read without steps. Encoder steps are not counted:" in words
 
 
 def test_a_wall_that_fails_says_what_to_change(run: Run) -> None:
@@ -62,6 +62,8 @@ def test_just_below_the_limit_is_undecided(run: Run) -> None:
     status, out, _ = run(*chain, str(0.9999 * found["largest_stiffness_N_per_m"]))
     words = " ".join(out.split())
     assert status == 3
+    assert "region q1 from 0 to 3.142 rad; q2 from" in words
+    assert "N/m in every direction" in words
     assert "between the points" in words
     assert "There is no certificate: the damping is not enough at" in words
 
@@ -129,6 +131,15 @@ def test_the_map_is_saved_and_drawn(run: Run, tmp_path: Path) -> None:
             ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--delay", "0.3 ms"),
             "whole number of samples",
         ),
+        (("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--delay", "3"), 'delay is 3 s, 3000 samples'),
+        (
+            ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--largest-force", "3"),
+            "--joint-resolution 0.001",
+        ),
+        (
+            ("two-link", "--joint-damping", "1", "--stiffness", "1", "--largest-force", "1,2,3"),
+            "--largest-force: a force",
+        ),
     ],
 )
 def test_bad_input_is_one_line(run: Run, argv: tuple[str, ...], words: str) -> None:
@@ -137,6 +148,41 @@ def test_bad_input_is_one_line(run: Run, argv: tuple[str, ...], words: str) -> N
     assert (status, out) == (2, "")
     assert words in err
     assert err.count("\n") == 1
+
+
+COUNTED = (
+    "workspace", "two-link", "--joint-damping", "0.05", "--stiffness", "200", "--joint-resolution", "0.001",
+    "--joint-friction", "0.01", "--points", "20",
+)  # fmt: skip
+
+
+def test_encoder_steps_are_counted_up_to_a_force(run: Run) -> None:
+    """In words, as data, in the certificate; between what is covered and what is refuted: status 3."""
+    status, out, _ = run(*COUNTED, "-o", "proof.json")
+    words = " ".join(out.split())
+    assert status == 0
+    assert "Encoder steps are counted, with wall forces up to 28.6 N" in words
+    assert re.search(r"0.005774 N·m, 0.002954 N·m in joint 1, 2, and .* more for each newton", words)
+    assert re.search(r"encoder steps covered up to 28.6 N; from 89[.0-9]* N on a motion takes energy out", words)
+    words = " ".join(run("verify", "proof.json")[1].split())
+    assert "its encoder steps counted: force and Jacobian are those of the readings" in words
+    found = json.loads(run(*COUNTED, "--json")[1])
+    assert (found["encoder"], found["torque"], found["can_be_refuted"]) == ("counted", "follows", True)
+    steps = found["encoder_steps"]
+    assert found["largest_forces_N"] == [steps["covered_force_N"]] == [pytest.approx(28.6, rel=1e-3)]
+    assert steps["motion"]["energy_J"] < 0
+    assert steps["motion"]["largest_force_N"] == steps["refuted_force_N"]
+    assert found["wall"]["stiffness_N_per_m"] == [[200, 0], [0, 200]]
+    assert run(*COUNTED, "--largest-force", "40")[0] == 3
+    status, out, _ = run(*COUNTED, "--largest-force", "90")
+    assert status == 1
+    assert "at the readings of the encoders" in " ".join(out.split())
+
+
+def test_a_delay_is_reported_with_its_unit(run: Run) -> None:
+    """A number without one is in seconds."""
+    out = run("workspace", "two-link", "--joint-damping", "0.05", "--stiffness", "20", "--delay", "0.003")[1]
+    assert "3 ms, 3 samples" in out
 
 
 def test_a_description_from_the_command_line(run: Run, tmp_path: Path) -> None:

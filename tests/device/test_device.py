@@ -100,3 +100,9 @@ def test_replace_without_changes_is_the_same_device(device: zw.Device) -> None:
     assert twin.assumed == device.assumed
     assert device.is_certain
     assert not device.replace(damping=(0, 1)).is_certain
+
+
+def test_a_name_is_text_in_a_notebook() -> None:
+    """Not HTML: what looks like a tag is shown as it was typed."""
+    shown = zw.Device(**NEEDED, name="<b>x</b> & y")._repr_html_()
+    assert "<caption>&lt;b&gt;x&lt;/b&gt; &amp; y</caption>" in shown

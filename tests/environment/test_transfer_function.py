@@ -177,6 +177,7 @@ def test_wide_coefficients_are_brought_into_range():
 
 
 MIMO = control.ss(np.eye(2) * 0.5, np.eye(2), np.eye(2), np.zeros((2, 2)), 1e-3)
+TWO_LAGS = control.tf([[[1], [0]], [[0], [1]]], [[[1, -0.5], [1]], [[1], [1, -0.5]]], 1e-3)
 
 
 @pytest.mark.parametrize(
@@ -197,7 +198,7 @@ MIMO = control.ss(np.eye(2) * 0.5, np.eye(2), np.eye(2), np.zeros((2, 2)), 1e-3)
         (lambda: zw.PulseTransferFunction(SYSTEMS[0], [1]), "got both"),
         (lambda: zw.PulseTransferFunction(SYSTEMS[0], sample_period=1e-3), "its own sample period"),
         (lambda: zw.PulseTransferFunction(MIMO), "several inputs or outputs"),
-        (lambda: zw.PulseTransferFunction(control.ss2tf(MIMO)), "several inputs or outputs"),
+        (lambda: zw.PulseTransferFunction(TWO_LAGS), "several inputs or outputs"),
         (lambda: zw.PulseTransferFunction(scipy.signal.dlti([[1.0, 2], [3, 4]], [1, 2, 3])), "several"),
         (lambda: zw.PulseTransferFunction(scipy.signal.dlti([], [0.5j], 1.0)), "conjugate pairs"),
         (lambda: zw.PulseTransferFunction(control.frd([1, 2], [1, 2])), "FrequencyResponseData is not read"),

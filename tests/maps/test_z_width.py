@@ -21,6 +21,7 @@ from zwidth.maps.request import CHUNK, request
 from zwidth.maps.store import FORMAT
 from zwidth.maps.sustained import _exactly
 from zwidth.operator import Dowel, Finger
+from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -241,17 +242,19 @@ def test_a_store_is_gone_on_with(tmp_path: Path) -> None:
     assert (opened["passive"].values == found["passive"].values).all()
 
 
-SLOW = """
+STOPPED = """
 import sys, time
 import zwidth as zw
 
-def slowly(done, total):
+def stopped(done, total):
     print(done, flush=True)
-    time.sleep(0.2)
+    if done == int(sys.argv[2]):
+        time.sleep(3600)
 
 device, walls = zw.catalogue.device("haptic-paddle"), ((0, 30000), (0, 90))
-zw.z_width(device, *walls, cells=(500, 500), path=sys.argv[1], progress=slowly)
+zw.z_width(device, *walls, cells=(500, 500), path=sys.argv[1], progress=stopped)
 """
+"""It goes no further than it is told, so that nobody need be quick to kill it there."""
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="there is no SIGKILL here")
@@ -259,25 +262,26 @@ def test_a_map_killed_twice_loses_nothing(tmp_path: Path) -> None:
     """SIGKILL at chunk 3, and again at chunk 7: what was done stays, and the end is the same to the bit."""
     path = tmp_path / "killed.zarr"
     for at in (3, 7):
-        process = subprocess.Popen([sys.executable, "-c", SLOW, str(path)], stdout=subprocess.PIPE, text=True)
+        command = [sys.executable, "-c", STOPPED, str(path), str(at)]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         assert process.stdout is not None
         for line in process.stdout:
-            if int(line) >= at:
+            if int(line) == at:
                 os.kill(process.pid, signal.SIGKILL)
                 break
         assert process.wait() == -signal.SIGKILL
         process.stdout.close()
-        done = xr.open_zarr(path, consolidated=False)["done"].values
-        assert at <= done.sum() < 16
+        assert xr.open_zarr(path, consolidated=False)["done"].values.sum() == at
     left: list[int] = []
     found = zw.z_width(PADDLE, *WIDE, cells=(500, 500), path=path, progress=lambda n, total: left.append(n))
-    assert 0 < len(left) <= 16 - 7
+    assert left == list(range(8, 17))
     assert same(found, zw.z_width(PADDLE, *WIDE, cells=(500, 500)))
 
 
 def test_a_store_stopped_before_its_arrays_were_there(tmp_path: Path) -> None:
     """A group that says which map was begun, and nothing else: it is begun again."""
-    zarr = pytest.importorskip("zarr")
+    import zarr
+
     asked = request(PADDLE, *WIDE, (5, 5), None, None)
     path = tmp_path / "map.zarr"
     zarr.create_group(path, attributes={"format": FORMAT, "begun": asked.digest()})
@@ -300,7 +304,8 @@ def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:
 
 def test_a_cluster_gives_the_same_bits() -> None:
     """Two workers, each a process of its own, against the threads of this one."""
-    distributed = pytest.importorskip("distributed")
+    import distributed
+
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, scheduler_port=0
     ) as cluster:
@@ -335,3 +340,23 @@ def test_what_cannot_be_mapped(change: dict[str, object], message: str) -> None:
     given = {"device": PADDLE, "stiffness": (0, 10), "virtual_damping": (0, 1), "cells": (3, 3), **change}
     with pytest.raises(zw.InputError, match=message):
         zw.z_width(**given)
+
+
+def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
+    """A delay of part of a sample: the column at B = 0 ends where `check` does, from both sides."""
+    device = PADDLE.replace(delay="0.0005", coulomb_friction=1)
+    found = zw.z_width(device, (0, 300), ("-0.5", "0.5"), cells=(300, 3), hands={})
+    middle = found["passive"].values[:, 1]
+    k = found["stiffness"].values
+    limit = float(found["spring_limit"])
+    assert 0 < limit < 300
+    assert (middle == (k <= limit)).all()
+    assert not found["passive"].values[:, [0, 2]].any()
+    assert np.isinf(found["admissible_speed"].values[middle, 1]).all()
+    for share, outcome in ((1 - 1e-9, "passive"), (1 + 1e-6, "active")):
+        assert check_by_closed_forms(device, zw.Wall(limit * share)).outcome == outcome
+    assert "part of a sample" in found.attrs["not_covered"]
+    assert zw.z_width_certificate(device, found) is not None
+    coarse = zw.z_width(device.replace(coulomb_friction="0.001"), (0, 300), (0, 1), cells=(4, 4), hands={})
+    assert float(coarse["spring_limit"]) == pytest.approx(2 * 0.001 / 2.24e-5)
+    assert zw.z_width(PADDLE, (0, 300), (0, 1), cells=(4, 4), hands={}).attrs["not_covered"] == ""

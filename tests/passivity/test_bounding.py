@@ -91,7 +91,7 @@ def test_the_verdict_says_what_it_supposes():
     """Contact made and broken, any environment, counts, rounding; a late force is not proved."""
     found = check_bounding(PADDLE, bounded())
     assert found.certificate.kind == "force bounding"
-    assert found.certificate.covers_contact
+    assert found.certificate.covered().contact == "made and broken"
     told = " ".join(found.assumptions)
     assert all(
         words in told for words in ("made and broken", "any environment", "counts", "rounding", "b = 0.15")

@@ -24,8 +24,9 @@ BILLIONTH = Fraction(1, 10**9)
 
 def assert_evidence(verdict):
     """A verdict of either kind stands on evidence that the checker accepts."""
-    if verdict.outcome == "passive":
+    if verdict.is_proved:
         assert verdict.certificate.verify()
+        assert verdict.scope.contact == verdict.certificate.covered().contact
         assert verdict.witness is None
     else:
         assert verdict.outcome == "active"
@@ -38,7 +39,7 @@ def assert_evidence(verdict):
 def test_paddle_at_its_limit():
     """300 N/m on the paddle is 2b/T exactly: passive, with margin zero, and the claim says so."""
     verdict = assert_evidence(zw.check(PADDLE, zw.Wall(stiffness=300.0, damping=0.0)))
-    assert verdict.outcome == "passive"
+    assert verdict.is_proved
     assert verdict.margins["damping"] == 0
     assert verdict.max_stiffness == 300
     assert verdict.required_damping == 0.15
@@ -84,7 +85,7 @@ def test_coarse_encoder():
     assert verdict.mode == "active tactile"
     assert verdict.limit == "quantization against Coulomb friction"
     exact = Fraction("0.24") / Fraction("22.4e-4")
-    assert assert_evidence(zw.check(COARSE, zw.Wall(exact))).outcome == "passive"
+    assert assert_evidence(zw.check(COARSE, zw.Wall(exact))).is_proved
     assert assert_evidence(zw.check(COARSE, zw.Wall(exact * (1 + BILLIONTH)))).outcome == "active"
 
 
@@ -129,14 +130,14 @@ def test_both_sides_of_the_largest_stiffness(name, delay):
     law = CLASSES[name]
     top = zw.check(device, law).max_stiffness
     if top is None:
-        assert zw.check(device, law.replace(stiffness=0)).outcome != "passive"
+        assert not zw.check(device, law.replace(stiffness=0)).is_proved
         return
     at = Fraction(repr(top))
-    assert assert_evidence(zw.check(device, law.replace(stiffness=zw.Exact(at)))).outcome == "passive"
+    assert assert_evidence(zw.check(device, law.replace(stiffness=zw.Exact(at)))).is_proved
     below = law.replace(stiffness=zw.Exact(at * (1 - BILLIONTH)))
-    assert assert_evidence(zw.check(device, below)).outcome == "passive"
+    assert assert_evidence(zw.check(device, below)).is_proved
     above = zw.check(device, law.replace(stiffness=zw.Exact(at * (1 + BILLIONTH))))
-    assert above.outcome != "passive"
+    assert not above.is_proved
     if above.outcome == "active":
         assert_evidence(above)
     clearly = assert_evidence(zw.check(device, law.replace(stiffness=zw.Exact(at * Fraction("1.01")))))
@@ -151,7 +152,7 @@ def test_gain_of_a_law_without_a_stiffness(delay, scale):
     law = zw.PulseTransferFunction([40, -13], [1, "-0.3", "0.4"]).scaled(Fraction(scale))
     gain = Fraction(repr(zw.check(device, law).max_gain))
     below, above = law.scaled(gain * (1 - BILLIONTH)), law.scaled(gain * (1 + BILLIONTH))
-    assert assert_evidence(zw.check(device, below)).outcome == "passive"
+    assert assert_evidence(zw.check(device, below)).is_proved
     assert assert_evidence(zw.check(device, above)).outcome == "active"
     assert zw.check(device, law).max_stiffness is None
 
@@ -198,8 +199,8 @@ def test_what_is_no_device_is_refused():
 
 
 KEYS = {
-    "outcome", "claim", "assumptions", "limit", "max_stiffness_N_per_m", "required_damping_N_s_per_m",
-    "critical_frequency_Hz", "margins", "advice",
+    "outcome", "claim", "scope", "assumptions", "limit", "max_stiffness_N_per_m", "margins", "advice",
+    "required_damping_N_s_per_m", "critical_frequency_Hz",
 }  # fmt: skip
 
 
@@ -249,7 +250,7 @@ def test_friction_bounds_of_a_damped_wall_with_an_encoder():
     enough = (400 + 2 * Fraction("0.03") * 1000) * Fraction("0.0005") / 2
     assert enough == Fraction("0.115")
     proved = assert_evidence(zw.check(device.replace(coulomb_friction=enough), law))
-    assert proved.outcome == "passive"
+    assert proved.is_proved
     assert proved.certificate.kind == "contact"
     assert proved.margins["coulomb_friction"] == 0
     short = zw.check(device.replace(coulomb_friction=enough * (1 - BILLIONTH)), law)
@@ -274,7 +275,7 @@ def test_undecided_between_the_bounds():
     assert verdict.witness is None
     assert f"{low:.6g}" in verdict.claim
     assert f"{high:.6g}" in verdict.claim
-    assert zw.check(device.replace(coulomb_friction=high * 1.001), law).outcome == "passive"
+    assert zw.check(device.replace(coulomb_friction=high * 1.001), law).is_proved
     assert assert_evidence(zw.check(device.replace(coulomb_friction=low * 0.4), law)).outcome == "active"
 
 
@@ -324,12 +325,12 @@ INTERVALS = {
 def test_intervals(name):
     """Passive for all values, active for all, or undecided; ends and samples of the box agree."""
     device, law, expected = INTERVALS[name]
-    verdict = zw.check(device, law)
+    verdict = zw.check(device, law, contact="kept")
     assert verdict.outcome == expected
     if expected == "passive":
         assert all(checker.verify(d).valid for d in verdict.certificate.documents)
         assert verify_document(json.loads(verdict.to_json())).valid
-    outcomes = {zw.check(*corner).outcome for corner in box(device, law)}
+    outcomes = {zw.check(*corner, contact="kept").outcome for corner in box(device, law)}
     assert outcomes == ({"passive", "active"} if expected == "undecided" else {expected})
 
 
@@ -383,13 +384,13 @@ def test_hidden_unstable_mode_is_not_passive():
     assert verdict.outcome == "undecided"
     assert "share a root" in verdict.claim
     decaying = zw.PulseTransferFunction([200, -100], [1, "-0.5"])
-    assert assert_evidence(zw.check(PADDLE, decaying)).outcome == "passive"
+    assert assert_evidence(zw.check(PADDLE, decaying)).is_proved
 
 
 def test_largest_stiffness_where_softer_walls_need_more_friction():
     """With B < 0 an encoder asks for (2|B|/T − K)Δ/2 of soft walls: 60 N/m is passive though 1 N/m is not."""
     device = zw.Device(damping="0.5", coulomb_friction="0.03", resolution="0.001", sample_period="0.001")
-    assert zw.check(device, zw.Wall(60, "-0.04")).outcome == "passive"
+    assert zw.check(device, zw.Wall(60, "-0.04")).is_proved
     assert zw.check(device, zw.Wall(1, "-0.04")).max_stiffness == 60
 
 
@@ -398,7 +399,7 @@ def test_energy_out_of_a_spring_at_rest_on_a_count():
     step = Fraction("0.0008")
     device = zw.Device(damping="0.15", coulomb_friction="0.12", resolution=step, sample_period="0.001")
     verdict = assert_evidence(zw.check(device, zw.PulseTransferFunction([300], [1])))
-    assert verdict.outcome == "passive"
+    assert verdict.is_proved
     setting = verdict.decision.setting
     energy = setting.energy(Motion((Fraction(0), -step / 800, step / 2)))
     assert 0 < energy <= 300 * step**2 / 8
@@ -443,11 +444,11 @@ def test_advice_is_enough_and_no_more(name):
         if advice.to is None or advice.to == float("inf"):
             continue
         to = zw.Exact(advice.to).fraction
-        assert zw.check(*turned(device, law, advice.parameter, to)).outcome == "passive", advice
+        assert zw.check(*turned(device, law, advice.parameter, to)).is_proved, advice
         more = advice.parameter in ("rate", "damping", "coulomb_friction", "time_constant")
         short = to * (1 - Fraction(1, 10**6)) if more else to * (1 + Fraction(1, 10**6)) + Fraction(1, 10**15)
         if to or not more:
-            assert zw.check(*turned(device, law, advice.parameter, short)).outcome != "passive", advice
+            assert not zw.check(*turned(device, law, advice.parameter, short)).is_proved, advice
 
 
 def test_advice_on_estimators():
@@ -460,9 +461,9 @@ def test_advice_on_estimators():
         other = zw.Window(int(number)) if advice.to.startswith("window") else zw.OnePole(Fraction(number))
         assert advice.current == "backward difference"
         if advice.to.startswith("window"):
-            assert zw.check(device, law.replace(velocity_filter=other)).outcome == "passive"
+            assert zw.check(device, law.replace(velocity_filter=other)).is_proved
             fewer = zw.check(device, law.replace(velocity_filter=zw.Window(other.samples - 1)))
-            assert other.samples == 2 or fewer.outcome != "passive"
+            assert other.samples == 2 or not fewer.is_proved
 
 
 def test_rotary_advice_has_rotary_units():
@@ -476,12 +477,13 @@ def test_rotary_advice_has_rotary_units():
 
 def test_assumptions_name_what_was_not_given():
     """Parameters taken as zero, the ideal sensor, sustained contact, and intervals are all said."""
-    bare = zw.check(zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.27", zw.Window(2)))
+    loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.27", zw.Window(2))
+    bare = zw.check(*loop, contact="kept")
     text = "\n".join(bare.assumptions)
     for line in ("coulomb friction was not given", "resolution was not given", "delay was not given"):
         assert line in text
     assert "ideal position sensor" in text
-    assert "sustained contact" in text
+    assert "contact is kept" in text
     full = "\n".join(zw.check(PADDLE.replace(delay=0), zw.Wall(100)).assumptions)
     assert "not given" not in full
     assert "encoder counts" in full
@@ -504,7 +506,7 @@ def test_rounding_does_not_make_a_solid_active(discretization):
     """Maxwell branches alone have no static stiffness: no discretization of them is active for H(1) < 0."""
     law = zw.GeneralizedMaxwell(0, [("12.42", "2.993"), ("33.08", "0.2232")], discretization)
     device = zw.Device(damping="2.04", sample_period="0.003447")
-    assert assert_evidence(zw.check(device, law)).outcome == "passive"
+    assert assert_evidence(zw.check(device, law)).is_proved
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0007"])
@@ -527,7 +529,7 @@ def test_no_force_is_passive():
     bare = zw.Device(damping=0, rate=1000, resolution="0.001", delay="0.0004")
     for law in (zw.Wall(0), zw.PulseTransferFunction([0], [1, "-0.5"])):
         verdict = assert_evidence(zw.check(bare, law))
-        assert verdict.outcome == "passive"
+        assert verdict.is_proved
         assert verdict.required_damping == 0
 
 
@@ -543,7 +545,7 @@ def test_the_limit_is_claimed_only_at_the_limit(damping, said):
     """A lossless resonator touches zero at its pole whatever b is: the limit is b = kT/2 alone."""
     resonator = zw.PulseTransferFunction(["0.8", "-1.8", 1], [1, "-1.6", 1])
     verdict = zw.check(zw.Device(damping=damping, rate=1000), resonator)
-    assert assert_evidence(verdict).outcome == "passive"
+    assert assert_evidence(verdict).is_proved
     assert ("exactly at its limit" in verdict.claim) is said
 
 

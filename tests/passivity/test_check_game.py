@@ -14,6 +14,7 @@ from zwidth.cli.verification import verifications
 from zwidth.passivity import checker
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.game import has_gap
+from zwidth.passivity.wording import describe_hands
 from zwidth.passivity.worst_hand.gain import Gain
 from zwidth.passivity.worst_hand.playback import peak_force, settled_round
 
@@ -34,7 +35,7 @@ def test_a_motion_of_the_game_refutes_what_was_undecided() -> None:
     assert verdict.worst_hand.witness is verdict.witness
     assert verdict.witness.describe() in verdict.claim
     assert checker.verify(verdict.witness.to_dict()).energy == verdict.witness.exact_energy
-    assert verdict.assumptions[0].startswith("contact made and broken at any instant")
+    assert verdict.scope.contact == "made and broken"
 
 
 def test_a_proof_of_bounded_hands_decides_nothing_of_every_hand() -> None:
@@ -44,19 +45,21 @@ def test_a_proof_of_bounded_hands_decides_nothing_of_every_hand() -> None:
     assert verdict.certificate is None
     assert verdict.worst_hand is not None
     assert verdict.worst_hand.outcome == "passive"
-    assert f"Contact made and broken: proved passive for {verdict.worst_hand.hand}." in verdict.claim
+    hands = describe_hands(verdict.worst_hand.scope.hands, "linear")
+    assert f"Contact made and broken: proved passive for {hands}." in verdict.claim
     assert verdict.claim.startswith(check_by_closed_forms(PADDLE, CLAMPED).claim)
 
 
 def test_a_proof_of_sustained_contact_says_for_whom_contact_is_covered() -> None:
     """The outcome, the claim and the certificate are those of the closed forms."""
     before, verdict = check_by_closed_forms(PADDLE, WINDOW), zw.check(PADDLE, WINDOW)
-    assert verdict.outcome == before.outcome == "passive"
-    assert verdict.claim == before.claim
+    assert verdict.outcome == before.outcome == "passive in contact"
     assert verdict.certificate == before.certificate
-    assert "is not covered" in before.assumptions[0]
-    assert "is not covered" not in " ".join(verdict.assumptions)
-    assert verdict.assumptions[1].startswith("contact made and broken: proved passive for hands of up to")
+    assert verdict.scope == before.scope
+    assert verdict.worst_hand is not None
+    assert not verdict.worst_hand.scope.hands.every
+    assert "nothing is proved or refuted" in before.claim
+    assert "Contact made and broken: proved passive for hands of up to" in verdict.claim
 
 
 @pytest.mark.parametrize(
@@ -115,7 +118,7 @@ def test_a_motion_that_must_touch_and_leave_is_told_from_the_others() -> None:
     from dataclasses import replace
 
     gain = zw.check(PADDLE, STIFF).witness
-    verdict = replace(check_by_closed_forms(PADDLE, WINDOW), outcome="active", certificate=None, witness=gain)
+    verdict = replace(check_by_closed_forms(PADDLE, WINDOW), outcome="active", certificate=None, motion=gain)
     assert verdict.limit == "contact made and broken"
     assert verdict.mode is None
     assert verdict.required_damping == pytest.approx(0.12 / 2 + 0.2)
@@ -129,12 +132,13 @@ def test_a_motion_that_must_touch_and_leave_is_told_from_the_others() -> None:
 def test_the_json_names_the_game_and_a_saved_file_holds_its_proof(law: zw.Wall, tmp_path: Path) -> None:
     verdict = zw.check(PADDLE, law)
     told = json.loads(verdict.to_json())
-    assert set(told["worst_hand"]) == {"format", "outcome", "claim", "assumptions"}
+    assert set(told["worst_hand"]) == {"format", "outcome", "claim", "scope", "assumptions"}
     verdict.save(tmp_path / "verdict.json")
     saved = json.loads((tmp_path / "verdict.json").read_text())
     parts = verifications(saved)
     assert all(part.verification.valid for part in parts)
-    kinds = {"active": ["contact motion"], "undecided": ["storage"], "passive": ["quantized", "storage"]}
+    kinds = {"active": ["contact motion"], "undecided": ["storage"]}
+    kinds["passive in contact"] = ["quantized", "storage"]
     assert [part.evidence["kind"] for part in parts] == kinds[verdict.outcome]
 
 
@@ -169,6 +173,7 @@ def test_a_motion_of_the_game_is_replayed_by_real_hands() -> None:
 
 
 def test_the_actuator_that_the_motion_asks_for_is_named() -> None:
-    lines = zw.check(PADDLE.replace(force_limit="0.5"), STIFF).assumptions
-    assert "more than the actuator's 0.5 N" in lines[-1]
-    assert "stays within" in zw.check(PADDLE.replace(force_limit=20), STIFF).assumptions[-1]
+    (line,) = zw.check(PADDLE.replace(force_limit="0.5"), STIFF).demand
+    assert "more than the actuator's 0.5 N" in line
+    (line,) = zw.check(PADDLE.replace(force_limit=20), STIFF).demand
+    assert "stays within" in line

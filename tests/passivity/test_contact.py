@@ -62,7 +62,8 @@ def test_proved_at_each_bound_and_not_below_it(name, delay, clamped):
         assert verdict.outcome == "passive"
         assert verdict.certificate.kind == "contact"
         assert verify_document(verdict.certificate.to_dict()).valid
-        assert verdict.assumptions[0].startswith("contact made and broken at any instant; also for a wall")
+        assert verdict.scope.contact == "made and broken"
+        assert verdict.scope.also == (() if clamped else ("clamped",))
     for short in (
         device(damping * (1 - TINY), friction, step, delay),
         device(damping, friction * (1 - TINY), step, delay),
@@ -72,7 +73,7 @@ def test_proved_at_each_bound_and_not_below_it(name, delay, clamped):
         if clamped:
             assert (verdict.outcome, verdict.witness) == ("undecided", None)
         else:
-            assert verdict.assumptions[0].startswith("sustained contact")
+            assert verdict.outcome != "passive"
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -363,12 +364,12 @@ def test_where_it_does_not_apply(name):
     """The linear proof stays, for sustained contact; clamped, the same law is undecided and says why."""
     loop, law = STILL_SUSTAINED[name]
     verdict = zw.check(loop, law)
-    assert (verdict.outcome, verdict.certificate.kind) == ("passive", "quantized")
-    assert verdict.assumptions[0].startswith("sustained contact")
+    assert (verdict.outcome, verdict.certificate.kind) == ("passive in contact", "quantized")
+    assert verdict.scope.contact == "kept"
     clamped = zw.check(loop, law.replace(clamped=True))
     assert (clamped.outcome, clamped.certificate, clamped.witness) == ("undecided", None, None)
     assert clamped.claim.startswith("The linear criterion does not cover a law whose force is clamped")
-    assert not clamped.assumptions[0].startswith("sustained contact")
+    assert clamped.scope.contact == "made and broken"
 
 
 def test_an_active_clamped_wall_is_not_called_active():
@@ -410,12 +411,13 @@ INTERVALS = {
         zw.Wall((100, 180), ("-0.02", "0.02"), zw.OnePole((0, "0.003"))), "passive", True,
     ),
     "one corner in sustained contact": (
-        device("0.3", "0.2", "0.0005", 0), zw.Wall(180, ("0.01", "0.25"), zw.Window(4)), "passive", False
+        device("0.3", "0.2", "0.0005", 0), zw.Wall(180, ("0.01", "0.25"), zw.Window(4)),
+        "passive in contact", False,
     ),
     "one corner too many, clamped": (
         device("0.3", "0.2", "0.0005", 0), zw.Wall(180, ("0.01", "0.25"), clamped=True), "undecided", None
     ),
-    "delays": (DEVICE.replace(delay=(0, "0.001")), zw.Wall(100, "0.02"), "passive", False),
+    "delays": (DEVICE.replace(delay=(0, "0.001")), zw.Wall(100, "0.02"), "passive in contact", False),
     "delays, clamped": (DEVICE.replace(delay=(0, "0.001")), CLAMPED, "undecided", None),
     "no virtual damping at its best, clamped": (
         device("0.1", 0, 0, 0), zw.Wall(300, (0, "0.1"), clamped=True), "undecided", None
@@ -432,6 +434,6 @@ def test_intervals(name):
     if covered is None:
         assert verdict.certificate is None
         return
-    assert verdict.certificate.covers_contact is covered
-    assert verdict.assumptions[0].startswith("contact made" if covered else "sustained contact")
+    assert verdict.certificate.covered().contact == ("made and broken" if covered else "kept")
+    assert verdict.scope.contact == verdict.certificate.covered().contact
     assert verify_document(verdict.certificate.to_dict()).valid

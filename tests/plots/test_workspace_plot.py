@@ -67,6 +67,20 @@ def test_what_is_drawn_is_named() -> None:
     assert plots.workspace_figure(space).axes[0].get_xlabel() == "joint q1 [m]"
 
 
+def test_the_title_is_short_and_colours_have_plain_numbers() -> None:
+    """One line above and one below; where the margin hardly varies no offset is taken from its numbers."""
+    arm = PlanarChain(links=(0.1, 0.1), damping=(0.05, 0.05), joint_range=((0, 1), (1, 1.0001)))
+    space = zw.workspace(arm, zw.Wall(500), rate=1000, points=16)
+    figure = plots.workspace_figure(space)
+    figure.canvas.draw()
+    bar = figure.axes[1]
+    assert bar.yaxis.get_offset_text().get_text() == ""
+    ticks = [float(text.get_text()) for text in bar.get_yticklabels()]
+    assert min(ticks) == pytest.approx(float(space.data["margin"].min()), rel=0.01)
+    words = [text.get_text() for text in figure.texts]
+    assert words == ["arm: passive", "read without steps; torque follows the arm"]
+
+
 def test_another_variable_can_be_drawn() -> None:
     """By its name; one that the map lacks is refused with those that it has."""
     space = _space("two-link", 100)

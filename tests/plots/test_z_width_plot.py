@@ -72,3 +72,11 @@ def test_only_maps_are_drawn() -> None:
     """A boundary is no map."""
     with pytest.raises(zw.InputError, match="no Z-width map"):
         plots.z_width_figure(zw.stability_boundary(PADDLE, points=5))
+
+
+def test_what_is_not_covered_stands_in_the_legend() -> None:
+    """A delay of part of a sample: no region, and the reason for it; without one no such words."""
+    found = zw.z_width(PADDLE.replace(delay="0.0005"), (0, 300), (0, 1), (8, 8), hands={})
+    assert "passive with every hand: not covered" in words(plots.z_width_figure(found))
+    found = zw.z_width(PADDLE, (400, 600), (0, 1), (8, 8), hands={"none": None})
+    assert not any("not covered" in word for word in words(plots.z_width_figure(found)))

@@ -73,7 +73,10 @@ WRONG = [
     ("-inf m", "m", "finite"),
     (float("nan"), "m", "finite"),
     (Decimal("sNaN"), "m", "finite"),
-    ("0,15", "m", "with a point"),
+    ("0,15", "m", 'write "0.15", with a point'),
+    ("300,5", "N/m", 'write "300.5", with a point'),
+    ("-7,25 N/m", "N/m", 'write "-7.25 N/m", with a point'),
+    ("1,000,000", "N/m", 'write "0.15", with a point'),
     ("1e999 m", "m", "magnitudes"),
     ("1e40 km", "m", "magnitudes"),
     ("1e99999999999999999999", "m", "m"),
@@ -209,3 +212,13 @@ def test_units_never_break(text: str) -> None:
     except InputError:
         return
     assert unit.scale > 0
+
+
+def test_rpm_is_a_speed() -> None:
+    """A turn in a minute, π/30 rad/s; not a frequency."""
+    assert float(parse_number("60 rpm", "rad/s", "speed")) == float(2 * mpmath.pi)
+    assert float(parse_number("90 rpm", "rad/s", "speed")) == float(
+        parse_number("1.5 rev/s", "rad/s", "speed")
+    )
+    with pytest.raises(InputError, match="angular speed"):
+        parse_number("60 rpm", "Hz", "rate")

@@ -85,7 +85,11 @@ def test_a_place_that_cannot_be_is_refused(name: str, says: str, dowel, tmp_path
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-@pytest.mark.parametrize("content", [b"", b"hello\nworld\n", b"# {}\na,b\n1,2\n", bytes(range(256)) * 20])
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"hello\nworld\n", b"# {}\na,b\n1,2\n", bytes(range(256)) * 20],
+    ids=["empty", "words", "table", "bytes"],
+)
 def test_a_foreign_file_is_refused(suffix: str, content: bytes, tmp_path: Path) -> None:
     """One message, whatever the bytes."""
     path = tmp_path / f"foreign{suffix}"

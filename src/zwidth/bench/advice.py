@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from zwidth.environment.wall import Wall
-from zwidth.passivity.check import check
+from zwidth.passivity.check import check_by_closed_forms
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,7 +20,7 @@ def advice(comparison: LawComparison) -> str:
     """What the wall needs, which law is safest, which feels stiffest, and what none of them can do."""
     scores = comparison.scores
     wanted = float(comparison.environment.stiffness)  # type: ignore[attr-defined]
-    alone = check(comparison.device, Wall(comparison.environment.stiffness))  # type: ignore[attr-defined]
+    alone = check_by_closed_forms(comparison.device, Wall(comparison.environment.stiffness))  # type: ignore[attr-defined]
     limit = alone.max_stiffness
     words = [
         f"Alone, a wall of {wanted:g} N/m is passive on this device and needs no law."

@@ -25,6 +25,7 @@ from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check
+from zwidth.passivity.wording import describe_hands
 from zwidth.passivity.worst_hand import worst_hand
 from zwidth.rendering.rendered import Rendered
 from zwidth.rendering.stage import Surroundings
@@ -154,7 +155,10 @@ def compare(
     if not isinstance(wall, Wall):
         raise InputError(f"the bench compares how a wall is rendered, got {wall.describe()}")
     if device.motion != "linear":
-        raise InputError("the touches of the bench are a finger's, in metres: give the device at its handle")
+        raise InputError(
+            "the touches of the bench are a finger's, in metres: give the device at its handle, by "
+            "zwidth.rotary(…, handle_radius=…) or --handle-radius"
+        )
     if device.mass is None:
         raise InputError("the touches are simulated and need the device's mass [kg]")
     chosen = standard_laws(device, wall) if laws is None else dict(laws)
@@ -195,15 +199,13 @@ def _status(device: Device, law: Environment, found: Attack) -> tuple[str, str]:
         return "active", str(found)
     if not isinstance(law, Rendered):
         verdict = check(device, law)
-        proof = verdict.certificate
-        if verdict.outcome == "passive" and not (proof is not None and proof.covers_contact):
-            return "undecided", f"{verdict.claim} Making and breaking contact is not covered."
+        if verdict.outcome == "passive in contact":
+            return "undecided", verdict.claim
         return verdict.outcome, verdict.claim
     covering = _covering(law)
     if covering is not None:
         verdict = check(device, covering)
-        proof = verdict.certificate
-        if verdict.outcome == "passive" and proof is not None and proof.covers_contact:
+        if verdict.outcome == "passive":
             return "passive", (
                 f"What the laws add is never more than that of {covering.damping} N·s/m, and every such "
                 f"force is covered, contact made and broken: {verdict.claim}"
@@ -229,7 +231,8 @@ def _by_the_game(device: Device, law: Rendered, found: Attack) -> tuple[str, str
         return "active", f"{found}; but the game of the worst hand finds more. {played.claim}"
     if played.outcome == "undecided":
         return "undecided", f"{no_proof}; nor does the game of the worst hand decide it"
-    return "undecided", f"{no_proof}; {played.hand} take no energy out, proved; others may"
+    hands = describe_hands(played.scope.hands, played.scope.motion)
+    return "undecided", f"{no_proof}; {hands} take no energy out, proved; others may"
 
 
 def _cause(error: InputError) -> str:

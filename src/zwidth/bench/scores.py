@@ -23,8 +23,12 @@ Floats = NDArray[np.float64]
 
 
 def generated_energy(trace: xr.Dataset) -> float:
-    """max over t of ∫ f_a dx, the most that the law has given out in all [J]; 0 if it never did."""
-    return max(0.0, float(trace["actuator_work"].max()))
+    """max over t of ∫ f_a dx − E_s, the most that the law has given out in all [J]; 0 if it never did.
+
+    E_s is what was stored at the start, where that is known.
+    """
+    stored = float(trace.attrs.get("stored_at_start_J", 0.0))
+    return max(0.0, float(trace["actuator_work"].max()) - stored)
 
 
 def peak_force(trace: xr.Dataset) -> float:

@@ -7,17 +7,14 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from zwidth.cli.options import Once, add_parameters, overrides, refuse_laws
-from zwidth.cli.output import print_json, targets, writing
+from zwidth.cli.options import Once, add_contact_option, add_law_option, add_parameters, contact, overrides
+from zwidth.cli.output import print_json, say_written, targets, writing
 
 if TYPE_CHECKING:
     from zwidth.cli.specification import Specification
     from zwidth.passivity.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
     from zwidth.passivity.verdict import Verdict
-
-STATUS = {"passive": 0, "active": 1, "undecided": 3}
-"""Exit status of `check` by outcome; 2 is bad input."""
 
 
 class Command(NamedTuple):
@@ -32,8 +29,8 @@ class Command(NamedTuple):
 
 def _configure_check(parser: argparse.ArgumentParser) -> None:
     parser.usage = (
-        "%(prog)s [SOURCE ...] [--PARAMETER VALUE ...] [--json] [--plot FILE] [--replay] "
-        "[--active-below FREQUENCY] [-o FILE] [--force]"
+        "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--json] [--plot FILE] [--replay] "
+        "[--active-below FREQUENCY] [--contact KIND] [-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -41,6 +38,8 @@ def _configure_check(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both",
     )
+    add_law_option(parser)
+    add_contact_option(parser)
     output = parser.add_argument_group("output")
     output.add_argument("--json", action="store_true", help="print the verdict as JSON, units in the keys")
     output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
@@ -61,17 +60,14 @@ def _configure_check(parser: argparse.ArgumentParser) -> None:
         help="save verdict and evidence as JSON, for zwidth verify",
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
-    refuse_laws(parser)
     add_parameters(parser)
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from zwidth.cli.specification import load
-
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    loop = load(arguments.sources, overrides(arguments))
+    loop = _loop(arguments)
     active = _tolerated(loop, arguments.active_below)
-    verdict = decided(loop)
+    verdict = decided(loop, contact(arguments))
     if save is not None:
         with writing(save):
             verdict.save(save, {} if active is None else {"active_hand": active.to_dict()})
@@ -86,24 +82,45 @@ def _check(arguments: argparse.Namespace) -> int:
         from zwidth.cli.report import print_verdict
 
         print_verdict(verdict, real_hand, active)
-    return STATUS[verdict.outcome]
+        say_written(save, plot)
+    return exit_status(verdict.outcome)
 
 
-def decided(loop: Specification) -> Verdict:
-    """What `zwidth.check` says, with a word to people who wait for the game."""
-    from zwidth.passivity.check import check_by_closed_forms
-    from zwidth.passivity.game import has_gap, with_game
+def exit_status(outcome: str) -> int:
+    """What a command returns that ends in an outcome."""
+    from zwidth.passivity.outcome import TOLD
 
-    verdict = check_by_closed_forms(loop.device, loop.environment)
-    if not has_gap(loop.device, loop.environment, verdict):
-        return verdict
+    return TOLD[outcome].status
+
+
+def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
+    """What `zwidth.check` says, with a word to people who wait while values are iterated."""
+    from zwidth.passivity.check import check, check_by_closed_forms
+    from zwidth.passivity.game import has_gap
+
+    device, law = loop.device, loop.environment
+    if law.has_transfer_function:
+        verdict = check_by_closed_forms(device, law, contact=contact)
+        if contact == "kept" or not has_gap(device, law, verdict):
+            return verdict
     from zwidth.cli.patience import warn_of_compiling_the_game
     from zwidth.traces.progress import progress_bar
     from zwidth.traces.run import falling
 
     warn_of_compiling_the_game()
     with progress_bar("states") as progress:
-        return with_game(loop.device, loop.environment, verdict, falling(progress))
+        return check(device, law, contact=contact, progress=falling(progress))
+
+
+def _loop(arguments: argparse.Namespace) -> Specification:
+    """The device, and the environment behind its laws."""
+    from zwidth.cli.laws import with_laws
+    from zwidth.cli.specification import WITH_LAWS, Specification, read_tables, specified
+
+    tables = read_tables(arguments.sources, WITH_LAWS)
+    given = specified(tables, overrides(arguments))
+    rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
+    return Specification(given.device, rendered)
 
 
 def _replayed(verdict: Verdict) -> RealHand:
@@ -266,7 +283,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "say what limits it, by how much, and what to change.",
             "A plain number is SI; others carry a unit, as in --rate '1 kHz' or --resolution '22.4 um'.\n"
             "An interval, as in --damping '0.1 .. 0.2', stands for every value in it.\n\n"
-            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided\n\n"
+            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided, 4 passive while contact is kept\n"
+            "(and nothing is known of a hand that touches and leaves); with --contact kept that is 0\n\n"
             "examples:\n"
             "  zwidth check haptic-paddle --stiffness 300\n"
             "  zwidth check my-wheel.toml my-bumpstop.toml --json\n"
@@ -340,7 +358,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "where does an arm of several joints render a wall passively?",
             "Map over the workspace of an arm whether the damping of its joints pays for a wall; prove it\n"
             "between the points too, or show a motion that takes energy out; say which joint to damp.",
-            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided\n\n"
+            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided, 4 by a proof on paper alone\n\n"
             "examples:\n"
             "  zwidth workspace haply-2diy --joint-damping 0.003 --stiffness 500 --plot map.png\n"
             "  zwidth workspace two-link --joint-damping 0.02,0.01 --stiffness 500 --rate '2 kHz'\n"
@@ -356,7 +374,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "A log is text, Parquet, HDF5, NetCDF, MATLAB, a ROS bag or a trace. Columns whose names are\n"
             "not recognised are named: --column position=enc --unit position=counts.\n\n"
             "exit status: 0 identified, 2 bad input; with an environment that of zwidth check at the stated\n"
-            "confidence: 0 passive, 1 active, 3 undecided\n\n"
+            "confidence: 0 passive, 1 active, 3 undecided, 4 passive while contact is kept\n\n"
             "examples:\n"
             "  zwidth identify session.csv -o my-device.toml --plot fig.png\n"
             "  zwidth identify session.csv --column position=enc --unit position=counts "

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.laws import with_laws
 from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
-from zwidth.cli.output import print_json, quiet_pipe, targets, writing
+from zwidth.cli.output import print_json, quiet_pipe, say_written, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
@@ -83,6 +83,7 @@ def run_compare(arguments: argparse.Namespace) -> int:
     else:
         with quiet_pipe():
             print(found)
+        say_written(save, plot)
     return 0
 
 

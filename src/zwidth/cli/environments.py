@@ -11,7 +11,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
-from zwidth.cli.table import Table, located, quoted, suggestion
+from zwidth.cli.table import COMMAND_LINE, Table, located, quoted, suggestion
 from zwidth.cli.values import branches, coefficients, flag, quantities, velocity_filter
 from zwidth.environment import Environment
 from zwidth.errors import InputError
@@ -204,7 +204,7 @@ def build_environment(table: Table, motion: str, depth: int = 0) -> Environment:
     table.check_keys(allowed, f'an environment of type "{table.text("type")}"')
     missing = [key for key, k in row.keys.items() if k.required and key not in table.values]
     if missing:
-        needed = ", ".join(f"{key}{_unit(row.keys[key], motion)}" for key in missing)
+        needed = ", ".join(f"{_named(table, key)}{_unit(row.keys[key], motion)}" for key in missing)
         raise InputError(f'{table.label}: type "{table.text("type")}" needs {needed}')
     arguments = {
         key: _read(table, key, row.keys[key], motion, depth) for key in table.values if key != "type"
@@ -212,6 +212,12 @@ def build_environment(table: Table, motion: str, depth: int = 0) -> Environment:
     with located(table.label):
         environment: Environment = getattr(import_module(row.module), row.class_name)(**arguments)
     return environment
+
+
+def _named(table: Table, key: str) -> str:
+    """A key as it is written where the table was: as an option on the command line."""
+    own = "virtual_damping" if key == "damping" else key
+    return f"--{own.replace('_', '-')}" if table.label == COMMAND_LINE else own
 
 
 def _row(table: Table) -> EnvironmentType:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.cli.options import BEHIND, Once, add_all, environment_parameters, given
-from zwidth.cli.output import print_json, targets, writing
+from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
 
@@ -106,7 +106,7 @@ def _behind(parameter: Any) -> Any:
 
 def run_identify(arguments: argparse.Namespace) -> int:
     """`zwidth identify`: 0; with an environment that of `zwidth check`, "undecided" of a wrong model."""
-    from zwidth.cli.commands import STATUS
+    from zwidth.cli.commands import exit_status
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() != ".toml":
@@ -125,10 +125,11 @@ def run_identify(arguments: argparse.Namespace) -> int:
     else:
         from zwidth.cli.identification_report import print_identified
 
-        print_identified(found, [path for path in (save, plot) if path is not None])
+        print_identified(found)
+        say_written(save, plot)
     if found.environment is None:
         return 0
-    return STATUS["undecided" if found.verdict is None else found.verdict.outcome]
+    return exit_status("undecided" if found.verdict is None else found.verdict.outcome)
 
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:

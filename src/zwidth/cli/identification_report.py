@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 from rich.padding import Padding
 from rich.table import Table
@@ -12,12 +11,13 @@ from rich.text import Text
 from zwidth.cli.description import environment_line
 from zwidth.cli.identification import Result
 from zwidth.cli.numerals import shown
-from zwidth.cli.report import COLOURS, page, section
+from zwidth.cli.report import page, section
 from zwidth.environment import Wall
 from zwidth.identification.device.identified import MOST_CONFIDENCE
 from zwidth.identification.device.limits import advice, percent
 from zwidth.identification.device.table import rows, source_name
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
 
 _SHOWN = 0.95
@@ -27,7 +27,7 @@ _WARNINGS = ("wrong model", "bent friction", "no damping", "no coulomb friction"
 """Kinds of findings that are coloured."""
 
 
-def print_identified(found: Result, written: Sequence[Path]) -> None:
+def print_identified(found: Result) -> None:
     """Print the report on standard output."""
     own = found.identified.findings[len(found.log.findings) :]
     with page() as out:
@@ -39,8 +39,6 @@ def print_identified(found: Result, written: Sequence[Path]) -> None:
             section(out, "the environment", _checked(found, found.verdict))
         section(out, "to know it better", _bullets(advice(found.identified, found.confidence)))
         section(out, "the log", _bullets(str(finding) for finding in found.log.findings))
-        for path in written:
-            out.print(Text(f"written: {path}", style="dim"))
 
 
 def _headline(found: Result) -> Padding:
@@ -120,7 +118,7 @@ def _checked(found: Result, verdict: Verdict) -> Iterator[Text]:
     yield Text(_for_how_much(found.passive_for), style="bold")
     yield Text(
         f"{verdict.outcome} at {percent(found.confidence)}: {verdict.claim}",
-        style=COLOURS[verdict.outcome],
+        style=TOLD[verdict.outcome].terminal,
     )
 
 

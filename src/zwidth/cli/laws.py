@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 Form = Literal["quantity", "word", "flag", "list", "velocity"]
 
 NOT_PROVED = (
-    "laws in a row have no H(z) to check: zwidth limit plays the game of the worst hand against them, zwidth "
-    "compare judges them, zwidth simulate shows a touch"
+    "laws in a row have no place in this command: zwidth check decides them, zwidth limit says how far one "
+    "may go, zwidth compare judges them, zwidth simulate shows a touch"
 )
-"""What `check` says to them."""
+"""What commands say to them that take a device alone, or a wall."""
 
 MOST = 16
 """Laws in a row; more is a mistake."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.environments import option_keys
 from zwidth.cli.laws import with_laws
 from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
-from zwidth.cli.output import print_json, targets, writing
+from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.device.catalogue import PROPERTIES
 from zwidth.errors import InputError
@@ -89,6 +89,7 @@ def run_limit(arguments: argparse.Namespace) -> int:
         from zwidth.cli.limit_report import print_bracket
 
         print_bracket(bracket, loop)
+        say_written(save, plot)
     return BOTH if bracket.passive is not None and bracket.active is not None else ONE_OR_NONE
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.options import Once, Parameter, add_all, device_parameters, given
-from zwidth.cli.output import print_json, quiet_pipe, targets, writing
+from zwidth.cli.output import print_json, quiet_pipe, say_written, targets, writing
 from zwidth.cli.specification import read_tables, specified_device
 from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
@@ -98,6 +98,8 @@ def run_map(arguments: argparse.Namespace) -> int:
     else:
         with quiet_pipe():
             print(_report(found))
+        kept = None if arguments.save is None else Path(arguments.save)
+        say_written(kept, plot, proof)
     return 0
 
 
@@ -184,13 +186,26 @@ def _report(found: xr.Dataset) -> str:
     for name in found["region"].values:
         count = int(found[str(name)].values.sum())
         largest = f"{float(found['largest_stiffness'].sel(region=name)):.6g}" if count else "none"
+        if not count and name in _BROKEN and found.attrs["not_covered"]:
+            lines.append(f"{_region(str(name), found):<28}{'not covered':>24}{'':>18}")
+            continue
         lines.append(f"{_region(str(name), found):<28}{largest:>24}{count / cells:>18.1%}")
+    if found.attrs["not_covered"]:
+        spring = shown(float(found["spring_limit"]), found["spring_limit"].attrs["units"])
+        lines.append(
+            f"not covered, contact made and broken: {found.attrs['not_covered']}; "
+            f"a spring alone, B = 0, is passive up to {spring}"
+        )
     free = [
         shown(float(found[key]), found[key].attrs["units"])
         for key in ("free_mass", "free_damping", "free_friction")
     ]
     lines.append(f"free air: {', '.join(free)}")
     return "\n".join(lines)
+
+
+_BROKEN = ("passive", "quiet")
+"""The regions in which contact is made and broken."""
 
 
 def _region(name: str, found: xr.Dataset) -> str:
@@ -209,17 +224,23 @@ def _json(found: xr.Dataset) -> str:
     from zwidth.passivity.document import to_json, unit_suffix
 
     unit = unit_suffix(found["largest_stiffness"].attrs["units"])
-    regions = {
-        str(name): {
-            f"largest_stiffness_{unit}": float(found.sel(region=name)["largest_stiffness"]),
-            "cells": int(found[str(name)].values.sum()),
-        }
-        for name in found["region"].values
-    }
+    regions: dict[str, dict[str, Any]] = {}
+    for name in map(str, found["region"].values):
+        cells = int(found[name].values.sum())
+        covered = bool(cells) or name not in _BROKEN or not found.attrs["not_covered"]
+        largest = float(found.sel(region=name)["largest_stiffness"]) if covered else None
+        regions[name] = {f"largest_stiffness_{unit}": largest, "cells": cells, "covered": covered}
     free = {
         f"{key}_{unit_suffix(found[key].attrs['units'])}": float(found[key])
         for key in ("free_mass", "free_damping", "free_friction")
     }
     return to_json(
-        {"device": found.attrs["device"], "cells": found["passive"].size, "regions": regions, **free}
+        {
+            "device": found.attrs["device"],
+            "cells": found["passive"].size,
+            "regions": regions,
+            "not_covered": found.attrs["not_covered"] or None,
+            f"spring_limit_{unit}": float(found["spring_limit"]),
+            **free,
+        }
     )

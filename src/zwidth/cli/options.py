@@ -12,8 +12,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from zwidth.cli.environments import TYPES, option_keys
-from zwidth.cli.laws import LAWS, NOT_PROVED
+from zwidth.cli.laws import LAWS
 from zwidth.cli.specification import DEVICE_KEYS, ROTARY_KEYS
+from zwidth.cli.table import quoted
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -95,25 +96,36 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
         add_all(environment, (parameter, inner))
 
 
+def add_contact_option(parser: argparse.ArgumentParser) -> None:
+    """The option that says which contact is asked about."""
+    parser.add_argument(
+        "--contact",
+        metavar="KIND",
+        action=Once,
+        help="made-and-broken, as a hand does (default), or kept: the hand never leaves the wall",
+    )
+
+
+def contact(arguments: argparse.Namespace) -> str:
+    """The contact that is asked about, as `zwidth.check` takes it."""
+    typed = arguments.contact
+    if typed is None or typed == "kept":
+        return typed or "made and broken"
+    if typed.replace("-", " ") == "made and broken":
+        return "made and broken"
+    raise InputError(
+        f"--contact is made-and-broken, for a hand that touches and leaves, or kept, got {quoted(typed)}"
+    )
+
+
 def add_law_option(parser: argparse.ArgumentParser) -> None:
-    """Give a command that simulates the option `--law`."""
+    """Give a command the option `--law`."""
     parser.add_argument(
         "--law",
         metavar="NAMES",
         action="append",
         help=f"laws in a row behind the environment, with their defaults: {', '.join(LAWS)}",
     )
-
-
-def refuse_laws(parser: argparse.ArgumentParser) -> None:
-    """Let a command that proves say why it has no `--law`."""
-    parser.add_argument("--law", action=_NotProved, help=argparse.SUPPRESS)
-
-
-class _NotProved(argparse.Action):
-    def __call__(self, *_: object) -> None:
-        """Refuse the option."""
-        raise InputError(f"--law: {NOT_PROVED}")
 
 
 def overrides(arguments: argparse.Namespace) -> dict[str, str]:

@@ -140,6 +140,14 @@ def targets(
     return picture, document
 
 
+def say_written(*paths: Path | None) -> None:
+    """Say on standard output which files were written; None for one that was not asked for."""
+    with quiet_pipe():
+        for path in paths:
+            if path is not None:
+                print(f"written: {plain(str(path), 200)}")
+
+
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
     """Say which file it was that could not be written."""

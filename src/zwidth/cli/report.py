@@ -23,17 +23,18 @@ from zwidth.cli.motion import joules, motion_lines
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.output import encodes, quiet_pipe
 from zwidth.passivity.advice import Advice
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.wording import intervals
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
     from zwidth.passivity.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
 
-COLOURS = {"passive": "green", "theorem": "blue", "active": "red", "undecided": "yellow"}
 _WIDEST = 100
 _LONGEST_BAR = 34
-_INTERVALS = "holds for every value"
 _ORDER = (
     "stiffness", "virtual_damping", "velocity_filter", "time_constant", "rate", "delay", "damping",
     "resolution", "coulomb_friction",
@@ -64,16 +65,20 @@ def print_verdict(
         out.print(_headline(verdict))
         out.print(_loop(verdict))
         out.print(_numbers(verdict))
-        section(out, "budget", _budget(verdict, fancy))
+        if isinstance(verdict, LinearVerdict):
+            section(out, "budget", _budget(verdict, fancy))
         if verdict.witness is not None:
             section(out, "the motion", motion_lines(verdict.witness, fancy))
         if real_hand is not None:
             section(out, "a real hand", _table(real_hand.rows()))
         if active_hand is not None:
             section(out, "an active hand", _table(active_hand.rows()))
-        section(out, *_advice(verdict))
-        section(out, "actuator", _actuator(verdict))
-        section(out, "assumes", assumption_lines(verdict.assumptions))
+        if isinstance(verdict, LinearVerdict):
+            section(out, *_advice(verdict))
+            section(out, "actuator", _actuator(verdict))
+        beside_the_loop = intervals(verdict.scope, verdict.outcome)
+        assumed = (line for line in verdict.assumptions if line != beside_the_loop)
+        section(out, "assumes", assumption_lines((*assumed, *verdict.demand)))
 
 
 def _table(rows: Iterable[tuple[str, str]]) -> Iterator[Table]:
@@ -84,7 +89,7 @@ def _table(rows: Iterable[tuple[str, str]]) -> Iterator[Table]:
 
 
 def _headline(verdict: Verdict) -> Padding:
-    colour = COLOURS[verdict.outcome]
+    colour = TOLD[verdict.outcome].terminal
     grid = Table.grid(padding=(0, 1))
     badge = Text(f" {verdict.outcome.upper()} ", style=f"bold white on {colour}")
     grid.add_row(badge, Text(_claim(verdict), style="bold"))
@@ -92,9 +97,11 @@ def _headline(verdict: Verdict) -> Padding:
 
 
 def _claim(verdict: Verdict) -> str:
-    if verdict.outcome == "active" and verdict.witness is not None:
-        return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
-    return verdict.claim
+    if verdict.outcome != "active":
+        return verdict.claim
+    if verdict.witness is None:
+        return f"{verdict.claim} No motion that shows it was found short enough to be written down."
+    return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
 
 
 def _loop(verdict: Verdict) -> Padding:
@@ -102,9 +109,9 @@ def _loop(verdict: Verdict) -> Padding:
     motion = verdict.device.motion
     grid.add_row(Text("device", style="dim"), Text(device_line(verdict.device)))
     grid.add_row(Text("environment", style="dim"), Text(environment_line(verdict.environment, motion)))
-    intervals = next((a for a in verdict.assumptions if a.startswith(_INTERVALS)), None)
-    if intervals is not None:
-        grid.add_row(Text("intervals", style="dim"), Text(intervals, style="yellow"))
+    between = intervals(verdict.scope, verdict.outcome)
+    if between is not None:
+        grid.add_row(Text("intervals", style="dim"), Text(between, style="yellow"))
     return _spaced(grid)
 
 
@@ -115,12 +122,12 @@ def _numbers(verdict: Verdict) -> Padding:
             continue  # it has a section of its own
         style = "bold" if name == "limit" else "red" if text.startswith("-") else ""
         grid.add_row(Text(_spelled(name), style="dim"), Text(unit_text(text), style=style))
-    if verdict.mode is not None:
+    if isinstance(verdict, LinearVerdict) and verdict.mode is not None:
         grid.add_row(Text("shows itself as", style="dim"), Text(verdict.mode))
     return _spaced(grid)
 
 
-def _budget(verdict: Verdict, fancy: bool) -> Iterator[Table]:
+def _budget(verdict: LinearVerdict, fancy: bool) -> Iterator[Table]:
     """Each leak on top of the one before, and below them what the device dissipates."""
     account, motion = verdict.budget, verdict.device.motion
     scale = max(account.hold, account.hold + account.dynamics, account.required, account.damping)
@@ -140,7 +147,7 @@ def _budget(verdict: Verdict, fancy: bool) -> Iterator[Table]:
         yield _friction(verdict, fancy)
 
 
-def _friction(verdict: Verdict, fancy: bool) -> Table:
+def _friction(verdict: LinearVerdict, fancy: bool) -> Table:
     account, unit = verdict.budget, GLOSSARY["coulomb_friction"].unit_for(verdict.device.motion)
     grid = _account("Coulomb, K Δ/2 against f_c" if verdict.decision.is_spring else "Coulomb")
     need = account.friction_required
@@ -169,8 +176,8 @@ def _balance(
     grid.add_row(name, picture, shown(have, unit))
 
 
-def _advice(verdict: Verdict) -> tuple[str, Iterator[Text]]:
-    title = "slack" if verdict.outcome == "passive" else "what to change, any one of"
+def _advice(verdict: LinearVerdict) -> tuple[str, Iterator[Text]]:
+    title = "slack" if verdict.is_proved else "what to change, any one of"
     return title, _advice_lines(verdict.advice)
 
 
@@ -202,7 +209,7 @@ def _named(text: str) -> str:
     return text.replace("coulomb", "Coulomb")
 
 
-def _actuator(verdict: Verdict) -> Iterator[Text]:
+def _actuator(verdict: LinearVerdict) -> Iterator[Text]:
     for check in verdict.actuator:
         mark, style = {True: ("✓", "green"), False: ("✗", "red"), None: ("·", "dim")}[check.ok]
         yield Text.assemble((f"{mark} ", style), f"{check.name}: {check.text}")
@@ -211,8 +218,7 @@ def _actuator(verdict: Verdict) -> Iterator[Text]:
 def assumption_lines(assumptions: Iterable[str]) -> Iterator[Text]:
     """What is taken for granted, line by line."""
     for line in assumptions:
-        if not line.startswith(_INTERVALS):  # that one stands beside the loop
-            yield _item(line, "dim")
+        yield _item(line, "dim")
 
 
 def _item(text: str, style: str = "") -> Text:

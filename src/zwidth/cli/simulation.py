@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.laws import with_laws
 from zwidth.cli.options import Once, add_all, add_law_option, add_parameters, given, overrides
-from zwidth.cli.output import check_new, print_json, writing
+from zwidth.cli.output import check_new, print_json, say_written, writing
 from zwidth.cli.specification import TABLES, read_tables, specified
 from zwidth.errors import InputError
 
@@ -84,7 +84,8 @@ def run_simulate(arguments: argparse.Namespace) -> int:
     else:
         from zwidth.cli.trace_report import print_trace
 
-        print_trace(trace, [path for path in (save, plot, sound) if path is not None])
+        print_trace(trace)
+        say_written(save, plot, sound)
     return INTERRUPTED if "interrupted_at_s" in trace.attrs else 0
 
 
@@ -135,6 +136,7 @@ def run_traces(arguments: argparse.Namespace) -> int:
         from zwidth.cli.trace_report import print_comparison
 
         print_comparison(comparison)
+        say_written(plot)
     return 0
 
 

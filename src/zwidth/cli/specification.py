@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +26,12 @@ from zwidth.device import Device, catalogue
 from zwidth.device.rotary import rotary
 from zwidth.environment import Environment
 from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse
+
+_LONG_DELAY = Fraction(1, 2)
+"""Without a unit, a delay this long is questioned [s]."""
 
 LARGEST_FILE = 1 << 20
 """Bytes; a specification is a page of text."""
@@ -147,7 +152,21 @@ def _device_value(table: Table, key: str, motion: str) -> Any:
         return table.text(key)
     unit = ROTARY_KEYS[key] if key in ROTARY_KEYS else GLOSSARY[key].unit_for(motion)
     with located(table.where(key)):
-        return parse(table.values[key], unit, key)
+        value = parse(table.values[key], unit, key)
+        if key == "delay":
+            _question_delay(table.values[key], value)
+        return value
+
+
+def _question_delay(written: object, delay: Exact | Interval) -> None:
+    """Ask for the unit of a delay that is hardly meant in seconds."""
+    bare = not (isinstance(written, str) and any(map(str.isalpha, written)))
+    if bare and ends(delay)[1] >= _LONG_DELAY:
+        seconds = f"{float(ends(delay)[1]):g}"
+        raise InputError(
+            f"delay {seconds} without a unit is {seconds} s between sample and force; write "
+            f'"{seconds} ms", or "{seconds} s" if that is meant'
+        )
 
 
 def _catalogue_device(table: Table, arguments: Mapping[str, Any], turning: list[str], motion: str) -> Device:

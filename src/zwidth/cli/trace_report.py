@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.table import Table
@@ -12,6 +11,7 @@ from rich.text import Text
 from zwidth.cli.numerals import shown
 from zwidth.cli.report import page
 from zwidth.cli.table import plain
+from zwidth.energy.ledger import ROUNDING
 from zwidth.loop.trace import UNITS
 from zwidth.traces import Comparison, compare_traces
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _MOVING = 1e-9
 
 
-def print_trace(trace: xr.Dataset, files: list[Path]) -> None:
+def print_trace(trace: xr.Dataset) -> None:
     """Print the report of one trace."""
     with page() as out:
         out.print(_headline(trace))
@@ -32,9 +32,6 @@ def print_trace(trace: xr.Dataset, files: list[Path]) -> None:
         out.print()
         out.print(Text("energy", style="bold"))
         out.print(_grid((text, shown(value, "J")) for text, value in trace.zwidth.energy.rows()))
-        if files:
-            out.print()
-            out.print(_grid(("written", plain(str(path), 100)) for path in files))
 
 
 def print_comparison(comparison: Comparison) -> None:
@@ -51,16 +48,26 @@ def print_comparison(comparison: Comparison) -> None:
 
 
 def _headline(trace: xr.Dataset) -> Table:
-    got = trace.zwidth.energy.extracted
-    significant = got > 1e-12 * trace.zwidth.energy.moved
-    inside = bool(trace["measured_position"].values[0] > 0)
+    book = trace.zwidth.energy
+    got, held = shown(book.got_out, "J"), book.held_at_start
+    significant = book.got_out > ROUNDING * book.moved
     grid = Table.grid(padding=(0, 1))
-    if significant and not inside:
+    if book.active:
         badge = Text(" ACTIVE ", style="bold white on red")
-        words = f"This hand got {shown(got, 'J')} out of the loop, more than there was in it."
-    elif significant:
+        there = f"the {shown(held, 'J')} that" if held else "there"
+        words = f"This hand got {got} out of the loop, more than {there} was in it."
+    elif significant and book.unknown:
         badge = Text(" OUT ", style="bold white on yellow")
-        words = f"This hand got {shown(got, 'J')} out; it began inside the wall, where some of it was stored."
+        words = (
+            f"This hand got {got} out. That does not show whether the loop is active: how much it held at "
+            f"the start is not known, for {book.unknown}."
+        )
+    elif significant:
+        badge = Text(" TOUCH ", style="bold white on blue")
+        words = (
+            f"{got} came out, {shown(held, 'J')} were stored at the start: nothing was gained. That proves "
+            "nothing of other hands: see zwidth check."
+        )
     else:
         badge = Text(" TOUCH ", style="bold white on blue")
         words = (

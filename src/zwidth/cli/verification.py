@@ -15,28 +15,18 @@ from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.report import page
 from zwidth.cli.table import plain
 from zwidth.passivity.certificate import evidence, verify_document
-from zwidth.passivity.checker import Verification
+from zwidth.passivity.checker import Scope, Verification
 from zwidth.passivity.document import unit_key, unit_suffix
 from zwidth.quantity.glossary import GLOSSARY
 
-_OF_A_KNOWN_HAND = {"absolute stability", "stability", "instability", "vibration"}
-"""Kinds of proofs that say of one hand whether it comes to rest, and nothing of passivity."""
-
-_OF_A_PORT = {"positive real", "positive real matrix", "extraction", "matrix extraction"}
-"""Kinds that say of a port on which side of a level its index lies."""
-
-_BOUNDED = {"storage", "row storage"}
-"""Storage functions: they speak of the hands on their board only."""
-
 _TABLES = {
-    **dict.fromkeys(_OF_A_PORT, ("system", "motion")),
-    **dict.fromkeys(("contact", "force bounding"), ("loop", "law")),
-    **dict.fromkeys((*_BOUNDED, "contact motion", "row motion"), ("loop", "law", "domain")),
+    **dict.fromkeys(
+        ("positive real", "positive real matrix", "extraction", "matrix extraction"), ("system", "motion")
+    ),
+    **dict.fromkeys(("contact", "relaxing contact", "force bounding", "nonlinear spring"), ("loop", "law")),
+    **dict.fromkeys(("storage", "row storage", "contact motion", "row motion"), ("loop", "law", "domain")),
 }
 """What a document of each kind is of, besides its loop: only what is checked is shown."""
-
-_CONTACT_KEPT = {"linear", "quantized", "delays"}
-"""Kinds that take a one-sided law for the line that it is inside."""
 
 _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 """A document that claims nothing of hands beyond its bounds."""
@@ -57,36 +47,48 @@ def verifications(document: object) -> list[Part]:
     InputError
         If the document contains no evidence.
     """
-    parts = evidence(document)
-    outcome = document.get("outcome") if isinstance(document, Mapping) else None
-    bounded = isinstance(document, Mapping) and document.get("format") == _OF_BOUNDED_HANDS
-    found = [Part(part, verify_document(part)) for part in parts]
-    if outcome == "passive" and not bounded and all(map(_is_bounded, parts)):
-        return [_misfit(p, outcome, "covers hands within bounds only") for p in found]
-    if outcome in ("passive", "active"):
-        for kinds, what in ((_OF_A_KNOWN_HAND, "is of a hand that is known"), (_OF_A_PORT, "is of a port")):
-            if any(_kinds(part) & kinds for part in parts):
-                return [_misfit(p, outcome, what) for p in found]
-    misfit = {"passive": "is a motion that extracts energy", "active": "is a proof of passivity"}
-    return [
-        _misfit(p, outcome, misfit[outcome])
-        if outcome in ("passive", "active") and (p.verification.energy is not None) != (outcome == "active")
-        else p
-        for p in found
-    ]
+    told = document if isinstance(document, Mapping) else {}
+    found = [Part(part, verify_document(part)) for part in evidence(document)]
+    outcome = told.get("outcome")
+    if outcome not in ("passive", "passive in contact", "active"):
+        return found
+    scopes = [part.verification.scope for part in found]
+    bounded = all(scope is None or scope.hands == "bounded" for scope in scopes)
+    if outcome != "active" and bounded and told.get("format") != _OF_BOUNDED_HANDS:
+        return [_refused(part, outcome, "covers hands within bounds only") for part in found]
+    return [_refused(part, outcome, _misfit(part.verification.scope, outcome, told)) for part in found]
 
 
-def _misfit(part: Part, outcome: str, what: str) -> Part:
+def _refused(part: Part, outcome: str, misfit: str | None) -> Part:
     """Evidence that does not show what the document says; an invalid part stays as it is."""
-    if not part.verification.valid:
+    if misfit is None or not part.verification.valid:
         return part
     return part._replace(
-        verification=Verification(False, f"the verdict says {outcome}, and its evidence {what}")
+        verification=Verification(False, f"the verdict says {outcome}, and its evidence {misfit}")
     )
 
 
-def _is_bounded(part: Mapping[str, object]) -> bool:
-    return bool(_kinds(part) & _BOUNDED)
+def _misfit(covered: Scope | None, outcome: str, told: Mapping[str, Any]) -> str | None:
+    """Why evidence does not show an outcome; None where it does."""
+    if covered is None:
+        return None
+    if covered.shows in ("stable", "unstable"):
+        return "is of a hand that is known"
+    if covered.shows in ("index at least", "index below"):
+        return "is of a port"
+    if outcome == "active":
+        return None if covered.shows == "active" else "is a proof of passivity"
+    if covered.shows == "active":
+        return "shows that energy comes out"
+    if covered.contact == "kept" and outcome == "passive" and _contact(told) != "kept":
+        return "covers a hand that keeps contact only"
+    return None
+
+
+def _contact(told: Mapping[str, Any]) -> object:
+    """The contact that a document says it is about."""
+    scope = told.get("scope")
+    return scope.get("contact") if isinstance(scope, Mapping) else None
 
 
 def print_verifications(parts: Sequence[Part]) -> None:
@@ -108,36 +110,26 @@ def print_verifications(parts: Sequence[Part]) -> None:
 
 def _claim(part: Part) -> str:
     """What was checked, with the bounds on the hand where there are some."""
-    reason = plain(part.verification.reason, 400)
-    if not part.verification.valid or part.verification.energy is not None:
+    reason, covered = plain(part.verification.reason, 400), part.verification.scope
+    if covered is None or part.verification.energy is not None:
         return reason
-    heads = {_head(single) for single in _singles(part.evidence)}
-    return f"{heads.pop() if len(heads) == 1 else 'Proved'}: {reason}"
+    return f"{_head(covered, str(part.evidence.get('kind')))}: {reason}"
 
 
-def _head(single: Mapping[str, object]) -> str:
-    """What a proof of this kind shows."""
-    kind, kept = single.get("kind"), " as long as contact is kept" if _keeps_contact(single) else ""
-    if kind in _BOUNDED:
-        return "No hand within these bounds takes energy out of the loop below, proved"
-    if kind in _OF_A_PORT:
-        return "Of the port below, proved"
-    if kind in _OF_A_KNOWN_HAND:
+def _head(covered: Scope, kind: str) -> str:
+    """What a proof shows, in words made from what the checker found it to cover."""
+    if covered.shows in ("stable", "unstable"):
         return "Proved"
-    if kind == "active hand":
+    if covered.shows in ("index at least", "index below"):
+        return "Of the port below, proved"
+    kept = " as long as contact is kept" if covered.contact == "kept" else ""
+    if covered.shows == "active":
+        return "A hand can take any amount of energy out of the loop below, proved"
+    if covered.hands == "bounded":
+        return "No hand within these bounds takes energy out of the loop below, proved"
+    if covered.hands == "activity":
         return f"No hand of this activity goes on gaining energy from the loop below{kept}, proved"
     return f"The {'arm' if kind == 'arm' else 'loop'} below is passive{kept}, proved"
-
-
-def _keeps_contact(single: Mapping[str, object]) -> bool:
-    """True where a one-sided law is covered only while the hand stays inside."""
-    loop, proof = single.get("loop"), single.get("proof")
-    if not isinstance(loop, Mapping) or loop.get("unilateral") is not True:
-        return False
-    if single.get("kind") == "active hand":
-        reduced = proof.get("reduced") if isinstance(proof, Mapping) else None
-        return not isinstance(reduced, Mapping) or reduced.get("kind") in _CONTACT_KEPT
-    return single.get("kind") in _CONTACT_KEPT
 
 
 def _singles(evidence: Mapping[str, object]) -> list[Mapping[str, object]]:
@@ -145,10 +137,6 @@ def _singles(evidence: Mapping[str, object]) -> list[Mapping[str, object]]:
     corners = evidence.get("corners") if evidence.get("kind") == "corners" else None
     parts = corners if isinstance(corners, list) else [evidence]
     return [part for part in parts if isinstance(part, Mapping)]
-
-
-def _kinds(evidence: Mapping[str, object]) -> set[object]:
-    return {str(part.get("kind")) for part in _singles(evidence)}
 
 
 def _rows(part: Part) -> Iterator[tuple[str, str]]:

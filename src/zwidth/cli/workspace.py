@@ -15,7 +15,6 @@ from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 from zwidth.writing import writing_whole
 
-STATUS = {"passive": 0, "theorem": 0, "active": 1, "undecided": 3}
 _RATE = "1 kHz"
 _SAVED = (".json", ".nc")
 
@@ -31,8 +30,8 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth workspace`."""
     parser.usage = (
         "%(prog)s ARM --stiffness K [--pose --rotational-stiffness K] [--wall FILE] [--joint-damping B] "
-        "[--rate RATE] [--virtual-damping B] [--delay TIME] [--points N] [--json] [--plot FILE] [-o FILE] "
-        "[--force]"
+        "[--joint-friction F] [--joint-resolution STEP] [--largest-force FORCE] [--rate RATE] "
+        "[--virtual-damping B] [--delay TIME] [--points N] [--json] [--plot FILE] [-o FILE] [--force]"
     )
     parser.add_argument(
         "arm", metavar="ARM", help="hapkit, two-link, haply-2diy, falcon, or a .urdf, .xml or .mjcf file"
@@ -56,6 +55,12 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
             "FORCE",
             "the torque is computed once a sample, for forces up to this [N]; in pose with a moment: 5,0.2",
         ),
+        (
+            "--largest-force",
+            "FORCE",
+            "of the wall, up to which encoder steps are to be counted [N]; in pose with a moment: 5,0.2 "
+            "(default: as far as the joints' Coulomb friction covers them)",
+        ),
         ("--points", "N", "cells along each side of the map (default: 100)"),
     ):
         parser.add_argument(option, metavar=metavar, action=Once, help=meaning)
@@ -78,7 +83,7 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
 
 
 def run_workspace(arguments: argparse.Namespace) -> int:
-    """`zwidth workspace`: 0 passive, 1 active, 3 undecided, as `check`."""
+    """`zwidth workspace`: 0 passive, 1 active, 3 undecided, 4 by a proof on paper alone."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() not in _SAVED:
         raise InputError(
@@ -86,6 +91,7 @@ def run_workspace(arguments: argparse.Namespace) -> int:
             f"got {save.name!r}"
         )
     from zwidth.passivity.arms import workspace
+    from zwidth.passivity.outcome import TOLD
 
     arm = _arm(arguments)
     space = workspace(
@@ -94,7 +100,8 @@ def run_workspace(arguments: argparse.Namespace) -> int:
         rate=float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
         delay=float(parse_number(arguments.delay or "0", "s", "delay")),
         points=_whole(arguments.points or "100"),
-        torque_held_up_to=_largest(arguments.torque_held_up_to),
+        torque_held_up_to=_largest(arguments.torque_held_up_to, "torque-held-up-to"),
+        largest_force=_largest(arguments.largest_force, "largest-force"),
     )
     if save is not None:
         with writing(save):
@@ -111,7 +118,7 @@ def run_workspace(arguments: argparse.Namespace) -> int:
         print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
     else:
         print_workspace(space)
-    return STATUS[space.outcome]
+    return TOLD[space.outcome].status
 
 
 def _arm(arguments: argparse.Namespace) -> Any:
@@ -163,15 +170,15 @@ def _by_name(text: str | None, option: str) -> dict[str, float] | None:
     return {name.strip(): float(parse_number(value.strip(), "1", option)) for name, _, value in pairs}
 
 
-def _largest(text: str | None) -> list[float] | None:
+def _largest(text: str | None, option: str) -> list[float] | None:
     """A force, and in pose a moment."""
     if text is None:
         return None
     parts, units = text.split(","), ("N", "N*m")
     if len(parts) > len(units):
-        raise InputError(f"--torque-held-up-to: a force, and in pose a moment, got {text[:60]!r}")
+        raise InputError(f"--{option}: a force, and in pose a moment, got {text[:60]!r}")
     return [
-        float(parse_number(part.strip(), unit, "torque_held_up_to"))
+        float(parse_number(part.strip(), unit, option.replace("-", "_")))
         for part, unit in zip(parts, units, strict=False)
     ]
 

@@ -6,10 +6,13 @@ from collections.abc import Iterable, Iterator
 from math import isfinite
 from typing import TYPE_CHECKING
 
+from zwidth.cli.workspace_wall import wall_in_words
+
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from zwidth.passivity.arms import Workspace
+    from zwidth.passivity.arms import ArmMotion, Workspace
+    from zwidth.passivity.arms.encoders import EncoderSteps
 
 _SHOWN = 1e-6
 """Of the sum: what one joint gets less than this is the room for rounding."""
@@ -21,11 +24,12 @@ def print_workspace(space: Workspace) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from zwidth.cli.report import COLOURS, page, section
+    from zwidth.cli.report import page, section
+    from zwidth.passivity.outcome import TOLD
 
     with page() as out:
         head = Table.grid(padding=(0, 1))
-        badge = Text(f" {space.outcome.upper()} ", style=f"bold white on {COLOURS[space.outcome]}")
+        badge = Text(f" {space.outcome.upper()} ", style=f"bold white on {TOLD[space.outcome].terminal}")
         head.add_row(badge, Text(space.claim, style="bold"))
         out.print(Padding(head, (0, 0, 1, 0)))
         out.print(Padding(_grid(_numbers(space)), (0, 0, 1, 0)))
@@ -46,9 +50,8 @@ def _grid(rows: Iterable[tuple[str, str]]) -> Table:
 def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
     from zwidth.cli.numerals import shown
 
+    yield from _asked(space)
     data, motion = space.data, space.motion
-    count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
-    yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
     kind, unit, where = ("margin", "N*s/m", "at the hand")
     if space.arm.turns:
         kind, unit, where = ("margin_in_joints", "N*m*s/rad", "in the worst direction of the joints")
@@ -62,19 +65,54 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
         everywhere = shown(space.largest_stiffness, "N/m")
         yield "largest stiffness", f"{everywhere} everywhere, {best} at the best point"
     if motion is not None:
-        middle = ", ".join(f"{q:.4g}" for q in motion.joints.mean(axis=0))
-        gain = shown(-motion.energy, "J")
-        yield "motion", f"{len(motion.joints)} samples round the joints at {middle} take {gain} out"
+        yield "motion", _motion(motion)
     if "resolution" in data:
         turned = ""
         if "rotational_resolution" in data:
             turned = f" and {shown(float(data['rotational_resolution'].max()), 'rad')}"
         yield "encoder step", f"up to {shown(float(data['resolution'].max()), 'm')}{turned} at the hand"
-    if space.encoder_friction:
-        enough = ", ".join(shown(f, "N*m") if isfinite(f) else "none" for f in space.encoder_friction)
-        own = space.arm.coulomb_friction
-        has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "what it has is not known"
-        yield "Coulomb friction", f"{enough} covers the steps in joint {_joints(space)}; {has}"
+    if space.encoder_steps is not None:
+        yield from _friction(space, space.encoder_steps)
+
+
+def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
+    """What the verdict is about."""
+    from zwidth.cli.numerals import shown
+
+    count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
+    yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
+    yield "region", space.region
+    yield "wall", wall_in_words(space.wall)
+    if space.delay_samples:
+        samples = f"{space.delay_samples} sample{'s' if space.delay_samples > 1 else ''}"
+        yield "delay", f"{shown(space.delay_samples * space.sample_period, 's')}, {samples}"
+
+
+def _motion(motion: ArmMotion) -> str:
+    from zwidth.cli.numerals import shown
+
+    middle = ", ".join(f"{q:.4g}" for q in motion.joints.mean(axis=0))
+    gain, force = shown(-motion.energy, "J"), shown(motion.largest_force, "N")
+    read = "" if motion.encoder == "ideal" else ", at the readings of the encoders"
+    return f"{len(motion.joints)} samples round the joints at {middle} take {gain} out, forces up to {force}{read}"
+
+
+def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]]:
+    """What the encoder steps ask of it, what there is, and up to which force that goes."""
+    from zwidth.cli.numerals import shown
+
+    own = space.arm.coulomb_friction
+    enough = ", ".join(shown(f, "N*m") for f in steps.friction)
+    more = ", ".join(shown(f, "N*m") for f in steps.friction_per_force)
+    has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "it has none that is known"
+    yield "Coulomb friction", (
+        f"{enough} in joint {_joints(space)}, and {more} more for each newton of the wall, cover the steps; {has}"
+    )
+    from zwidth.passivity.arms.held import in_words
+
+    covered = f"covered up to {in_words(steps.covered)}" if steps.covered else "covered at no force"
+    known = "" if steps.refuted is None else f"; from {shown(steps.refuted, 'N')} on a motion takes energy out"
+    yield "encoder steps", covered + (known if own else "")
 
 
 def _joints(space: Workspace) -> str:

@@ -11,11 +11,15 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.table import located
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+
+if TYPE_CHECKING:
+    from zwidth.environment.matrix_wall import MatrixWall
+    from zwidth.environment.wall import Wall
 
 WALL_OPTIONS = (
     ("--stiffness", "VALUE", "of the wall, in every direction [N/m]"),
@@ -93,3 +97,21 @@ def _matrix(rows: object, key: str, turns: int) -> list[list[float]]:
         ]
         for i, row in enumerate(rows)
     ]
+
+
+def wall_in_words(wall: Wall | MatrixWall) -> str:
+    """Stiffness and virtual damping, of one direction or as matrices."""
+    from zwidth.environment.wall import Wall
+
+    parts = [("stiffness", wall.stiffness, 0), ("virtual damping", wall.damping, 1)]
+    if isinstance(wall, Wall):
+        found = [f"{float(value):g} {('N/m', 'N·s/m')[i]}" for _, value, i in parts if float(value)]
+        return ", ".join(found or ["0 N/m"]) + " in every direction"
+    units = ("N, m, rad", "N, m, s, rad") if wall.turns else ("N/m", "N·s/m")
+    return "; ".join(
+        f"{name} {_rows(value)} {units[i]}" for name, value, i in parts if i == 0 or any(map(any, value))
+    )
+
+
+def _rows(matrix: Any) -> str:
+    return "[" + ", ".join("[" + ", ".join(f"{x:g}" for x in row) + "]" for row in matrix) + "]"

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from fractions import Fraction
+from html import escape
 from typing import Any, Literal
 
 from zwidth.errors import InputError
@@ -187,7 +188,7 @@ class Device:
             f"<td>{GLOSSARY[k].unit_for(self.motion)}</td></tr>"
             for k, v in self.parameters().items()
         )
-        return f"<table><caption>{self.name}</caption>{rows}</table>"
+        return f"<table><caption>{escape(self.name)}</caption>{rows}</table>"
 
 
 def _shown(value: Exact | Interval) -> str:

@@ -5,7 +5,12 @@
 
 W_h is what the hand puts into the device through the port.  A loop is passive
 if W_h(t) + E(0) ≥ 0 for every hand and every t (Colgate & Schenkel 1997), with
-E(0) what the device holds at first.  So a hand that at some instant has
+
+    E(0) = ½ m v² + E_s
+
+what the loop holds at first: the device in its motion, the law in what a hand
+put in to bring it there (`stored_at_start_J` of the trace, a bound that every
+passive loop keeps).  So a hand that at some instant has
 
     −W_h(t) > E(0)
 
@@ -16,6 +21,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import isnan, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +33,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
+ROUNDING = 1e-12
+"""Of the energy moved: what is less is no energy."""
 
 _ROWS = {
     "hand_work": "the hand put into the device",
@@ -80,18 +89,35 @@ class Ledger:
     def closes(self) -> bool:
         """True when both balances close to 1e-12 of the energy moved."""
         worst = max(np.abs(self.residual).max(), np.abs(self.hand_residual).max())
-        return bool(worst <= 1e-12 * self.moved)
+        return bool(worst <= ROUNDING * self.moved)
+
+    @cached_property
+    def got_out(self) -> float:
+        """max(−W_h) at an instant of the trace [J], gained or stored at first."""
+        return float(-self._change("hand_work").min()) + 0.0  # no negative zero
+
+    @property
+    def unknown(self) -> str:
+        """Why it is not known how much the law held at the start; "" where it is."""
+        if "stored_at_start_J" in self.trace.attrs:
+            return ""
+        return str(self.trace.attrs.get("stored_at_start_unknown", "this trace does not say"))
+
+    @cached_property
+    def held_at_start(self) -> float:
+        """E(0), the most that the loop held at the start [J]; nan where no bound is known."""
+        stored = float(self.trace.attrs.get("stored_at_start_J", nan))
+        return stored + float(self.trace["kinetic_energy"].values[0])
 
     @cached_property
     def extracted(self) -> float:
-        """max(−W_h) − E(0) at an instant of the trace [J]: > 0 only if the loop was active.
+        """max(−W_h) − E(0) at an instant of the trace [J]; nan where no bound E(0) is known."""
+        return self.got_out - self.held_at_start + 0.0
 
-        E(0) is the kinetic energy at the start. A hand that begins inside the
-        wall finds what the law has stored there as well: begin outside, or read
-        the figure with that in mind.
-        """
-        start = float(self.trace["kinetic_energy"].values[0])
-        return float(-self._change("hand_work").min() - start) + 0.0  # no negative zero
+    @property
+    def active(self) -> bool:
+        """True where more came out than the loop held at the start: no passive loop does that."""
+        return self.extracted > ROUNDING * (self.moved + self.held_at_start)
 
     @property
     def totals(self) -> dict[str, float]:
@@ -101,7 +127,9 @@ class Ledger:
     def to_dict(self) -> dict[str, Any]:
         """Totals and residuals, units in the keys."""
         result: dict[str, Any] = {f"{name}_J": value for name, value in self.totals.items()}
-        result["energy_extracted_J"] = self.extracted
+        result["energy_got_out_J"] = self.got_out
+        result["held_at_start_J"] = None if self.unknown else self.held_at_start
+        result["energy_extracted_J"] = None if self.unknown else self.extracted
         result["largest_residual_J"] = float(np.abs(self.residual).max())
         result["largest_hand_residual_J"] = float(np.abs(self.hand_residual).max())
         result["energy_moved_J"] = self.moved
@@ -114,7 +142,10 @@ class Ledger:
         shown = [name for name in _ROWS if own or not name.startswith("hand_") or name == "hand_work"]
         rows = [(_ROWS[name], totals[name]) for name in shown]
         worst = float(max(np.abs(self.residual).max(), np.abs(self.hand_residual).max()))
-        return [*rows, ("does not add up by, at most", worst), ("the hand got out at most", self.extracted)]
+        rows += [("does not add up by, at most", worst), ("the hand got out at most", self.got_out)]
+        if isnan(self.held_at_start) or not self.held_at_start:
+            return rows
+        return [*rows, ("the loop held at the start, at most", self.held_at_start)]
 
     def __repr__(self) -> str:
         seconds = float(self.trace["time"].values[-1] - self.trace["time"].values[0])

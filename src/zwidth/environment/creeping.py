@@ -127,12 +127,18 @@ def position_response(
 _Pole = tuple[float, float]
 """(1/τ [1/s], μ [N/m]) of the branches with one relaxation time, together."""
 
+_ONE = 1e-12
+"""Of a rate: those that differ by less are one, for between them no double may be left for the zero of H."""
+
 
 def _poles(parts: Elements) -> list[_Pole]:
-    together: dict[float, float] = {}
-    for mu, eta in parts.branches:
-        together[mu / eta] = together.get(mu / eta, 0.0) + mu
-    return sorted(together.items())
+    poles: list[_Pole] = []
+    for rate, mu in sorted((mu / eta, mu) for mu, eta in parts.branches):
+        if poles and rate - poles[-1][0] <= _ONE * rate:
+            poles[-1] = (poles[-1][0], poles[-1][1] + mu)
+        else:
+            poles.append((rate, mu))
+    return poles
 
 
 def _slope(parts: Elements, poles: list[_Pole], r: float) -> float:

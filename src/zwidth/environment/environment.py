@@ -48,6 +48,11 @@ class Environment(ABC):
         return not self.clamped
 
     @property
+    def has_transfer_function(self) -> bool:
+        """True when there is an H(z) for contact that is kept."""
+        return True
+
+    @property
     def spring(self) -> bool:
         """True when the law is a memoryless spring, f = K x."""
         return False

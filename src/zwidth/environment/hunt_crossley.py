@@ -92,6 +92,11 @@ class HuntCrossley(Environment):
     def linear(self) -> bool:
         return False
 
+    @property
+    def has_transfer_function(self) -> bool:
+        """False."""
+        return False
+
     def unit_of(self, key: str, motion: str = "linear") -> str:
         """The SI unit of a parameter, that of the stiffness with the exponent in it."""
         force, length = ("N*m", "rad") if motion == "rotary" else ("N", "m")

@@ -135,6 +135,11 @@ class NonlinearSpring(Environment):
         return False
 
     @property
+    def has_transfer_function(self) -> bool:
+        """False."""
+        return False
+
+    @property
     def largest_slope(self) -> Exact:
         """The largest df/dx, 0 at least, as it is beyond the ends [N/m; N·m/rad]."""
         return Exact(self._steepest())

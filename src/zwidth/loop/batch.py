@@ -72,7 +72,9 @@ OUTCOMES = {
     "deepest_position": Outcome(None, DEEPEST, 0, "deepest position at a sample"),
     "swing": Outcome(None, None, 0, "range of the positions in the last quarter of the samples"),
     "peak_actuator_force": Outcome(None, PEAK, 2, "largest actuator force just after a sample"),
-    "energy_extracted": Outcome(None, EXTRACTED, 3, "most that the hand had got out at a sample, max(−W_h)"),
+    "energy_extracted": Outcome(
+        None, EXTRACTED, 3, "most that the hand had got out at a sample, max(−W_h), stored at first or not"
+    ),
     "hand_work": Outcome(HAND_WORK, None, 3, VARIABLES["hand_work"].long_name),
     "actuator_work": Outcome(ACTUATOR_WORK, None, 3, VARIABLES["actuator_work"].long_name),
     "viscous_loss": Outcome(VISCOUS, None, 3, VARIABLES["viscous_loss"].long_name),

@@ -22,6 +22,7 @@ from zwidth.loop import law as laws
 from zwidth.loop.kernel import RECORDED
 from zwidth.loop.plant import DIRECTION, POSITION, STATE_SIZE, VELOCITY, Plant
 from zwidth.loop.series import WORK
+from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
 from zwidth.operator.operator import Operator, Signals
 from zwidth.quantity.exact import Exact, RealLike
@@ -97,7 +98,7 @@ def prepare(
     amplifier: Amplifier | None = None,
     timing: Timing | None = None,
     points_per_sample: int = 1,
-    known: dict[Any, Frame] | None = None,
+    known: dict[Any, Any] | None = None,
 ) -> Setup:
     """Check everything and lay it out; arguments as of `simulate`.
 
@@ -111,11 +112,12 @@ def prepare(
         If anything cannot be simulated.
     """
     law = as_environment(environment)
+    rest, operator = _at_rest(device, law, operator, initial_position, known)
     frame = _frame(device, operator, duration, amplifier, timing, points_per_sample, known)
     phase = _number(encoder_phase, "encoder_phase")
     if not 0 <= phase < 1:
         raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
-    start = operator.initial_position if initial_position is None else initial_position
+    start = rest if initial_position is None else initial_position
     if operator.kinematic:
         assert frame.signals.position is not None
         _refuse_start(initial_position, initial_velocity)
@@ -147,6 +149,28 @@ def prepare(
     )
 
 
+def _at_rest(
+    device: Device,
+    law: Environment,
+    operator: Operator,
+    initial_position: float | None,
+    known: dict[Any, Any] | None,
+) -> tuple[float, Operator]:
+    """Where the touch starts and the hand that starts there: where the law rests, unless somebody chose."""
+    if not (isinstance(device, Device) and isinstance(operator, Operator)):
+        return 0.0, operator  # refused further on
+    given = operator.initial_position
+    if initial_position is not None or operator.kinematic or operator.start_is_chosen:
+        return given, operator
+    place = rest_position(law, device.exact("sample_period"), given)
+    if place == given:
+        return given, operator
+    moved = {} if known is None else known.setdefault("at rest", {})
+    if (id(operator), place) not in moved:
+        moved[id(operator), place] = operator.starting_at(place)
+    return place, moved[id(operator), place]
+
+
 class Frame(NamedTuple):
     """What of a loop depends neither on its law nor on how it starts."""
 
@@ -173,7 +197,7 @@ def _frame(
     amplifier: Amplifier | None,
     timing: Timing | None,
     points_per_sample: int,
-    known: dict[Any, Frame] | None,
+    known: dict[Any, Any] | None,
 ) -> Frame:
     key = (id(device), id(operator))
     if known is not None and key in known:

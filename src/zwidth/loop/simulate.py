@@ -62,7 +62,8 @@ def simulate(
     duration
         At least one sample period [s]; whole samples of it are simulated.
     initial_position
-        x at t = 0 [m; rad], > 0 inside the wall; by default where the operator starts.
+        x at t = 0 [m; rad], > 0 inside the wall; by default where the operator starts.  For a law on
+        both sides of x = 0 that is where the law is at rest, unless the operator's own start is given.
     initial_velocity
         ẋ at t = 0 [m/s; rad/s].
     encoder_phase
@@ -81,7 +82,8 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        Position, velocity, forces and energies along `time`, units in the attributes.
+        Position, velocity, forces and energies along `time`, units in the attributes; the attribute
+        `stored_at_start_J` is the most that the loop had stored at first.
         Interrupted by Ctrl-C, what was finished; its attribute `interrupted_at_s` says so.
         A motion that grows without bound ends at 1e120; `diverged_at_s` says so.
 

@@ -15,7 +15,9 @@ import numpy as np
 import xarray as xr
 
 from zwidth.loop import kernel
+from zwidth.loop.plant import POSITION
 from zwidth.loop.setup import Setup
+from zwidth.loop.start import Start, held_at_start
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -77,7 +79,7 @@ def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> xr.Dat
         "time": ("time", time, {"units": "s", "long_name": "time since sample 0", "symbol": "t"}),
         "sampled": ("time", sampled, {"long_name": "a sample is taken at this instant"}),
     }
-    attributes = _attrs(setup, stops)
+    attributes = {**_attrs(setup, stops), **_stored(setup, values)}
     if columns < finished:
         attributes["diverged_at_s"] = float(time[-1])
     elif finished < setup.columns:
@@ -186,6 +188,46 @@ def _needed_force(setup: Setup, values: dict[str, Array]) -> Array:
         into = np.arange(columns) % setup.frame.points / setup.frame.points * float(setup.frame.lengths[0])
         speed = np.where(into < setup.frame.offset, before, after)
     return values["actuator_force"] + p.coulomb * np.sign(speed) + p.damping * speed
+
+
+def _stored(setup: Setup, values: dict[str, Array]) -> dict[str, Any]:
+    """The most that was stored at the start, or why that is not known."""
+    frame, x, v = setup.frame, values["position"], values["velocity"]
+    at = Start(
+        law=setup.environment,
+        plant=frame.plant,
+        actuation=frame.actuation,
+        period=frame.period,
+        delay=setup.device.exact("delay"),
+        resolution=frame.resolution,
+        phase=setup.encoder_phase,
+        position=float(setup.state[POSITION]),
+    )
+    held = held_at_start(at, float(values["measured_position"].max()))
+    whole = frame.arrivals.shape[1] == 0 and frame.offset == 0.0
+    first = frame.late if frame.arrivals.shape[1] == 0 else int(frame.arrivals[0, 0])
+    early = first * frame.points + 1
+    helped = 0.0
+    if not whole and held.force:  # the first force comes between two samples: the hand may turn there
+        early += frame.points
+        helped = abs(held.force) * _beyond_samples(setup, v[:early])
+    bound = held.bound(x - at.position, early)
+    if bound is None:
+        return {"stored_at_start_unknown": held.unknown}
+    return {"stored_at_start_J": bound + helped}
+
+
+def _beyond_samples(setup: Setup, velocity: Array) -> float:
+    """How far the hand may get within a sample beyond where it is at both ends."""
+    frame = setup.frame
+    if frame.signals.position is None:
+        return float(np.abs(velocity).max() * frame.lengths.max())
+    bend = frame.signals.switch_position
+    if bend is None:
+        return 0.0
+    ends = np.maximum(frame.signals.position[:-1], frame.signals.position[1:])
+    low = np.minimum(frame.signals.position[:-1], frame.signals.position[1:])
+    return float(np.max(np.maximum(bend - ends, low - bend), initial=0.0))
 
 
 @cache  # it is read from a file

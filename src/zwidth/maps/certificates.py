@@ -66,7 +66,7 @@ def z_width_certificate(
 
 def _documents(device: Device, wall: Wall) -> tuple[dict[str, Any], ...]:
     verdict = check_by_closed_forms(device, wall)
-    if verdict.certificate is None or not verdict.certificate.covers_contact:
+    if verdict.certificate is None or verdict.outcome != "passive":
         raise InputError(
             f"the map says that {wall.describe(device.motion)} is passive, and of this device that is not "
             "proved: it is a map of another device or velocity filter"

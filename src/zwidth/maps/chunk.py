@@ -52,7 +52,7 @@ def compute(ready: Plan, place: Place) -> Layers:
 def _speed(contact: Contact | None, k: Array, b: Array, passive: NDArray[np.bool_]) -> Array:
     """(f_c − F)/(b_need − b), rounded to the safe side; inf where passive, 0 where small motions gain."""
     if contact is None:
-        return np.zeros(passive.shape)
+        return np.where(passive, np.inf, 0.0)
     stiff, damped = k[:, None] * (1 + _SHY), np.abs(b)[None, :] * (1 + _SHY)
     friction = (stiff + contact.variation * damped) * contact.half_step * (1 + _SHY)
     surplus = contact.friction * (1 - _SHY) - friction

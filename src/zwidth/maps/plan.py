@@ -5,7 +5,10 @@
 
 with g = Σ|w_j| and v = T ‖h_v‖₁ of the velocity estimate: the two conditions for contact made and
 broken, and what is left of them for a hand of bounded speed (docs: contact made and broken).
-K_max is rational, so that a cell is passive by an exact comparison.
+K_max is rational, so that a cell is passive by an exact comparison.  With a delay of part of a sample, or a
+filter whose response does not end, no condition covers a wall with damping; a spring alone is compared with
+
+    b² − b (K T/2)(2d + 1 + 2α) − ¼ T² α(1 − α) K² ≥ 0,    f_c ≥ K Δ/2.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ from zwidth.maps.request import Array, Request
 from zwidth.maps.sustained import sustained_walls
 from zwidth.passivity.contact import damped_wall
 from zwidth.passivity.decision import decide
+from zwidth.passivity.delayed_spring import spring_stiffness
 from zwidth.passivity.known_hand.characteristic import Family, as_floats, bilinear, family, precision
 from zwidth.passivity.known_hand.crossing import last_stable, plain
 from zwidth.passivity.known_hand.plant import Coefficients, Motion
@@ -70,6 +74,8 @@ class Plan(NamedTuple):
     """For each B the largest passive stiffness, below 0 or NaN where none is."""
     contact: Contact | None
     hands: tuple[HandPlan, ...]
+    not_covered: str
+    """Why walls with damping have no condition for contact made and broken; "" where they have one."""
 
 
 def plan(asked: Request) -> Plan:
@@ -78,18 +84,51 @@ def plan(asked: Request) -> Plan:
     k, b = asked.stiffness.values, asked.virtual_damping.values
     contact = _contact(asked, period)
     softest_first = [Exact(value).fraction for value in k]
-    limits = [_limit(contact, abs(Exact(value).fraction)) for value in b] if contact else []
-    passive = [bisect_right(softest_first, limit) for limit in limits] if contact else [0] * len(b)
+    if contact is not None:
+        limits = [_limit(contact, abs(Exact(value).fraction)) for value in b]
+        passive = [bisect_right(softest_first, limit) for limit in limits]
+        ends = [float(limit) for limit in limits]
+    else:
+        springs = sum(_spring_passes(asked, stiffness) for stiffness in softest_first)
+        passive = [springs if value == 0 else 0 for value in b]
+        ends = [spring_limit(asked) if value == 0 else np.nan for value in b]
     velocity = _positive(asked.velocity_filter.transfer(period))
     return Plan(
         stiffness=k,
         damping=b,
         passive=np.array(passive, dtype=np.int64),
         sustained=sustained_walls(asked),
-        limit=np.array([float(limit) for limit in limits] or [np.nan] * len(b)),
+        limit=np.array(ends),
         contact=None if contact is None else Contact(*(float(value) for value in contact)),
         hands=tuple(_hand(name, motion_of(asked.device, hand), velocity) for name, hand in asked.hands),
+        not_covered="" if contact is not None else _why(asked),
     )
+
+
+def spring_limit(asked: Request) -> float:
+    """The stiffest spring, B = 0, that is passive, contact made and broken [N/m; N·m/rad]; to rounding."""
+    device = asked.device
+    by_damping = float(spring_stiffness(*(device.exact(k) for k in ("damping", "sample_period", "delay"))))
+    count = float(device.exact("resolution"))
+    return min(by_damping, 2 * float(device.exact("coulomb_friction")) / count) if count else by_damping
+
+
+def _spring_passes(asked: Request, stiffness: Fraction) -> bool:
+    """Whether a spring is passive, by the exact conditions."""
+    device = asked.device
+    period, b = device.exact("sample_period"), device.exact("damping")
+    late = device.exact("delay") / period
+    part = late % 1
+    turned = stiffness * period / 2
+    viscous = b * b - b * turned * (2 * late + 1) - part * (1 - part) * turned * turned >= 0
+    return viscous and 2 * device.exact("coulomb_friction") >= stiffness * device.exact("resolution")
+
+
+def _why(asked: Request) -> str:
+    late = asked.device.exact("delay") / asked.device.exact("sample_period")
+    if late.denominator != 1:
+        return "walls with damping and a delay of part of a sample"
+    return "walls with this velocity filter, whose response does not end"
 
 
 def _contact(asked: Request, period: Fraction) -> tuple[Fraction, ...] | None:

@@ -23,7 +23,7 @@ from zwidth.device import Device
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.maps.chunk import Layers, Place
-from zwidth.maps.plan import Plan, plan, stable_limits
+from zwidth.maps.plan import Plan, plan, spring_limit, stable_limits
 from zwidth.maps.request import Request, request
 from zwidth.maps.store import FORMAT, Store, layer_types
 from zwidth.maps.workers import on_cluster, on_threads
@@ -84,7 +84,9 @@ def z_width(
         Over (stiffness, virtual_damping): `passive`, `passive_sustained`, as long as contact lasts, `quiet`,
         `admissible_speed` and `stable_NAME` of each hand. Over virtual_damping the curves where they end,
         `limit_passive` and `limit_NAME`, NaN where nothing is stable. Of each region its `area` and its
-        `largest_stiffness`, by counting cells.
+        `largest_stiffness`, by counting cells.  Where no condition covers contact made and broken, the
+        attribute `not_covered` says of which walls: there `passive` and `quiet` are False for want of a
+        condition, except at B = 0; `spring_limit` is the stiffest passive spring.
         `free_mass`, `free_damping` and `free_friction`, the lower end.
 
     Raises
@@ -181,7 +183,13 @@ def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Da
         "device": asked.device.name,
         "motion": motion,
         "velocity_filter": asked.velocity_filter.describe(),
+        "not_covered": ready.not_covered,
     }
+    variables["spring_limit"] = (
+        (),
+        spring_limit(asked),
+        {"units": units[0], "long_name": "stiffest spring, B = 0, that no hand takes energy out of"},
+    )
     return xr.Dataset(variables, {**coordinates, "region": names}, attrs)
 
 

@@ -82,6 +82,15 @@ class Operator(ABC):
         """Where the touch starts unless the caller says otherwise [m; rad]; x > 0 is inside the wall."""
         return 0.0
 
+    @property
+    def start_is_chosen(self) -> bool:
+        """False where the touch may begin wherever the law is at rest."""
+        return self.initial_position != 0.0
+
+    def starting_at(self, position: float) -> Operator:
+        """The same hand, whose touch begins here [m; rad], or at the surface if that is inside."""
+        return self
+
     @abstractmethod
     def signals(self, times: Signal) -> Signals:
         """What the hand does, at the sample instants t_0 … t_N [s].

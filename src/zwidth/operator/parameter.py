@@ -6,8 +6,8 @@ number is described once, where it is declared.
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass, field, fields
-from typing import Any
+from dataclasses import MISSING, dataclass, field, fields, replace
+from typing import Any, Self
 
 from zwidth.errors import InputError
 from zwidth.operator.operator import Operator
@@ -58,6 +58,17 @@ class ParametricOperator(Operator):
     def parameters(cls) -> dict[str, Quantity]:
         """The numbers it takes, by the name of the argument."""
         return {f.name: f.metadata["quantity"] for f in fields(cls) if "quantity" in f.metadata}
+
+    @property
+    def start_is_chosen(self) -> bool:
+        """True where `start` is not its default."""
+        starts = [f.default for f in fields(self) if f.name == "start"]
+        return self.initial_position != (starts[0] if starts else 0.0)
+
+    def starting_at(self, position: float) -> Self:
+        """The same hand, whose touch begins here [m; rad], or at the surface if that is inside."""
+        changes: dict[str, Any] = {"start": min(position, 0.0)} if hasattr(self, "start") else {}
+        return replace(self, **changes)
 
     def describe_parameters(self, motion: str = "linear") -> str:
         """The numbers with their units, in linear or rotary units."""

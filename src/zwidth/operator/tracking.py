@@ -115,6 +115,11 @@ class Tracking(RecordedOperator, ParametricOperator):
         """Where the path starts [m; rad]."""
         return first(self.positions)
 
+    @property
+    def start_is_chosen(self) -> bool:
+        """True: the path begins somewhere."""
+        return True
+
     def signals(self, times: Signal) -> Signals:
         """The anchor along the path; None where nothing ties the hand to it."""
         check_period(self.__dict__["_period"], times)

@@ -20,6 +20,8 @@ from zwidth.errors import InputError
 from zwidth.passivity import checker
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import exact_text, save_json, unit_key, unit_suffix
+from zwidth.passivity.scope import Scope, scope_of
+from zwidth.passivity.wording import lines
 from zwidth.quantity.glossary import GLOSSARY
 
 ROUNDOFF = Fraction(1, 2**53)
@@ -36,16 +38,21 @@ class Bounding:
         "passive" with a certificate that the independent checker accepted; "undecided" otherwise.
     claim
         The outcome in a sentence.
-    assumptions
-        What the claim covers and takes for granted.
+    scope
+        What it is about.
     certificate
         The proof; None unless passive.
     """
 
     outcome: Literal["passive", "undecided"]
     claim: str
-    assumptions: tuple[str, ...]
+    scope: Scope
     certificate: Certificate | None
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted, line by line."""
+        return lines(self.scope, self.outcome)
 
     def to_dict(self) -> dict[str, Any]:
         """Outcome, assumptions and certificate as plain data."""
@@ -53,6 +60,7 @@ class Bounding:
             "format": "zwidth bounding 1",
             "outcome": self.outcome,
             "claim": self.claim,
+            "scope": self.scope.to_dict(),
             "assumptions": list(self.assumptions),
         }
         if self.certificate is not None:
@@ -92,13 +100,14 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
         )
     document = _document(device, numbers)
     found = checker.verify(document)
-    if not found.valid:
-        return Bounding("undecided", f"Not proved: {found.reason}.", _assumptions(device), None)
+    scope = _scope(device, law)
+    if found.scope is None:
+        return Bounding("undecided", f"Not proved: {found.reason}.", scope, None)
     claim = (
         "No motion of the hand, however fast or skilled, takes energy out of this loop, whatever comes "
         f"before force bounding: {found.reason}."
     )
-    return Bounding("passive", claim, _assumptions(device), Certificate((document,)))
+    return Bounding("passive", claim, scope.replace(contact=found.scope.contact), Certificate((document,)))
 
 
 def is_bounded(environment: Environment) -> bool:
@@ -143,25 +152,11 @@ def _document(device: Device, numbers: dict[str, Fraction]) -> dict[str, Any]:
     }
 
 
-def _assumptions(device: Device) -> tuple[str, ...]:
-    """What the claim covers and takes for granted."""
-    unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
-    b, friction = (float(device.exact(key)) for key in ("damping", "coulomb_friction"))
-    lines = [
-        "contact made and broken at any instant; any environment and any laws before force bounding, which "
-        "is the last in the row",
-        f"the device takes out at least b = {b:.6g} {unit['b']} of viscous and f_c = {friction:.6g} "
-        f"{unit['N']} of Coulomb friction",
-        "a hand without limits on speed and force; the mass of the device plays no part",
-        "the force is applied at the sample and held for one constant period; no missed samples",
-        "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
-        "encoder counts of one size, their phase against the surface unknown"
-        if device.exact("resolution")
-        else "ideal position sensor: no quantization",
-        "converter steps of the size that the device states, and a force limit that the law is told of"
-        if device.force_resolution is not None
-        else "no converter steps; a force limit, if any, that the law is told of",
-        "an amplifier without lag or limit of voltage",
-    ]
-    lines.extend(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed)
-    return tuple(lines)
+def _scope(device: Device, law: Environment) -> Scope:
+    """Nothing is asked of what is rendered: whatever is commanded before the last law is paid for."""
+    return scope_of(device, law).replace(
+        contact="made and broken",
+        force_limit=True,
+        force_steps=device.force_resolution is not None,
+        law=("any before the last", "doubles"),
+    )

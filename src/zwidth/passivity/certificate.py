@@ -16,6 +16,7 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.passivity import checker
+from zwidth.passivity.checker.scope import weakest
 from zwidth.passivity.contact import DampedWall, Decay
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.delay_interval import Piece
@@ -23,9 +24,12 @@ from zwidth.passivity.document import exact_text, loop_document, save_json, unit
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.one_norm import NormBound
 from zwidth.passivity.positivity import Positivity
+from zwidth.passivity.relaxing_contact import RelaxingLaw
 
 FORMAT = "zwidth certificate 1"
 LARGEST_FILE = 200_000_000
+EVIDENCE = ("certificate", "violation", "witness")
+"""Where a document holds what the checker can check."""
 
 
 @dataclass(frozen=True)
@@ -42,17 +46,18 @@ class Certificate:
 
     def verify(self) -> bool:
         """True when the independent checker accepts every proof."""
-        return all(checker.verify(document).valid for document in self.documents)
+        return self.covered() is not None
+
+    def covered(self) -> checker.Scope | None:
+        """What the proofs cover together, as the independent checker finds it; None where it rejects one."""
+        found = [checker.verify(document).scope for document in self.documents]
+        accepted = [scope for scope in found if scope is not None]
+        return weakest(accepted) if found and len(accepted) == len(found) else None
 
     @property
     def kind(self) -> str:
         """Of the first document: "spring", "contact", "linear", "positive real", "stability", …"""
         return str(self.documents[0]["kind"])
-
-    @property
-    def covers_contact(self) -> bool:
-        """True when every part covers contact made and broken."""
-        return all(d["kind"] in ("spring", "contact", "force bounding") for d in self.documents)
 
     @property
     def is_of_springs(self) -> bool:
@@ -78,9 +83,10 @@ def certify(decision: Decision) -> dict[str, Any]:
     """The proof document of a provable decision."""
     kind = decision.kind
     document = _document(decision, kind)
-    if kind == "contact":
-        assert decision.wall is not None
+    if isinstance(decision.wall, DampedWall) and kind == "contact":
         document["law"] = _law(decision.wall, decision.setting.motion)
+    elif isinstance(decision.wall, RelaxingLaw) and kind == "relaxing contact":
+        document["law"] = _relaxing_law(decision.wall, decision.setting.motion)
     elif kind != "spring":
         document["proof"] = linear_proof(decision)
     return document
@@ -114,6 +120,16 @@ def _law(wall: DampedWall, motion: str) -> dict[str, Any]:
         unit_key("stiffness", motion): exact_text(wall.stiffness),
         unit_key("virtual_damping", motion): exact_text(wall.damping),
         "weights": weights,
+    }
+
+
+def _relaxing_law(law: RelaxingLaw, motion: str) -> dict[str, Any]:
+    stiffness = unit_key("stiffness", motion)
+    return {
+        stiffness: exact_text(law.stiffness),
+        "parts": [{"pole": str(p.pole), stiffness: exact_text(p.stiffness)} for p in law.parts],
+        "fed_with": law.fed_with,
+        "never_pulls": law.never_pulls,
     }
 
 
@@ -160,7 +176,7 @@ def positivity_document(sign: Positivity) -> dict[str, Any]:
 
 
 def verify_document(document: object) -> checker.Verification:
-    """Check a saved certificate or witness, or a report that holds one or both, read as JSON.
+    """Check a saved certificate, violation or witness, or a report that holds some of these, read as JSON.
 
     Raises
     ------
@@ -172,11 +188,12 @@ def verify_document(document: object) -> checker.Verification:
     if failed is not None:
         return failed
     energy = next((r.energy for r in results if r.energy is not None), None)
-    return checker.Verification(True, "; and ".join(r.reason for r in results), energy)
+    scope = results[0].scope if len(results) == 1 else None  # of several, each has its own
+    return checker.Verification(True, "; and ".join(r.reason for r in results), energy, scope)
 
 
 def evidence(document: object) -> list[Mapping[str, Any]]:
-    """The certificates and witnesses in a document, which may be one itself.
+    """The certificates, violations and witnesses in a document, which may be one itself.
 
     Raises
     ------
@@ -184,14 +201,14 @@ def evidence(document: object) -> list[Mapping[str, Any]]:
         If it contains neither.
     """
     if not isinstance(document, Mapping):
-        raise InputError("expected a JSON object with a certificate or a witness")
+        raise InputError("expected a JSON object with a certificate, a violation or a witness")
     if "kind" in document:
         return [document]
-    inner = (h[k] for h in _holders(document) for k in ("certificate", "witness") if k in h)
+    inner = (h[k] for h in _holders(document) for k in EVIDENCE if k in h)
     found = [part for part in inner if isinstance(part, Mapping) and "kind" in part]
     if not found:
         raise InputError(
-            "no certificate or witness found: the object has no key kind, certificate or witness"
+            f"no evidence found: the object has no key kind, {', '.join(EVIDENCE[:-1])} or {EVIDENCE[-1]}"
         )
     return found
 
@@ -209,10 +226,15 @@ def _verify_one(part: Mapping[str, Any]) -> checker.Verification:
 def _verify_corners(corners: object) -> checker.Verification:
     if not isinstance(corners, list) or not corners:
         raise InputError("corners must be a list of certificates")
+    if any(isinstance(corner, Mapping) and corner.get("kind") == "violation" for corner in corners):
+        return checker.Verification(False, "a corner is a violation, and no proof of passivity")
     results = [checker.verify(corner) for corner in corners]
     failed = next((r for r in results if not r.valid or r.energy is not None), None)
-    reasons = dict.fromkeys(r.reason for r in results)
-    return failed or checker.Verification(True, f"all {len(results)} corners: {'; or '.join(reasons)}")
+    if failed is not None:
+        return failed
+    reasons = "; or ".join(dict.fromkeys(r.reason for r in results))
+    scope = weakest([r.scope for r in results if r.scope is not None])
+    return checker.Verification(True, f"all {len(results)} corners: {reasons}", scope=scope)
 
 
 def read_document(path: str | Path) -> object:

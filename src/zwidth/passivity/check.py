@@ -1,33 +1,63 @@
 """The main verb: is this device, rendering this environment, passive?
 
 Nothing is claimed on the prover's word: "passive" needs a certificate that
-the independent checker accepts, "active" a motion whose energy it recomputes.
+the independent checker accepts, "active" a violation that it confirms or a
+motion whose energy it recomputes.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate, certify, certify_delays
-from zwidth.passivity.claims import assumptions, beyond_the_actuator, open_claim
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.game import has_gap, with_game
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
-from zwidth.passivity.refutation import refute_friction, refute_linear
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.other_laws import check_other
+from zwidth.passivity.refutation import refute_friction
+from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
 from zwidth.passivity.supremum import tightest
-from zwidth.passivity.verdict import Outcome, Verdict
+from zwidth.passivity.verdict import Finding, Verdict
+from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness
 from zwidth.quantity.exact import Exact, ends
 
+if TYPE_CHECKING:
+    from zwidth.device.arm import Arm
+    from zwidth.environment import Wall
+    from zwidth.environment.matrix_wall import MatrixWall
+    from zwidth.passivity.arms import Workspace
 
-def check(device: Device, environment: Environment | Any) -> Verdict:
+Evidence = Violation | Witness
+
+
+@overload
+def check(
+    device: Device,
+    environment: Environment | Any,
+    *,
+    contact: str = ...,
+    progress: Callable[[int], None] | None = ...,
+) -> Verdict: ...
+@overload
+def check(device: Arm, environment: Wall | MatrixWall, **of_an_arm: Any) -> Workspace: ...
+def check(
+    device: Device | Arm,
+    environment: Environment | Any,
+    *,
+    contact: str = "made and broken",
+    progress: Callable[[int], None] | None = None,
+    **of_an_arm: Any,
+) -> Verdict | Workspace:
     """Decide whether a hand can ever take energy out of the sampled loop.
 
     Passive means ∫ f_h v dt + E(0) ≥ 0 for every motion, E(0) finite.  For a
@@ -41,45 +71,89 @@ def check(device: Device, environment: Environment | Any) -> Verdict:
     (Abbott & Okamura 2005).  Equality counts as passive.  A damped wall is
     covered with contact made and broken where b ≥ (2d + 1) K T/2 + |B| Σ|w_j| and
     f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.  Where these conditions leave a gap
-    the game of `worst_hand` is played, for some seconds at most.
+    values are iterated as in `worst_hand`, for some seconds at most.
+
+    Laws without H(z) are decided too: nonlinear springs by their slopes, laws in a row by the force bounding
+    that ends them or a wall that covers them, all by value iteration; `decided_by` says which.
 
     Parameters
     ----------
     device
-        The device; where parameters are intervals the verdict holds for all values.
+        The device; where parameters are intervals the verdict holds for all values.  An arm of several joints
+        is answered by `workspace`, whose further arguments (rate, delay, …) are given by name.
     environment
-        An `Environment`, or a discrete python-control or scipy.signal system H(z).
+        Whatever can be rendered: an `Environment`, what `render` gives, a discrete python-control or
+        scipy.signal system H(z); for an arm a `Wall` or a `MatrixWall`.
+    contact
+        "made and broken": a one-sided law is "passive" if no hand gains that touches and leaves at will, and
+        "passive in contact" if this is proved only of hands that stay inside.  "kept": the question is about
+        those alone.
+    progress
+        Told the number of states that still improve, where values are iterated.
 
     Raises
     ------
     InputError
         If the environment cannot be sampled at this rate or is not an environment.
     """
-    verdict = check_by_closed_forms(device, environment)
-    law = as_environment(environment)
-    return with_game(device, law, verdict) if has_gap(device, law, verdict) else verdict
-
-
-def check_by_closed_forms(device: Device, environment: Environment | Any) -> Verdict:
-    """`check` without the game: exact, in milliseconds, of every hand."""
     if not isinstance(device, Device):
-        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
-    law = as_environment(environment)
+        return _check_arm(device, environment, of_an_arm)
+    if of_an_arm:
+        raise InputError(
+            f"{', '.join(of_an_arm)}: of an arm; a device of one axis has its rate and delay in itself"
+        )
+    law = _as_law(device, environment)
+    if not law.has_transfer_function:
+        return check_other(device, law, check_by_closed_forms, progress)
+    verdict = check_by_closed_forms(device, law, contact=contact)
+    if as_contact(contact) == "kept" or not has_gap(device, law, verdict):
+        return verdict
+    return with_game(device, law, verdict, progress)
+
+
+def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:
+    """The verdict on a device of several joints."""
+    from zwidth.device.arm import Arm  # numpy takes its time
+
+    if not isinstance(arm, Arm):
+        raise InputError(f"the first argument is a Device or an arm, got {type(arm).__name__}")
+    from zwidth.passivity.arms import workspace
+
+    if "rate" not in further:
+        raise InputError('an arm has no rate of its own: give rate=…, such as rate="1 kHz"')
+    return workspace(arm, wall, **further)
+
+
+def check_by_closed_forms(
+    device: Device, environment: Environment | Any, *, contact: str = "made and broken"
+) -> LinearVerdict:
+    """`check` without the game: exact, in milliseconds, of every hand."""
+    asked, law = as_contact(contact), _as_law(device, environment)
     corners = worst_corners(device, law)
     decisions = [decide(*corner) for corner in corners]
     failing = [k for k, d in enumerate(decisions) if not d.is_provable]
     if not failing:
         proofs = _proofs(device, law, corners, decisions)
         if proofs is not None:
-            return _passive(device, law, corners, decisions, proofs)
-        return _between(device, law, corners[0], decisions[0])
+            return _passive(device, law, corners, decisions, proofs, asked)
+        return _undecided(device, law, corners[0], decisions[0], "between corners")
     worst = failing[0]
-    witness = _refute(decisions[worst])
-    outcome: Outcome = "undecided"
-    least = witness if len(corners) == 1 and device.is_certain else _best_witness(device, law)
-    if witness is not None and least is not None:
-        outcome, witness = "active", least
-    return _not_passive(outcome, device, law, corners[worst], decisions[worst], witness)
+    certain = device.is_certain and len(corners) == 1
+    least = _refute(decisions[worst]) if certain else _refute_best(device, law)
+    if least is not None:
+        return _active(device, law, corners[worst], decisions[worst], least)
+    at_worst = None if certain else _refute(decisions[worst])
+    finding: Finding = "open" if at_worst is None else "depends on values"
+    return _undecided(device, law, corners[worst], decisions[worst], finding, at_worst)
+
+
+def _as_law(device: Device, environment: Environment | Any) -> Environment:
+    """The environment, once what comes first is a device."""
+    if not isinstance(device, Device):
+        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+    if type(environment).__name__ == "MatrixWall":
+        raise InputError("a MatrixWall is of several coordinates: give an arm in the place of the device")
+    return as_environment(environment)
 
 
 def _proofs(
@@ -112,29 +186,39 @@ def _passive(
     corners: list[Loop],
     decisions: list[Decision],
     proofs: list[dict[str, Any]],
-) -> Verdict:
+    asked: Contact,
+) -> LinearVerdict:
     certificate = Certificate(tuple(proofs))
     tight = _tightest(decisions)
     at, decision = corners[tight], decisions[tight]
-    if not certificate.verify():  # nothing is claimed that the checker does not accept
-        claim = "A proof was found, but the independent checker did not confirm it within its bounds."
-        assumed = assumptions("undecided", device, law, decision)
-        return Verdict("undecided", claim, assumed, *at, decision, None, None)
-    everywhere = certificate.covers_contact or not law.unilateral
-    kept = "" if everywhere else " that keeps contact"
-    claim = f"No motion of the hand{kept}, however fast or skilled, can take energy out of this loop"
-    if any(_at_limit(d) for d in decisions):
-        claim += "; it is exactly at its limit, equality included"
-    assumed = assumptions("passive", device, law, decision, certificate)
-    return Verdict("passive", f"{claim}.", assumed, *at, decision, certificate, None)
-
-
-def _between(device: Device, law: Environment, corner: tuple[Device, Environment], at: Decision) -> Verdict:
-    claim = (
-        "Passive at every corner of the intervals; that every value between them is too is not proved "
-        "for intervals of these parameters together."
+    covered = certificate.covered()
+    if covered is None or covered.shows != "passive":  # nothing is claimed that the checker does not accept
+        return _undecided(device, law, at, decision, "unconfirmed")
+    scope = _scope(device, law, decision).replace(
+        contact=covered.contact, fed_with=covered.fed_with, also=_also(certificate, law)
     )
-    return Verdict("undecided", claim, assumptions("undecided", device, law, at), *corner, at, None, None)
+    return LinearVerdict(
+        "passive in contact" if covered.contact == "kept" != asked else "passive",
+        scope,
+        *at,
+        certificate,
+        at_limit=any(_at_limit(d) for d in decisions),
+        decision=decision,
+    )
+
+
+def _also(certificate: Certificate, law: Environment) -> tuple[Also, ...]:
+    """What else a proof of this kind covers."""
+    if certificate.is_of_springs:
+        return ("springs",)
+    return ("clamped",) if certificate.kind == "contact" and not law.clamped else ()
+
+
+def _scope(device: Device, law: Environment, at: Decision) -> Scope:
+    """What is asked, with the friction of the corner that the numbers speak of."""
+    return scope_of(device, law).replace(
+        damping=float(at.loop.damping), coulomb_friction=float(at.setting.coulomb_friction)
+    )
 
 
 def _at_limit(decision: Decision) -> bool:
@@ -165,19 +249,18 @@ def _tightest(decisions: list[Decision]) -> int:
     )
 
 
-def _refute(decision: Decision) -> Witness | None:
-    """A checked motion that takes energy out, or None."""
-    if decision.is_clamped:  # a motion in the linear law says nothing of it
+def _refute(decision: Decision) -> Evidence | None:
+    """A checked violation, or a checked motion, of which either shows that the loop is active; or None."""
+    if decision.is_clamped:  # what is proved of the linear law says nothing of it
         return None
-    if isinstance(decision.viscous, LinearProof) and decision.friction_covers:
-        return None
-    if isinstance(decision.viscous, LinearRefutation):
-        return refute_linear(decision.setting, decision.viscous.reason)
-    return refute_friction(decision.setting)
+    if isinstance(decision.viscous, LinearProof):
+        return None if decision.friction_covers else refute_friction(decision.setting)
+    violation = Violation(decision.setting, decision.viscous)
+    return violation if violation.verify() else violation.witness
 
 
-def _best_witness(device: Device, law: Environment) -> Witness | None:
-    """A motion that takes energy out even at the best values within the intervals, or None."""
+def _refute_best(device: Device, law: Environment) -> Evidence | None:
+    """What shows that the loop is active even at the best values within the intervals, or None."""
     best = best_corner(device, law)
     if best is None:
         return None
@@ -185,23 +268,27 @@ def _best_witness(device: Device, law: Environment) -> Witness | None:
     return None if decision.is_provable else _refute(decision)
 
 
-def _not_passive(
-    outcome: Outcome,
+def _active(
+    device: Device, law: Environment, corner: Loop, decision: Decision, shown: Evidence
+) -> LinearVerdict:
+    scope = _scope(device, law, decision).replace(contact=shown.contact)
+    return LinearVerdict("active", scope, *corner, decision=decision, **_as_evidence(shown))
+
+
+def _undecided(
     device: Device,
     law: Environment,
-    corner: tuple[Device, Environment],
+    corner: Loop,
     decision: Decision,
-    witness: Witness | None,
-) -> Verdict:
-    if outcome == "active":
-        assert witness is not None
-        claim = f"A motion of the hand takes energy out of this loop: {witness.describe()}."
-    elif witness is not None:
-        claim = (
-            "The answer depends on where in its intervals the loop lies: a motion takes energy out at the "
-            "worst corner, and for other values none is known to."
-        )
-    else:
-        claim = open_claim(decision)
-    assumed = assumptions(outcome, device, law, decision) + beyond_the_actuator(device, witness)
-    return Verdict(outcome, claim, assumed, *corner, decision, None, witness)
+    finding: Finding,
+    shown: Evidence | None = None,
+) -> LinearVerdict:
+    scope = _scope(device, law, decision)
+    return LinearVerdict(
+        "undecided", scope, *corner, decision=decision, finding=finding, **_as_evidence(shown)
+    )
+
+
+def _as_evidence(shown: Evidence | None) -> dict[str, Any]:
+    """Where a verdict keeps it."""
+    return {"violation": shown} if isinstance(shown, Violation) else {"motion": shown}

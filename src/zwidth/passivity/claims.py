@@ -1,37 +1,122 @@
-"""What a verdict says in words: the claim, and what it takes for granted."""
+"""What a verdict says in words, made from its data: the claim, and what it takes for granted."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
-from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
-from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear import LinearRefutation
-from zwidth.passivity.verdict import Outcome
-from zwidth.passivity.witness import Witness
-from zwidth.quantity.exact import Interval, ends
+from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
 
 if TYPE_CHECKING:
-    from zwidth.passivity.worst_hand.gain import Gain
-
-NOT_COVERED = "; making and breaking contact is not covered"
-"""How the first assumption of a proof in sustained contact ends."""
+    from zwidth.passivity.verdict import Verdict
 
 
-def open_claim(decision: Decision) -> str:
+def claim(verdict: Verdict) -> str:
+    """The verdict in a sentence or two."""
+    if verdict.outcome == "active":
+        if verdict.violation is not None:
+            return f"The hand can take any amount of energy out of this loop: {verdict.violation.describe()}."
+        assert verdict.witness is not None
+        return f"A motion of the hand takes energy out of this loop: {verdict.witness.describe()}."
+    if verdict.outcome == "theorem":
+        return f"By a proof on paper, without a certificate: {verdict.theorem}."
+    if verdict.outcome == "undecided":
+        return " ".join([_undecided(verdict), *_by_bounded_hands(verdict)])
+    proved = claim_of_passivity(verdict.scope, verdict.at_limit)
+    if verdict.outcome == "passive":
+        return proved
+    open_still = ["Of one that touches and leaves nothing is proved or refuted."]
+    return " ".join([proved, *(list(_by_bounded_hands(verdict)) or open_still)])
+
+
+def assumptions(verdict: Verdict) -> tuple[str, ...]:
+    """What the claim covers and takes for granted, line by line."""
+    between = intervals(verdict.scope, verdict.outcome)
+    return (
+        *lines(verdict.scope, verdict.outcome),
+        *([] if between is None else [between]),
+    )
+
+
+_ROADS = {
+    "spring": "the closed conditions of a spring",
+    "contact": "the closed conditions of a damped wall, contact made and broken",
+    "relaxing contact": "the closed conditions of a law that relaxes, contact made and broken",
+    "linear": "the linear criterion",
+    "quantized": "the linear criterion, and a bound on the force error of the encoder",
+    "delays": "the linear criterion, for every delay of the interval",
+    "nonlinear spring": "the slopes of the spring",
+    "force bounding": "force bounding, the last law in the row",
+}
+"""By kind of certificate."""
+
+
+def decided_by(verdict: Verdict) -> str:
+    """The road on which the outcome was found."""
+    if verdict.certificate is not None:
+        documents = verdict.certificate.documents
+        return "; ".join(dict.fromkeys(_ROADS.get(d["kind"], d["kind"]) for d in documents))
+    if verdict.outcome == "theorem":
+        return "a proof on paper"
+    if verdict.outcome == "undecided":
+        return "nothing"
+    if verdict.violation is not None:
+        return "the linear criterion" if hasattr(verdict, "decision") else "the ends of the spring"
+    return "a motion" if verdict.worst_hand is None else "a motion found by value iteration"
+
+
+def _by_bounded_hands(verdict: Verdict) -> Iterator[str]:
+    """What is proved of hands within bounds, contact made and broken."""
+    found = verdict.worst_hand
+    if found is not None and found.outcome == "passive":
+        hands = describe_hands(found.scope.hands, found.scope.motion)
+        yield f"Contact made and broken: proved passive for {hands}."
+
+
+def _undecided(verdict: Verdict) -> str:
+    if verdict.finding == "unconfirmed":
+        return "A proof was found, but the independent checker did not confirm it within its bounds."
+    if verdict.finding == "between corners":
+        return (
+            "Passive at every corner of the intervals; that every value between them is too is not proved "
+            "for intervals of these parameters together."
+        )
+    if verdict.finding == "depends on values":
+        return (
+            "The answer depends on where in its intervals the loop lies: a motion takes energy out at the "
+            "worst corner, and for other values none is known to."
+        )
+    if verdict.finding == "no lowest energy":
+        return (
+            "Beyond an end the spring pulls away, with no more than Coulomb friction holds: its potential "
+            "has no lowest value, and no proof for that is known."
+        )
+    decision: Decision | None = getattr(verdict, "decision", None)  # of laws with H(z)
+    return _not_found(verdict) if decision is None else _open(decision)
+
+
+def _not_found(verdict: Verdict) -> str:
+    """What is known of a law without H(z)."""
+    found = "Neither a proof for every hand nor a motion that takes energy out was found"
+    lacking = [
+        f"{need.name.replace('_', ' ')} of {need.needed:.6g} is proved enough, and there is {need.has:.6g}"
+        for need in verdict.needs
+        if need.has < need.needed
+    ]
+    return f"{'; '.join([found, *lacking])}."
+
+
+def _open(decision: Decision) -> str:
     """What is proved on both sides where the loop itself is neither proved nor refuted."""
     if decision.is_clamped:
-        return _clamped_claim(decision)
+        return _clamped(decision)
     if isinstance(decision.viscous, LinearRefutation):
-        if decision.viscous.reason == "criterion":
-            return (
-                "The linear criterion is violated, so passivity cannot be proved, but no motion was found "
-                "that shows it: the band of frequencies is very narrow, or the law very slow."
-            )
-        return f"Passivity cannot be proved ({decision.viscous.reason}), and no motion was found that gains."
+        return (
+            f"Passivity cannot be proved ({decision.viscous.reason}); that energy comes out was not confirmed "
+            "by the independent checker within its bounds."
+        )
     if not decision.loop.hidden_modes_decay:
         return (
             "Numerator and denominator of H(z) share a root on or outside the unit circle. The port does not "
@@ -52,7 +137,7 @@ def open_claim(decision: Decision) -> str:
     )
 
 
-def _clamped_claim(decision: Decision) -> str:
+def _clamped(decision: Decision) -> str:
     """What is known of a clamped law that is not proved."""
     damping, friction = decision.contact_damping, decision.contact_friction
     if damping is None or friction is None:
@@ -64,87 +149,3 @@ def _clamped_claim(decision: Decision) -> str:
             f"{float(loop.damping):.6g}; Coulomb friction of {float(friction):.6g}, it has {has:.6g}."
         )
     return f"The linear criterion does not cover a law whose force is clamped, {known}"
-
-
-def assumptions(
-    outcome: Outcome,
-    device: Device,
-    law: Environment,
-    decision: Decision,
-    certificate: Certificate | None = None,
-) -> tuple[str, ...]:
-    """What the claim covers and takes for granted; `certificate` is its proof, if there is one."""
-    unit = {"N": "N", "b": "N·s/m"} if device.motion == "linear" else {"N": "N·m", "b": "N·m·s/rad"}
-    loop = decision.loop
-    lines = [
-        _surface(outcome, device, law, decision, certificate),
-        f"the device takes out at least b = {float(loop.damping):.6g} {unit['b']} of viscous and "
-        f"f_c = {float(decision.setting.coulomb_friction):.6g} {unit['N']} of Coulomb friction",
-        "a hand without limits on speed and force; the mass of the device plays no part",
-        "ideal actuator: force limit, converter steps, current rise and added filters are not in the claim",
-        "a constant sample period and delay, no missed samples",
-    ]
-    if decision.setting.resolution:
-        lines.append("encoder counts of one size, their phase against the surface unknown")
-    else:
-        lines.append("ideal position sensor: no quantization")
-    lines.extend(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed)
-    if law.coefficients_rounded:
-        lines.append("H(z) has the coefficients of its discretization rounded to double precision")
-    intervals = [k for k, v in device.parameters().items() if isinstance(v, Interval)]
-    if intervals or not law.is_certain:
-        named = ", ".join(intervals) or "the environment's intervals"
-        holds = "" if outcome == "undecided" else f"holds for every value within {named}; "
-        lines.append(holds + "numbers are given for the worst corner of the intervals")
-    return tuple(lines)
-
-
-def _surface(
-    outcome: Outcome,
-    device: Device,
-    law: Environment,
-    decision: Decision,
-    certificate: Certificate | None,
-) -> str:
-    """Whether the hand may leave the law and come back."""
-    anywhere = "contact made and broken at any instant"
-    covered = decision.is_spring if certificate is None else certificate.covers_contact
-    if not covered and decision.is_clamped:
-        return f"{anywhere}; the law never pulls: a force below 0 is given as 0"
-    if not covered:
-        inside = "sustained contact: the law is linear while the hand stays inside"
-        if outcome == "passive" and _only_relaxes(law) and ends(device.delay)[1] == 0:
-            return f"{inside}; contact made and broken is covered by a proof on paper, without a certificate"
-        return f"{inside}{NOT_COVERED}"
-    if certificate is not None and not certificate.is_of_springs:
-        return f"{anywhere}; also for a wall that is clamped so that it never pulls"
-    more = "; the same holds for every spring law of slope 0 to K" if outcome == "passive" else ""
-    return f"{anywhere}{more}"
-
-
-def _only_relaxes(law: Environment) -> bool:
-    """True for solids that are fed with the penetration and have h_j ≤ 0 for all j ≥ 1 (theory/contact)."""
-    solids = (Maxwell, StandardLinearSolid, GeneralizedMaxwell)
-    return isinstance(law, solids) and law.discretization == "backward" and not law.clamped
-
-
-def beyond_the_actuator(device: Device, witness: Witness | Gain | None) -> tuple[str, ...]:
-    """Says where the motion asks for more force than the actuator has."""
-    if witness is None or device.force_limit is None:
-        return ()
-    unit = "N·m" if device.motion == "rotary" else "N"
-    most, needed = float(ends(device.force_limit)[1]), _peak_force(witness)
-    if needed <= most:
-        return (f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}",)
-    return (
-        f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
-        "limit respected no motion is shown, and none is excluded",
-    )
-
-
-def _peak_force(witness: Witness | Gain) -> float:
-    if isinstance(witness, Witness):
-        return witness.peak_force
-    from zwidth.passivity.worst_hand.playback import peak_force  # the game's libraries are there by now
-
-    return peak_force(witness)

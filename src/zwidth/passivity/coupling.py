@@ -35,7 +35,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.hypotheses import NEGATIVE_SPRING, nonnegative, number
 from zwidth.passivity.linear import LinearRefutation
-from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.rendering import VirtualCoupling
@@ -59,7 +59,7 @@ class CouplingCondition:
     device: Device
     stiffness: Exact
     damping: Exact
-    verdict: Verdict | None
+    verdict: LinearVerdict | None
 
     @property
     def holds(self) -> bool:
@@ -77,7 +77,7 @@ class CouplingCondition:
         return None if self.verdict is None else self.verdict.critical_frequency
 
     @cached_property
-    def counterexample(self) -> Verdict | None:
+    def counterexample(self) -> LinearVerdict | None:
         """The verdict "active" of the coupling before a passive environment; None where the condition holds.
 
         The wall of K_c and B_c where a rigid environment is enough; otherwise a Tustin mass or spring, with

@@ -12,9 +12,9 @@ friction   one encoder count leaks energy that f_c must take out.  For a spring
 
 Coulomb friction never helps against the first: a larger motion outweighs it.
 
-Both speak of the law while the hand stays inside.  A damped wall for which the
-conditions of `contact` hold is passive with contact made and broken too; of a
-clamped law with memory nothing else is claimed, for it is not linear inside.
+Both speak of the law while the hand stays inside.  A law for which the conditions
+of `contact` or `relaxing_contact` hold is passive with contact made and broken too;
+of a clamped law with memory nothing else is claimed, for it is not linear inside.
 """
 
 from __future__ import annotations
@@ -30,10 +30,11 @@ from zwidth.passivity.contact import DampedWall, damped_wall
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.loop import LinearLoop, linear_loop
 from zwidth.passivity.one_norm import NormBound, bound_one_norm
+from zwidth.passivity.relaxing_contact import RelaxingLaw, relaxing_law
 from zwidth.passivity.straddle import best_waits
 from zwidth.passivity.witness import Setting
 
-Kind = Literal["spring", "contact", "linear", "quantized"]
+Kind = Literal["spring", "contact", "relaxing contact", "linear", "quantized"]
 
 
 @dataclass(frozen=True)
@@ -41,11 +42,11 @@ class Decision:
     """What is known of one loop; nothing here is claimed before its proof or motion is checked.
 
     `wall` is the law as the conditions for contact made and broken see it, None
-    for a law that is no such wall; `never_pulls` says whether its force is clamped.
+    for a law of which none are known; `never_pulls` says whether its force is clamped.
     """
 
     setting: Setting
-    wall: DampedWall | None = None
+    wall: DampedWall | RelaxingLaw | None = None
     never_pulls: bool = False
 
     @property
@@ -65,7 +66,7 @@ class Decision:
         if self.is_spring:
             return "spring"
         if self.covers_contact:
-            return "contact"
+            return "relaxing contact" if isinstance(self.wall, RelaxingLaw) else "contact"
         return "quantized" if self.setting.resolution else "linear"
 
     @property
@@ -155,4 +156,5 @@ def decide(device: Device, environment: Environment) -> Decision:
         environment.unilateral,
         device.motion,
     )
-    return Decision(setting, damped_wall(environment, loop.period), environment.clamped)
+    wall = damped_wall(environment, loop.period) or relaxing_law(environment, loop)
+    return Decision(setting, wall, environment.clamped)

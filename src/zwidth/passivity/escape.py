@@ -14,7 +14,7 @@ from math import cos, log
 
 from flint import fmpz_poly
 
-from zwidth.passivity.linear import closed_loop
+from zwidth.passivity.linear import closed_loop, offset_of
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion, Pattern, Repeat, convolve
 
@@ -34,10 +34,9 @@ PRESS_LENGTHS = tuple(4**k for k in range(1, 40))
 
 def buildups(loop: LinearLoop, unilateral: bool) -> Iterator[Motion]:
     """Motions that follow an unstable or lossless mode of the law, then let the force do work."""
-    offset = loop.damping or Fraction(1)
     seen = fmpz_poly(list(loop.denominator[::-1])).complex_roots()
     if loop.part_delay == 0:
-        seen = seen + fmpz_poly(closed_loop(loop, offset)[::-1]).complex_roots()
+        seen = seen + fmpz_poly(closed_loop(loop, offset_of(loop))[::-1]).complex_roots()
     modes = [complex(float(root.real), float(root.imag)) for root, _ in seen]
     base = _way_in(loop) if unilateral else (0,)
     if base is None:

@@ -14,7 +14,6 @@ from dataclasses import replace
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
-from zwidth.passivity.claims import NOT_COVERED, beyond_the_actuator
 from zwidth.passivity.verdict import Verdict
 
 SECONDS = 5.0
@@ -27,10 +26,7 @@ def has_gap(device: Device, law: Environment, verdict: Verdict) -> bool:
         return False
     if (device.exact("delay") / device.exact("sample_period")).denominator != 1:
         return False
-    if verdict.outcome == "undecided":
-        return True
-    proof = verdict.certificate
-    return law.unilateral and proof is not None and not proof.covers_contact
+    return verdict.outcome in ("undecided", "passive in contact")
 
 
 def with_game(
@@ -44,23 +40,13 @@ def with_game(
     except InputError:
         return verdict
     if found.witness is not None:
-        claim = f"A motion of the hand takes energy out of this loop: {found.witness.describe()}."
-        said = (found.assumptions[0], *verdict.assumptions[1:])
-        said += beyond_the_actuator(device, found.witness)
         return replace(
             verdict,
             outcome="active",
-            claim=claim,
-            assumptions=said,
+            scope=verdict.scope.replace(contact=found.scope.contact, also=()),
             certificate=None,
-            witness=found.witness,
+            motion=found.witness,
             worst_hand=found,
+            at_limit=False,
         )
-    if found.outcome == "undecided":
-        return verdict
-    covered = f"contact made and broken: proved passive for {found.hand}"
-    if verdict.outcome == "undecided":
-        claim = f"{verdict.claim} {covered[0].upper()}{covered[1:]}."
-        return replace(verdict, claim=claim, worst_hand=found)
-    said = (verdict.assumptions[0].removesuffix(NOT_COVERED), covered, *verdict.assumptions[1:])
-    return replace(verdict, assumptions=said, worst_hand=found)
+    return verdict if found.outcome == "undecided" else replace(verdict, worst_hand=found)

@@ -4,202 +4,144 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
-from math import cos, pi
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from zwidth.device import Device
-from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.environment.environment import Environment
-from zwidth.passivity import limits
-from zwidth.passivity.advice import Advice, advise
-from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
+from zwidth.passivity import claims
+from zwidth.passivity.actuator_demand import actuator_demand
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.decision import Decision
-from zwidth.passivity.document import save_json, to_json, unit_suffix
-from zwidth.passivity.stability_plane import admissible_speed
+from zwidth.passivity.document import save_json, to_json, unit_key
+from zwidth.passivity.outcome import TOLD, Outcome
+from zwidth.passivity.scope import Scope
+from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
+    from zwidth.passivity.nonlinear_spring import EndlessPull
     from zwidth.passivity.worst_hand import WorstHand
     from zwidth.passivity.worst_hand.gain import Gain
 
-Outcome = Literal["passive", "active", "undecided"]
+Finding = Literal["open", "unconfirmed", "between corners", "depends on values", "no lowest energy"]
+"""Why a loop is undecided: neither shown; a proof that the checker did not confirm; proved at the corners of
+intervals and not between them; active at one corner and not at others; a spring that pulls away for ever, but
+no more than Coulomb friction holds."""
 
 
-@dataclass(frozen=True)
+class Need(NamedTuple):
+    """What is enough of "damping" [N·s/m; N·m·s/rad] or "coulomb_friction" [N; N·m], and what there is."""
+
+    name: str
+    needed: float
+    has: float
+
+
+@dataclass(frozen=True, repr=False)
 class Verdict:
     """Whether a hand can take energy out of a sampled loop.
 
-    "passive" stands on a `certificate` that the independent checker accepted,
-    "active" on a `witness` that it recomputed; "undecided" says what is known.
+    "passive" stands on a `certificate` that the independent checker accepted, with contact made and broken,
+    or as it was asked; "passive in contact" on one for hands that never leave the wall; "active" on a
+    `violation` that it accepted or a motion, the `witness`, that it recomputed; "undecided" says what is
+    known.
     For parameters given as intervals the verdict holds for every value; the
     numbers below then speak of the worst case (`device`, `environment`).
 
     Attributes
     ----------
     outcome
-        "passive", "active" or "undecided".
-    claim
-        The claim in a sentence.
-    assumptions
-        What the claim covers and takes for granted.
+        "passive", "passive in contact", "theorem", "active" or "undecided".
+    scope
+        What it is about: hands, contact, encoder, actuator.
     device, environment
         The loop decided: the worst corner where intervals were given.
-    certificate, witness
-        The evidence; the one that does not apply is None.
+    certificate
+        The proof of "passive"; else None.
+    violation
+        What of the linear criterion is violated, a proof of "active"; or so at the worst corner
+        of an interval.  None for a loop that is active by its encoder, or by contact made and broken.
+    motion
+        The motion, where it was needed to decide; see `witness`.
     worst_hand
         What the game of the worst hand adds, where the closed forms leave a gap: a motion,
         then also the `witness`; or a proof for hands within bounds.
+    finding
+        Why it is undecided.
+    at_limit
+        True where the least less of b or f_c would lose the proof.
+    theorem
+        What is proved on paper, where the outcome is "theorem".
+    needs
+        What of the device is proved to be enough, where that is known.
     """
 
     outcome: Outcome
-    claim: str
-    assumptions: tuple[str, ...]
+    scope: Scope
     device: Device
     environment: Environment
-    decision: Decision
-    certificate: Certificate | None
-    witness: Witness | Gain | None
+    certificate: Certificate | None = None
+    violation: Violation | EndlessPull | None = None
+    motion: Witness | Gain | None = None
     worst_hand: WorstHand | None = None
-
-    @cached_property
-    def budget(self) -> Budget:
-        """Leaks against dissipation at the tightest frequency."""
-        return budget(self.decision)
-
-    @cached_property
-    def limit(self) -> str:
-        """The mechanism that binds: what is violated, or would be first."""
-        if self._in_contact_only:
-            return CONTACT
-        return binding_limit(self.decision, self.budget, self.environment)
+    finding: Finding = "open"
+    at_limit: bool = False
+    theorem: str = ""
+    needs: tuple[Need, ...] = ()
 
     @property
-    def _in_contact_only(self) -> bool:
-        """True when a hand that stays inside gains nothing, and one that touches and leaves does.
-
-        What is required is then what is proved enough with contact made and broken.
-        """
-        return self.outcome == "active" and self.decision.is_provable
+    def claim(self) -> str:
+        """The verdict in a sentence or two."""
+        return claims.claim(self)
 
     @property
-    def mode(self) -> str | None:
-        """How a violation shows itself (Abbott & Okamura 2005, section IV-C).
-
-        None when passive, and for a motion that has to touch and leave.
-        """
-        if self.outcome == "passive" or self._in_contact_only:
-            return None
-        return "active tactile" if self.limit == QUANTIZATION else "closed-loop instability"
-
-    @cached_property
-    def max_stiffness(self) -> float | None:
-        """Largest passive stiffness K, all else as given [N/m; N·m/rad].
-
-        inf if every stiffness is passive; None if none is, or the law has none
-        (see `max_gain`).
-        """
-        return limits.max_stiffness(self.device, self.environment, self._in_contact_only)
-
-    @cached_property
-    def max_gain(self) -> float | None:
-        """Largest passive factor on H(z), for a law without a stiffness of its own."""
-        return limits.max_gain(self.device, self.environment, self._in_contact_only)
-
-    @cached_property
-    def required_damping(self) -> float | None:
-        """Smallest device damping b that hold, delay and law need [N·s/m; N·m·s/rad].
-
-        None if no damping would do.  Coulomb friction is a need of its own: see `margins`.
-        """
-        return limits.required_damping(self.decision, self._in_contact_only)
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted, line by line."""
+        return claims.assumptions(self)
 
     @property
-    def critical_frequency(self) -> float:
-        """Frequency at which the linear criterion is tightest [Hz]."""
-        return self.budget.frequency
+    def is_proved(self) -> bool:
+        """True for "passive" and for "passive in contact"."""
+        return self.outcome in ("passive", "passive in contact")
 
     @cached_property
-    def admissible_speed(self) -> float | None:
-        """Hand speed up to which an active spring wall still gives out no energy [m/s; rad/s].
+    def witness(self) -> Witness | Gain | None:
+        """The motion that takes energy out, made when it is first asked for.
 
-        v = (2f_c − K Δ)/(K T − 2b), for mean speeds over a sample: Coulomb
-        friction outweighs the hold's leak of slow motions.  None where it does
-        not apply: a passive loop, another law, a delay.
+        None where the loop is not active, or no motion that was found is short enough to be written down.
         """
-        spring, loop = self.decision.is_spring, self.decision.loop
-        if self.outcome != "active" or not spring or loop.whole_delay or loop.part_delay:
-            return None
-        stiffness = loop.static_stiffness
-        assert stiffness is not None
-        speed = float(admissible_speed(self.device, stiffness))
-        return speed if 0 < speed < float("inf") else None
+        if self.motion is not None or self.violation is None:
+            return self.motion
+        return self.violation.witness
+
+    @property
+    def decided_by(self) -> str:
+        """The road on which the outcome was found."""
+        return claims.decided_by(self)
 
     @cached_property
-    def margins(self) -> Mapping[str, float | None]:
-        """What is left of damping and of Coulomb friction over what is needed; < 0 if too little.
-
-        Keys "damping" [N·s/m; N·m·s/rad] and "coulomb_friction" [N; N·m]; None where the need is unbounded.
-        """
-        need, friction = self.required_damping, self.decision.sufficient_friction
-        friction = self.decision.contact_friction if self._in_contact_only else friction
-        b, setting = self.decision.loop.damping, self.decision.setting
-        return {
-            "damping": None if need is None else _difference(b, need),
-            "coulomb_friction": None if friction is None else float(setting.coulomb_friction - friction),
-        }
-
-    @cached_property
-    def advice(self) -> tuple[Advice, ...]:
-        """The smallest single changes that would do, or the slack of each parameter."""
-        return advise(self.device, self.environment, self.outcome == "passive", self._in_contact_only)
-
-    @cached_property
-    def actuator(self) -> tuple[ActuatorCheck, ...]:
-        """Is the actuator close to the ideal that the claim assumes?"""
-        stiffness = self.decision.loop.static_stiffness
-        positive = stiffness is not None and stiffness > 0
-        return actuator_checks(self.device, stiffness if positive else None)
-
-    def curve(self, points: int = 400) -> tuple[list[float], list[float]]:
-        """(frequency [Hz], damping the criterion asks for there [N·s/m]), for plotting only."""
-        loop = self.decision.loop
-        turns = [(k + 0.5) / points / 2 for k in range(points)]
-        cosines = [Fraction(cos(2 * pi * t)) for t in turns]
-        return [t / float(loop.period) for t in turns], [loop.required_damping_at(c) for c in cosines]
+    def demand(self) -> tuple[str, ...]:
+        """What the motion asks of the actuator, where there is one and the actuator's limit is known."""
+        said = None if self.witness is None else actuator_demand(self.device, self.witness)
+        return () if said is None else (said,)
 
     def to_dict(self) -> dict[str, Any]:
         """The whole verdict as plain data, a unit in every key of a physical quantity."""
-        motion = self.device.motion
-
-        def key(prefix: str, quantity: str) -> str:
-            return f"{prefix}_{unit_suffix(GLOSSARY[quantity].unit_for(motion))}"
-
         document: dict[str, Any] = {
             "format": "zwidth verdict 1",
             "outcome": self.outcome,
             "claim": self.claim,
-            "assumptions": list(self.assumptions),
-            "limit": self.limit,
-            "mode": self.mode,
+            "decided_by": self.decided_by,
+            "scope": self.scope.to_dict(),
+            "assumptions": [*self.assumptions, *self.demand],
+            **self.numbers(),
         }
-        document[key("max_stiffness", "stiffness")] = self.max_stiffness
-        if not limits.has_stiffness(self.environment):
-            document["max_gain"] = self.max_gain
-        document[key("required_damping", "damping")] = self.required_damping
-        document["critical_frequency_Hz"] = self.critical_frequency
-        if self.admissible_speed is not None:
-            speed_unit = "rad_per_s" if motion == "rotary" else "m_per_s"
-            document[f"admissible_speed_{speed_unit}"] = self.admissible_speed
-        document["margins"] = {key(name, name): value for name, value in self.margins.items()}
-        document["advice"] = [advice.to_dict() for advice in self.advice]
-        document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
         if self.certificate is not None:
             document["certificate"] = self.certificate.to_dict()
+        if self.violation is not None:
+            document["violation"] = self.violation.to_dict()
         if self.witness is not None:
             document["witness"] = rounded_energy(self.witness.to_dict())
         if self.worst_hand is not None:
@@ -221,41 +163,35 @@ class Verdict:
         return f"<Verdict {self.outcome}: {self.claim}>"
 
     def _repr_html_(self) -> str:
-        colour = {"passive": "#2a7d4f", "active": "#b3261e", "undecided": "#8a6d00"}[self.outcome]
+        colour = TOLD[self.outcome].colour
         rows = "".join(f"<tr><th align='left'>{k}</th><td align='left'>{v}</td></tr>" for k, v in self.rows())
-        assumed = "".join(f"<li>{a}</li>" for a in self.assumptions)
+        assumed = "".join(f"<li>{a}</li>" for a in (*self.assumptions, *self.demand))
         return (
             f"<div><b style='color:{colour}'>{self.outcome}</b> {self.claim}"
             f"<table>{rows}</table><details><summary>assumptions</summary><ul>{assumed}</ul></details></div>"
         )
 
+    def numbers(self) -> dict[str, Any]:
+        """What is needed and what there is, as plain data, a unit in every key of a physical quantity."""
+        return {
+            "margins": {unit_key(n.name, self.device.motion): n.has - n.needed for n in self.needs},
+        }
+
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
-        rows = [("limit", self.limit)]
-        if limits.has_stiffness(self.environment):
-            rows.append(("largest passive stiffness", _text(self.max_stiffness, unit["stiffness"])))
-        else:
-            rows.append(("largest passive gain", _text(self.max_gain, "times this law")))
-        rows.append(("required device damping", _text(self.required_damping, unit["damping"])))
-        rows.append(("critical frequency", _text(self.critical_frequency, "Hz")))
-        for name, value in self.margins.items():
-            margin_unit = GLOSSARY[name].unit_for(self.device.motion)
-            rows.append((f"margin of {name.replace('_', ' ')}", _text(value, margin_unit)))
-        if self.admissible_speed is not None:
-            per_second = "rad/s" if self.device.motion == "rotary" else "m/s"
-            rows.append(("slower hands are safe up to", _text(self.admissible_speed, per_second)))
+        rows = [("decided by", self.decided_by)]
+        for need in self.needs:
+            unit = GLOSSARY[need.name].unit_for(self.device.motion)
+            name = need.name.replace("_", " ")
+            rows.append((f"required {name}", as_text(need.needed, unit)))
+            rows.append((f"margin of {name}", as_text(need.has - need.needed, unit)))
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))
         return rows
 
 
-def _difference(b: Fraction, need: float) -> float:
-    """b − need exactly: 0 at the limit, whatever the rounding of either."""
-    return float(b - Fraction(repr(need)))
-
-
-def _text(value: float | None, unit: str) -> str:
+def as_text(value: float | None, unit: str) -> str:
+    """A number of six digits with its unit; "none" and "any" for what is no number."""
     if value is None:
         return "none"
     if value == float("inf"):

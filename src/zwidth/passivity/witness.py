@@ -16,6 +16,7 @@ from zwidth.passivity import checker
 from zwidth.passivity.document import loop_document, save_json, unit_key
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion
+from zwidth.passivity.scope import Contact
 
 FORMAT = "zwidth witness 1"
 
@@ -87,6 +88,13 @@ class Witness:
     def energy(self) -> float:
         """Energy extracted by the whole motion [J], > 0."""
         return float(self.exact_energy)
+
+    @property
+    def contact(self) -> Contact:
+        """Whether the motion stays inside, touches and leaves, or meets no surface."""
+        if not self.setting.unilateral:
+            return "both sides"
+        return "kept" if min(self.motion.positions[1:-1], default=1) > 0 else "made and broken"
 
     @property
     def positions(self) -> tuple[float, ...]:

@@ -13,7 +13,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.plots.style import (
     BLACK,
     GREY,
@@ -36,7 +36,7 @@ _TINY = 1e-9
 
 
 @rc_context(LOOK)
-def budget(verdict: Verdict) -> Figure:
+def budget(verdict: LinearVerdict) -> Figure:
     """Leaks against dissipation as bars: damping above, Coulomb friction below.
 
     The second pair is left out for an ideal encoder.
@@ -49,12 +49,12 @@ def budget(verdict: Verdict) -> Figure:
     return figure
 
 
-def has_friction(verdict: Verdict) -> bool:
+def has_friction(verdict: LinearVerdict) -> bool:
     """True when the encoder asks for anything."""
     return verdict.device.exact("resolution") > 0
 
 
-def draw_damping(axes: Axes, verdict: Verdict) -> None:
+def draw_damping(axes: Axes, verdict: LinearVerdict) -> None:
     """Shares of the required damping, stacked, above the device's damping."""
     account, motion = verdict.budget, verdict.device.motion
     if isfinite(account.required) and verdict.required_damping is not None:
@@ -69,7 +69,7 @@ def draw_damping(axes: Axes, verdict: Verdict) -> None:
     axes.set_xlabel(label("damping", motion))
 
 
-def draw_friction(axes: Axes, verdict: Verdict) -> None:
+def draw_friction(axes: Axes, verdict: LinearVerdict) -> None:
     """What one encoder count asks for, above the device's Coulomb friction."""
     account, motion = verdict.budget, verdict.device.motion
     need = account.friction_required

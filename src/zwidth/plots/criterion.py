@@ -14,7 +14,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from zwidth.passivity.verdict import Verdict
+from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, label, new_figure, number, unit_text
 
 _NEAR = 120
@@ -24,7 +24,7 @@ _FLAT = 1e-6
 
 
 @rc_context(LOOK)
-def criterion(verdict: Verdict, log_frequency: bool = False) -> Figure:
+def criterion(verdict: LinearVerdict, log_frequency: bool = False) -> Figure:
     """Required damping against frequency, 0 … 1/(2T), with the device's damping.
 
     Parameters
@@ -39,7 +39,7 @@ def criterion(verdict: Verdict, log_frequency: bool = False) -> Figure:
     return figure
 
 
-def draw_criterion(axes: Axes, verdict: Verdict, log_frequency: bool = False) -> None:
+def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = False) -> None:
     """The same on given axes."""
     frequencies, needs = refined_curve(verdict)
     b, motion = float(verdict.decision.loop.damping), verdict.device.motion
@@ -66,7 +66,7 @@ def draw_criterion(axes: Axes, verdict: Verdict, log_frequency: bool = False) ->
     axes.legend(loc="upper left")
 
 
-def refined_curve(verdict: Verdict, points: int = 400) -> tuple[list[float], list[float]]:
+def refined_curve(verdict: LinearVerdict, points: int = 400) -> tuple[list[float], list[float]]:
     """(frequencies [Hz], required damping) with points crowding towards the tightest frequency.
 
     However narrow the peak, its top and both its sides are among them.
@@ -93,7 +93,7 @@ def _range(needs: list[float], b: float) -> tuple[float, float]:
     return (bottom - 0.05 * span if bottom < 0 else 0.0), top + 0.45 * span
 
 
-def _mark(axes: Axes, verdict: Verdict, needs: list[float], limits: tuple[float, float]) -> None:
+def _mark(axes: Axes, verdict: LinearVerdict, needs: list[float], limits: tuple[float, float]) -> None:
     peak, need = verdict.critical_frequency, verdict.budget.required
     unit = unit_text("damping", verdict.device.motion)
     if limits[0] < 0:

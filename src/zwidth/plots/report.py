@@ -6,11 +6,14 @@ from collections.abc import Callable
 from math import ceil
 from pathlib import Path
 from textwrap import fill
+from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
+from zwidth.errors import InputError
+from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.plots.budget import draw_damping, draw_friction, has_friction
 from zwidth.plots.criterion import draw_criterion
@@ -23,7 +26,7 @@ from zwidth.plots.witness import draw_witness
 _WIDTH = 125
 """Characters of the heading on one line."""
 
-_Draw = Callable[[Figure, SubplotSpec, Verdict], None]
+_Draw = Callable[[Figure, SubplotSpec, Any], None]
 
 
 def save_check(verdict: Verdict, path: str | Path, overwrite: bool = False) -> None:
@@ -50,6 +53,8 @@ def save_check(verdict: Verdict, path: str | Path, overwrite: bool = False) -> N
 def check_figure(verdict: Verdict) -> Figure:
     """The criterion, the budget, and where they apply the plane and the witness, in one figure."""
     panels = _panels(verdict)
+    if not panels:
+        raise InputError("there is nothing to draw of this verdict: it has neither H(z) nor a motion")
     rows = (len(panels) + 1) // 2
     figure = new_figure(11.0, 4.4 * rows + 0.7)
     grid = figure.add_gridspec(rows, 2)
@@ -70,10 +75,11 @@ def _lines(text: str) -> str:
 
 
 def _panels(verdict: Verdict) -> list[_Draw]:
-    panels: list[_Draw] = [_criterion]
-    if verdict.decision.is_spring and has_plane(verdict.device) and verdict.decision.loop.numerator[0]:
-        panels.append(_plane)
-    panels.append(_budget)
+    panels: list[_Draw] = []
+    if isinstance(verdict, LinearVerdict):
+        loop = verdict.decision.loop
+        has_place = verdict.decision.is_spring and has_plane(verdict.device) and loop.numerator[0]
+        panels += [_criterion, _plane, _budget] if has_place else [_criterion, _budget]
     if verdict.witness is not None:
         panels.append(_witness)
     elif verdict.worst_hand is not None:
@@ -81,15 +87,15 @@ def _panels(verdict: Verdict) -> list[_Draw]:
     return panels
 
 
-def _criterion(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+def _criterion(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:
     draw_criterion(figure.add_subplot(place), verdict)
 
 
-def _plane(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+def _plane(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:
     draw_plane(figure.add_subplot(place), verdict.device, verdict.decision.loop.static_stiffness)
 
 
-def _budget(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+def _budget(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:
     if not has_friction(verdict):
         axes = figure.add_subplot(place)
         draw_damping(axes, verdict)

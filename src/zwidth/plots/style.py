@@ -15,13 +15,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.device import Device
+from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.glossary import GLOSSARY
 
 BLACK, GREY = "#222222", "#777777"
 BLUE, SKY = "#0072B2", "#56B4E9"
 GREEN, ORANGE, RED, PURPLE = "#009E73", "#E69F00", "#D55E00", "#CC79A7"
 
-OUTCOME = {"passive": GREEN, "theorem": BLUE, "active": RED, "undecided": "#8A6D00"}
+OUTCOME = {outcome: told.colour for outcome, told in TOLD.items()}
 """Colour of each outcome; the word always stands beside it."""
 
 LOOK: Any = {

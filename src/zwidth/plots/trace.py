@@ -137,8 +137,9 @@ def draw_energies(axes: Axes, trace: xr.Dataset) -> None:
     axes.axhline(0, color=GREY, lw=0.8)
     axes.set_ylabel(f"energy [{unit}]")
     _legend(axes)
-    out, outside = ledger(trace).extracted, not trace["measured_position"].values[0] > 0
-    if outside and out > 1e-12 * ledger(trace).moved:
+    book = ledger(trace)
+    if book.active:
+        out = book.extracted
         f, u = scale([out], "J")
         axes.set_title(f"the hand got out {number(out * f)} {u}: this loop is active", color=RED)
 

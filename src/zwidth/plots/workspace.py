@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from textwrap import fill
+from textwrap import shorten
 from typing import Any
 
 import numpy as np
@@ -11,16 +11,20 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 from zwidth.errors import InputError
 from zwidth.passivity.arms import Workspace
+from zwidth.passivity.arms.held import in_words
 from zwidth.plots.files import save_figure
 from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, pretty
 
 _ARROWS = 14
 """Marks of the worst direction along each side."""
-_WIDTH = 90
+_LONGEST = 110
+"""Characters of the line below the map."""
+_LEAST_SPREAD = 1e-3
+"""Of the largest value: what varies less is drawn as one colour."""
 
 
 def save_workspace(space: Workspace, path: str | Path, overwrite: bool = False) -> None:
@@ -53,10 +57,22 @@ def workspace_figure(space: Workspace, variable: str | None = None) -> Figure:
     axes = figure.add_subplot()
     draw_workspace(axes, space, variable)
     figure.suptitle(
-        fill(f"{space.arm.name}: {space.claim}", _WIDTH), x=0.01, ha="left", fontsize=10,
-        color=OUTCOME[space.outcome], parse_math=False,
+        f"{space.arm.name}: {space.outcome}", x=0.01, ha="left", fontsize=11, color=OUTCOME[space.outcome],
+        parse_math=False,
+    )  # fmt: skip
+    figure.supxlabel(
+        shorten(_covers(space), _LONGEST, placeholder=" …"), x=0.01, ha="left", fontsize=8, color=GREY,
+        parse_math=False,
     )  # fmt: skip
     return figure
+
+
+def _covers(space: Workspace) -> str:
+    """How the arm is read and what the torque does, in a line."""
+    forces = f", wall forces up to {in_words(space.largest_forces)}" if space.largest_forces else ""
+    read = "read without steps" if space.encoder == "ideal" else "encoder steps counted"
+    follows = "follows the arm" if space.encoder == "ideal" else "follows the readings"
+    return f"{read}; torque {follows if space.torque == 'follows' else 'held over a period'}{forces}"
 
 
 def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) -> None:
@@ -89,6 +105,7 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) ->
     colours = axes.pcolormesh(across, up, values, shading=shading, rasterized=True, **_colours(values))
     beyond = float(np.nanmax(values)) > colours.get_clim()[1] * (1 + 1e-9)
     bar = axes.figure.colorbar(colours, ax=axes, label=label, extend="max" if beyond else "neither")
+    bar.formatter = ScalarFormatter(useOffset=False)
     low, high = colours.get_clim()
     if low < 0 < high:  # the two sides of 0 have scales of their own, and numbers of their own
         sides = [MaxNLocator(4).tick_values(*side) for side in ((low, 0.0), (0.0, high))]
@@ -132,7 +149,7 @@ def _colours(values: Any) -> dict[str, Any]:
     low, high = (float(known.min()), float(np.percentile(known, 95))) if known.size else (0.0, 0.0)
     if low < 0:
         return {"cmap": "RdBu", "norm": TwoSlopeNorm(0.0, low, max(high, -low / 2))}
-    return {"cmap": "viridis", "vmin": low, "vmax": max(high, low + 1e-300)}
+    return {"cmap": "viridis", "vmin": low, "vmax": max(high, low + max(_LEAST_SPREAD * high, 1e-300))}
 
 
 def _directions(axes: Axes, space: Workspace, across: Any, up: Any) -> None:

@@ -143,6 +143,8 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
                 origin="lower", aspect="auto", interpolation="nearest",
             )  # fmt: skip
             axes.fill_between([], [], color=colour, alpha=alpha, lw=0, label=text)
+    if found.attrs.get("not_covered") and not found["passive"].values.any():
+        axes.plot([], [], ls="none", label="passive with every hand: not covered")
     hands = [str(name).removeprefix("stable_") for name in found.data_vars if str(name).startswith("stable_")]
     for place, name in enumerate(hands):
         _outline(axes, found, name, place)

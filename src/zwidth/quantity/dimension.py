@@ -59,6 +59,7 @@ _UNITS = {
     "deg": Unit(Fraction(1, 180), 1, (0, 0, 0, 0, 1)),
     "turn": Unit(Fraction(2), 1, (0, 0, 0, 0, 1)),
     "rev": Unit(Fraction(2), 1, (0, 0, 0, 0, 1)),
+    "rpm": Unit(Fraction(1, 30), 1, (0, 0, -1, 0, 1)),
 }
 _KINDS: dict[Dimension, str] = {
     (0, 0, 0, 0, 0): "a plain number",

@@ -107,7 +107,7 @@ def _split(value: str, unit: str, what: str) -> tuple[str, str]:
     match = _NUMBER.match(text) if len(text) <= LONGEST_TEXT and text.isprintable() else None
     if match is None or text[match.end() :].startswith(","):
         example = (
-            '; write "0.15", with a point'
+            f'; write "{_pointed(text)}", with a point'
             if "," in text
             else f': expected a number, such as "{f"0.15 {unit}".removesuffix(" 1")}"'
         )
@@ -115,6 +115,14 @@ def _split(value: str, unit: str, what: str) -> tuple[str, str]:
             example = ": it must be finite"
         raise InputError(f'{_is(what, unit)}; got "{_short(value)}"{example}')
     return match[0], text[match.end() :].strip()
+
+
+_WITH_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+(?![0-9.,])")
+
+
+def _pointed(text: str) -> str:
+    """A number with a decimal comma as it is meant; else an example."""
+    return text.replace(",", ".", 1) if len(text) <= LONGEST_TEXT and _WITH_COMMA.match(text) else "0.15"
 
 
 def _text_ends(value: str, unit: str, what: str) -> tuple[Exact, Exact]:

@@ -63,12 +63,16 @@ class Rendered(Environment):
         """Not: the laws look at the sign of energy, contact or motion."""
         return False
 
+    @property
+    def has_transfer_function(self) -> bool:
+        """False."""
+        return False
+
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
         """None: raises InputError."""
         raise InputError(
-            f"there is no H(z) of this, its laws are not linear: {self.describe()}; zwidth.worst_hand plays "
-            "the game of the worst hand against it, a row that ends in ForceBounding() is proved by "
-            "zwidth.check_bounding"
+            f"there is no H(z) of this, its laws are not linear: {self.describe()}; zwidth.check decides it "
+            "on other roads"
         )
 
     def describe(self, motion: str = "linear") -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isnan
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -99,7 +100,10 @@ class Comparison:
         """The numbers by label, units in the keys."""
         keys = {"N*m": "N_m"}
         names = {n: f"{n}_{keys.get(u, u)}" if u else n for n, u in self.units().items()}
-        return {label: {names[n]: v for n, v in row.items()} for label, row in self.rows.items()}
+        return {
+            label: {names[n]: None if isnan(v) else v for n, v in row.items()}
+            for label, row in self.rows.items()
+        }
 
     def table(self) -> list[list[str]]:
         """Headings, then one line of text per trace."""
@@ -108,7 +112,7 @@ class Comparison:
             "trace",
             *(f"{c.heading} [{units[n]}]" if units[n] else c.heading for n, c in COLUMNS.items()),
         ]
-        lines = [[label, *(f"{row[name]:.4g}" for name in COLUMNS)] for label, row in self.rows.items()]
+        lines = [[label, *(_written(row[name]) for name in COLUMNS)] for label, row in self.rows.items()]
         return [head, *lines]
 
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
@@ -188,6 +192,10 @@ def measure(trace: xr.Dataset) -> dict[str, float]:
         "stops": float(trace.attrs["stops"]),
         "last_swing": float(last.max() - last.min()),
     }
+
+
+def _written(value: float) -> str:
+    return "not known" if isnan(value) else f"{value:.4g}"
 
 
 def _chatter(time: Array, force: Array, inside: NDArray[np.bool_]) -> float:

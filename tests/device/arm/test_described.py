@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -134,15 +135,15 @@ def test_what_cannot_be_read_is_said_in_one_message(tmp_path: Path, urdf: Path) 
 def test_the_words_of_the_parsers_are_in_the_message_alone(
     tmp_path: Path, urdf: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """URDF: a link that is not there, named; MJCF: what it is not, without places in C++ files."""
+    """One line each, in which no place in a C++ file stands, and nothing on standard error."""
     lost = tmp_path / "lost.urdf"
     lost.write_text(urdf.read_text().replace(LINK.format("tip"), ""))
     empty = tmp_path / "empty.xml"
     empty.write_text('<robot name="another format"/>')
-    with pytest.raises(zw.InputError, match=r"^lost.urdf cannot be read: .*tip.* not found$"):
-        read_arm(lost)
-    with pytest.raises(zw.InputError, match=r"^empty.xml cannot be read: This is not a standard mujoco"):
-        read_arm(empty)
+    for path in (lost, empty):
+        with pytest.raises(zw.InputError, match=rf"^{path.name} cannot be read: .*\w") as caught:
+            read_arm(path)
+        assert not re.search(r"\n|\.[ch]pp|\.hxx|Exception", str(caught.value))
     assert capfd.readouterr() == ("", "")
 
 

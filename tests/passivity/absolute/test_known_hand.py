@@ -184,3 +184,15 @@ def test_input_errors(plant, hand, words):
     """What the theorem does not cover is refused with the reason."""
     with pytest.raises(zw.InputError, match=words):
         zw.absolute_stability(plant, hand)
+
+
+def test_a_hand_is_read_as_everywhere_else(result):
+    """A `PassiveHand` is the hand it describes, an interval of hands is refused, and what is none."""
+    known = zw.absolute_stability(device(), zw.PassiveHand(stiffness=400), motions=False)
+    assert known.proved == result.proved
+    with pytest.raises(zw.InputError, match="interval"):
+        zw.absolute_stability(device(), zw.PassiveHand(stiffness=(300, 400)))
+    with pytest.raises(zw.InputError, match="needs a spring"):
+        zw.absolute_stability(device(), zw.PassiveHand(damping=2))
+    with pytest.raises(zw.InputError, match="a known hand is"):
+        zw.absolute_stability(device(), "finger")

@@ -331,7 +331,7 @@ def test_what_holds_is_accepted(document: dict[str, Any]) -> None:
         (two_link(arm__joints__1__low_rad="0.2"), "not enough"),
         (two_link(loop__sample_period_s="0.0012"), "not enough"),
         (two_link(loop__delay_samples=1), "not enough"),
-        (two_link(loop__encoder="1000 counts"), "ideal encoder"),
+        (two_link(loop__encoder="1000 counts"), "ideal, or counted"),
         (two_link(loop__torque="is late"), "follows the arm, or is held"),
         (two_link(loop__torque="held"), "largest_force_N is missing"),
         (two_link(loop__sample_period_s="0"), "T must be > 0"),
@@ -430,3 +430,83 @@ def test_a_dip_between_the_middles_is_seen() -> None:
     assert arm_cells.positive_in(box, dipped(0.0009)) > 4
     with pytest.raises(arm_cells.Invalid, match=r"not enough at 0\.3"):
         arm_cells.positive_in(box, dipped(0.0011))
+
+
+def counted(**changes: Any) -> dict[str, Any]:
+    """The two links with encoders: friction of each joint for 4 N of the wall, by the formula."""
+    document = two_link(
+        wall__stiffness_N_per_m=[["500", "0"], ["0", "500"]],
+        loop__encoder="counted", loop__torque="follows the readings", loop__largest_force_N="4",
+    )  # fmt: skip
+    steps, columns = np.array([2e-3, 1e-3]), np.array([0.1816, 0.0901])
+    bends = np.array([[columns[max(i, j)] for j in range(2)] for i in range(2)])
+    needed = (columns * 500 * (columns @ steps) + 4 * bends @ steps) / 2
+    for joint, step, column, own in zip(document["arm"]["joints"], steps, columns, needed, strict=True):
+        joint["resolution_rad"], joint["largest_column_m_per_rad"] = str(step), str(column)
+        joint["coulomb_friction_N_m"] = repr(float(own * (1 + 2e-6)))
+    return put(document, changes)
+
+
+LESS = repr(float(counted()["arm"]["joints"][0]["coulomb_friction_N_m"]) * (1 - 1e-5))
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"arm__joints__0__coulomb_friction_N_m": LESS}, "friction of joint 1 must be at least"),
+        ({"arm__joints__1__coulomb_friction_N_m": "0.001"}, "friction of joint 2 must be at least"),
+        ({"loop__largest_force_N": "4.001"}, "must be at least"),
+        ({"arm__joints__1__resolution_rad": "0.00101"}, "must be at least"),
+        ({"wall__stiffness_N_per_m": [["500", "1"], ["1", "500"]]}, "must be at least"),
+        ({"arm__joints__0__largest_column_m_per_rad": "0.181"}, "longer than it is said to be at"),
+        ({"arm__joints__1__largest_column_m_per_rad": "0.09"}, "longer than it is said to be at"),
+        ({"loop__torque": "follows the arm"}, "follows the readings, or is held"),
+        ({"loop__torque": "held"}, "curvature_m_per_rad2 is missing"),
+        ({"loop__largest_force_N": "-1"}, "largest force ≥ 0"),
+        ({"arm__joints__0__resolution_rad": "-0.001"}, "are ≥ 0"),
+        ({"loop__encoder": "ideal"}, "follows the arm, or is held"),
+    ],
+)
+def test_encoder_steps_are_paid_for(changes: dict[str, Any], reason: str) -> None:
+    """What the formula asks for is accepted, and 1 part in 10⁵ less friction, or anything worse, refused."""
+    found = checker.verify(counted())
+    assert found.valid, found.reason
+    assert "its encoder steps counted" in found.reason
+    assert "up to 4 N" in found.reason
+    found = checker.verify(counted(**changes))
+    assert not found.valid
+    assert reason in found.reason
+
+
+@pytest.mark.parametrize("key", ["resolution_rad", "coulomb_friction_N_m", "largest_column_m_per_rad"])
+def test_every_number_of_the_encoders_is_needed(key: str) -> None:
+    """Without it there is no proof."""
+    document = counted()
+    del document["arm"]["joints"][1][key]
+    assert f"{key} is missing" in checker.verify(document).reason
+
+
+def test_readings_may_be_a_step_outside_the_region() -> None:
+    """The condition, and the bounds on the columns, are proved one step around it."""
+    edge = counted(arm__joints__1__low_rad="0.45", arm__joints__0__largest_column_m_per_rad="0.1756")
+    for joint in edge["arm"]["joints"]:
+        joint["coulomb_friction_N_m"] = "1"
+    longest = float(np.sqrt(0.1**2 + 0.09**2 + 2 * 0.1 * 0.09 * np.cos(0.45)))
+    around = float(np.sqrt(0.1**2 + 0.09**2 + 2 * 0.1 * 0.09 * np.cos(0.449)))
+    for bound, holds in ((longest * 1.0001, False), (around * 1.0001, True)):
+        document = put(edge, {"arm__joints__0__largest_column_m_per_rad": repr(bound)})
+        assert checker.verify(document).valid == holds
+
+
+def test_a_joint_that_is_held_has_no_steps() -> None:
+    """It stays at its reading, whatever its resolution."""
+    document = counted(
+        arm__joints__0__low_rad="0.5", arm__joints__0__high_rad="0.5", arm__joints__0__resolution_rad="0.1"
+    )
+    assert checker.verify(document).valid
+
+
+def test_no_encoders_of_parallel_arms() -> None:
+    """How their Jacobian changes over a step is not bounded."""
+    loop = {"loop": {**counted()["loop"]}}
+    assert "not bounded" in checker.verify(pantograph() | loop).reason

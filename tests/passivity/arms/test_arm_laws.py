@@ -19,7 +19,7 @@ from zwidth.passivity.arms import (
     sampled_jacobian_damping,
     wall_need,
 )
-from zwidth.passivity.arms.joints import friction_surplus, largest_scale, single_additions
+from zwidth.passivity.arms.joints import largest_scale, single_additions
 
 Array = npt.NDArray[np.float64]
 seeds = st.integers(0, 2**32 - 1)
@@ -200,12 +200,6 @@ def test_encoder_steps_and_friction_at_the_hand() -> None:
     held = (friction / np.abs(directions @ j)).min(axis=-1)
     assert end_effector_friction(j, friction) == pytest.approx(held.min(), rel=1e-6)
     assert end_effector_friction(j, friction, directions[77]) == pytest.approx(held[77])
-
-
-def test_friction_pays_for_encoder_steps_as_on_a_line() -> None:
-    """One joint of radius r: f_c − r²KΔ/2."""
-    left = friction_surplus(np.array([[0.2]]), np.array([[500.0]]), np.array([0.3]), np.array([0.01]))
-    assert left == pytest.approx(0.3 - 0.04 * 500 * 0.005)
 
 
 def test_the_mass_at_the_hand() -> None:

@@ -326,7 +326,7 @@ def test_the_map_is_labelled() -> None:
     arm = built_in("haply-2diy", damping=0.004, coulomb_friction=0.002, resolution=0.0013, torque_limit=0.1)
     data = zw.workspace(arm, zw.Wall(300), rate=1000, points=12).data
     assert data["margin"].dims == ("x", "y")
-    assert {"resolution", "friction", "friction_margin", "force_limit"} <= set(data)
+    assert {"resolution", "friction", "force_limit"} <= set(data)
     assert all("units" in data[name].attrs for name in data if name != "proved")
     least = (0.1 / np.linalg.norm(arm.jacobian(arm.sites(12).joints[5, 7]), axis=0)).min()
     assert float(data["force_limit"][5, 7]) == pytest.approx(least)
@@ -338,6 +338,7 @@ def test_the_map_is_labelled() -> None:
         ({"rate": 0}, "rate"),
         ({"rate": 1000, "delay": 0.0005}, "whole number of samples"),
         ({"rate": 1000, "delay": -1}, "delay"),
+        ({"rate": 1000, "delay": 3}, 'delay is 3 s, 3000 samples at 1000 Hz.*write "3 ms"'),
         ({"rate": 1000, "points": 1}, "points"),
         ({"rate": 1000, "torque_held_up_to": -1}, "largest force"),
         ({"rate": 1000, "torque_held_up_to": "much"}, "largest force"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cvxopt
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -36,7 +37,6 @@ def test_it_is_enough_and_the_least(cells: int, joints: int) -> None:
 
 def test_it_is_that_of_a_semidefinite_solver() -> None:
     """cvxopt on the same programme."""
-    cvxopt = pytest.importorskip("cvxopt")
     cvxopt.solvers.options["show_progress"] = False
     for seed, joints in ((1, 2), (2, 3), (3, 6)):
         matrices = _matrices(seed, 8, joints)

@@ -27,7 +27,7 @@ def test_it_is_the_need_of_a_delayed_spring(delay, least):
 def test_the_closed_form_is_the_best_of_the_form(delay):
     """At slopes −μ within (1 + 1/d) L the searched multiplier finds no less and no more."""
     for least in (-470, -333, 0, 200):
-        slopes = zw.Slopes(least, 470)
+        slopes = zw.Slopes(least, 470, bounded_below=True)
         searched, _ = largest_need(best_form(slopes, DIRECT, delay), T)
         assert searched == pytest.approx(
             float(zw.required_damping_by_slopes(least, 470, T, delay * T)), rel=1e-7
@@ -49,9 +49,9 @@ def test_beyond_the_closed_form_the_number_itself_is_proved(least, delay):
     """The float that is returned holds by exact arithmetic; a millionth less does not."""
     need = zw.required_damping_by_slopes(least, 500, T, delay * T)
     there = zw.Device(damping=need, sample_period=T, delay=delay * T)
-    assert zw.transformed_condition(there, zw.Slopes(least, 500)).holds
+    assert zw.transformed_condition(there, zw.Slopes(least, 500, bounded_below=True)).holds
     short = there.replace(damping=need * (1 - 1e-6))
-    assert not zw.transformed_condition(short, zw.Slopes(least, 500)).holds
+    assert not zw.transformed_condition(short, zw.Slopes(least, 500, bounded_below=True)).holds
 
 
 def wavy(random, slopes):
@@ -150,7 +150,10 @@ def test_the_trapezoid_lies_within_the_parallelogram():
 
 def test_any_multiplier_is_sound():
     """Whatever g, the form asks for no less than the best one."""
-    slopes, best = zw.Slopes(-100, 300), float(zw.required_damping_by_slopes(-100, 300, T, T))
+    slopes, best = (
+        zw.Slopes(-100, 300, bounded_below=True),
+        float(zw.required_damping_by_slopes(-100, 300, T, T)),
+    )
     for more in (0, Fraction(1, 900), Fraction(1, 100)):
         need, _ = largest_need(slopes_form(slopes, least_multiplier(slopes) + more, DIRECT, 1), T)
         assert need >= best * (1 - 1e-9)
@@ -188,3 +191,68 @@ def test_what_does_not_fit_is_refused(arguments, words):
     """Each with a message that names it."""
     with pytest.raises(InputError, match=words):
         zw.required_damping_by_slopes(*arguments)
+
+
+def test_a_class_states_that_its_potentials_are_bounded_below():
+    """Where slopes do not force it, from 0 down; above 0 it is so by itself, and False is nobody's class."""
+    for least in (-100, 0):
+        with pytest.raises(InputError, match="bounded_below=True"):
+            zw.Slopes(least, 250)
+        assert zw.Slopes(least, 250, bounded_below=True).bounded_below
+    assert zw.Slopes("0.1", 250).bounded_below
+    with pytest.raises(InputError, match="no device is passive"):
+        zw.Slopes(1, 250, bounded_below=False)
+
+
+def test_the_spring_that_refutes_the_class_without_it():
+    """−100 N/m has slopes from −100 to 250; before it the device is active, and the claim leaves it out."""
+    paddle = zw.catalogue.device("haptic-paddle").replace(coulomb_friction=0, resolution=0)
+    assert zw.check(paddle, zw.PulseTransferFunction([-100], [1])).outcome == "active"
+    found = zw.transformed_condition(paddle, zw.Slopes(-100, 250, bounded_below=True))
+    assert found.holds
+    assert "slopes from -100 to 250 N/m whose potential is bounded below" in found.claim
+    assert found.claim in repr(found)
+    assert found.scope.law == ("potential bounded below",)
+
+
+@pytest.mark.parametrize(("count", "encoder"), [(0, "ideal"), ("1e-5", "not counted")])
+def test_what_it_covers_is_data(count, encoder):
+    """Contact made and broken; an encoder with counts is not in it, in the claim too."""
+    device = zw.Device(damping=1, rate=1000, resolution=count)
+    found = zw.transformed_condition(device, zw.Slopes(0, 500, bounded_below=True))
+    assert (found.scope.contact, found.scope.encoder) == ("made and broken", encoder)
+    assert ("counts of the encoder are not in it" in found.claim) == bool(float(count))
+    short = zw.transformed_condition(device.replace(damping="0.1"), zw.Slopes(0, 500, bounded_below=True))
+    assert short.claim.startswith("No promise for every static spring")
+    assert zw.transformed_condition(device, zw.Indices(0, 1)).scope.law == ("energy at first bounded",)
+
+
+def slow_gain(points, forces, start, end, damping, samples=4000):
+    """What a slow motion from `start` to `end` gets out without delay, T = 1; slower loses less."""
+    x = np.linspace(start, end, samples + 1)
+    moves = np.diff(x)
+    return -float(np.sum(np.interp(x[:-1], points, forces) * moves + damping * moves**2))
+
+
+def test_slow_motions_tell_potentials_that_have_no_lower_bound():
+    """Random springs of one class: with stops slow motions get out what is stored, else ten times as much."""
+    random, low, high = np.random.default_rng(4), -1.0, 1.5
+    need = float(zw.required_damping_by_slopes(Fraction(low), Fraction(high), 1))
+    refuted = 0
+    for _ in range(40):
+        points, forces = wavy(random, (low, high))
+        kept = forces[0] <= 0 <= forces[-1]
+        spring = zw.NonlinearSpring(points.tolist(), forces.tolist())
+        grid = np.linspace(points[0], points[-1], 2001)
+        stored = -min(potential(points, forces, x) for x in grid[::20]) + 0.5
+        far = 10 * (stored + 40) / max(abs(forces[0]), abs(forces[-1]), 0.1)
+        best = max(slow_gain(points, forces, 0.0, side * far, need) for side in (-1, 1))
+        if kept:
+            assert zw.Slopes.of(spring).bounded_below
+            assert max(slow_gain(points, forces, 0.0, x, need) for x in grid[::100]) <= stored
+            assert best <= stored
+        else:
+            with pytest.raises(InputError, match="leads away"):
+                zw.Slopes.of(spring)
+            refuted += best > 3 * stored
+    assert refuted >= 10

@@ -33,7 +33,9 @@ def test_passive_environments_are_those_of_the_coupling_condition(k, b, delay):
 @pytest.mark.parametrize(("k", "b"), COUPLINGS)
 def test_a_class_asks_for_no_less_than_its_springs(k, b, delay):
     """`check` of springs of the class behind the coupling asks for less or as much, by 3 % at most."""
-    found = zw.transformed_condition(device(1, delay), zw.Slopes(0, 1000), k, b).required_damping
+    found = zw.transformed_condition(
+        device(1, delay), zw.Slopes(0, 1000, bounded_below=True), k, b
+    ).required_damping
     springs = (zw.VirtualCoupling(k, b, zw.PulseTransferFunction([s], [1])) for s in (1, 30, 170, 400, 1000))
     needs = [zw.check(device(1, delay), spring).required_damping for spring in springs]
     assert max(needs) <= found * (1 + 1e-9)
@@ -44,7 +46,7 @@ def test_a_class_asks_for_no_less_than_its_springs(k, b, delay):
 @pytest.mark.parametrize(("least", "greatest"), [(0, 800), (-90, 450), (120, 300)])
 def test_a_spring_before_springs_is_a_spring(least, greatest, delay):
     """B_c = 0: the form of coupling and class, and the class of springs in series by its closed form."""
-    slopes = zw.Slopes(least, greatest)
+    slopes = zw.Slopes(least, greatest, bounded_below=True)
     series = slopes.behind_a_spring(290)
     found = zw.transformed_condition(device(1, delay), slopes, 290)
     bare = zw.required_damping_by_slopes(series.least, series.greatest, T, delay * T)
@@ -53,17 +55,22 @@ def test_a_spring_before_springs_is_a_spring(least, greatest, delay):
 
 def test_both_sides_of_the_need_are_decided_exactly():
     """A thousand-millionth above it holds, below it does not; for a bare spring the need itself holds."""
-    for given in ((zw.Slopes(-100, 1000), 290, "0.07"), (zw.Indices("-0.02", 0), 290, "0.07")):
+    for given in (
+        (zw.Slopes(-100, 1000, bounded_below=True), 290, "0.07"),
+        (zw.Indices("-0.02", 0), 290, "0.07"),
+    ):
         need = zw.transformed_condition(device(1, 1), *given).required_damping
         assert zw.transformed_condition(device(need * (1 + 1e-9), 1), *given).holds
         assert not zw.transformed_condition(device(need * (1 - 1e-9), 1), *given).holds
-    assert zw.transformed_condition(device("0.75", 1), zw.Slopes(0, 500)).holds
-    assert not zw.transformed_condition(device("0.7499999999999999", 1), zw.Slopes(0, 500)).holds
+    assert zw.transformed_condition(device("0.75", 1), zw.Slopes(0, 500, bounded_below=True)).holds
+    assert not zw.transformed_condition(
+        device("0.7499999999999999", 1), zw.Slopes(0, 500, bounded_below=True)
+    ).holds
 
 
 def test_what_binds():
     """Too little damping, or coupling and environment that no damping helps: a name and a margin for each."""
-    short = zw.transformed_condition(device("0.1"), zw.Slopes(0, 500))
+    short = zw.transformed_condition(device("0.1"), zw.Slopes(0, 500, bounded_below=True))
     assert (short.holds, short.binding) == (False, "device damping")
     assert short.margin == pytest.approx(-0.15)
     lacking = zw.transformed_condition(device(100), zw.Indices(0, "-0.05"), 290, "0.07")
@@ -143,7 +150,7 @@ def test_random_springs_behind_a_coupling_gain_nothing():
     """
     k, b_c, slopes = 1.0, 0.4, (-0.3, 2.0)
     unit = zw.Device(damping=1, sample_period=1, delay=1)
-    need = zw.transformed_condition(unit, zw.Slopes(*slopes), k, b_c).required_damping
+    need = zw.transformed_condition(unit, zw.Slopes(*slopes, bounded_below=True), k, b_c).required_damping
     random = np.random.default_rng(8)
     over, under = [], []
     for _ in range(80):
@@ -175,7 +182,7 @@ def test_random_springs_behind_a_coupling_gain_nothing():
         (lambda: zw.transformed_condition(device(1), zw.Indices(), None, 1), "coupling"),
         (lambda: zw.transformed_condition(device(1, Fraction(1, 2)), zw.Indices(), 1), "whole number"),
         (lambda: zw.Slopes(2, 1), "least slope"),
-        (lambda: zw.Slopes(-5, 1).behind_a_spring(5), "stiffer"),
+        (lambda: zw.Slopes(-5, 1, bounded_below=True).behind_a_spring(5), "stiffer"),
         (lambda: zw.Indices(1, 1), "4 · input · output"),
         (lambda: zw.Indices.of_damper(-1, 1), "positive sum"),
     ],

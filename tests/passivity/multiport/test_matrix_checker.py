@@ -10,6 +10,7 @@ from math import cos, sin
 import numpy as np
 import pytest
 from flint import fmpq, fmpq_mat
+from matrix_systems import matrix, random_system
 from tampered import tampered
 
 import zwidth as zw
@@ -17,10 +18,6 @@ from zwidth.passivity import checker
 from zwidth.passivity.checker.multiport import _principal_sums
 from zwidth.passivity.multiport.circle import product
 from zwidth.passivity.multiport.leverrier import leverrier, multiplied
-
-pytest.importorskip("control")
-
-from matrix_systems import matrix, random_system
 
 
 def proved():

@@ -1,22 +1,20 @@
-"""Indices of several axes: closed forms, dense grids, python-control, motions replayed by scipy."""
+"""Indices of several axes: closed forms, dense grids, motions replayed by scipy."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from math import inf, isclose, pi, sqrt
 
+import control
 import numpy as np
 import pytest
 import scipy.linalg
 import scipy.signal
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matrix_systems import least_eigenvalue, matrix, random_system
 
 import zwidth as zw
-
-control = pytest.importorskip("control")
-
-from matrix_systems import least_eigenvalue, matrix, random_system  # noqa: E402
 
 NOTHING, ONE = ([0], [1]), ([1], [1])
 LAG = ([1], [1, 1])
@@ -141,25 +139,6 @@ def test_a_dense_grid_of_eigenvalues_never_falls_below(seed, axes, order, discre
             reached = least_eigenvalue(there if index is found.input else np.linalg.inv(there))
             assert isclose(reached, index.value, rel_tol=1e-6, abs_tol=1e-9)
         assert index.certificate().verify()
-
-
-@settings(max_examples=10, deadline=None)
-@given(seeds, st.integers(2, 3), st.booleans())
-def test_python_control_agrees(seed, axes, discrete):
-    """Its linear matrix inequality gives the same numbers to its tolerance."""
-    pytest.importorskip("cvxopt")
-    rng = np.random.default_rng(seed)
-    b = np.round(rng.normal(size=(4, axes)), 2)
-    a = np.round(rng.normal(size=(4, 4)), 2)
-    a = np.round(a - a.T - np.diag(rng.uniform(0.5, 2, 4)), 2)
-    g = control.ss(a, b, b.T, 0.25 * np.eye(axes))
-    if discrete:
-        g = control.c2d(g, 0.1, "tustin")
-    found = zw.passivity_indices(g)
-    assert found.passive
-    assert control.ispassive(g)
-    assert isclose(control.passivity.get_input_ff_index(g), found.input.value, rel_tol=1e-4, abs_tol=1e-5)
-    assert isclose(control.passivity.get_output_fb_index(g), found.output.value, rel_tol=1e-4, abs_tol=1e-5)
 
 
 quarters = st.integers(1, 9).map(lambda k: k / 4)

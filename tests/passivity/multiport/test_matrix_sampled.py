@@ -5,14 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 from math import isclose
 
+import control
 import numpy as np
 import pytest
+from matrix_systems import matrix
 
 import zwidth as zw
-
-control = pytest.importorskip("control")
-
-from matrix_systems import matrix  # noqa: E402
 
 PERIOD = 0.001
 

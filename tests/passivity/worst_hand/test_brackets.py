@@ -269,3 +269,19 @@ def test_a_proof_of_slow_hands_is_none_of_faster_ones():
     for counts, valid in (("2.25", True), ("2.5", False), (3, False), (0, False), (-2, False)):
         domain = {**document["domain"], "largest_move_counts": counts}
         assert checker.verify({**document, "domain": domain}).valid == valid, counts
+
+
+@pytest.mark.parametrize(
+    ("parameter", "options", "words"),
+    [
+        ("mass", {}, "mass plays no part.*moves every mass"),
+        ("device.mass", {"penetration": "1e-3", "speed": "0.1"}, "mass plays no part"),
+        ("current_limit", {}, "every force at once"),
+        ("force_limit", {}, "counted in: give force_limit=True, --count-force-limit"),
+    ],
+)
+def test_what_plays_no_part_has_no_limit(parameter, options, words):
+    """A hand without a limit on its force moves any mass: no bracket up to 4e16 kg, one message."""
+    paddle = zw.catalogue.device("haptic-paddle")
+    with pytest.raises(zw.InputError, match=words):
+        zw.passive_limit(paddle, zw.Wall(200), parameter, **options)

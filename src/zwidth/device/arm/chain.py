@@ -136,6 +136,11 @@ class PlanarChain(Arm):
         return float(np.linalg.eigvalsh(self._rates())[-1])
 
     @property
+    def second_derivatives(self) -> Array:
+        """Bounds on |∂²p/∂q_i∂q_j|: what lies beyond both joints, m × m [m/rad²]."""
+        return self._rates()
+
+    @property
     def turning_curvature(self) -> float | None:
         """0 in pose: the angle is the sum of the joints."""
         return 0.0 if self.pose else None

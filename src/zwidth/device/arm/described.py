@@ -57,6 +57,14 @@ class DescribedArm(Arm):
         """h [m/rad²]."""
         return float(np.linalg.eigvalsh(self._rates()[0])[-1])
 
+    @property
+    def second_derivatives(self) -> Array:
+        """Bounds on |∂²p/∂q_i∂q_j| in the region and one encoder step around it, m × m [m/rad²; m/rad]."""
+        rates, between = self._rates()
+        full = np.zeros((self.joint_count, self.joint_count))
+        full[np.ix_(between, between)] = rates
+        return full
+
     def sites(self, points: int) -> Sites:
         """Equal cells of the two joints that move, the others held."""
         moving = [i for i, (low, high) in enumerate(self.joint_range) if high > low]
@@ -139,7 +147,7 @@ class DescribedArm(Arm):
         for joint in reversed(self._path()):
             i = self.model.joints[joint].idx_v
             if slides(self.model, i):
-                length += max(map(abs, self.joint_range[i]))
+                length += max(map(abs, self.joint_range[i])) + (self.resolution[i] if self.resolution else 0.0)
             beyond[i] = length
             length += float(np.linalg.norm(self.model.jointPlacements[joint].translation))
 

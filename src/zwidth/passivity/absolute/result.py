@@ -19,6 +19,7 @@ from zwidth.passivity.absolute.search import largest_slope
 from zwidth.passivity.absolute.terms import CRITERIA, Criterion
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json
+from zwidth.passivity.known_hand.hand import PassiveHand, as_hand
 from zwidth.quantity.exact import Exact
 
 _MOST = 1e9
@@ -113,7 +114,7 @@ class AbsoluteStability:
 
 def absolute_stability(
     plant: PulseTransferFunction | Device,
-    hand: LinearHand | Operator | None = None,
+    hand: LinearHand | PassiveHand | Operator | None = None,
     *,
     reach: int = 20,
     motions: bool = True,
@@ -127,7 +128,8 @@ def absolute_stability(
         force to −x, stable and strictly proper.
     hand
         With a device: mass, spring and damper to a resting anchor, as ``operators.LinearHand(mass, stiffness,
-        damping)`` or an operator with such a hand.  The anchor may be anywhere.
+        damping)``, a `PassiveHand` of certain numbers, or an operator with such a hand.  The anchor may be
+        anywhere.
     reach
         Farthest tap of the Zames–Falb multipliers, 1 … 100 samples before and after.
     motions
@@ -154,7 +156,7 @@ def absolute_stability(
     return AbsoluteStability(rows, limit, pressing, resting, found)
 
 
-def _plant(plant: PulseTransferFunction | Device, hand: LinearHand | Operator | None) -> Plant:
+def _plant(plant: PulseTransferFunction | Device, hand: LinearHand | PassiveHand | Operator | None) -> Plant:
     if isinstance(plant, PulseTransferFunction):
         if hand is not None:
             raise InputError("a plant given as G(z) holds its hand already; leave hand out")
@@ -163,12 +165,28 @@ def _plant(plant: PulseTransferFunction | Device, hand: LinearHand | Operator | 
         raise InputError(f"expected a Device or a PulseTransferFunction, got {type(plant).__name__}")
     if hand is None:
         raise InputError("which hand? For every passive hand at once see zw.check; here it is a known one")
-    found = touched_plant(plant, hand)
-    if (hand.hand if isinstance(hand, Operator) else hand).stiffness <= 0:
+    known = _linear(hand)
+    found = touched_plant(plant, known)
+    if known.stiffness <= 0:
         raise InputError(
             "the hand needs a spring, stiffness > 0: else the device rests anywhere off the wall"
         )
     return found
+
+
+def _linear(hand: LinearHand | PassiveHand | Operator) -> LinearHand:
+    """Mass, spring and damper of a hand, each one number."""
+    if isinstance(hand, LinearHand):
+        return hand
+    known = as_hand(hand)
+    numbers = (known.mass, known.stiffness, known.damping)
+    certain = [value for value in numbers if isinstance(value, Exact)]
+    if len(certain) < len(numbers):
+        raise InputError(
+            "absolute stability is decided for one hand, and a number of this one is an interval; choose a "
+            "value in it, or see robust_boundary"
+        )
+    return LinearHand(*certain)
 
 
 def _row(plant: Plant, criterion: Criterion, reach: int, limit: float) -> Proved:

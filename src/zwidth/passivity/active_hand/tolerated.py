@@ -36,6 +36,8 @@ from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.document import exact_text, loop_document, save_json, unit_suffix
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.loop import LinearLoop
+from zwidth.passivity.scope import Contact, Hands, Scope, scope_of
+from zwidth.passivity.wording import lines
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
@@ -51,8 +53,8 @@ class ToleratedActivity:
     ----------
     claim
         In words.
-    assumptions
-        What it rests on.
+    scope, scope_with_contact_broken
+        What the two numbers are about.
     below
         f₀: above it the hand is passive [Hz].
     activity
@@ -71,7 +73,8 @@ class ToleratedActivity:
     """
 
     claim: str
-    assumptions: tuple[str, ...]
+    scope: Scope
+    scope_with_contact_broken: Scope
     below: float
     activity: float | None
     with_contact_broken: float | None
@@ -80,6 +83,16 @@ class ToleratedActivity:
     certificate_with_contact_broken: Certificate | None
     unit: str
     loop: LinearLoop = field(repr=False)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the first number rests on, line by line."""
+        return (
+            *lines(self.scope),
+            "what the hand gives out is bounded by its motion; what it means to do comes on top, once",
+            "Coulomb friction is counted only against the encoder",
+            *([] if self.hand is None else ["the hand that is too active is linear, and its loop too"]),
+        )
 
     def at(self, frequency: npt.ArrayLike) -> Array:
         """The activity that is tolerated at single frequencies [N·s/m], contact kept, for plots.
@@ -114,17 +127,19 @@ class ToleratedActivity:
         """Everything as plain data, units in the keys."""
         unit = unit_suffix(self.unit)
 
-        def part(activity: float | None, certificate: Certificate | None) -> dict[str, Any]:
+        def part(activity: float | None, scope: Scope, certificate: Certificate | None) -> dict[str, Any]:
             proof = {} if certificate is None else {"certificate": certificate.to_dict()}
-            return {f"activity_{unit}": activity, **proof}
+            return {f"activity_{unit}": activity, "scope": scope.to_dict(), **proof}
 
         document: dict[str, Any] = {
             "format": "zwidth activity 1",
             "claim": self.claim,
             "assumptions": list(self.assumptions),
             "below_Hz": self.below,
-            "contact_kept": part(self.activity, self.certificate),
-            "contact_broken": part(self.with_contact_broken, self.certificate_with_contact_broken),
+            "contact_kept": part(self.activity, self.scope, self.certificate),
+            "contact_broken": part(
+                self.with_contact_broken, self.scope_with_contact_broken, self.certificate_with_contact_broken
+            ),
         }
         if self.hand is not None:
             document["shaking_hand"] = self.hand.to_dict()
@@ -172,7 +187,8 @@ def tolerated_activity(
     unit = GLOSSARY["damping"].unit_for(device.motion)
     return ToleratedActivity(
         claim=_claim(kept, float(band.below), unit),
-        assumptions=_assumptions(law, hand),
+        scope=_scope(device, law, kept, float(band.below)),
+        scope_with_contact_broken=_scope(device, law, broken, None),
         below=float(band.below),
         activity=None if kept is None else kept[0],
         with_contact_broken=None if broken is None else broken[0],
@@ -268,13 +284,8 @@ def _claim(kept: _Proved | None, below: float, unit: str) -> str:
     )
 
 
-def _assumptions(law: Environment, hand: ShakingHand | None) -> tuple[str, ...]:
-    notes = [
-        "what the hand gives out is bounded by its motion; what it means to do comes on top, once",
-        "Coulomb friction is counted only against the encoder",
-    ]
-    if law.unilateral:
-        notes.insert(0, "contact is kept, but for the number that says it may be broken")
-    if hand is not None:
-        notes.append("the hand that is too active is linear, and its loop too")
-    return tuple(notes)
+def _scope(device: Device, law: Environment, proved: _Proved | None, below: float | None) -> Scope:
+    """Contact as the checker found it in the proof; kept, where there is none."""
+    activity, covered = (None, None) if proved is None else (proved[0], proved[1].covered())
+    contact: Contact = "kept" if covered is None else covered.contact
+    return scope_of(device, law).replace(contact=contact, hands=Hands(activity=activity, below=below))

@@ -8,7 +8,6 @@ anywhere.  A stands for |B|: any A with A ± B ⪰ 0 does.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import Any
@@ -22,6 +21,8 @@ from zwidth.environment.environment import certain
 from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
 from zwidth.passivity import checker
+from zwidth.passivity.arms.counting import Counting
+from zwidth.passivity.arms.encoders import Chain, EncoderSteps, moving_steps
 from zwidth.passivity.arms.joints import as_matrix, surplus
 from zwidth.passivity.arms.need import wall_matrices, wall_need
 from zwidth.passivity.certificate import FORMAT, Certificate
@@ -42,18 +43,28 @@ _CURVED = 2e-6
 
 
 def arm_certificate(
-    arm: Arm, wall: Wall | MatrixWall, rate: float, delay_samples: int, held: float | Sequence[float] | None
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    rate: float,
+    delay_samples: int,
+    held: tuple[float, ...],
+    count: Counting | None = None,
 ) -> tuple[Certificate | None, str]:
-    """A certificate that the checker accepts, and its words; or None, and why there is none."""
+    """A certificate that the checker accepts, and its words; or None, and why there is none.
+
+    With `count` it is of the encoder steps, for forces up to its limits.
+    """
     if not isinstance(arm, (LeggedArm, PlanarChain, DescribedArm)):
         return None, "arms of this kind have no certificate"
-    document = {
+    document: dict[str, Any] = {
         "format": FORMAT,
         "kind": "arm",
         "arm": _legs_document(arm) if isinstance(arm, LeggedArm) else _chain_document(arm),
         "wall": _wall_document(wall, arm.sites(2).jacobians.shape[-2]) | _pose_of(arm),
         "loop": _loop_document(arm, rate, delay_samples, held),
     }
+    if count is not None and count.steps is not None and not isinstance(arm, LeggedArm):
+        _add_steps(document, arm, count.steps, count.limits)
     if not _is_of(document, arm, wall, 1 / rate, delay_samples):
         return None, "this arm moves in another way than its document can say"
     found = checker.verify(document)
@@ -64,7 +75,7 @@ def _is_of(
     document: dict[str, Any], arm: Written, wall: Wall | MatrixWall, period: float, delay_samples: int
 ) -> bool:
     """At a few points the matrix that the checker reads out of the document is the one of the arm's own J."""
-    free = {**document, "loop": {**document["loop"], "torque": "follows the arm"}}
+    free = {**document, "loop": {**document["loop"], "torque": "follows the arm", "encoder": "ideal"}}
     sites = arm.sites(2)
     size, count = sites.jacobians.shape[-2:]
     need = wall_need(wall, period, delay_samples, size)
@@ -123,6 +134,24 @@ def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
     return {"geometry": "chain", "joints": joints, "end_m": _texts(end)}
 
 
+def _add_steps(
+    document: dict[str, Any], arm: Chain, steps: EncoderSteps, limits: tuple[float, ...]
+) -> None:
+    """Encoders and Coulomb friction of the joints, bounds on the columns of J, and the forces that are covered."""
+    friction = arm.coulomb_friction
+    for joint, at in zip(document["arm"]["joints"], arm.placements()[0], strict=True):
+        unit, per = ("m", "N") if at.slides else ("rad", "N_m")
+        joint[f"resolution_{unit}"] = _text(moving_steps(arm)[at.joint])
+        joint[f"coulomb_friction_{per}"] = _text(friction[at.joint])
+        if not at.slides:
+            joint["largest_column_m_per_rad"] = _text(steps.columns[at.joint])
+    loop = document["loop"]
+    loop["encoder"] = "counted"
+    loop["torque"] = {"follows the arm": "follows the readings"}.get(loop["torque"], loop["torque"])
+    for key, limit in zip(("largest_force_N", "largest_moment_N_m"), limits, strict=False):
+        loop[key] = _text(limit)
+
+
 def _pose_of(arm: Arm) -> dict[str, Any]:
     """How many coordinates of the wall are rotations, and where it rests: nothing of a point."""
     if not arm.turns:
@@ -173,18 +202,16 @@ def _raised(matrix: Array, turns: int) -> Array:
     return np.asarray(matrix + np.diag(more))
 
 
-def _loop_document(
-    arm: Arm, rate: float, delay_samples: int, held: float | Sequence[float] | None
-) -> dict[str, Any]:
+def _loop_document(arm: Arm, rate: float, delay_samples: int, held: tuple[float, ...]) -> dict[str, Any]:
     loop: dict[str, Any] = {
         "sample_period_s": exact_text(1 / _exact(rate)),
         "delay_samples": delay_samples,
         "encoder": "ideal",
-        "torque": "follows the arm" if held is None else "held",
+        "torque": "held" if held else "follows the arm",
     }
-    if held is not None:
+    if held:
         assert arm.curvature is not None
-        force, *moment = np.atleast_1d(held)
+        force, *moment = held
         loop["largest_force_N"] = _text(force)
         loop["curvature_m_per_rad2"] = _text(arm.curvature * (1 + _CURVED))
         if moment:

@@ -1,60 +1,72 @@
-"""The verdict on an arm in words."""
+"""The verdict on an arm in words, from what it covers."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
-from zwidth.device.arm import Arm, Sites
 from zwidth.passivity.arms.account import Account
+from zwidth.passivity.arms.encoders import EncoderSteps
 from zwidth.passivity.arms.held import in_words
 
-Array = npt.NDArray[np.float64]
+
+class Covers(NamedTuple):
+    """What a verdict on an arm is about."""
+
+    region: str
+    torque: str
+    encoder: str
+    forces: tuple[float, ...]
+    why_ideal: str  # why the steps of an arm that has some are not counted
+    can_be_refuted: bool
 
 
-def claim(
-    outcome: str,
-    sites: Sites,
-    account: Account,
-    arm: Arm,
-    held: float | Sequence[float] | None,
-    without: str,
-) -> str:
+def claim(outcome: str, covers: Covers, account: Account, without: str, steps: EncoderSteps | None) -> str:
     """One sentence on what holds, others on what is not counted."""
     part = 100 * account.proved.mean()
     if outcome == "passive":
-        text = f"No motion of the hand takes energy out with {sites.region}, proved."
+        text = f"No motion of the hand takes energy out with {covers.region}, proved."
     elif outcome == "theorem":
-        text = f"No motion of the hand takes energy out with {sites.region}, by a proof on paper."
+        text = f"No motion of the hand takes energy out with {covers.region}, by a proof on paper."
     elif outcome == "active":
         text = "At one point of this map a motion of the hand takes energy out."
+    elif covers.encoder == "counted" and without and (account.margins >= 0).all():
+        text = f"Whether a motion takes energy out behind these encoders is not known: {without}."
+        without = ""
     elif (account.margins >= 0).all():
         text = (
             f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
         )
     else:
         text = (
-            f"{part:.4g} % of the region are proved; where the condition fails, no motion was found "
-            "that takes energy out."
+            f"{part:.4g} % of the region are proved; at other points the condition fails"
+            + (", and no motion was found that takes energy out." if covers.can_be_refuted else ".")
         )
     if outcome in ("theorem", "undecided") and without:
         text += f" There is no certificate: {without}."
     if not account.reached.all():
         text += " Parts of the region are out of reach; a smaller region may be proved."
-    return text + (
-        " The torque is taken to follow the arm within a period."
-        if held is None
-        else f" The torque is held over a period, with wall forces up to {in_words(held)}."
-    )
+    if outcome == "undecided" and not covers.can_be_refuted:
+        text += (
+            " No motion is looked for: with more joints than the hand has coordinates, no hand at the end "
+            "makes them follow a path."
+        )
+    return f"{text} {_counted(covers, outcome)}{_beyond(covers, steps, outcome)}"
 
 
-def encoders(arm: Arm, friction: Array, held: bool) -> str:
-    """Whether the friction that covers the encoder steps is there; nothing of an arm without encoders."""
-    if not friction.size:
+def _counted(covers: Covers, outcome: str) -> str:
+    """How the arm is read, and what becomes of the torque within a period."""
+    up_to = f", with wall forces up to {in_words(covers.forces)}" if covers.forces else ""
+    if covers.encoder == "counted":
+        torque = "is held over a period" if covers.torque == "held" else "follows the readings within a period"
+        limit = "" if outcome == "active" else up_to
+        return f"Encoder steps are counted{limit}: force and Jacobian are those of the readings, and the torque {torque}."
+    torque = f"held over a period{up_to}" if covers.torque == "held" else "taken to follow the arm within a period"
+    steps = f" Encoder steps are not counted: {covers.why_ideal}." if covers.why_ideal else ""
+    return f"The arm is taken to be read without steps.{steps} The torque is {torque}."
+
+
+def _beyond(covers: Covers, steps: EncoderSteps | None, outcome: str) -> str:
+    """From which force on a motion across the edges of the encoders is known."""
+    if steps is None or steps.refuted is None or outcome == "active":
         return ""
-    own = arm.coulomb_friction or (0.0,) * len(friction)
-    if held or not (friction <= own).all():
-        return " Encoder steps are not counted."
-    return " Encoder steps are counted: Coulomb friction covers them, by a proof on paper."
+    return f" From {steps.refuted:.4g} N on a motion across their edges takes energy out."

@@ -140,16 +140,6 @@ def end_effector_friction(
         return np.asarray(np.where(lever > 0, f / lever, np.inf).min(axis=-1))
 
 
-def friction_surplus(jacobian: Array, stiffness: Array, friction: Array, resolution: Array) -> Array:
-    """f_c,i − ½ Σ_j |JᵀKJ|_ij Δ_j, the smallest over the joints (…) [N·m].
-
-    To first order in Δ: a wall that reads every joint wrong by Δ_j/2 is wrong in the torque of
-    joint i by the sum, and friction takes that up; for one joint it is f_c ≥ KΔ/2.
-    """
-    joint_stiffness = np.abs(np.swapaxes(jacobian, -1, -2) @ stiffness @ jacobian)
-    return np.asarray((friction - joint_stiffness @ resolution / 2).min(axis=-1))
-
-
 def end_effector_inertia(jacobian: npt.ArrayLike, inertia: npt.ArrayLike) -> Array:
     """(J M⁻¹ Jᵀ)⁻¹, the mass that the hand feels, n × n [kg]; 0 where the arm cannot move.
 

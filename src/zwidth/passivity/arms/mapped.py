@@ -10,10 +10,10 @@ import numpy.typing as npt
 from zwidth.device.arm import Arm, Sites
 from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
+from zwidth.passivity.arms.encoders import columns_in_cells, friction_for, with_encoders
 from zwidth.passivity.arms.joints import (
     end_effector_friction,
     end_effector_resolution,
-    friction_surplus,
     largest_scale,
     single_additions,
     surplus,
@@ -30,13 +30,24 @@ there is as good as infinite, yet leaves room for the digits of what is finite."
 _BLOCKED = 1e-12
 """Singular values of J below this part of the largest are rounding: the arm cannot move there."""
 
+SPATIAL = 3
+"""Rotations of a hand in space: there moments cost friction, too, and no force alone is covered."""
+
 Column = tuple[Array, str, str]
 
 
 def columns_of(
-    arm: Arm, damping: Array, wall: Wall | MatrixWall, need: WallNeed, jacobians: Array
+    arm: Arm,
+    damping: Array,
+    wall: Wall | MatrixWall,
+    need: WallNeed,
+    sites: Sites,
+    reached: Truth,
+    period: float,
+    forces: tuple[float, ...],
 ) -> dict[str, Column]:
     """What is mapped; of a hand in pose the margin is one of the joints, as metres and radians do not mix."""
+    jacobians = sites.jacobians[reached]
     lacking = surplus(jacobians, damping, need.stiffness_share + need.bound)
     alone = single_additions(lacking)
     factor = stiffness_factors(damping, need, jacobians)
@@ -53,7 +64,7 @@ def columns_of(
         "addition_to_one": (alone.min(axis=-1), "N*m*s/rad", "smallest damping added to one joint"),
         "joint_to_damp": (_joint(alone), "1", "joint that needs it, from 1; 0: none, -1: one is not enough"),
     }  # fmt: skip
-    return {**own, **shared, **_held(arm, wall, jacobians)}
+    return {**own, **shared, **_held(arm, jacobians), **_encoders(arm, wall, sites, reached, period, forces)}
 
 
 def stiffness_factors(damping: Array, need: WallNeed, jacobians: Array) -> Array:
@@ -96,7 +107,7 @@ def _in_pose(jacobians: Array, worst: Array, turns: int) -> dict[str, Column]:
     return columns
 
 
-def _held(arm: Arm, wall: Wall | MatrixWall, jacobians: Array) -> dict[str, Column]:
+def _held(arm: Arm, jacobians: Array) -> dict[str, Column]:
     """Encoder steps, friction and motors: of forces, and in pose of moments apart."""
     columns: dict[str, Column] = {}
     point = jacobians.shape[-2] - arm.turns
@@ -113,12 +124,28 @@ def _held(arm: Arm, wall: Wall | MatrixWall, jacobians: Array) -> dict[str, Colu
         if arm.torque_limit:
             given = end_effector_friction(rows, arm.torque_limit)
             columns[f"{prefix}force_limit"] = (given, unit, f"{kind} that every direction gets")
-    if arm.coulomb_friction and arm.resolution:
-        stiffness = wall_matrices(wall, jacobians.shape[-2])[0]
-        left = friction_surplus(
-            jacobians, stiffness, np.array(arm.coulomb_friction), np.array(arm.resolution)
-        )
-        columns["friction_margin"] = (left, "N*m", "Coulomb friction beyond what the encoder steps ask for")
+    return columns
+
+
+def _encoders(
+    arm: Arm, wall: Wall | MatrixWall, sites: Sites, reached: Truth, period: float, forces: tuple[float, ...]
+) -> dict[str, Column]:
+    """What friction has beyond the encoder steps in each cell, whose readings may lie in the next one."""
+    chain = with_encoders(arm)
+    if chain is None or not arm.coulomb_friction:
+        return {}
+    steps, each, turned = friction_for(chain, wall, period, columns_in_cells(chain, sites)[reached])
+    left = np.array(arm.coulomb_friction) - steps
+    force, moment = (*forces, 0.0, 0.0)[:2]
+    margin = (left - force * each - (moment * turned if moment < np.inf else 0.0)).min(axis=-1)
+    words = f"Coulomb friction beyond what the encoder steps ask for, for wall forces up to {force:.4g} N"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        most = np.where(each > 0, left / each, np.where(left < 0, 0.0, np.inf)).min(axis=-1)
+    columns: dict[str, Column] = {"friction_margin": (margin, "N*m", words)}
+    if arm.turns != SPATIAL:
+        columns["covered_force"] = (
+            np.maximum(most, 0.0), "N", "largest force of the wall up to which friction covers the encoder steps here"
+        )  # fmt: skip
     return columns
 
 
@@ -166,4 +193,5 @@ def dataset(arm: Arm, sites: Sites, reached: Truth, proved: Truth, columns: dict
     for name, values in zip("xyz", np.moveaxis(point, -1, 0), strict=False):
         if name not in coordinates:
             coordinates[f"hand_{name}"] = (dims, values, {"units": "m"})
-    return xarray.Dataset(variables, coordinates, {"region": sites.region})
+    attributes = {"region": sites.region, "coordinates": sites.jacobians.shape[-2]}
+    return xarray.Dataset(variables, coordinates, attributes)

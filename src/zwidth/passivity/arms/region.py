@@ -20,9 +20,10 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.passivity.arms.account import account_of, all_in_blocks, reached_cells, refinement
 from zwidth.passivity.arms.certificate import arm_certificate
-from zwidth.passivity.arms.claim import claim, encoders
-from zwidth.passivity.arms.encoders import covering_friction
-from zwidth.passivity.arms.held import held_torque_damping
+from zwidth.passivity.arms.claim import Covers, claim
+from zwidth.passivity.arms.counting import Counting, counting, needs_encoders, with_motion
+from zwidth.passivity.arms.encoders import EncoderSteps
+from zwidth.passivity.arms.held import forces_of, held_torque_damping
 from zwidth.passivity.arms.joints import as_matrix, single_additions
 from zwidth.passivity.arms.least import least_additions
 from zwidth.passivity.arms.mapped import columns_of, dataset, scaled_stiffness, stiffness_factors
@@ -40,6 +41,8 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 
+_MOST_DELAY = 100
+"""Samples."""
 _TRIES = 20
 """Points from which a motion that takes energy out is sought, the worst first."""
 
@@ -76,11 +79,24 @@ class Workspace:
     largest_stiffness
         The stiffest wall of this kind that holds at every point, in the largest stiffness of any
         direction [N/m]; None of a wall in pose, which has two units.
-    encoder_friction
-        Coulomb friction of each joint that covers the encoder steps in the whole region, the torque following
-        the arm [N·m]; empty where no encoder is known.
+    region
+        In words: where the claim holds.
+    torque
+        "follows": the torque of each instant is that of the arm then, or of its readings. "held": it is computed
+        once a sample.
+    encoder
+        "counted": the claim is of the wall's force and the Jacobian at the readings. "ideal": of an arm that is read
+        without steps.
+    largest_forces
+        The force of the wall [N], in pose with its moment [N·m], up to which the claim goes; empty: any.
+    encoder_steps
+        What the steps ask of Coulomb friction, up to which force it covers them, and from which on a motion across
+        them takes energy out; None where there are none, or no bound is known.
+    can_be_refuted
+        False of an arm with more joints than the hand has coordinates: no hand at its end makes them go round a path
+        of their own, so that no motion is looked for.
     motion
-        What takes energy out, near the worst point, if one was found.
+        What takes energy out, if one was found.
     certificate
         The proof for `zwidth verify`, if "passive".
     """
@@ -97,9 +113,19 @@ class Workspace:
     least_additions: tuple[float, ...]
     stiffness_factor: float
     largest_stiffness: float | None
-    encoder_friction: tuple[float, ...]
+    region: str
+    torque: str
+    encoder: str
+    largest_forces: tuple[float, ...]
+    encoder_steps: EncoderSteps | None
+    can_be_refuted: bool
     motion: ArmMotion | None
     certificate: Certificate | None = None
+
+    @property
+    def coordinates(self) -> int:
+        """Of the hand: those of its point, and in pose those of its turn."""
+        return int(self.data.attrs["coordinates"])
 
     def __repr__(self) -> str:
         stiffest = f"{self.stiffness_factor:.6g} times this one"
@@ -124,6 +150,7 @@ def workspace(
     delay: RealLike = 0,
     points: int = 100,
     torque_held_up_to: float | Sequence[float] | None = None,
+    largest_force: float | Sequence[float] | None = None,
 ) -> Workspace:
     """Map over the workspace whether an arm renders a wall passively.
 
@@ -145,6 +172,10 @@ def workspace(
         others assume. A force ≥ 0 [N]: the torque J(q_k)ᵀF is held, and the wall renders no more than
         this; for chains and descriptions, whose curvature is bounded, and without delay. In pose a force
         and a moment [N], [N·m].
+    largest_force
+        Of the wall, ≥ 0 [N], in pose with a moment: up to it encoder steps are to be counted, and the answer is
+        "undecided" where they cannot be. None: as far as Coulomb friction covers them, else the arm is taken to be
+        read without steps; `Workspace.encoder` says which.
 
     Raises
     ------
@@ -164,7 +195,12 @@ def workspace(
     if not reached.any():
         raise InputError(f"{arm.name} reaches no point of its region, {sites.region}; choose another one")
     need = wall_need(wall, period, samples, n)
-    held = held_torque_damping(arm, period, samples, torque_held_up_to)
+    held_to = forces_of(arm, torque_held_up_to, "torque_held_up_to")
+    asked = forces_of(arm, largest_force, "largest_force")
+    if held_to and asked:
+        raise InputError("torque_held_up_to says the largest force already; leave largest_force out")
+    needs_encoders(arm, asked)
+    held = held_torque_damping(arm, period, samples, held_to)
     damping = as_matrix(arm.damping) - held * np.eye(m)
     if m > n and np.linalg.eigvalsh(damping)[0] <= 0:
         raise InputError(
@@ -174,28 +210,42 @@ def workspace(
     parts = refinement(sites, points)
     fine = sites if parts == 1 else arm.sites(points * parts)
     account = account_of(damping, need.stiffness_share + need.bound, fine, arm.turns)
-    columns = columns_of(arm, damping, wall, need, sites.jacobians[reached])
     factors = stiffness_factors(damping, need, fine.jacobians[account.reached])
-    factor = min(columns["stiffness_factor"][0].min(), factors.min())
+    count = counting(arm, wall, period, fine, held_to or asked)
+    steps = count.steps
+    if asked or any(arm.coulomb_friction):
+        steps = with_motion(count, arm, wall, period, samples, sites, bool(held_to))
+    certificate, words, encoder = None, "", "counted" if asked else "ideal"
+    if account.reached.all() and (account.margins > 0).all():
+        certificate, words, encoder = _proof(arm, wall, hertz, samples, held_to, count, bool(asked))
     at = fine.joints[account.reached]
-    motion = _motion(arm, wall, period, samples, at, account.margins, torque_held_up_to is not None)
+    read = (True, False) if count.limits else (True,) if asked else (False,)
+    motion = _motion(arm, wall, period, samples, at, account.margins, bool(held_to), asked, read)
+    if motion is None and asked and steps is not None and _within(steps.motion, asked):
+        motion = steps.motion
     whole = np.zeros(account.reached.shape, dtype=bool)
     whole[account.reached] = account.proved
-    certificate, words = None, ""
-    if account.reached.all() and (account.margins > 0).all():
-        certificate, words = arm_certificate(arm, wall, hertz, samples, torque_held_up_to)
     if certificate is not None:
         whole[...] = True
         account = account._replace(counted=np.eye(m)[None])  # nothing is missing
-    friction: Array = np.zeros(0)
-    if any(arm.resolution):
-        friction = covering_friction(arm, wall, period, fine)
-    proof = "theorem" if certificate is None else "passive"
-    outcome = "active" if motion is not None else proof if whole.all() else "undecided"
+    outcome = _outcome(motion, certificate, bool(whole.all()), bool(asked))
+    encoder = encoder if motion is None else motion.encoder
+    limits = held_to or asked
+    if encoder == "counted" and motion is None:
+        limits = count.limits or limits
+    columns = columns_of(arm, damping, wall, need, sites, reached, period, limits)
+    factor = min(columns["stiffness_factor"][0].min(), factors.min())
+    covers = Covers(
+        region=fine.region,
+        torque="held" if held_to else "follows",
+        encoder=encoder,
+        forces=limits,
+        why_ideal=count.reason if any(arm.resolution) else "",
+        can_be_refuted=m <= n,
+    )
     return Workspace(
         outcome=outcome,
-        claim=claim(outcome, fine, account, arm, torque_held_up_to, words)
-        + encoders(arm, friction, torque_held_up_to is not None),
+        claim=claim(outcome, covers, account, words, steps),
         arm=arm,
         wall=wall,
         sample_period=period,
@@ -206,10 +256,48 @@ def workspace(
         least_additions=tuple(least_additions(account.counted)[0].tolist()),
         stiffness_factor=float(factor),
         largest_stiffness=None if arm.turns else float(scaled_stiffness(wall, factor, n)),
-        encoder_friction=tuple(friction.tolist()),
+        region=covers.region,
+        torque=covers.torque,
+        encoder=covers.encoder,
+        largest_forces=covers.forces,
+        encoder_steps=steps,
+        can_be_refuted=covers.can_be_refuted,
         motion=motion,
         certificate=certificate,
     )
+
+
+def _proof(
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    rate: float,
+    samples: int,
+    held_to: tuple[float, ...],
+    count: Counting,
+    required: bool,
+) -> tuple[Certificate | None, str, str]:
+    """A certificate or why there is none, and of which encoder: of the steps, if it can be or has to be."""
+    certificate, words = None, count.reason
+    if count.limits and count.steps is not None:
+        certificate, words = arm_certificate(arm, wall, rate, samples, held_to, count)
+    if certificate is not None or required:
+        return certificate, words, "counted"
+    return (*arm_certificate(arm, wall, rate, samples, held_to), "ideal")
+
+
+def _outcome(
+    motion: ArmMotion | None, certificate: Certificate | None, everywhere: bool, required: bool
+) -> str:
+    """Of an arm whose steps are to be counted there is no theorem: without a certificate nothing is said."""
+    if motion is not None:
+        return "active"
+    if certificate is not None:
+        return "passive"
+    return "theorem" if everywhere and not required else "undecided"
+
+
+def _within(motion: ArmMotion | None, asked: tuple[float, ...]) -> bool:
+    return motion is not None and motion.encoder == "counted" and motion.largest_force <= asked[0]
 
 
 def _timing(rate: float, delay: float) -> tuple[float, int]:
@@ -218,6 +306,11 @@ def _timing(rate: float, delay: float) -> tuple[float, int]:
     if delay < 0:
         raise InputError(f"delay must be ≥ 0 s, got {delay!r}")
     samples = round(delay * rate)
+    if samples > _MOST_DELAY:
+        raise InputError(
+            f"delay is {delay:g} s, {samples} samples at {rate:g} Hz, and no controller of a haptic device waits "
+            f'for more than {_MOST_DELAY}; a number without a unit is in seconds: write "3 ms" for milliseconds'
+        )
     if abs(delay * rate - samples) > 1e-9 * max(1, samples):
         raise InputError(
             f"for arms the delay is a whole number of samples, got {delay * rate:g}; "
@@ -234,11 +327,15 @@ def _motion(
     joints: Array,
     margins: Array,
     torque_held: bool,
+    asked: tuple[float, ...],
+    read: tuple[bool, ...],
 ) -> ArmMotion | None:
+    """Near the worst points, with the encoders counted or not, in the order of `read`."""
     failing = np.argsort(margins)[: int((margins < 0).sum())]
     tried = failing[:: max(1, len(failing) // _TRIES)][:_TRIES]
-    for k in tried:
-        motion = refuting_motion(arm, wall, period, samples, joints[k], torque_held)
-        if motion is not None:
-            return motion
+    for counted in read:
+        for k in tried:
+            motion = refuting_motion(arm, wall, period, samples, joints[k], torque_held, counted=counted)
+            if motion is not None and (not asked or _within(motion, asked)):
+                return motion
     return None

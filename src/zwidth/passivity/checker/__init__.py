@@ -1,4 +1,4 @@
-"""The independent checker: re-proves a certificate, recomputes a witness.
+"""The independent checker: re-proves a certificate or a violation, recomputes a witness.
 
 Written from the mathematics alone, with other algorithms than the prover's: Chebyshev sums for the criterion,
 Bernstein coefficients for its sign, Routh's table for stability, Schur and Cohn's recursion where a hand is
@@ -24,16 +24,20 @@ from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
 from .multiport import positive_real_matrix
 from .multiport_motion import matrix_extraction
+from .nonlinear_spring import endless_pull, nonlinear_spring
 from .port import extraction, positive_real
 from .proofs import PROOFS
 from .reading import Invalid, get, number
+from .relaxing_contact import relaxing_contact
 from .rest import instability, stability
 from .row_motion import row_motion_energy
+from .scope import Scope, scope_of
 from .storage_proof import storage
 from .storage_row import storage_of_row
 from .vibration import vibration
+from .violation import violation
 
-__all__ = ["Verification", "verify"]
+__all__ = ["Scope", "Verification", "verify"]
 
 _KINDS = {
     **PROOFS,
@@ -41,46 +45,56 @@ _KINDS = {
     "active hand": active_hand,
     "arm": arm,
     "contact": contact,
+    "relaxing contact": relaxing_contact,
+    "endless pull": endless_pull,
     "force bounding": force_bounding,
     "instability": instability,
+    "nonlinear spring": nonlinear_spring,
     "positive real": positive_real,
     "positive real matrix": positive_real_matrix,
     "stability": stability,
     "storage": storage,
     "row storage": storage_of_row,
     "vibration": vibration,
+    "violation": violation,
 }
 
 
 class Verification(NamedTuple):
-    """What the checker found: whether the document holds, why, and a motion's joules."""
+    """What the checker found: whether the document holds, why, a motion's joules, and what it is about."""
 
     valid: bool
     reason: str
     energy: Fraction | None = None
+    scope: Scope | None = None
 
 
 def verify(document: Mapping[str, Any]) -> Verification:
-    """Check one certificate or witness, given as plain JSON data."""
+    """Check one certificate, violation or witness, given as plain JSON data."""
     try:
-        kind = get(document, "kind")
-        if kind == "motion":
-            return _motion(document)
-        if kind == "contact motion":
-            return _round_again(contact_motion_energy(document))
-        if kind == "row motion":
-            return _round_again(row_motion_energy(document))
-        if kind == "extraction":
-            return Verification(True, *extraction(document))
-        if kind == "matrix extraction":
-            return Verification(True, *matrix_extraction(document))
-        if not isinstance(kind, str) or kind not in _KINDS:
-            raise Invalid(f"kind must be motion, extraction, {', '.join(_KINDS)}; got {str(kind)[:40]!r}")
-        return Verification(True, _KINDS[kind](document))
+        found = _verified(document)
+        return found._replace(scope=scope_of(document)) if found.valid else found
     except Invalid as error:
         return Verification(False, str(error))
     except (TypeError, KeyError, ValueError, IndexError, OverflowError, ZeroDivisionError) as error:
         return Verification(False, f"the document is malformed: {str(error)[:200]}")
+
+
+def _verified(document: Mapping[str, Any]) -> Verification:
+    kind = get(document, "kind")
+    if kind == "motion":
+        return _motion(document)
+    if kind == "contact motion":
+        return _round_again(contact_motion_energy(document))
+    if kind == "row motion":
+        return _round_again(row_motion_energy(document))
+    if kind == "extraction":
+        return Verification(True, *extraction(document))
+    if kind == "matrix extraction":
+        return Verification(True, *matrix_extraction(document))
+    if not isinstance(kind, str) or kind not in _KINDS:
+        raise Invalid(f"kind must be motion, extraction, {', '.join(_KINDS)}; got {str(kind)[:40]!r}")
+    return Verification(True, _KINDS[kind](document))
 
 
 def _motion(document: Mapping[str, Any]) -> Verification:

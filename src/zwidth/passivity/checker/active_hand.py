@@ -14,6 +14,7 @@ from typing import Any
 from .contact_proof import contact
 from .proofs import PROOFS, _criterion, _friction, _linear_part, _positivity
 from .reading import Invalid, Loop, get, in_its_unit, number, read_loop
+from .relaxing_contact import relaxing_contact
 
 MOST_BITS_OF_ANGLE = 4000  # high powers of it are taken
 _PI = Fraction(31415926535897932385, 10**19)
@@ -40,9 +41,9 @@ def _activity(document: Mapping[str, Any]) -> Fraction:
 
 
 def _everywhere(p: Loop, activity: Fraction, reduced: Mapping[str, Any]) -> str:
-    kinds = {**PROOFS, "contact": contact}
+    kinds = {**PROOFS, "contact": contact, "relaxing contact": relaxing_contact}
     kind = get(reduced, "kind")
-    if kind not in ("spring", "contact", "linear", "quantized"):
+    if kind not in ("spring", "contact", "relaxing contact", "linear", "quantized"):
         raise Invalid("the loop with less damping needs a proof of passivity")
     reason = kinds[kind](reduced)
     less = read_loop(reduced)

@@ -29,9 +29,9 @@ Whole = list[list[int]]
 Function = Callable[[Sequence[Jet]], list[list[Jet]]]
 
 
-def positive_in(box: Cell, matrix: Function) -> int:
+def positive_in(box: Cell, matrix: Function, fails: str = "the damping is not enough") -> int:
     """The number of cells that show it, halved where needed; `matrix` takes the coordinates as jets and gives
-    the rows of S from the diagonal on; S has as many as there are coordinates."""
+    the rows of S from the diagonal on; S has as many as there are coordinates. `fails`: what it is if S is not."""
     moving = sum(map(_moves, box))
     if moving > MOST_MOVING:
         raise Invalid(f"more than {MOST_MOVING} coordinates move")
@@ -39,7 +39,7 @@ def positive_in(box: Cell, matrix: Function) -> int:
     waiting, done = deque([box]), 0  # the large ones first: they find soonest what fails
     while waiting:
         cell = waiting.popleft()
-        split = _part_to_halve(cell, matrix)
+        split = _part_to_halve(cell, matrix, fails)
         if split is None:
             done += 1
         else:
@@ -51,21 +51,21 @@ def positive_in(box: Cell, matrix: Function) -> int:
     return done
 
 
-def _part_to_halve(cell: Cell, matrix: Function) -> int | None:
+def _part_to_halve(cell: Cell, matrix: Function, fails: str) -> int | None:
     """None where S is ≻ 0 in the cell, else the coordinate along which to halve it."""
     halves = {j: -(-(high - low) // 2) for j, (low, high) in enumerate(cell) if _moves((low, high))}
-    start, rest = _at_middle(cell, matrix)
+    start, rest = _at_middle(cell, matrix, fails)
     try:
         jets = matrix([Jet(r, {j: (ONE, ONE)} if j in halves else None) for j, r in enumerate(cell)])
     except NotPositive:
-        return _narrowed(halves)
+        return _narrowed(halves, fails)
     lines, sizes = [], {}
     for j, half in halves.items():
         line, spread = _parted([[_times_half(s.slopes.get(j, ZERO), half) for s in row] for row in jets])
         rest = [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(rest, spread, strict=True)]
         sizes[j] = sum(abs(x) for row in (*line, *spread) for x in row)
         lines.append(line)
-    return None if _at_corners(start, rest, lines) else _narrowed(sizes)
+    return None if _at_corners(start, rest, lines) else _narrowed(sizes, fails)
 
 
 def _moves(coordinate: Range) -> bool:
@@ -73,7 +73,7 @@ def _moves(coordinate: Range) -> bool:
     return coordinate[1] - coordinate[0] > 1
 
 
-def _at_middle(cell: Cell, matrix: Function) -> tuple[Whole, Whole]:
+def _at_middle(cell: Cell, matrix: Function, fails: str) -> tuple[Whole, Whole]:
     """S(m), refused at once where it is not ≻ 0."""
     middle = [((low + high) // 2,) * 2 if _moves((low, high)) else (low, high) for low, high in cell]
     place = ", ".join(f"{low / ONE:.6g}" for low, _ in middle)
@@ -82,14 +82,14 @@ def _at_middle(cell: Cell, matrix: Function) -> tuple[Whole, Whole]:
     except NotPositive:
         raise Invalid(f"the arm does not reach {place}") from None
     if not _positive(_less(*found)):
-        raise Invalid(f"the damping is not enough at {place}")
+        raise Invalid(f"{fails} at {place}")
     return found
 
 
-def _narrowed(sizes: Mapping[int, int]) -> int:
+def _narrowed(sizes: Mapping[int, int], fails: str) -> int:
     """The coordinate that moves S most."""
     if not sizes:
-        raise Invalid("the damping is not enough by so little that rounding hides it")
+        raise Invalid(f"{fails} by so little that rounding hides it")
     return max(sizes, key=lambda j: sizes[j])
 
 

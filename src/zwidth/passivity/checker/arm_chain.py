@@ -128,6 +128,29 @@ def _moved(slides: bool, q: Jet, point: list[Jet], columns: list[list[Jet]]) -> 
     return [turned[0], [-y, x, NOTHING], *turned[1:]]
 
 
+def levers(chain: Chain) -> Callable[[Sequence[Jet]], list[Jet]]:
+    """The square of the hand's distance from the axis of each joint: |∂p/∂q_i|² of one that turns, but for the
+    lengths of what only nearly rotates. No joint but those beyond moves it."""
+    fixed = [
+        ([[enclosed(x) for x in row] for row in j.rotation], [Jet(enclosed(x)) for x in j.translation])
+        for j in chain.joints
+    ]
+    end = [Jet(enclosed(x)) for x in chain.end]
+
+    def squares(joints: Sequence[Jet]) -> list[Jet]:
+        point, found = end, list[Jet]()
+        for joint, q, (rotation, translation) in reversed(
+            list(zip(chain.joints, joints, fixed, strict=True))
+        ):
+            found.insert(0, point[0].squared() + point[1].squared())
+            moved = _moved(joint.slides, q, point, [])[0]
+            placed = [total([x.scaled(c) for x, c in zip(moved, row, strict=True)]) for row in rotation]
+            point = [x + t for x, t in zip(placed, translation, strict=True)]
+        return found
+
+    return squares
+
+
 def bends(chain: Chain) -> list[list[Fraction]]:
     """N_ij ≥ |∂²p/∂q_i∂q_j|: what lies beyond both joints where both turn, 1 where one slides, else 0."""
     beyond: list[Fraction] = []

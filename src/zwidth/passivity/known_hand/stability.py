@@ -27,6 +27,8 @@ from zwidth.passivity.known_hand.decide import Found, Outcome, corners, decided
 from zwidth.passivity.known_hand.hand import PassiveHand, as_hand
 from zwidth.passivity.known_hand.plant import Motion
 from zwidth.passivity.known_hand.proof import evidence
+from zwidth.passivity.scope import Hands, Scope, scope_of
+from zwidth.passivity.wording import lines
 from zwidth.quantity.exact import Exact, ends
 
 _HALVINGS = 8
@@ -54,8 +56,8 @@ class Stability:
         no wall. For intervals the largest that was proved for every value in them, below the true one.
     limit_frequency
         With which the loop oscillates at that stiffness, for intervals at their worst corner [Hz].
-    assumptions
-        What the claim rests on.
+    scope
+        What it is about: which hand, contact, what is left out.
     culprit
         Mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand together that do not decay.
     certificate
@@ -69,9 +71,14 @@ class Stability:
     frequency: float
     max_stiffness: float | None
     limit_frequency: float | None
-    assumptions: tuple[str, ...]
+    scope: Scope
     culprit: tuple[float, float, float] | None = None
     certificate: Certificate | None = None
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim rests on, line by line."""
+        return lines(self.scope)
 
     @property
     def margin(self) -> float:
@@ -126,7 +133,7 @@ def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stab
         frequency=_hertz(float(abs(np.angle(worst))), motion),
         max_stiffness=largest,
         limit_frequency=None if limit is None else _hertz(limit, motion),
-        assumptions=_assumptions(device, holding, law),
+        scope=_scope(device, holding, law),
         culprit=_culprit(found),
         certificate=certificate,
     )
@@ -237,13 +244,13 @@ def _claim(found: Found) -> str:
     return "the loop, or some values in the intervals, are so near the limit that they were not decided"
 
 
-def _assumptions(device: Device, hand: PassiveHand, law: Environment) -> tuple[str, ...]:
-    first = "contact is kept" if law.unilateral else "the law is linear"
-    notes = [f"{first}, and the hand is {hand.describe()}"]
-    if law.clamped:
-        notes.append("the wall is not asked to pull: the disturbance is small against the pressing force")
-    if ends(device.coulomb_friction)[1] or ends(device.resolution)[1]:
-        notes.append("Coulomb friction and encoder steps are left out: near rest they decide what is felt")
-    if law.coefficients_rounded:
-        notes.append("the coefficients of H(z) are the doubles nearest to the true ones")
-    return tuple(notes)
+def _scope(device: Device, hand: PassiveHand, law: Environment) -> Scope:
+    """One linear system: contact is kept, and neither Coulomb friction nor the encoder's steps are in it."""
+    asked = scope_of(device, law)
+    return asked.replace(
+        hands=Hands(impedance=hand.describe()),
+        contact="kept" if law.unilateral else "both sides",
+        encoder="not counted" if asked.encoder == "counted" else "ideal",
+        coulomb_friction=None,
+        assumed=(),
+    )

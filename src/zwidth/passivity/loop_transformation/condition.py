@@ -29,6 +29,7 @@ from zwidth.passivity.loop_transformation.environment_class import Indices, Slop
 from zwidth.passivity.loop_transformation.forms import DIRECT, Connection, coupled, indices_form
 from zwidth.passivity.loop_transformation.least_damping import best_form, largest_need
 from zwidth.passivity.loop_transformation.slopes import exact_need, whole_delay
+from zwidth.passivity.scope import Scope
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -49,6 +50,9 @@ class TransformedCondition:
         True when it is proved, by exact arithmetic.  False says that this theorem does not promise it.
     required_damping
         b that is enough, itself proved [N·s/m; N·m·s/rad]; None if none is.
+    scope
+        What it is about: springs may be one-sided, and what the environments keep holds wherever they are;
+        the theorem knows exact positions; what the environments must keep besides slopes or indices.
     binding
         What would have to change: the damping of the device, against hold and delay; or coupling and
         environment, which together must be strictly passive whatever the device.
@@ -70,6 +74,27 @@ class TransformedCondition:
             return None
         return float(self.device.exact("damping")) - self.required_damping
 
+    @property
+    def scope(self) -> Scope:
+        """What it is about."""
+        slopes = isinstance(self.environment, Slopes)
+        return Scope(
+            contact="made and broken",
+            encoder="not counted" if self.device.exact("resolution") else "ideal",
+            damping=float(self.device.exact("damping")),
+            law=("potential bounded below" if slopes else "energy at first bounded",),
+            motion=self.device.motion,
+        )
+
+    @property
+    def claim(self) -> str:
+        """What is proved, and for which environments."""
+        of = self.environment.describe(self.device.motion)
+        if not self.holds:
+            return f"No promise for {of}."
+        counts = "; the counts of the encoder are not in it" if self.scope.encoder == "not counted" else ""
+        return f"Passive before {of}, contact made and broken{counts}."
+
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
         unit = GLOSSARY["damping"].unit_for(self.device.motion)
@@ -81,11 +106,14 @@ class TransformedCondition:
             ),
             ("device damping", f"{float(self.device.exact('damping')):.6g} {unit}"),
             ("binding inequality", self.binding),
+            ("contact", self.scope.contact),
+            ("encoder", self.scope.encoder),
+            ("environments", "; ".join(self.scope.law)),
         ]
 
     def __repr__(self) -> str:
-        says = "holds for the whole class, by a proof on paper" if self.holds else "no promise"
-        return f"<TransformedCondition {says}: {'; '.join(f'{k} {v}' for k, v in self.rows())}>"
+        rows = "; ".join(f"{k} {v}" for k, v in self.rows())
+        return f"<TransformedCondition {self.claim} By a proof on paper: {rows}>"
 
 
 def transformed_condition(
@@ -96,7 +124,8 @@ def transformed_condition(
 ) -> TransformedCondition:
     """Is the loop passive for every environment of a class, felt as it is or behind a virtual coupling?
 
-    A sufficient condition; where it is exact, the documentation says so.
+    Of springs: for those whose potential is bounded below, as `Slopes` states.  A sufficient condition; where
+    it is exact, the documentation says so.
 
     Parameters
     ----------

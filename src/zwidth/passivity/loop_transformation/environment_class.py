@@ -9,6 +9,9 @@ for the curve lies in a parallelogram about its chord.  Anything with excess or 
 
     Σ f(k) e ≥ −S + Σ [ι e²/T + ο T f(k)²]
 
+The first bounds what comes out only if Φ has a lower bound: a constant force has none, and neither has a
+negative spring.  Slopes from μ > 0 up force one on it; for others it is a hypothesis that has to be stated.
+
 ι is what it dissipates as a damper in parallel would, ο as one in series; where they are negative, that
 much is lacking.  A spring is short by ι = μT/2 at most.
 """
@@ -23,14 +26,15 @@ from zwidth.environment import NonlinearSpring
 from zwidth.errors import InputError
 from zwidth.passivity.hypotheses import number
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.glossary import GLOSSARY
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
 class Slopes:
-    """Static springs, nonlinear or one-sided, whose slope f′ lies between two bounds.
+    """Static springs, nonlinear or one-sided, with slopes μ ≤ f′ ≤ L and a potential Φ ≥ Φ_min > −∞.
 
-    Their potential Φ is taken to have a least value; without one, the hand may travel downhill for ever and
-    gain, though nothing is gained on any closed path.
+    Without the bound on Φ the hand may travel downhill for ever and gain, though nothing is gained on any
+    closed path: a constant force has the slope 0.
 
     Parameters
     ----------
@@ -38,22 +42,27 @@ class Slopes:
         μ [N/m; N·m/rad]: 0 for a wall that is touched and left, negative where the force falls with depth.
     greatest
         L ≥ μ [N/m; N·m/rad].
+    bounded_below
+        True states that every spring of the class has such a Φ, as one that ends in stops on both sides, or
+        whose force is 0 outside.  Needed where μ ≤ 0; from μ > 0 up it is so by itself.
 
     Raises
     ------
     InputError
-        If they are not numbers, or in the wrong order.
+        If they are not numbers, or in the wrong order, or the bound on Φ is not stated where it has to be.
     """
 
     least: Exact
     greatest: Exact
+    bounded_below: bool
 
-    def __init__(self, least: RealLike, greatest: RealLike) -> None:
+    def __init__(self, least: RealLike, greatest: RealLike, *, bounded_below: bool | None = None) -> None:
         low, high = number("least", least), number("greatest", greatest)
         if low > high:
             raise InputError(f"the least slope is no more than the greatest; got {least} and {greatest}")
         object.__setattr__(self, "least", Exact(low))
         object.__setattr__(self, "greatest", Exact(high))
+        object.__setattr__(self, "bounded_below", _stated(low, bounded_below))
 
     @classmethod
     def of(cls, spring: NonlinearSpring) -> Slopes:
@@ -73,7 +82,7 @@ class Slopes:
                 "a force that leads away beyond the points gives out energy for ever; end it with a stop"
             )
         slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in pairwise(zip(x, f, strict=True))]
-        return cls(min(Fraction(0), *slopes), max(Fraction(0), *slopes))
+        return cls(min(Fraction(0), *slopes), max(Fraction(0), *slopes), bounded_below=True)
 
     def input_index(self, sample_period: RealLike) -> Exact:
         """ι = μT/2 [N·s/m; N·m·s/rad]: f(k) e ≥ ΔΦ + ½ μ e²."""
@@ -94,7 +103,32 @@ class Slopes:
                 f"got {stiffness}: softer, its far end snaps through"
             )
         ends = (k * s.fraction / (k + s.fraction) for s in (self.least, self.greatest))
-        return Slopes(*ends)
+        return Slopes(*ends, bounded_below=True)
+
+    def describe(self, motion: str = "linear") -> str:
+        """The class in words, with the hypothesis on Φ."""
+        unit = GLOSSARY["stiffness"].unit_for(motion)
+        return (
+            f"every static spring with slopes from {self.least:.6g} to {self.greatest:.6g} {unit} whose "
+            "potential is bounded below"
+        )
+
+
+def _stated(least: Fraction, bounded_below: bool | None) -> bool:
+    """True where Φ is bounded below, by the slopes or because it is said to be."""
+    if bounded_below is True or (least > 0 and bounded_below is None):
+        return True
+    if bounded_below is None:
+        raise InputError(
+            f"a spring with slopes down to {float(least):g} may lead away for ever, as a constant force "
+            "does, and give out energy without end: say bounded_below=True if the potential of every spring "
+            "of the class is bounded below, as of a wall that is touched and left; Slopes.of reads it off a "
+            "spring"
+        )
+    raise InputError(
+        f"bounded_below is True or left out, got {bounded_below!r}: before springs that lead away for ever "
+        "no device is passive"
+    )
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
@@ -129,6 +163,15 @@ class Indices:
             )
         object.__setattr__(self, "input", Exact(iota))
         object.__setattr__(self, "output", Exact(omicron))
+
+    def describe(self, motion: str = "linear") -> str:
+        """The class in words; that its store is bounded below is part of the inequality."""
+        unit = GLOSSARY["damping"].unit_for(motion)
+        length, force = ("rad", "(N*m*s)") if motion == "rotary" else ("m", "(N*s)")
+        return (
+            f"every environment with input index {self.input:.6g} {unit} and output index "
+            f"{self.output:.6g} {length}/{force}"
+        )
 
     @classmethod
     def of_damper(cls, least: RealLike, greatest: RealLike) -> Indices:

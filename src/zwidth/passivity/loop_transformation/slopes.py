@@ -1,6 +1,6 @@
 """A static spring known by its slopes alone, its force d samples late: the damping it needs.
 
-Slopes between μ and L > 0, of which one may be negative:
+Slopes between μ and L > 0, of which one may be negative, and a potential that is bounded below:
 
     b ≥ (2d + 1) L T/2                 d |μ| ≤ (d + 1) L  or  μ ≥ 0
 
@@ -24,9 +24,11 @@ from zwidth.quantity.exact import Exact, RealLike
 def required_damping_by_slopes(
     least: RealLike, greatest: RealLike, sample_period: RealLike, delay: RealLike = 0
 ) -> Exact | float:
-    """The device damping that is enough for every static spring with slopes between μ and L.
+    """The device damping that is enough for every static spring with slopes between μ and L and Φ ≥ Φ_min.
 
-    (2d + 1) L T/2 as long as d |μ| ≤ (d + 1) L, and then exact.
+    Only for those whose potential Φ is bounded below: a spring that leads away for ever, as a constant force
+    or a negative spring does, gives out energy without end before every device.  (2d + 1) L T/2 as long as
+    d |μ| ≤ (d + 1) L, and then exact.
 
     Parameters
     ----------
@@ -51,7 +53,7 @@ def required_damping_by_slopes(
     -----
     Derived for this project.
     """
-    slopes = Slopes(least=least, greatest=greatest)
+    slopes = Slopes(least=least, greatest=greatest, bounded_below=True)  # as the docstring says
     t = positive("sample_period", sample_period, NO_CLOCK)
     d = whole_delay(delay, t)
     exact = exact_need(slopes, d)

@@ -7,8 +7,9 @@
 
 u(k) is the force commanded at the end of sample k, for that is when y(k) is known; it is held over sample
 k + d + 1.  V is the energy of the device, h the mean power of the hand.  If the device dissipates at least
-vᵀΛv, the slack is ≥ 0, whatever u does: that is Lemma 2 (Miller, Colgate & Freeman).  For a constant δ = Λ it
-is (1/T)∫ (v − v̄)ᵀδ(v − v̄) dt: the lemma loses only the change of velocity within a sample.
+vᵀΛv, the slack is ≥ 0, whatever u does: that is Lemma 2 (Miller, Colgate & Freeman).  W is a storage if V is
+bounded below; else it bounds what comes out on closed paths and nothing else.  For a constant δ = Λ the
+slack is (1/T)∫ (v − v̄)ᵀδ(v − v̄) dt: the lemma loses only the change of velocity within a sample.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ def loop_storage(
         x(0) … x(n), one row more [m; rad].
     energies
         V(0) … V(n): kinetic and potential energy of the device, and of the hand if it is in the loop [J].
+        W is a storage only if V is bounded below over all states, which one motion cannot show.
     damping
         Λ: a number or a symmetric positive definite matrix [N·s/m; N·m·s/rad].
     sample_period

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 from zwidth.device.device import Device
 from zwidth.device.friction import FrictionCurve
 from zwidth.environment.environment import Environment
-from zwidth.environment.hunt_crossley import DIGITS
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json
-from zwidth.passivity.verdict import Outcome
+from zwidth.passivity.outcome import TOLD, Outcome
+from zwidth.passivity.scope import Contact, Hands, Law, Scope, scope_of
 from zwidth.passivity.witness import rounded_energy
+from zwidth.passivity.wording import claim_of_passivity, lines
 from zwidth.passivity.worst_hand.board import Board, Domain
 from zwidth.passivity.worst_hand.domain import domain_for, losses_of
 from zwidth.passivity.worst_hand.gain import Gain, gain
@@ -37,8 +38,6 @@ if TYPE_CHECKING:
 STEPS = (8, 16, 32, 64)
 """Steps in which a count is cut, coarse to fine, when a proof is sought."""
 
-_COVERS = "a proof covers "
-
 FINE = (1024, 16384)
 """The same when a motion is sought; its knots lie near the edges."""
 
@@ -52,8 +51,8 @@ class WorstHand:
     outcome
         "passive": a storage function proves that no motion within the domain gains.
         "active": a motion gains in every round.  "undecided": neither was found.
-    assumptions
-        What the outcome covers and takes for granted.
+    scope
+        What it is about: the hands, within which bounds; contact; what of the actuator is counted.
     device, environment
         The loop.
     certificate, witness
@@ -63,7 +62,7 @@ class WorstHand:
     """
 
     outcome: Outcome
-    assumptions: tuple[str, ...]
+    scope: Scope
     device: Device
     environment: Environment
     certificate: Certificate | None
@@ -74,7 +73,7 @@ class WorstHand:
     def claim(self) -> str:
         """The outcome in a sentence."""
         if self.outcome == "passive":
-            return "No motion of the hand within these bounds takes energy out of this loop, ever."
+            return claim_of_passivity(self.scope, False)
         if self.witness is not None:
             return f"A motion of the hand takes energy out of this loop: {self.witness.describe()}."
         return "Neither a proof nor a motion was found: finer steps, or more time, may decide."
@@ -95,9 +94,9 @@ class WorstHand:
         return self.storage.to_xarray()
 
     @property
-    def hand(self) -> str:
-        """The hands that a proof covers, in words."""
-        return self.assumptions[1].removeprefix(_COVERS)
+    def assumptions(self) -> tuple[str, ...]:
+        """What the outcome covers and takes for granted, line by line."""
+        return lines(self.scope, self.outcome)
 
     def to_dict(self, evidence: bool = True) -> dict[str, Any]:
         """Outcome, assumptions and evidence as plain data; the evidence may be left out, it can be large."""
@@ -105,6 +104,7 @@ class WorstHand:
             "format": "zwidth worst hand 1",
             "outcome": self.outcome,
             "claim": self.claim,
+            "scope": self.scope.to_dict(),
             "assumptions": list(self.assumptions),
         }
         if not evidence:
@@ -124,7 +124,8 @@ class WorstHand:
 
     def _repr_html_(self) -> str:
         assumed = "".join(f"<li>{a}</li>" for a in self.assumptions)
-        return f"<div><b>{self.outcome}</b> {self.claim}<ul>{assumed}</ul></div>"
+        colour = TOLD[self.outcome].colour
+        return f"<div><b style='color:{colour}'>{self.outcome}</b> {self.claim}<ul>{assumed}</ul></div>"
 
 
 @dataclass(frozen=True)
@@ -137,33 +138,27 @@ class Game:
     motion: str
 
     @property
-    def hand(self) -> str:
-        """The hands that a proof covers, in words."""
-        length, speed = ("rad", "rad/s") if self.motion == "rotary" else ("m", "m/s")
-        resolution = self.losses.resolution
-        deepest = float((self.domain.highest + 1) * resolution)
-        counts = float(self.domain.speed)
-        fastest = counts * float(resolution / self.losses.period)
+    def hands(self) -> Hands:
+        """The hands that a proof covers."""
+        domain, resolution = self.domain, self.losses.resolution
+        inside = float((domain.highest + 1) * resolution)
+        outside = None
         if self.law.surface == "none":
-            outside = "on either side"
+            outside = inside
         elif self.law.relaxing is not None and self.law.surface == "position":
-            outside = f"inside and {-self.domain.lowest} counts outside"
-        else:
-            outside = "inside and any distance outside"
-        over = "one sample" if self.losses.part == 1 else "each part of a sample with one force"
-        return (
-            f"hands of up to {fastest:.4g} {speed} over {over} ({counts:.4g} counts a sample), "
-            f"up to {deepest:.4g} {length} ({self.domain.highest + 1} counts) {outside}"
+            outside = float(-domain.lowest * resolution)
+        return Hands(
+            speed=float(domain.speed * resolution / self.losses.period),
+            in_each_part=self.losses.part != 1,
+            inside=inside,
+            outside=outside,
+            resolution=float(resolution),
         )
 
     @property
-    def contact(self) -> str:
-        """What is covered of contact, in words."""
-        return (
-            "contact made and broken at any instant"
-            + ("; the law never pulls" if self.law.clamped else "")
-            + ("" if self.law.surface != "none" else "; the law acts on both sides of x = 0")
-        )
+    def contact(self) -> Contact:
+        """What is covered of contact."""
+        return "both sides" if self.law.surface == "none" else "made and broken"
 
     @property
     def actuator(self) -> tuple[bool, bool]:
@@ -171,11 +166,11 @@ class Game:
         return self.law.force_limit is not None, self.law.force_step is not None
 
     @property
-    def further(self) -> tuple[str, ...]:
+    def inexact(self) -> tuple[Law, ...]:
         """What of the law is not exact."""
         if self.law.power is None or self.law.power[1].denominator == 1:
             return ()
-        return (f"K uⁿ is rounded to {DIGITS} digits, as no decimal writes it",)
+        return ("rounded power",)
 
     def prove(
         self, steps: int, deadline: float = float("inf"), tell: Tell | None = None, on: str = "cpu"
@@ -286,7 +281,7 @@ def worst_hand(
     """
     game = game_of(device, environment, penetration, speed, force_limit, force_resolution, friction)
     law = as_environment(environment)
-    said = assumptions(device, game)
+    said = game_scope(device, law, game)
     deadline = time.monotonic() + patience(seconds)
     for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
         storage = game.prove(steps, deadline, progress, on)
@@ -315,32 +310,17 @@ def patience(seconds: float) -> float:
     return float(seconds)
 
 
-def assumptions(device: Device, game: Game | RowGame) -> tuple[str, ...]:
-    """What a proof of a game covers, in words."""
-    force, drag = ("N·m", "N·m·s/rad") if device.motion == "rotary" else ("N", "N·s/m")
-    losses = game.losses
-    return (
-        game.contact,
-        f"{_COVERS}{game.hand}",
-        f"the device takes out at least b = {float(losses.damping):.6g} {drag} of viscous and "
-        f"f_c = {float(losses.coulomb_friction):.6g} {force} of Coulomb friction"
-        if losses.curve is None
-        else f"the device takes out what its friction curve says; {losses.curve.assumption}",
-        "a hand without limit on force; the mass of the device plays no part",
-        _actuator(*game.actuator),
-        "a constant sample period and delay, no missed samples",
-        "encoder counts of one size, their phase against the surface unknown",
-        *(f"{key.replace('_', ' ')} was not given and taken as 0" for key in device.assumed),
-        *game.further,
+def game_scope(device: Device, environment: Environment, game: Game | RowGame) -> Scope:
+    """What a proof of a game is about."""
+    losses, (limited, stepped) = game.losses, game.actuator
+    curved = losses.curve is not None
+    return scope_of(device, environment).replace(
+        hands=game.hands,
+        contact=game.contact,
+        damping=None if curved else float(losses.damping),
+        coulomb_friction=None if curved else float(losses.coulomb_friction),
+        friction=losses.curve,
+        force_limit=limited,
+        force_steps=stepped,
+        law=game.inexact,
     )
-
-
-def _actuator(limited: bool, stepped: bool) -> str:
-    """What of the actuator is in the game."""
-    parts = {"force limit": limited, "converter steps": stepped}
-    counted = [name for name, value in parts.items() if value]
-    rest = ", ".join([name for name in parts if name not in counted] + ["current rise and added filters"])
-    if not counted:
-        return f"ideal actuator: {rest} are not in the claim"
-    verb = "is" if counted == ["force limit"] else "are"
-    return f"the {' and the '.join(counted)} {verb} counted in; {rest} are not"

@@ -20,9 +20,11 @@ from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import save_json, unit_suffix
+from zwidth.passivity.scope import Scope
 from zwidth.passivity.witness import Witness, rounded_energy
+from zwidth.passivity.wording import describe_hands, lines
 from zwidth.passivity.worst_hand.gain import Gain
-from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of, patience
+from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, game_of, game_scope, patience
 from zwidth.passivity.worst_hand.row_game import RowGame, row_game
 from zwidth.passivity.worst_hand.row_table import DoesNotClose
 from zwidth.passivity.worst_hand.storage import Storage
@@ -32,9 +34,6 @@ from zwidth.rendering.rendered import Rendered
 
 MORE_IS_SAFER = frozenset({"device.damping", "device.coulomb_friction", "device.rate"})
 """Parameters of which a loop needs enough; of all others it may have too much."""
-
-COVERS_CONTACT = frozenset({"spring", "contact"})
-"""Kinds of certificate that cover contact made and broken, and any hand."""
 
 _FARTHEST = 60
 """Doublings from the first guess after which there is no limit."""
@@ -52,13 +51,11 @@ class Bracket:
         Proved passive; refuted by a motion.  None where no such value was found.
     certificate, witness
         The evidence at either value.
-    hand
-        The hands that the bracket is about, in words: "every hand", or bounds.
+    scope
+        What it is about: every hand, or hands within bounds; contact; what of the actuator is counted.
     every_hand
         What is known of every hand, where the bracket is about bounded ones: the
         last value proved passive and the first refuted; None where there is none.
-    assumptions
-        What the proof covers and takes for granted.
     evaluations, seconds
         Loops decided, and the time that took [s].
     storage
@@ -71,12 +68,21 @@ class Bracket:
     active: float | None
     certificate: Certificate | None
     witness: Gain | Witness | None
-    hand: str
+    scope: Scope
     every_hand: tuple[float | None, float | None]
-    assumptions: tuple[str, ...]
     evaluations: int
     seconds: float
     storage: Storage | None = None
+
+    @property
+    def hand(self) -> str:
+        """The hands that the bracket is about, in words: "every hand", or bounds."""
+        return describe_hands(self.scope.hands, self.scope.motion)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the proof covers and takes for granted, line by line."""
+        return lines(self.scope)
 
     @property
     def relative_width(self) -> float:
@@ -109,6 +115,7 @@ class Bracket:
             f"proved_active_{suffix}": self.active,
             "relative_width": None if self.relative_width == inf else self.relative_width,
             "hand": self.hand,
+            "scope": self.scope.to_dict(),
             f"every_hand_{suffix}": list(self.every_hand),
             "assumptions": list(self.assumptions),
             "evaluations": self.evaluations,
@@ -198,6 +205,7 @@ def passive_limit(
         )
     if not isinstance(parameter, str):
         raise InputError(f"parameter is the name of one, such as 'stiffness', got {parameter!r}")
+    _refuse_without_part(parameter.removeprefix("device."), force_limit, force_resolution)
     law = as_environment(environment)
     search = _Search(
         _parameter(device, law, parameter), tolerance, time.monotonic(), patience(seconds), progress
@@ -255,7 +263,7 @@ class _Search:
 
         def proved(value: Exact) -> bool:
             found = verdict(value)
-            return found.outcome == "passive" and found.certificate.kind in COVERS_CONTACT
+            return bool(found.outcome == "passive")
 
         def refuted(value: Exact) -> bool:
             return bool(verdict(value).outcome == "active")
@@ -267,9 +275,9 @@ class _Search:
         passive, active = self._both_sides(proved, refuted)
         good = None if passive is None else verdict(passive)
         bad = None if active is None else verdict(active)
-        said = (good or bad or verdict(self._first())).assumptions
+        scope = (good or bad or verdict(self._first())).scope
         proof, motion = good and good.certificate, bad and bad.witness
-        return self._bracket(passive, active, proof, motion, "every hand", (passive, active), said)
+        return self._bracket(passive, active, proof, motion, (passive, active), scope)
 
     def by_games(
         self,
@@ -317,8 +325,8 @@ class _Search:
         if proof is not None and not proof.verify():  # nothing is claimed that the checker does not accept
             passive, proof, storage = None, None, None
         motion = None if active is None else motions.get(active)
-        said = assumptions(device, at_first)
-        return self._bracket(passive, active, proof, motion, at_first.hand, every_hand, said, storage)
+        scope = game_scope(*self.parameter.change(self._first()), at_first)
+        return self._bracket(passive, active, proof, motion, every_hand, scope, storage)
 
     def _first(self) -> Exact:
         return Exact(self.parameter.now or 1.0)
@@ -393,9 +401,8 @@ class _Search:
         active: Exact | None,
         certificate: Certificate | None,
         witness: Any,
-        hand: str,
         every_hand: tuple[float | None, float | None],
-        said: tuple[str, ...],
+        scope: Scope,
         storage: Storage | None = None,
     ) -> Bracket:
         return Bracket(
@@ -405,9 +412,8 @@ class _Search:
             _plain(active),
             certificate,
             witness,
-            hand,
+            scope,
             (_plain(every_hand[0]), _plain(every_hand[1])),
-            said,
             self.evaluations,
             time.monotonic() - self.start,
             storage,
@@ -436,6 +442,28 @@ def _plain(value: float | None) -> float | None:
 def _decimal(value: float) -> Exact:
     """A value of six digits, as a person would write it down."""
     return Exact(f"{value:.6g}")
+
+
+_NO_PART = {
+    "mass": "a hand without a limit on its force moves every mass as it likes",
+    "stiction": "only sliding friction is counted",
+    "motor_inductance": "the actuator is taken to give every force at once",
+    "supply_voltage": "the actuator is taken to give every force at once",
+    "current_limit": "the actuator is taken to give every force at once",
+}
+
+
+def _refuse_without_part(key: str, force_limit: bool, force_resolution: bool) -> None:
+    """Refuse a parameter on which no outcome depends."""
+    if key in _NO_PART:
+        raise InputError(
+            f"{key} plays no part, so it has no limit: {_NO_PART[key]}. Ask for damping, coulomb_friction, "
+            "resolution, delay or rate of the device, or for a parameter of the environment"
+        )
+    counted = {"force_limit": force_limit, "force_resolution": force_resolution}
+    if not counted.get(key, True):
+        option = f"--count-{key.replace('_', '-')}"
+        raise InputError(f"{key} plays no part unless it is counted in: give {key}=True, {option}")
 
 
 def _parameter(device: Device, environment: Environment, name: str) -> _Parameter:

@@ -12,6 +12,7 @@ from typing import Any
 from zwidth.device.device import Device
 from zwidth.device.friction import FrictionCurve
 from zwidth.errors import InputError
+from zwidth.passivity.scope import Contact, Hands, Law
 from zwidth.passivity.worst_hand.board import Domain
 from zwidth.passivity.worst_hand.domain import counts_of, losses_of
 from zwidth.passivity.worst_hand.gain import Gain
@@ -51,24 +52,17 @@ class RowGame:
         return self.device.motion
 
     @property
-    def hand(self) -> str:
-        """The hands that a proof covers, in words."""
-        length, speed = ("rad", "rad/s") if self.motion == "rotary" else ("m", "m/s")
-        resolution, counts = self.losses.resolution, float(self.domain.speed)
-        deepest = float((self.domain.highest + 1) * resolution)
-        fastest = counts * float(resolution / self.losses.period)
-        return (
-            f"hands of up to {fastest:.4g} {speed} over one sample ({counts:.4g} counts a sample), up to "
-            f"{deepest:.4g} {length} ({self.domain.highest + 1} counts) on either side of the surface"
-        )
+    def hands(self) -> Hands:
+        """The hands that a proof covers: they begin at rest outside, or at the first count."""
+        resolution = self.losses.resolution
+        far = float((self.domain.highest + 1) * resolution)
+        speed = float(self.domain.speed * resolution / self.losses.period)
+        return Hands(speed=speed, inside=far, outside=far, resolution=float(resolution))
 
     @property
-    def contact(self) -> str:
-        """What is covered of contact, in words."""
-        begun = "outside" if self.law.unilateral else "at the first count"
-        return (
-            f"contact made and broken at any instant within the board, by a hand that begins at rest {begun}"
-        )
+    def contact(self) -> Contact:
+        """What is covered of contact."""
+        return "made and broken" if self.law.unilateral else "both sides"
 
     @property
     def actuator(self) -> tuple[bool, bool]:
@@ -76,12 +70,9 @@ class RowGame:
         return self.law.limited, self.law.stepped
 
     @property
-    def further(self) -> tuple[str, ...]:
-        """What else a proof takes for granted."""
-        return (
-            "the law is a table of its states and forces, as the simulator's compiled law gives them in "
-            "doubles; the checker takes the table as it stands, same_law compares it with the law",
-        )
+    def inexact(self) -> tuple[Law, ...]:
+        """What of the law is not exact."""
+        return ("table",)
 
     @cached_property
     def table(self) -> Table:

@@ -1,0 +1,183 @@
+"""The verdict on a law with H(z): where the damping goes, how far each parameter may go, what to change."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import cos, pi
+from typing import Any
+
+from zwidth.device.actuator import ActuatorCheck, actuator_checks
+from zwidth.passivity import limits
+from zwidth.passivity.advice import Advice, advise
+from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
+from zwidth.passivity.decision import Decision
+from zwidth.passivity.document import unit_suffix
+from zwidth.passivity.stability_plane import admissible_speed
+from zwidth.passivity.verdict import Verdict, as_text
+from zwidth.quantity.glossary import GLOSSARY
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class LinearVerdict(Verdict):
+    """A verdict on a law that is H(z) inside, with its numbers.
+
+    Attributes
+    ----------
+    decision
+        What is known of the loop, at the worst corner where intervals were given.
+    """
+
+    decision: Decision
+
+    @cached_property
+    def budget(self) -> Budget:
+        """Leaks against dissipation at the tightest frequency."""
+        return budget(self.decision)
+
+    @cached_property
+    def limit(self) -> str:
+        """The mechanism that binds: what is violated, or would be first."""
+        if self._in_contact_only:
+            return CONTACT
+        return binding_limit(self.decision, self.budget, self.environment)
+
+    @property
+    def _in_contact_only(self) -> bool:
+        """True when a hand that stays inside gains nothing, and one that touches and leaves does.
+
+        What is required is then what is proved enough with contact made and broken.
+        """
+        return self.outcome == "active" and self.decision.is_provable
+
+    @property
+    def mode(self) -> str | None:
+        """How a violation shows itself (Abbott & Okamura 2005, section IV-C).
+
+        None when passive, and for a motion that has to touch and leave.
+        """
+        if self.is_proved or self._in_contact_only:
+            return None
+        return "active tactile" if self.limit == QUANTIZATION else "closed-loop instability"
+
+    @cached_property
+    def max_stiffness(self) -> float | None:
+        """Largest passive stiffness K, all else as given [N/m; N·m/rad].
+
+        inf if every stiffness is passive; None if none is, or the law has none
+        (see `max_gain`).
+        """
+        return limits.max_stiffness(self.device, self.environment, self._in_contact_only)
+
+    @cached_property
+    def max_gain(self) -> float | None:
+        """Largest passive factor on H(z), for a law without a stiffness of its own."""
+        return limits.max_gain(self.device, self.environment, self._in_contact_only)
+
+    @cached_property
+    def required_damping(self) -> float | None:
+        """Smallest device damping b that hold, delay and law need [N·s/m; N·m·s/rad].
+
+        None if no damping would do.  Coulomb friction is a need of its own: see `margins`.
+        """
+        return limits.required_damping(self.decision, self._in_contact_only)
+
+    @property
+    def critical_frequency(self) -> float:
+        """Frequency at which the linear criterion is tightest [Hz]."""
+        return self.budget.frequency
+
+    @cached_property
+    def admissible_speed(self) -> float | None:
+        """Hand speed up to which an active spring wall still gives out no energy [m/s; rad/s].
+
+        v = (2f_c − K Δ)/(K T − 2b), for mean speeds over a sample: Coulomb
+        friction outweighs the hold's leak of slow motions.  None where it does
+        not apply: a passive loop, another law, a delay.
+        """
+        spring, loop = self.decision.is_spring, self.decision.loop
+        if self.outcome != "active" or not spring or loop.whole_delay or loop.part_delay:
+            return None
+        stiffness = loop.static_stiffness
+        assert stiffness is not None
+        speed = float(admissible_speed(self.device, stiffness))
+        return speed if 0 < speed < float("inf") else None
+
+    @cached_property
+    def margins(self) -> Mapping[str, float | None]:
+        """What is left of damping and of Coulomb friction over what is needed; < 0 if too little.
+
+        Keys "damping" [N·s/m; N·m·s/rad] and "coulomb_friction" [N; N·m]; None where the need is unbounded.
+        """
+        need, friction = self.required_damping, self.decision.sufficient_friction
+        friction = self.decision.contact_friction if self._in_contact_only else friction
+        b, setting = self.decision.loop.damping, self.decision.setting
+        return {
+            "damping": None if need is None else _difference(b, need),
+            "coulomb_friction": None if friction is None else float(setting.coulomb_friction - friction),
+        }
+
+    @cached_property
+    def advice(self) -> tuple[Advice, ...]:
+        """The smallest single changes that would do, or the slack of each parameter."""
+        return advise(self.device, self.environment, self.is_proved, self._in_contact_only)
+
+    @cached_property
+    def actuator(self) -> tuple[ActuatorCheck, ...]:
+        """Is the actuator close to the ideal that the claim assumes?"""
+        stiffness = self.decision.loop.static_stiffness
+        positive = stiffness is not None and stiffness > 0
+        return actuator_checks(self.device, stiffness if positive else None)
+
+    def curve(self, points: int = 400) -> tuple[list[float], list[float]]:
+        """(frequency [Hz], damping the criterion asks for there [N·s/m]), for plotting only."""
+        loop = self.decision.loop
+        turns = [(k + 0.5) / points / 2 for k in range(points)]
+        cosines = [Fraction(cos(2 * pi * t)) for t in turns]
+        return [t / float(loop.period) for t in turns], [loop.required_damping_at(c) for c in cosines]
+
+    def numbers(self) -> dict[str, Any]:
+        """Limits, margins and advice as plain data, a unit in every key of a physical quantity."""
+        motion = self.device.motion
+
+        def key(prefix: str, quantity: str) -> str:
+            return f"{prefix}_{unit_suffix(GLOSSARY[quantity].unit_for(motion))}"
+
+        document: dict[str, Any] = {"limit": self.limit, "mode": self.mode}
+        document[key("max_stiffness", "stiffness")] = self.max_stiffness
+        if not limits.has_stiffness(self.environment):
+            document["max_gain"] = self.max_gain
+        document[key("required_damping", "damping")] = self.required_damping
+        document["critical_frequency_Hz"] = self.critical_frequency
+        if self.admissible_speed is not None:
+            speed_unit = "rad_per_s" if motion == "rotary" else "m_per_s"
+            document[f"admissible_speed_{speed_unit}"] = self.admissible_speed
+        document["margins"] = {key(name, name): value for name, value in self.margins.items()}
+        document["advice"] = [advice.to_dict() for advice in self.advice]
+        document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
+        return document
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The main numbers as (name, text) for a report."""
+        unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
+        rows = [("limit", self.limit)]
+        if limits.has_stiffness(self.environment):
+            rows.append(("largest passive stiffness", as_text(self.max_stiffness, unit["stiffness"])))
+        else:
+            rows.append(("largest passive gain", as_text(self.max_gain, "times this law")))
+        rows.append(("required device damping", as_text(self.required_damping, unit["damping"])))
+        rows.append(("critical frequency", as_text(self.critical_frequency, "Hz")))
+        for name, value in self.margins.items():
+            margin_unit = GLOSSARY[name].unit_for(self.device.motion)
+            rows.append((f"margin of {name.replace('_', ' ')}", as_text(value, margin_unit)))
+        if self.admissible_speed is not None:
+            per_second = "rad/s" if self.device.motion == "rotary" else "m/s"
+            rows.append(("slower hands are safe up to", as_text(self.admissible_speed, per_second)))
+        return [*rows, *super().rows()]
+
+
+def _difference(b: Fraction, need: float) -> float:
+    """b − need exactly: 0 at the limit, whatever the rounding of either."""
+    return float(b - Fraction(repr(need)))

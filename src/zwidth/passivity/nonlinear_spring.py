@@ -1,0 +1,137 @@
+"""A spring given by points, proved from its slopes: detents, bump stops, magnets.
+
+    b ≥ (L/2 + d s) T      f_c ≥ s Δ/2
+
+L ≥ 0 is the largest slope, s the largest |slope|, d whole samples of delay.  Negative slopes cost nothing
+without delay, as long as the potential has a lowest value: beyond its ends the spring must not pull away.
+The proof is in the documentation; where its steepest part is long enough, both conditions are necessary.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from zwidth.device import Device
+from zwidth.environment.nonlinear_spring import NonlinearSpring
+from zwidth.passivity import checker
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.scope import Contact
+
+
+@dataclass(frozen=True)
+class SpringNeed:
+    """What a nonlinear spring asks of a device, as far as it is proved.
+
+    Parameters
+    ----------
+    largest_slope
+        L ≥ 0, what the hold multiplies [N/m; N·m/rad].
+    steepest
+        s, the largest |slope|, what an encoder count multiplies [N/m; N·m/rad].
+    damping
+        b that is enough [N·s/m; N·m·s/rad]; None with a delay of part of a sample.
+    coulomb_friction
+        f_c that is enough [N; N·m].
+    bounded
+        True if the potential has a lowest value; else no friction is enough here.
+    """
+
+    largest_slope: Fraction
+    steepest: Fraction
+    damping: Fraction | None
+    coulomb_friction: Fraction
+    bounded: bool
+
+
+def spring_need(device: Device, spring: NonlinearSpring) -> SpringNeed:
+    """What the slopes of a spring ask of a device.
+
+    Raises
+    ------
+    InputError
+        If a number of the device is an interval.
+    """
+    points = list(zip(spring.positions, spring.forces, strict=True))
+    slopes = [
+        (f1.fraction - f0.fraction) / (x1.fraction - x0.fraction) for (x0, f0), (x1, f1) in pairwise(points)
+    ]
+    largest, steepest = max(*slopes, Fraction(0)), max(map(abs, slopes))
+    period = device.exact("sample_period")
+    samples = device.exact("delay") / period
+    whole = samples.denominator == 1
+    return SpringNeed(
+        largest_slope=largest,
+        steepest=steepest,
+        damping=(largest / 2 + samples * steepest) * period if whole else None,
+        coulomb_friction=steepest * device.exact("resolution") / 2,
+        bounded=spring.forces[0] <= 0 <= spring.forces[-1],
+    )
+
+
+@dataclass(frozen=True)
+class EndlessPull:
+    """A proof that a spring gives out energy without end: it pulls away, and friction holds less.
+
+    Parameters
+    ----------
+    document
+        The loop and the points, for the checker.
+    pull
+        The force with which it does [N; N·m].
+    unit
+        Of it.
+    """
+
+    document: dict[str, Any]
+    pull: float
+    unit: str
+
+    @property
+    def witness(self) -> None:
+        """No motion ends it: the hand lets itself be pulled, slowly, as far as it likes."""
+        return None
+
+    @property
+    def contact(self) -> Contact:
+        """The spring has no surface."""
+        return "both sides"
+
+    def verify(self) -> bool:
+        """True when the independent checker accepts it."""
+        return checker.verify(self.document).valid
+
+    def to_dict(self) -> dict[str, Any]:
+        """The proof as plain data."""
+        return self.document
+
+    def describe(self) -> str:
+        """What is wrong, in words."""
+        return f"beyond an end the spring pulls away with {self.pull:.6g} {self.unit} for ever"
+
+
+def refute_spring(device: Device, spring: NonlinearSpring) -> EndlessPull | None:
+    """The proof that a spring pulls away for ever, if it does and the checker accepts it."""
+    pull = max(spring.forces[0].fraction, -spring.forces[-1].fraction)
+    unit = "N·m" if device.motion == "rotary" else "N"
+    found = EndlessPull(_document(device, spring, "endless pull"), float(pull), unit)
+    return found if found.verify() else None
+
+
+def certify_spring(device: Device, spring: NonlinearSpring) -> Certificate:
+    """The loop and the points; the checker evaluates the conditions."""
+    return Certificate((_document(device, spring, "nonlinear spring"),))
+
+
+def _document(device: Device, spring: NonlinearSpring, kind: str) -> dict[str, Any]:
+    names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
+    loop = {unit_key(name, device.motion): exact_text(device.exact(name)) for name in names}
+    units = "rad_N_m" if device.motion == "rotary" else "m_N"
+    points = [
+        [exact_text(x.fraction), exact_text(f.fraction)]
+        for x, f in zip(spring.positions, spring.forces, strict=True)
+    ]
+    return {"format": FORMAT, "kind": kind, "loop": loop, "law": {f"points_{units}": points}}

@@ -1,0 +1,158 @@
+"""Laws without H(z): which road decides them.
+
+    a nonlinear spring       its slopes; else value iteration, or a motion
+    a Hunt–Crossley contact  value iteration, for hands within bounds
+    laws in a row            force bounding at the end; a wall with as much virtual damping covers them;
+                             a proof on paper, where the last law has one; value iteration
+
+Each road says of whom it speaks: the scope of the verdict is that of the proof.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+
+from zwidth.device import Device
+from zwidth.environment import Wall
+from zwidth.environment.environment import Environment
+from zwidth.environment.hunt_crossley import HuntCrossley
+from zwidth.environment.nonlinear_spring import NonlinearSpring
+from zwidth.errors import InputError
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.game import SECONDS
+from zwidth.passivity.scope import Scope, scope_of
+from zwidth.passivity.verdict import Need, Verdict
+from zwidth.quantity.exact import Exact, ends
+
+Progress = Callable[[int], None]
+Closed = Callable[[Device, Environment], Verdict]
+"""How a law with H(z) is decided."""
+
+
+def check_other(
+    device: Device, law: Environment, closed: Closed, progress: Progress | None = None
+) -> Verdict:
+    """The verdict on a law without H(z).
+
+    Parameters
+    ----------
+    device
+        Where parameters are intervals, damping, Coulomb friction and resolution are taken at their worst.
+    law
+        A `NonlinearSpring`, a `HuntCrossley` contact, or what `render` gives.
+    closed
+        How a wall that covers laws in a row is decided.
+    progress
+        Told the number of states that still improve, while values are iterated.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, or another parameter is an interval.
+    """
+    from zwidth.rendering.rendered import Rendered
+
+    worst = _at_its_worst(device)
+    asked = scope_of(device, law)
+    if isinstance(law, NonlinearSpring):
+        return _spring(worst, law, asked, progress)
+    if isinstance(law, HuntCrossley):
+        return _by_values(Verdict("undecided", asked, worst, law), progress)
+    if isinstance(law, Rendered):
+        return _row(worst, law, asked, closed, progress)
+    raise InputError(f"no road is known to a verdict on {law.describe(device.motion)}")
+
+
+def _at_its_worst(device: Device) -> Device:
+    """Least friction and largest counts: whatever is proved then is proved of the whole box."""
+    if device.is_certain:
+        return device
+    given = device.parameters()
+    low = {k: Exact(ends(given[k])[0]) for k in ("damping", "coulomb_friction") if k in given}
+    return device.replace(**low, resolution=Exact(ends(device.resolution)[1]))
+
+
+def _spring(device: Device, law: NonlinearSpring, asked: Scope, progress: Progress | None) -> Verdict:
+    from zwidth.passivity.nonlinear_spring import certify_spring, refute_spring, spring_need
+
+    need = spring_need(device, law)
+    b, friction = device.exact("damping"), device.exact("coulomb_friction")
+    needs = [Need("coulomb_friction", float(need.coulomb_friction), float(friction))]
+    if need.damping is not None:
+        needs.insert(0, Need("damping", float(need.damping), float(b)))
+    verdict = Verdict("undecided", asked, device, law, needs=tuple(needs))
+    certificate = certify_spring(device, law)
+    covered = certificate.covered()
+    if covered is None:
+        runaway = refute_spring(device, law)
+        if runaway is not None:
+            return replace(verdict, outcome="active", violation=runaway)
+        verdict = verdict if need.bounded else replace(verdict, finding="no lowest energy")
+        return _by_values(verdict, progress)
+    limited = friction == need.coulomb_friction > 0 or b == need.damping
+    return _proved(verdict, certificate, asked, limited)
+
+
+def _proved(verdict: Verdict, certificate: Certificate, scope: Scope, at_limit: bool = False) -> Verdict:
+    return replace(verdict, outcome="passive", scope=scope, certificate=certificate, at_limit=at_limit)
+
+
+def _row(
+    device: Device, law: Environment, asked: Scope, closed: Closed, progress: Progress | None
+) -> Verdict:
+    from zwidth.passivity.bounding import check_bounding, is_bounded
+
+    verdict = Verdict("undecided", asked, device, law)
+    if is_bounded(law):
+        bounding = check_bounding(device, law)
+        if bounding.certificate is not None:
+            return _proved(verdict, bounding.certificate, bounding.scope)
+    covering = covering_wall(law)
+    if covering is not None:
+        proved = closed(device, covering)
+        if proved.outcome == "passive" and proved.certificate is not None:
+            scope = proved.scope.replace(also=(), law=("covered by a wall",))
+            return _proved(verdict, proved.certificate, scope, proved.at_limit)
+    on_paper = _on_paper(verdict)
+    return _by_values(verdict, progress) if on_paper is None else on_paper
+
+
+def covering_wall(law: Environment) -> Wall | None:
+    """A wall whose proof, for |f − K u| ≤ B |v|, is one of a wall with laws that add no more than that."""
+    from zwidth.rendering.rendered import Rendered
+
+    if not isinstance(law, Rendered) or not isinstance(law.environment, Wall):
+        return None
+    if law.environment.damping or law.environment.clamped:
+        return None
+    bounds = [stage.most_damping() for stage in law.stages]
+    if any(bound is None for bound in bounds):
+        return None
+    return law.environment.replace(damping=sum((b.fraction for b in bounds if b is not None), Fraction(0)))
+
+
+def _on_paper(verdict: Verdict) -> Verdict | None:
+    """The theorem of the last law in the row, if it has one for this device."""
+    from zwidth.rendering.rendered import Rendered
+    from zwidth.rendering.stage import Surroundings
+
+    law = verdict.environment
+    assert isinstance(law, Rendered)
+    theorem = law.stages[-1].theorem(Surroundings(verdict.device, law.environment))
+    return None if theorem is None else replace(verdict, outcome="theorem", theorem=theorem)
+
+
+def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
+    """What value iteration adds: a motion refutes, a proof of bounded hands stands beside the verdict."""
+    from zwidth.passivity.worst_hand.hand import worst_hand  # numpy and numba take their time
+
+    try:
+        found = worst_hand(verdict.device, verdict.environment, seconds=SECONDS, progress=progress)
+    except InputError:  # an ideal encoder, or a law that remembers too much
+        return verdict
+    if found.witness is not None:
+        scope = verdict.scope.replace(contact=found.scope.contact)
+        return replace(verdict, outcome="active", scope=scope, motion=found.witness, worst_hand=found)
+    return verdict if found.outcome == "undecided" else replace(verdict, worst_hand=found)

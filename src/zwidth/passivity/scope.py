@@ -1,0 +1,194 @@
+"""What a result is about, as data: which hands, which contact, what of encoder and actuator is counted.
+
+A verdict means no more than the theorem behind it.  So every result carries this record, the words of its
+claim are made from it (`wording`), last and in one place, and what it says of contact is what the
+independent checker found in the proof.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
+
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Interval, ends
+
+if TYPE_CHECKING:
+    from zwidth.device import Device, FrictionCurve
+    from zwidth.environment.environment import Environment
+
+Contact = Literal["made and broken", "kept", "both sides"]
+"""The hand touches and leaves at will; it stays inside; the law has no surface at all."""
+
+Encoder = Literal["ideal", "counted", "not counted"]
+"""No steps; steps in the proof; steps that the device has and the proof leaves out."""
+
+Sampling = Literal["constant", "any"]
+"""A constant period and delay; or whatever the clock does."""
+
+FedWith = Literal["position", "penetration", ""]
+"""Its memory hears the position outside too, or the depth max(x, 0); or that makes no difference."""
+
+Law = Literal[
+    "rounded coefficients",
+    "rounded power",
+    "table",
+    "doubles",
+    "any before the last",
+    "covered by a wall",
+    "potential bounded below",
+    "energy at first bounded",
+]
+"""What of the law is not exact, or not looked at."""
+
+Also = Literal["springs", "clamped"]
+"""What else a proof covers: every spring of slope 0 to K; the same wall if it never pulls."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hands:
+    """Which hands: every hand, unless a bound stands here.
+
+    Parameters
+    ----------
+    speed
+        Largest mean speed over a sample, or over `part` of one [m/s; rad/s].
+    in_each_part
+        True if the bound on speed is for each part of a sample with one force.
+    inside, outside
+        How deep, and how far outside it goes [m; rad]; None: any distance.
+    resolution
+        One encoder count, in which the bounds are told too [m; rad]; None: they are not.
+    impedance
+        The one hand that is known, in words; None for all others.
+    activity, below
+        What a hand gives out at most, as a damping [N·s/m; N·m·s/rad], at frequencies below this [Hz]; None:
+        at all.
+    """
+
+    speed: float | None = None
+    in_each_part: bool = False
+    inside: float | None = None
+    outside: float | None = None
+    resolution: float | None = None
+    impedance: str | None = None
+    activity: float | None = None
+    below: float | None = None
+
+    @property
+    def every(self) -> bool:
+        """True if nothing is asked of the hand."""
+        return self == Hands()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scope:
+    """What a result is about.
+
+    Parameters
+    ----------
+    hands
+        Which hands.
+    contact
+        Made and broken, kept, or with a law on both sides.  Of a motion that takes energy out: what it does.
+    encoder
+        Whether the encoder's steps are in it.
+    force_limit, force_steps
+        Whether the actuator's force limit, and its converter's steps, are in it; else the actuator is ideal.
+    largest_force
+        Forces of the wall up to which it holds [N; N·m]; None: any.
+    sampling
+        What is asked of the clock.
+    damping, coulomb_friction
+        b [N·s/m; N·m·s/rad] and f_c [N; N·m] that the device takes out at least; None where `friction` says
+        it, or where there are several joints.
+    friction
+        The measured curve in the place of both, or None.
+    fed_with
+        What a law with a memory must be fed with for a proof to hold; "": either.
+    clamped
+        True if the law never pulls: a force below 0 is given as 0.
+    region
+        Where in its workspace an arm is, in words; None for a device of one axis.
+    intervals
+        Parameters that stand for every value in an interval.
+    assumed
+        Parameters of the device that were not given and are taken as 0.
+    law
+        What of the law is not exact, or not looked at.
+    also
+        What else a proof covers.
+    motion
+        "linear" or "rotary": the units.
+    """
+
+    hands: Hands = Hands()
+    contact: Contact = "made and broken"
+    encoder: Encoder = "ideal"
+    force_limit: bool = False
+    force_steps: bool = False
+    largest_force: float | None = None
+    sampling: Sampling = "constant"
+    damping: float | None = None
+    coulomb_friction: float | None = None
+    friction: FrictionCurve | None = None
+    fed_with: FedWith = ""
+    clamped: bool = False
+    region: str | None = None
+    intervals: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
+    law: tuple[Law, ...] = ()
+    also: tuple[Also, ...] = ()
+    motion: str = "linear"
+
+    def replace(self, **changes: Any) -> Scope:
+        """The same record with some entries changed."""
+        return replace(self, **changes)
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The record in words, a line for each thing."""
+        from zwidth.passivity.wording import lines  # words come last
+
+        return lines(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The record as plain data, a unit in every key of a physical quantity."""
+        from zwidth.passivity.wording import document
+
+        return document(self)
+
+
+def scope_of(device: Device, environment: Environment) -> Scope:
+    """What is asked of a loop, before anything is found: every hand, contact as the law has it."""
+    certain = device.is_certain
+    friction, damping = ends(device.coulomb_friction)[0], ends(device.damping)[0]
+    named = tuple(k for k, v in device.parameters().items() if isinstance(v, Interval))
+    return Scope(
+        contact="made and broken" if environment.unilateral else "both sides",
+        encoder="counted" if ends(device.resolution)[1] else "ideal",
+        damping=float(device.exact("damping") if certain else damping),
+        coulomb_friction=float(device.exact("coulomb_friction") if certain else friction),
+        clamped=environment.clamped and not environment.spring,
+        intervals=named + (() if environment.is_certain else ("the environment's intervals",)),
+        assumed=device.assumed,
+        law=("rounded coefficients",) if environment.coefficients_rounded else (),
+        motion=device.motion,
+    )
+
+
+def as_contact(value: object) -> Contact:
+    """Read the keyword that says which contact is asked about.
+
+    Raises
+    ------
+    InputError
+        If it is neither "made and broken" nor "kept".
+    """
+    if value == "made and broken":
+        return "made and broken"
+    if value == "kept":
+        return "kept"
+    raise InputError(
+        f'contact is "made and broken", as a hand does, or "kept", for one that never leaves; got {value!r}'
+    )

@@ -1,0 +1,224 @@
+"""What a scope says in words and as plain data: the one place where either is made.
+
+Nothing reads these sentences again: whoever needs a fact takes it from the record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from zwidth.environment.hunt_crossley import DIGITS
+from zwidth.passivity.document import unit_key, unit_suffix
+from zwidth.passivity.scope import Contact, Hands, Scope
+from zwidth.quantity.glossary import GLOSSARY
+
+if TYPE_CHECKING:
+    from zwidth.passivity.outcome import Outcome
+
+NO_MOTION = "No motion of {hand}, however fast or skilled, can take energy out of this loop"
+
+_CONTACT: dict[Contact, str] = {
+    "made and broken": "contact made and broken at any instant",
+    "kept": "contact is kept: the hand stays inside; making and breaking contact is not covered",
+    "both sides": "the law acts on both sides of x = 0: there is no contact to make or break",
+}
+_OF_A_MOTION: dict[Contact, str] = {
+    "made and broken": "the motion makes and breaks contact",
+    "kept": "the motion stays inside: a hand that keeps contact can make it",
+    "both sides": _CONTACT["both sides"],
+}
+_ALSO = {
+    "springs": "the same holds for every spring law of slope 0 to K that is 0 somewhere",
+    "clamped": "also for a wall that is clamped so that it never pulls",
+}
+_LAW = {
+    "rounded coefficients": "H(z) has the coefficients of its discretization rounded to double precision",
+    "rounded power": f"K uⁿ is rounded to {DIGITS} digits, as no decimal writes it",
+    "table": (
+        "the law is a table of its states and forces, as the simulator's compiled law gives them in doubles; "
+        "the checker takes the table as it stands, same_law compares it with the law"
+    ),
+    "doubles": "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
+    "covered by a wall": "the laws add no more than the virtual damping of a wall, and that wall is proved",
+    "potential bounded below": "of springs: those whose potential is bounded below",
+    "energy at first bounded": "environments that have stored no more than a bounded energy at first",
+    "any before the last": "any environment, and any laws before the last one in the row",
+}
+_ENCODER = {
+    "ideal": "ideal position sensor: no quantization",
+    "counted": "encoder counts of one size, their phase against the surface unknown",
+    "not counted": "encoder steps are left out",
+}
+_SAMPLING = {
+    "constant": "a constant sample period and delay, no missed samples",
+    "any": "any sample period, delays and missed samples",
+}
+
+
+def contact_of(contact: Contact) -> str:
+    """The contact that a result covers, in a few words."""
+    return _CONTACT[contact]
+
+
+def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
+    """The sentence of a proof."""
+    hand = {"kept": "a hand that keeps contact"}.get(scope.contact, "the hand")
+    if not scope.hands.every:
+        return "No motion of the hand within these bounds takes energy out of this loop, ever."
+    more = "; it is exactly at its limit, equality included" if at_limit else ""
+    return f"{NO_MOTION.format(hand=hand)}{more}."
+
+
+def lines(scope: Scope, outcome: Outcome | None = None) -> tuple[str, ...]:
+    """What a result covers and takes for granted, a line for each thing; of a motion what it does."""
+    return tuple(_lines(scope, active=outcome == "active"))
+
+
+def _lines(scope: Scope, active: bool) -> Iterator[str]:
+    yield "; ".join(
+        [
+            (_OF_A_MOTION if active else _CONTACT)[scope.contact],
+            *([f"the law is fed with the {scope.fed_with}"] if scope.fed_with else []),
+            *(["the law never pulls: a force below 0 is given as 0"] if scope.clamped else []),
+            *(_ALSO[more] for more in scope.also),
+        ]
+    )
+    if scope.region is not None:
+        yield f"the arm stays in its region, {scope.region}"
+    if not scope.hands.every and not active:
+        yield f"a proof covers {describe_hands(scope.hands, scope.motion)}"
+    yield from _losses(scope)
+    if scope.hands.impedance is None:
+        speed = "speed and force" if scope.hands.speed is None or active else "force"
+        limit = "limits on" if " and " in speed else "limit on"
+        yield f"a hand without {limit} {speed}; the mass of the device plays no part"
+    yield _actuator(scope)
+    if scope.largest_force is not None:
+        yield f"forces of the wall up to {scope.largest_force:.6g} {_units(scope.motion)['N']}"
+    yield _SAMPLING[scope.sampling]
+    yield _ENCODER[scope.encoder]
+    yield from (f"{key.replace('_', ' ')} was not given and taken as 0" for key in scope.assumed)
+    yield from (_LAW[note] for note in scope.law)
+
+
+def intervals(scope: Scope, outcome: Outcome) -> str | None:
+    """The line that stands beside a loop with intervals."""
+    if not scope.intervals:
+        return None
+    holds = "" if outcome == "undecided" else f"holds for every value within {', '.join(scope.intervals)}; "
+    return f"{holds}numbers are given for the worst corner of the intervals"
+
+
+def _losses(scope: Scope) -> Iterator[str]:
+    unit = _units(scope.motion)
+    if scope.friction is not None:
+        yield f"the device takes out what its friction curve says; {scope.friction.assumption}"
+    elif scope.damping is not None and scope.coulomb_friction is not None:
+        yield (
+            f"the device takes out at least b = {scope.damping:.6g} {unit['b']} of viscous and "
+            f"f_c = {scope.coulomb_friction:.6g} {unit['N']} of Coulomb friction"
+        )
+    elif scope.damping is not None:
+        yield (
+            f"the device takes out b = {scope.damping:.6g} {unit['b']} of viscous friction; Coulomb friction "
+            "is left out"
+        )
+
+
+def _actuator(scope: Scope) -> str:
+    """What of the actuator is in it."""
+    parts = {"force limit": scope.force_limit, "converter steps": scope.force_steps}
+    counted = [name for name, value in parts.items() if value]
+    rest = ", ".join([name for name in parts if name not in counted] + ["current rise and added filters"])
+    if not counted:
+        return f"ideal actuator: {rest} are not in the claim"
+    verb = "is" if counted == ["force limit"] else "are"
+    return f"the {' and the '.join(counted)} {verb} counted in; {rest} are not"
+
+
+def describe_hands(hands: Hands, motion: str) -> str:
+    """The hands that a result is about, in words."""
+    unit = _units(motion)
+    if hands.impedance is not None:
+        return f"a hand that is known: {hands.impedance}"
+    if hands.activity is not None:
+        where = "" if hands.below is None else f" below {hands.below:g} Hz"
+        return f"hands that give out at most {hands.activity:.6g} {unit['b']}{where} of their motion"
+    bounds = []
+    if hands.speed is not None:
+        over = "each part of a sample with one force" if hands.in_each_part else "one sample"
+        bounds.append(
+            f"up to {hands.speed:.4g} {unit['m/s']} over {over}" + _counts(hands, hands.speed, "a sample")
+        )
+    if hands.inside is not None:
+        bounds.append(f"up to {hands.inside:.4g} {unit['m']}{_counts(hands, hands.inside)} {_sides(hands)}")
+    return f"hands of {', '.join(bounds)}" if bounds else "every hand"
+
+
+def _counts(hands: Hands, value: float, per: str = "") -> str:
+    """The same in counts of the encoder."""
+    if hands.resolution is None:
+        return ""
+    return f" ({value / hands.resolution:.4g} counts{f' {per}' if per else ''})"
+
+
+def _sides(hands: Hands) -> str:
+    if hands.outside is None:
+        return "inside and any distance outside"
+    if hands.inside is not None and hands.outside == hands.inside:
+        return "on either side"
+    return f"inside and {hands.outside:.4g} outside"
+
+
+def _units(motion: str) -> dict[str, str]:
+    if motion == "rotary":
+        return {"N": "N·m", "b": "N·m·s/rad", "m": "rad", "m/s": "rad/s"}
+    return {"N": "N", "b": "N·s/m", "m": "m", "m/s": "m/s"}
+
+
+def document(scope: Scope) -> dict[str, Any]:
+    """A scope as plain data."""
+    written: dict[str, Any] = {
+        "hands": _hands_document(scope.hands, scope.motion),
+        "contact": scope.contact,
+        "encoder": scope.encoder,
+        "force_limit_counted": scope.force_limit,
+        "force_steps_counted": scope.force_steps,
+        "sampling": scope.sampling,
+        "clamped": scope.clamped,
+    }
+    if scope.fed_with:
+        written["fed_with"] = scope.fed_with
+    for name in ("damping", "coulomb_friction"):
+        written[unit_key(name, scope.motion)] = getattr(scope, name)
+    if scope.largest_force is not None:
+        force = unit_suffix(GLOSSARY["force"].unit_for(scope.motion))
+        written[f"largest_force_{force}"] = scope.largest_force
+    if scope.friction is not None:
+        written["friction"] = "curve"
+    if scope.region is not None:
+        written["region"] = scope.region
+    for name in ("intervals", "assumed", "law", "also"):
+        values: Sequence[str] = getattr(scope, name)
+        if values:
+            written[name] = list(values)
+    return written
+
+
+def _hands_document(hands: Hands, motion: str) -> dict[str, Any]:
+    length = unit_suffix(GLOSSARY["position"].unit_for(motion))
+    damping = unit_suffix(GLOSSARY["damping"].unit_for(motion))
+    if hands.impedance is not None:
+        return {"which": "known", "hand": hands.impedance}
+    if hands.activity is not None:
+        return {"which": "activity", f"activity_{damping}": hands.activity, "below_Hz": hands.below}
+    if hands.every:
+        return {"which": "every"}
+    return {
+        "which": "bounded",
+        f"speed_{length}_per_s": hands.speed,
+        "in_each_part_of_a_sample": hands.in_each_part,
+        f"inside_{length}": hands.inside,
+        f"outside_{length}": hands.outside,
+    }

@@ -1,0 +1,160 @@
+"""Laws without H(z) have the same verb: nonlinear springs, contacts, laws in a row, walls of an arm."""
+
+import json
+from fractions import Fraction
+from random import Random
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.cli.verification import verifications
+from zwidth.passivity import checker
+from zwidth.passivity.certificate import verify_document
+from zwidth.passivity.nonlinear_spring import spring_need
+from zwidth.rendering import ForceBounding, PassivityController, SlewLimit
+
+PADDLE = zw.catalogue.device("haptic-paddle")
+TINY = Fraction(1, 10**9)
+STEEP = zw.NonlinearSpring(["-0.013", "0.002", "0.0071", "0.02"], ["-3.1", "-0.7", "2.9", "1.3"])
+
+
+def device_for(spring, more=Fraction(0), delay=0, step="0.0003"):
+    """A device that has exactly what the slopes ask for, or so much more or less of both."""
+    bare = zw.Device(damping=0, coulomb_friction=0, resolution=step, sample_period="0.0013", delay=delay)
+    need = spring_need(bare, spring)
+    return bare.replace(
+        damping=need.damping * (1 + more), coulomb_friction=need.coulomb_friction * (1 + more)
+    )
+
+
+@pytest.mark.parametrize("delay", [0, "0.0013", "0.0039"])
+def test_a_spring_is_proved_at_its_bounds_and_not_below(delay):
+    """b = (L/2 + d s) T and f_c = s Δ/2 are enough; the checker refuses a billionth less of either."""
+    exact = device_for(STEEP, delay=delay)
+    verdict = zw.check(exact, STEEP)
+    assert verdict.outcome == "passive"
+    assert verdict.at_limit
+    assert verdict.scope.contact == "both sides"
+    assert verdict.scope.encoder == "counted"
+    assert verdict.decided_by == "the slopes of the spring"
+    document = verdict.certificate.documents[0]
+    assert checker.verify(document).valid
+    for name in ("damping", "coulomb_friction"):
+        less = exact.replace(**{name: exact.exact(name) * (1 - TINY)})
+        key = next(k for k in document["loop"] if k.startswith(name))
+        spoiled = {**document, "loop": {**document["loop"], key: str(less.exact(name))}}
+        assert not checker.verify(spoiled).valid
+
+
+def test_what_the_slopes_ask_for():
+    """By hand: the slopes are 0.16, 3.6/0.0051 and −1.6/0.0129."""
+    need = spring_need(device_for(STEEP), STEEP)
+    assert float(need.largest_slope) == pytest.approx(3.6 / 0.0051)
+    assert float(need.steepest) == pytest.approx(3.6 / 0.0051)
+    assert float(need.damping) == pytest.approx(3.6 / 0.0051 * 0.0013 / 2)
+    assert float(need.coulomb_friction) == pytest.approx(3.6 / 0.0051 * 0.0003 / 2)
+
+
+def energy_out(device, spring, x):
+    """−Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx² of many motions at once, begun at rest; plain arithmetic."""
+    step, period = float(device.resolution), float(device.sample_period)
+    samples = round(float(device.delay) / period)
+    read = np.floor(x / step + 1e-9) * step if step else x
+    force = np.interp(read, [float(p) for p in spring.positions], [float(f) for f in spring.forces])
+    force = np.concatenate([np.repeat(force[:, :1], samples, axis=1), force], axis=1)[:, : x.shape[1]]
+    move = np.diff(x, axis=1)
+    friction = float(device.coulomb_friction) * abs(move) + float(device.damping) / period * move**2
+    return -(force[:, :-1] * move + friction).sum(axis=1)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_motion_gains_from_a_spring_that_is_proved(seed):
+    """Random springs at their bounds against motions of their own scale: no more comes out than was stored."""
+    random, rng = Random(seed), np.random.default_rng(seed)
+    places = np.cumsum(rng.uniform(0.2, 3.0, 6)) - 5
+    forces = rng.normal(size=6)
+    forces[0], forces[-1] = -abs(forces[0]), abs(forces[-1])
+    spring = zw.NonlinearSpring([f"{x:.4f}" for x in places], [f"{f:.4f}" for f in forces])
+    step = random.choice(["0", "0.01", "0.3"])
+    device = device_for(spring, delay=random.choice([0, "0.0013"]), step=step)
+    assert zw.check(device, spring).outcome == "passive"
+    starts = rng.uniform(-6, 8, (400, 1))
+    moves = rng.normal(size=(400, 60)) * 10 ** rng.uniform(-3, 1, (400, 1))
+    turns = np.cumsum(rng.uniform(0, 3.1, (400, 1)) * np.ones((1, 60)), axis=1)
+    waves = 10 ** rng.uniform(-3, 0.7, (400, 1)) * (np.sin(turns) - np.sin(turns[:, :1]))
+    x = np.concatenate([starts + np.cumsum(moves, axis=1), starts + waves])
+    # no more is stored than Φ(x₀ − Δ/2) − min Φ
+    grid = np.linspace(-40, 40, 160_001)
+    force = np.interp(grid, [float(p) for p in spring.positions], [float(f) for f in spring.forces])
+    potential = np.concatenate([[0], np.cumsum((force[1:] + force[:-1]) / 2 * np.diff(grid))])
+    stored = np.interp(x[:, 0] - float(step) / 2, grid, potential) - potential.min()
+    assert (energy_out(device, spring, x) <= stored + 1e-3).all()
+
+
+def test_below_its_bounds_a_motion_takes_energy_out():
+    """Half of the damping and no friction: values are iterated, and a motion gains; it is replayed exactly."""
+    spring = zw.NonlinearSpring.detents(2, "0.013", "1.7")
+    device = device_for(spring, step="0.0001")
+    short = device.replace(damping=device.exact("damping") * Fraction(1, 2), coulomb_friction=0)
+    verdict = zw.check(short, spring)
+    assert verdict.outcome == "active"
+    assert verdict.decided_by == "a motion found by value iteration"
+    assert checker.verify(verdict.witness.to_dict()).energy > 0
+    assert [need.has < need.needed for need in verdict.needs] == [True, True]
+
+
+def test_a_spring_that_pulls_away_for_ever():
+    """Active if Coulomb friction holds less than it pulls; else neither is proved, and the claim says why."""
+    away = zw.NonlinearSpring([0, "0.01"], [0, "-0.5"])
+    verdict = zw.check(PADDLE, away)
+    assert verdict.outcome == "active"
+    assert verdict.violation.verify()
+    assert "pulls away with 0.5 N" in verdict.claim
+    assert verify_document(json.loads(verdict.to_json())).scope.shows == "active"
+    assert all(part.verification.valid for part in verifications(json.loads(verdict.to_json())))
+    held = zw.check(PADDLE.replace(coulomb_friction="0.5", resolution=0), away)
+    assert held.outcome == "undecided"
+    assert "no lowest value" in held.claim
+
+
+def test_intervals_of_a_device_are_taken_at_their_worst():
+    """Least friction and largest counts decide."""
+    exact = device_for(STEEP)
+    b, friction = (exact.exact(key) for key in ("damping", "coulomb_friction"))
+    wide = exact.replace(
+        damping=(b, 2 * b), coulomb_friction=(friction, 3 * friction), resolution=("0.0001", "0.0003")
+    )
+    verdict = zw.check(wide, STEEP)
+    assert verdict.outcome == "passive"
+    assert set(verdict.scope.intervals) == {"damping", "coulomb_friction", "resolution"}
+    lower = wide.replace(damping=(b * (1 - TINY), 2 * b), resolution=0)
+    assert zw.check(lower, STEEP).outcome != "passive"
+
+
+def test_laws_in_a_row():
+    """Force bounding and a covering wall prove; the roads are named, and the scope is that of the proof."""
+    bounded = zw.check(PADDLE, zw.render(zw.Wall(770), ForceBounding()))
+    assert bounded.outcome == "passive"
+    assert "any before the last" in bounded.scope.law
+    covered = zw.check(PADDLE, zw.render(zw.Wall(100), PassivityController(largest_damping="0.05")))
+    assert covered.outcome == "passive"
+    assert "covered by a wall" in covered.scope.law
+    open_still = zw.check(PADDLE, zw.render(zw.Wall(770), SlewLimit(rate=1000)))
+    assert open_still.outcome == "undecided"
+    assert open_still.worst_hand.outcome == "passive"
+    assert "proved passive for hands of up to" in open_still.claim
+
+
+def test_an_arm_and_its_wall():
+    """The same verb; what an arm lacks is asked for by name."""
+    arm = zw.arms.PlanarChain(links=(0.1, 0.1), joint_range=((0.5, 0.6), (0.7, 0.8)), damping=(0.05, 0.05))
+    assert zw.check(arm, zw.Wall(100), rate="1 kHz", points=4).outcome == "passive"
+    with pytest.raises(zw.InputError, match="give rate="):
+        zw.check(arm, zw.Wall(100))
+    with pytest.raises(zw.InputError, match="of several coordinates"):
+        zw.check(PADDLE, zw.MatrixWall([[100.0]]))
+    with pytest.raises(zw.InputError, match="rate: of an arm"):
+        zw.check(PADDLE, zw.Wall(100), rate=1000)
+    with pytest.raises(zw.InputError, match="a Device or an arm"):
+        zw.check("paddle", zw.Wall(100))
