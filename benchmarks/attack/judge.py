@@ -21,7 +21,7 @@ from zwidth.passivity.check import check_by_closed_forms
 
 from .loops import Case
 from .motions import ROUNDING, attack, refutes
-from .referee import PlainLoop, ball, differs, energies, largest_pole, needed, violated
+from .referee import PlainLoop, ball, differs, energies, largest_pole, needed, needed_at, violated
 
 OUTCOMES = ("passive", "passive in contact", "theorem", "active", "undecided", "refused")
 PASSIVE, KEPT, THEOREM, ACTIVE, UNDECIDED, REFUSED = OUTCOMES
@@ -30,6 +30,12 @@ LIGHT, HEAVY = (48, 100), (128, 600)
 """Motions drawn, and steps by which the best is improved."""
 
 HEAVY_SHARE = 0.04
+
+SLOWEST = 1e-12
+"""The smallest ωT that is looked at."""
+
+MOTION_SHARE = 0.02
+"""Of violations whose motion is made and run again."""
 
 SHORT, LONG = 250, 20_000
 """Samples of a motion that is always run again, and of one that is where nothing else confirms it."""
@@ -102,7 +108,8 @@ def against_passive(loop: PlainLoop, rng: np.random.Generator, *, kept: bool) ->
 def _criterion(loop: PlainLoop) -> str:
     """Whether the linear criterion is violated, or H unstable; "" if not."""
     asked, angle = needed(loop)
-    if asked > float(loop.damping) * (1 - 1e-6) and violated(loop, angle):
+    close = asked > float(loop.damping) * (1 - 1e-6)
+    if (close or needed_at(loop, SLOWEST) > ball(loop.damping)) and violated(loop, angle):
         return f"the criterion asks for {asked:.12g} at ωT = {angle:.6g}"
     if largest_pole(loop) > 1 + 1e-6:
         return "H(z) is unstable"
@@ -113,17 +120,21 @@ def _criterion(loop: PlainLoop) -> str:
 
 def against_active(verdict: Any, loop: PlainLoop, rng: np.random.Generator) -> str:
     """Why an active verdict is not confirmed, "" if it is."""
-    evidence = evidence_of(verdict)
-    if not evidence:
+    violation, witness = evidence_of(verdict, with_motion=rng.random() < MOTION_SHARE)
+    if violation is None and witness is None:
         return "active without evidence"
-    motion = getattr(getattr(verdict, "witness", None), "motion", None)
+    if violation is not None and not violation.verify():
+        return "the checker refuses the violation"
+    motion = getattr(witness, "motion", None)
     samples = getattr(motion, "samples", 0)
     if motion is not None and samples <= SHORT:
-        return _run_again(verdict.witness, loop)
+        wrong = _run_again(witness, loop)
+        if wrong or violation is None:
+            return wrong
     if loop.linear_inside and _criterion(loop):
         return ""
     if motion is not None and samples <= LONG:
-        return _run_again(verdict.witness, loop)
+        return _run_again(witness, loop)
     for _ in range(20):
         found = attack(loop, rng, *HEAVY, kept=False)
         if found.score > ROUNDING and refutes(loop, found, kept=False):
@@ -133,10 +144,12 @@ def against_active(verdict: Any, loop: PlainLoop, rng: np.random.Generator) -> s
     return "active, not confirmed"
 
 
-def evidence_of(verdict: Any) -> list[Any]:
-    """What an active verdict stands on, wherever it is kept."""
-    places = ("witness", "violation", "activity", "certificate")
-    return [found for found in (getattr(verdict, name, None) for name in places) if found is not None]
+def evidence_of(verdict: Any, *, with_motion: bool) -> tuple[Any, Any]:
+    """(violation, motion) that an active verdict stands on; of a violation the motion only if asked for."""
+    violation = getattr(verdict, "violation", None)
+    if violation is not None and hasattr(violation, "verify"):
+        return violation, violation.witness if with_motion and hasattr(violation, "witness") else None
+    return None, getattr(verdict, "witness", None)
 
 
 def _run_again(witness: Any, loop: PlainLoop) -> str:
