@@ -25,6 +25,7 @@ from pathlib import Path
 
 import numpy as np
 from attack import ledger, rows
+from attack.brackets import bracket
 from attack.judge import Judged, judge
 from attack.loops import KINDS, SHARES
 from attack.self_test import self_test
@@ -133,8 +134,13 @@ def main() -> int:
     parser.add_argument("--kind", choices=list(SHARES), help="one kind only; needs a ledger of its own")
     parser.add_argument("--seed", type=int, help="judge this loop alone, and write nothing")
     parser.add_argument("--write-readme", action="store_true")
+    parser.add_argument("--brackets", type=int, default=0, help="so many brackets, their motions looked at")
     parser.add_argument("--self-test", action="store_true", help="the referee beside the simulator")
     given = parser.parse_args()
+    if given.brackets:
+        wrong = [said for seed in range(given.brackets) if (said := bracket(seed))]
+        print(*wrong, f"{given.brackets} brackets, {len(wrong)} wrong", sep="\n")
+        return int(bool(wrong))
     if given.self_test:
         return int(self_test() > 0)
     if given.seed is not None:
