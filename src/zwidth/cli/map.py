@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -229,7 +230,12 @@ def _json(found: xr.Dataset) -> str:
         cells = int(found[name].values.sum())
         covered = bool(cells) or name not in _BROKEN or not found.attrs["not_covered"]
         largest = float(found.sel(region=name)["largest_stiffness"]) if covered else None
-        regions[name] = {f"largest_stiffness_{unit}": largest, "cells": cells, "covered": covered}
+        regions[name] = {
+            f"largest_stiffness_{unit}": largest,
+            "cells": cells,
+            "covered": covered,
+            "scope": json.loads(found[name].attrs["scope"]),
+        }
     free = {
         f"{key}_{unit_suffix(found[key].attrs['units'])}": float(found[key])
         for key in ("free_mass", "free_damping", "free_friction")

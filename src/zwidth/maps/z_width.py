@@ -25,8 +25,10 @@ from zwidth.errors import InputError
 from zwidth.maps.chunk import Layers, Place
 from zwidth.maps.plan import Plan, plan, spring_limit, stable_limits
 from zwidth.maps.request import Request, request
+from zwidth.maps.scopes import scopes
 from zwidth.maps.store import FORMAT, Store, layer_types
 from zwidth.maps.workers import on_cluster, on_threads
+from zwidth.passivity.document import to_json
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -82,7 +84,8 @@ def z_width(
     -------
     xarray.Dataset
         Over (stiffness, virtual_damping): `passive`, `passive_sustained`, as long as contact lasts, `quiet`,
-        `admissible_speed` and `stable_NAME` of each hand. Over virtual_damping the curves where they end,
+        `admissible_speed` and `stable_NAME` of each hand; what each is about is in its attribute `scope`, as
+        JSON. Over virtual_damping the curves where they end,
         `limit_passive` and `limit_NAME`, NaN where nothing is stable. Of each region its `area` and its
         `largest_stiffness`, by counting cells.  Where no condition covers contact made and broken, the
         attribute `not_covered` says of which walls: there `passive` and `quiet` are False for want of a
@@ -160,7 +163,10 @@ def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Da
     variables["limit_passive"] = (dims[1], ready.limit)
     for hand in ready.hands:
         variables[f"limit_{hand.name}"] = (dims[1], stable_limits(hand, ready.damping))
-    names = ["passive", "passive_sustained", "quiet", *(f"stable_{name}" for name, _ in asked.hands)]
+    about = scopes(asked, speed)
+    names = list(about)
+    for name, scope in about.items():
+        variables[name][2]["scope"] = to_json(scope.to_dict(), indent=None)
     cell = asked.stiffness.width * asked.virtual_damping.width
     masks = [np.asarray(variables[name][1]) for name in names]
     units = [GLOSSARY[name].unit_for(motion) for name in axes]

@@ -33,6 +33,7 @@ from zwidth.passivity.multiport.sampled import sampled_damping
 from zwidth.passivity.port import read_port
 from zwidth.passivity.port_index import PortIndex
 from zwidth.passivity.positive_real import largest_level
+from zwidth.passivity.scope import Scope
 from zwidth.passivity.supremum import frequency, tightest
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -54,6 +55,11 @@ class SampledDamping:
     required: float | None
     frequency: float
     device: Device
+
+    @property
+    def scope(self) -> Scope:
+        """The linear criterion: of a one-sided law it speaks of contact that is kept, and of no encoder."""
+        return Scope(contact="kept", damping=float(self.device.exact("damping")), motion=self.device.motion)
 
     @property
     def margin(self) -> float | None:
@@ -106,6 +112,11 @@ class PassivityIndices:
     def witness(self) -> Extraction | None:
         """A motion from rest that takes energy out; None if the port is passive, or none was found."""
         return self.input.refute(0)
+
+    @property
+    def scope(self) -> Scope:
+        """A linear port by itself: every hand, no surface, no encoder, nothing sampled but what G(z) is."""
+        return Scope(contact="both sides")
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

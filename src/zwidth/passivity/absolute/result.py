@@ -20,6 +20,7 @@ from zwidth.passivity.absolute.terms import CRITERIA, Criterion
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json
 from zwidth.passivity.known_hand.hand import PassiveHand, as_hand
+from zwidth.passivity.scope import Hands, Scope
 from zwidth.quantity.exact import Exact
 
 _MOST = 1e9
@@ -62,6 +63,11 @@ class AbsoluteStability:
         slopes = "; ".join(f"{row.criterion} {float(row.slope):.6g}" for row in self.proved)
         return f"<AbsoluteStability proved: {slopes}; refuted: {self.refuted:.6g}>"
 
+    @property
+    def scope(self) -> Scope:
+        """One plant of a known hand and device, with any spring of the class, touched and left at will."""
+        return Scope(hands=Hands(impedance="the plant G(z)"), contact="made and broken", sampling="constant")
+
     def slope(self, criterion: Criterion) -> Exact:
         """The largest K that the criterion proves."""
         return next(row.slope for row in self.proved if row.criterion == criterion)
@@ -89,6 +95,7 @@ class AbsoluteStability:
         against = [d for motion in motions for d in motion.certificate.documents]
         document = {
             "format": "zwidth absolute stability 1",
+            "scope": self.scope.to_dict(),
             "slopes": {row.criterion: float(row.slope) for row in self.proved},
             "linear_limit": self.linear_limit.slope,
             "motions": [{k: v for k, v in m._asdict().items() if k != "source"} for m in motions],
