@@ -165,7 +165,9 @@ class Identified:
         """True where there is a finding of this kind."""
         return any(finding.kind == kind for finding in self.findings)
 
-    def confidence(self, environment: Environment | Any, **others: Any) -> float:
+    def confidence(
+        self, environment: Environment | Any, *, contact: str = "made and broken", **others: Any
+    ) -> float:
         """For how much of what the data allow the loop is passive, at least: 0 to 0.999999.
 
         The largest confidence at which `check` says passive of the whole `device(confidence)`.
@@ -174,6 +176,8 @@ class Identified:
         ----------
         environment
             What the device is to render.
+        contact
+            As for `check`: "kept" asks about a hand that never leaves the wall.
         others
             Further arguments of `Device`, such as delay.
         """
@@ -181,7 +185,7 @@ class Identified:
 
         def passive(confidence: float) -> bool:
             device = self.device(confidence or None, **others)
-            return check_by_closed_forms(device, environment).outcome == "passive"
+            return check_by_closed_forms(device, environment, contact=contact).outcome == "passive"
 
         return _largest(passive)
 
