@@ -1,4 +1,4 @@
-"""The independent checker: re-proves a certificate, recomputes a witness.
+"""The independent checker: re-proves a certificate or a violation, recomputes a witness.
 
 Written from the mathematics alone, with other algorithms than the prover's: Chebyshev sums for the criterion,
 Bernstein coefficients for its sign, Routh's table for stability, Schur and Cohn's recursion where a hand is
@@ -32,6 +32,7 @@ from .row_motion import row_motion_energy
 from .storage_proof import storage
 from .storage_row import storage_of_row
 from .vibration import vibration
+from .violation import violation
 
 __all__ = ["Verification", "verify"]
 
@@ -49,6 +50,7 @@ _KINDS = {
     "storage": storage,
     "row storage": storage_of_row,
     "vibration": vibration,
+    "violation": violation,
 }
 
 
@@ -61,7 +63,7 @@ class Verification(NamedTuple):
 
 
 def verify(document: Mapping[str, Any]) -> Verification:
-    """Check one certificate or witness, given as plain JSON data."""
+    """Check one certificate, violation or witness, given as plain JSON data."""
     try:
         kind = get(document, "kind")
         if kind == "motion":
