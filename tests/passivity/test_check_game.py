@@ -115,7 +115,7 @@ def test_a_motion_that_must_touch_and_leave_is_told_from_the_others() -> None:
     from dataclasses import replace
 
     gain = zw.check(PADDLE, STIFF).witness
-    verdict = replace(check_by_closed_forms(PADDLE, WINDOW), outcome="active", certificate=None, witness=gain)
+    verdict = replace(check_by_closed_forms(PADDLE, WINDOW), outcome="active", certificate=None, motion=gain)
     assert verdict.limit == "contact made and broken"
     assert verdict.mode is None
     assert verdict.required_damping == pytest.approx(0.12 / 2 + 0.2)
@@ -169,6 +169,6 @@ def test_a_motion_of_the_game_is_replayed_by_real_hands() -> None:
 
 
 def test_the_actuator_that_the_motion_asks_for_is_named() -> None:
-    lines = zw.check(PADDLE.replace(force_limit="0.5"), STIFF).assumptions
+    lines = zw.check(PADDLE.replace(force_limit="0.5"), STIFF).demand
     assert "more than the actuator's 0.5 N" in lines[-1]
-    assert "stays within" in zw.check(PADDLE.replace(force_limit=20), STIFF).assumptions[-1]
+    assert "stays within" in zw.check(PADDLE.replace(force_limit=20), STIFF).demand[-1]

@@ -73,7 +73,7 @@ def print_verdict(
             section(out, "an active hand", _table(active_hand.rows()))
         section(out, *_advice(verdict))
         section(out, "actuator", _actuator(verdict))
-        section(out, "assumes", assumption_lines(verdict.assumptions))
+        section(out, "assumes", assumption_lines((*verdict.assumptions, *verdict.demand)))
 
 
 def _table(rows: Iterable[tuple[str, str]]) -> Iterator[Table]:
@@ -92,9 +92,11 @@ def _headline(verdict: Verdict) -> Padding:
 
 
 def _claim(verdict: Verdict) -> str:
-    if verdict.outcome == "active" and verdict.witness is not None:
-        return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
-    return verdict.claim
+    if verdict.outcome != "active":
+        return verdict.claim
+    if verdict.witness is None:
+        return f"{verdict.claim} No motion that shows it was found short enough to be written down."
+    return f"The motion below takes {joules(verdict.witness)} out of this loop, each time it is made."
 
 
 def _loop(verdict: Verdict) -> Padding:

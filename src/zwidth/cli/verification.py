@@ -28,6 +28,9 @@ _OF_A_PORT = {"positive real", "positive real matrix", "extraction", "matrix ext
 _BOUNDED = {"storage", "row storage"}
 """Storage functions: they speak of the hands on their board only."""
 
+_OF_ACTIVITY = {"violation"}
+"""Proofs that energy comes out, without a motion."""
+
 _TABLES = {
     **dict.fromkeys(_OF_A_PORT, ("system", "motion")),
     **dict.fromkeys(("contact", "force bounding"), ("loop", "law")),
@@ -67,13 +70,17 @@ def verifications(document: object) -> list[Part]:
         for kinds, what in ((_OF_A_KNOWN_HAND, "is of a hand that is known"), (_OF_A_PORT, "is of a port")):
             if any(_kinds(part) & kinds for part in parts):
                 return [_misfit(p, outcome, what) for p in found]
-    misfit = {"passive": "is a motion that extracts energy", "active": "is a proof of passivity"}
+    misfit = {"passive": "shows that energy comes out", "active": "is a proof of passivity"}
     return [
         _misfit(p, outcome, misfit[outcome])
-        if outcome in ("passive", "active") and (p.verification.energy is not None) != (outcome == "active")
+        if outcome in ("passive", "active") and _shows_activity(p) != (outcome == "active")
         else p
         for p in found
     ]
+
+
+def _shows_activity(part: Part) -> bool:
+    return part.verification.energy is not None or bool(_kinds(part.evidence) & _OF_ACTIVITY)
 
 
 def _misfit(part: Part, outcome: str, what: str) -> Part:
@@ -124,6 +131,8 @@ def _head(single: Mapping[str, object]) -> str:
         return "Of the port below, proved"
     if kind in _OF_A_KNOWN_HAND:
         return "Proved"
+    if kind in _OF_ACTIVITY:
+        return "A hand can take any amount of energy out of the loop below, proved"
     if kind == "active hand":
         return f"No hand of this activity goes on gaining energy from the loop below{kept}, proved"
     return f"The {'arm' if kind == 'arm' else 'loop'} below is passive{kept}, proved"

@@ -26,6 +26,8 @@ from zwidth.passivity.positivity import Positivity
 
 FORMAT = "zwidth certificate 1"
 LARGEST_FILE = 200_000_000
+EVIDENCE = ("certificate", "violation", "witness")
+"""Where a document holds what the checker can check."""
 
 
 @dataclass(frozen=True)
@@ -160,7 +162,7 @@ def positivity_document(sign: Positivity) -> dict[str, Any]:
 
 
 def verify_document(document: object) -> checker.Verification:
-    """Check a saved certificate or witness, or a report that holds one or both, read as JSON.
+    """Check a saved certificate, violation or witness, or a report that holds some of these, read as JSON.
 
     Raises
     ------
@@ -176,7 +178,7 @@ def verify_document(document: object) -> checker.Verification:
 
 
 def evidence(document: object) -> list[Mapping[str, Any]]:
-    """The certificates and witnesses in a document, which may be one itself.
+    """The certificates, violations and witnesses in a document, which may be one itself.
 
     Raises
     ------
@@ -184,14 +186,14 @@ def evidence(document: object) -> list[Mapping[str, Any]]:
         If it contains neither.
     """
     if not isinstance(document, Mapping):
-        raise InputError("expected a JSON object with a certificate or a witness")
+        raise InputError("expected a JSON object with a certificate, a violation or a witness")
     if "kind" in document:
         return [document]
-    inner = (h[k] for h in _holders(document) for k in ("certificate", "witness") if k in h)
+    inner = (h[k] for h in _holders(document) for k in EVIDENCE if k in h)
     found = [part for part in inner if isinstance(part, Mapping) and "kind" in part]
     if not found:
         raise InputError(
-            "no certificate or witness found: the object has no key kind, certificate or witness"
+            f"no evidence found: the object has no key kind, {', '.join(EVIDENCE[:-1])} or {EVIDENCE[-1]}"
         )
     return found
 
@@ -209,6 +211,8 @@ def _verify_one(part: Mapping[str, Any]) -> checker.Verification:
 def _verify_corners(corners: object) -> checker.Verification:
     if not isinstance(corners, list) or not corners:
         raise InputError("corners must be a list of certificates")
+    if any(isinstance(corner, Mapping) and corner.get("kind") == "violation" for corner in corners):
+        return checker.Verification(False, "a corner is a violation, and no proof of passivity")
     results = [checker.verify(corner) for corner in corners]
     failed = next((r for r in results if not r.valid or r.energy is not None), None)
     reasons = dict.fromkeys(r.reason for r in results)

@@ -1,7 +1,8 @@
 """The main verb: is this device, rendering this environment, passive?
 
 Nothing is claimed on the prover's word: "passive" needs a certificate that
-the independent checker accepts, "active" a motion whose energy it recomputes.
+the independent checker accepts, "active" a violation that it confirms or a
+motion whose energy it recomputes.
 """
 
 from __future__ import annotations
@@ -14,17 +15,20 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate, certify, certify_delays
-from zwidth.passivity.claims import assumptions, beyond_the_actuator, open_claim
+from zwidth.passivity.claims import active_claim, assumptions, open_claim
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.game import has_gap, with_game
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
-from zwidth.passivity.refutation import refute_friction, refute_linear
+from zwidth.passivity.refutation import refute_friction
 from zwidth.passivity.supremum import tightest
 from zwidth.passivity.verdict import Outcome, Verdict
+from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness
 from zwidth.quantity.exact import Exact, ends
+
+Evidence = Violation | Witness
 
 
 def check(device: Device, environment: Environment | Any) -> Verdict:
@@ -55,16 +59,14 @@ def check(device: Device, environment: Environment | Any) -> Verdict:
     InputError
         If the environment cannot be sampled at this rate or is not an environment.
     """
-    verdict = check_by_closed_forms(device, environment)
-    law = as_environment(environment)
+    law = _as_law(device, environment)
+    verdict = check_by_closed_forms(device, law)
     return with_game(device, law, verdict) if has_gap(device, law, verdict) else verdict
 
 
 def check_by_closed_forms(device: Device, environment: Environment | Any) -> Verdict:
     """`check` without the game: exact, in milliseconds, of every hand."""
-    if not isinstance(device, Device):
-        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
-    law = as_environment(environment)
+    law = _as_law(device, environment)
     corners = worst_corners(device, law)
     decisions = [decide(*corner) for corner in corners]
     failing = [k for k, d in enumerate(decisions) if not d.is_provable]
@@ -74,12 +76,27 @@ def check_by_closed_forms(device: Device, environment: Environment | Any) -> Ver
             return _passive(device, law, corners, decisions, proofs)
         return _between(device, law, corners[0], decisions[0])
     worst = failing[0]
-    witness = _refute(decisions[worst])
-    outcome: Outcome = "undecided"
-    least = witness if len(corners) == 1 and device.is_certain else _best_witness(device, law)
-    if witness is not None and least is not None:
-        outcome, witness = "active", least
-    return _not_passive(outcome, device, law, corners[worst], decisions[worst], witness)
+    corner, decision = corners[worst], decisions[worst]
+    certain = device.is_certain and len(corners) == 1
+    shown = _refute(decision) if certain else _refute_best(device, law)
+    if shown is not None:
+        return _not_passive("active", active_claim(shown), device, law, corner, decision, shown)
+    at_worst = None if certain else _refute(decision)
+    claim = open_claim(decision) if at_worst is None else _DEPENDS
+    return _not_passive("undecided", claim, device, law, corner, decision, at_worst)
+
+
+_DEPENDS = (
+    "The answer depends on where in its intervals the loop lies: energy can be taken out at the worst "
+    "corner, and for other values that is not known."
+)
+
+
+def _as_law(device: Device, environment: Environment | Any) -> Environment:
+    """The environment, once what comes first is a device."""
+    if not isinstance(device, Device):
+        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+    return as_environment(environment)
 
 
 def _proofs(
@@ -119,14 +136,14 @@ def _passive(
     if not certificate.verify():  # nothing is claimed that the checker does not accept
         claim = "A proof was found, but the independent checker did not confirm it within its bounds."
         assumed = assumptions("undecided", device, law, decision)
-        return Verdict("undecided", claim, assumed, *at, decision, None, None)
+        return Verdict("undecided", claim, assumed, *at, decision, None)
     everywhere = certificate.covers_contact or not law.unilateral
     kept = "" if everywhere else " that keeps contact"
     claim = f"No motion of the hand{kept}, however fast or skilled, can take energy out of this loop"
     if any(_at_limit(d) for d in decisions):
         claim += "; it is exactly at its limit, equality included"
     assumed = assumptions("passive", device, law, decision, certificate)
-    return Verdict("passive", f"{claim}.", assumed, *at, decision, certificate, None)
+    return Verdict("passive", f"{claim}.", assumed, *at, decision, certificate)
 
 
 def _between(device: Device, law: Environment, corner: tuple[Device, Environment], at: Decision) -> Verdict:
@@ -134,7 +151,7 @@ def _between(device: Device, law: Environment, corner: tuple[Device, Environment
         "Passive at every corner of the intervals; that every value between them is too is not proved "
         "for intervals of these parameters together."
     )
-    return Verdict("undecided", claim, assumptions("undecided", device, law, at), *corner, at, None, None)
+    return Verdict("undecided", claim, assumptions("undecided", device, law, at), *corner, at, None)
 
 
 def _at_limit(decision: Decision) -> bool:
@@ -165,19 +182,18 @@ def _tightest(decisions: list[Decision]) -> int:
     )
 
 
-def _refute(decision: Decision) -> Witness | None:
-    """A checked motion that takes energy out, or None."""
-    if decision.is_clamped:  # a motion in the linear law says nothing of it
+def _refute(decision: Decision) -> Evidence | None:
+    """A checked violation, or a checked motion, of which either shows that the loop is active; or None."""
+    if decision.is_clamped:  # what is proved of the linear law says nothing of it
         return None
-    if isinstance(decision.viscous, LinearProof) and decision.friction_covers:
-        return None
-    if isinstance(decision.viscous, LinearRefutation):
-        return refute_linear(decision.setting, decision.viscous.reason)
-    return refute_friction(decision.setting)
+    if isinstance(decision.viscous, LinearProof):
+        return None if decision.friction_covers else refute_friction(decision.setting)
+    violation = Violation(decision.setting, decision.viscous)
+    return violation if violation.verify() else violation.witness
 
 
-def _best_witness(device: Device, law: Environment) -> Witness | None:
-    """A motion that takes energy out even at the best values within the intervals, or None."""
+def _refute_best(device: Device, law: Environment) -> Evidence | None:
+    """What shows that the loop is active even at the best values within the intervals, or None."""
     best = best_corner(device, law)
     if best is None:
         return None
@@ -187,21 +203,13 @@ def _best_witness(device: Device, law: Environment) -> Witness | None:
 
 def _not_passive(
     outcome: Outcome,
+    claim: str,
     device: Device,
     law: Environment,
-    corner: tuple[Device, Environment],
+    corner: Loop,
     decision: Decision,
-    witness: Witness | None,
+    shown: Evidence | None,
 ) -> Verdict:
-    if outcome == "active":
-        assert witness is not None
-        claim = f"A motion of the hand takes energy out of this loop: {witness.describe()}."
-    elif witness is not None:
-        claim = (
-            "The answer depends on where in its intervals the loop lies: a motion takes energy out at the "
-            "worst corner, and for other values none is known to."
-        )
-    else:
-        claim = open_claim(decision)
-    assumed = assumptions(outcome, device, law, decision) + beyond_the_actuator(device, witness)
-    return Verdict(outcome, claim, assumed, *corner, decision, None, witness)
+    violation, motion = (shown, None) if isinstance(shown, Violation) else (None, shown)
+    assumed = assumptions(outcome, device, law, decision)
+    return Verdict(outcome, claim, assumed, *corner, decision, None, violation, motion)

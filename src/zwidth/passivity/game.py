@@ -14,7 +14,7 @@ from dataclasses import replace
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
-from zwidth.passivity.claims import NOT_COVERED, beyond_the_actuator
+from zwidth.passivity.claims import NOT_COVERED
 from zwidth.passivity.verdict import Verdict
 
 SECONDS = 5.0
@@ -46,14 +46,13 @@ def with_game(
     if found.witness is not None:
         claim = f"A motion of the hand takes energy out of this loop: {found.witness.describe()}."
         said = (found.assumptions[0], *verdict.assumptions[1:])
-        said += beyond_the_actuator(device, found.witness)
         return replace(
             verdict,
             outcome="active",
             claim=claim,
             assumptions=said,
             certificate=None,
-            witness=found.witness,
+            motion=found.witness,
             worst_hand=found,
         )
     if found.outcome == "undecided":

@@ -51,18 +51,22 @@ def decide_linear(loop: LinearLoop) -> LinearProof | LinearRefutation:
     """Decide the linear criterion exactly, equality counted as passive."""
     positivity = prove_nonnegative(loop.criterion)
     if isinstance(positivity, Fraction):
-        return LinearRefutation("criterion", positivity)
-    if loop.damping == 0 and loop.part_delay > 0 and any(loop.numerator):
-        return LinearRefutation("criterion", Fraction(0))
+        fastest = Fraction(-1)  # to and fro from sample to sample: the shortest motion, where it will do
+        return LinearRefutation("criterion", fastest if loop.criterion(-1) < 0 else positivity)
     if is_schur(loop.denominator[::-1]):
         if sum(loop.numerator) < 0:
             return LinearRefutation("negative static stiffness", None)
         return LinearProof("open loop", None, positivity)
     if loop.part_delay == 0:
-        offset = loop.damping or Fraction(1)
+        offset = offset_of(loop)
         if is_schur(closed_loop(loop, offset)[::-1]):
             return LinearProof("closed loop", offset, positivity)
     return LinearRefutation("unstable environment", None)
+
+
+def offset_of(loop: LinearLoop) -> Fraction:
+    """The number g > 0 that closed-loop proofs use; any would do."""
+    return loop.damping or Fraction(1)
 
 
 def closed_loop(loop: LinearLoop, offset: Fraction) -> list[int]:

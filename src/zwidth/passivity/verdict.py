@@ -14,12 +14,14 @@ from zwidth.device import Device
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
 from zwidth.environment.environment import Environment
 from zwidth.passivity import limits
+from zwidth.passivity.actuator_demand import actuator_demand
 from zwidth.passivity.advice import Advice, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import save_json, to_json, unit_suffix
 from zwidth.passivity.stability_plane import admissible_speed
+from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -34,8 +36,9 @@ Outcome = Literal["passive", "active", "undecided"]
 class Verdict:
     """Whether a hand can take energy out of a sampled loop.
 
-    "passive" stands on a `certificate` that the independent checker accepted,
-    "active" on a `witness` that it recomputed; "undecided" says what is known.
+    "passive" stands on a `certificate` that the independent checker accepted, "active" on
+    a `violation` that it accepted or on a motion, the `witness`, that it recomputed;
+    "undecided" says what is known.
     For parameters given as intervals the verdict holds for every value; the
     numbers below then speak of the worst case (`device`, `environment`).
 
@@ -49,8 +52,13 @@ class Verdict:
         What the claim covers and takes for granted.
     device, environment
         The loop decided: the worst corner where intervals were given.
-    certificate, witness
-        The evidence; the one that does not apply is None.
+    certificate
+        The proof of "passive"; else None.
+    violation
+        What of the linear criterion is violated, a proof of "active"; or so at the worst corner
+        of an interval.  None for a loop that is active by its encoder, or by contact made and broken.
+    motion
+        The motion, where it was needed to decide; see `witness`.
     worst_hand
         What the game of the worst hand adds, where the closed forms leave a gap: a motion,
         then also the `witness`; or a proof for hands within bounds.
@@ -62,9 +70,20 @@ class Verdict:
     device: Device
     environment: Environment
     decision: Decision
-    certificate: Certificate | None
-    witness: Witness | Gain | None
+    certificate: Certificate | None = None
+    violation: Violation | None = None
+    motion: Witness | Gain | None = None
     worst_hand: WorstHand | None = None
+
+    @cached_property
+    def witness(self) -> Witness | Gain | None:
+        """The motion that takes energy out, made when it is first asked for.
+
+        None where the loop is not active, or no motion that was found is short enough to be written down.
+        """
+        if self.motion is not None or self.violation is None:
+            return self.motion
+        return self.violation.witness
 
     @cached_property
     def budget(self) -> Budget:
@@ -165,6 +184,13 @@ class Verdict:
         positive = stiffness is not None and stiffness > 0
         return actuator_checks(self.device, stiffness if positive else None)
 
+    @cached_property
+    def demand(self) -> tuple[str, ...]:
+        """What the motion asks of the actuator, where there is one and the actuator's limit is known."""
+        if self.device.force_limit is None or self.witness is None:
+            return ()
+        return (actuator_demand(self.device, self.device.force_limit, self.witness),)
+
     def curve(self, points: int = 400) -> tuple[list[float], list[float]]:
         """(frequency [Hz], damping the criterion asks for there [N·s/m]), for plotting only."""
         loop = self.decision.loop
@@ -183,7 +209,7 @@ class Verdict:
             "format": "zwidth verdict 1",
             "outcome": self.outcome,
             "claim": self.claim,
-            "assumptions": list(self.assumptions),
+            "assumptions": [*self.assumptions, *self.demand],
             "limit": self.limit,
             "mode": self.mode,
         }
@@ -200,6 +226,8 @@ class Verdict:
         document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
         if self.certificate is not None:
             document["certificate"] = self.certificate.to_dict()
+        if self.violation is not None:
+            document["violation"] = self.violation.to_dict()
         if self.witness is not None:
             document["witness"] = rounded_energy(self.witness.to_dict())
         if self.worst_hand is not None:
@@ -223,7 +251,7 @@ class Verdict:
     def _repr_html_(self) -> str:
         colour = {"passive": "#2a7d4f", "active": "#b3261e", "undecided": "#8a6d00"}[self.outcome]
         rows = "".join(f"<tr><th align='left'>{k}</th><td align='left'>{v}</td></tr>" for k, v in self.rows())
-        assumed = "".join(f"<li>{a}</li>" for a in self.assumptions)
+        assumed = "".join(f"<li>{a}</li>" for a in (*self.assumptions, *self.demand))
         return (
             f"<div><b style='color:{colour}'>{self.outcome}</b> {self.claim}"
             f"<table>{rows}</table><details><summary>assumptions</summary><ul>{assumed}</ul></details></div>"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from math import inf, log2, sqrt
 from pathlib import Path
@@ -20,6 +20,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import save_json, unit_suffix
+from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.worst_hand.gain import Gain
 from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, assumptions, game_of, patience
@@ -49,7 +50,7 @@ class Bracket:
     parameter, unit
         Which, and its SI unit.
     passive, active
-        Proved passive; refuted by a motion.  None where no such value was found.
+        Proved passive; refuted.  None where no such value was found.
     certificate, witness
         The evidence at either value.
     hand
@@ -63,6 +64,8 @@ class Bracket:
         Loops decided, and the time that took [s].
     storage
         The storage function at `passive`, to look at; None where a closed condition proves it.
+    violation
+        What of the linear criterion is violated at `active`, where closed conditions found it.
     """
 
     parameter: str
@@ -77,6 +80,7 @@ class Bracket:
     evaluations: int
     seconds: float
     storage: Storage | None = None
+    violation: Violation | None = None
 
     @property
     def relative_width(self) -> float:
@@ -115,6 +119,8 @@ class Bracket:
         }
         if self.certificate is not None:
             document["certificate"] = self.certificate.to_dict()
+        if self.violation is not None:
+            document["violation"] = self.violation.to_dict()
         if self.witness is not None:
             document["witness"] = rounded_energy(self.witness.to_dict())
         return document
@@ -269,7 +275,8 @@ class _Search:
         bad = None if active is None else verdict(active)
         said = (good or bad or verdict(self._first())).assumptions
         proof, motion = good and good.certificate, bad and bad.witness
-        return self._bracket(passive, active, proof, motion, "every hand", (passive, active), said)
+        bracket = self._bracket(passive, active, proof, motion, "every hand", (passive, active), said)
+        return replace(bracket, violation=bad and bad.violation)
 
     def by_games(
         self,

@@ -1,0 +1,32 @@
+"""What a motion asks of the actuator, against the force that it has."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from zwidth.device import Device
+from zwidth.passivity.witness import Witness
+from zwidth.quantity.exact import Exact, Interval, ends
+
+if TYPE_CHECKING:
+    from zwidth.passivity.worst_hand.gain import Gain
+
+
+def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | Gain) -> str:
+    """Whether the motion asks for more force than the limit of the device's actuator [N; N·m]."""
+    unit = "N·m" if device.motion == "rotary" else "N"
+    most, needed = float(ends(limit)[1]), _peak_force(witness)
+    if needed <= most:
+        return f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}"
+    return (
+        f"the motion asks for {needed:.4g} {unit}, more than the actuator's {most:.6g} {unit}; with that "
+        "limit respected no motion is shown, and none is excluded"
+    )
+
+
+def _peak_force(witness: Witness | Gain) -> float:
+    if isinstance(witness, Witness):
+        return witness.peak_force
+    from zwidth.passivity.worst_hand.playback import peak_force  # the game's libraries are there by now
+
+    return peak_force(witness)
