@@ -18,7 +18,7 @@ from zwidth.environment import (
     Window,
 )
 from zwidth.errors import InputError
-from zwidth.passivity import Certificate, Verdict, Witness, check, closed_forms, quantization
+from zwidth.passivity import Certificate, Verdict, Violation, Witness, check, closed_forms, quantization
 from zwidth.quantity import Exact, Interval
 from zwidth.rendering import VirtualCoupling
 
@@ -117,6 +117,7 @@ __all__ = [
     "TransformedCondition",
     "VelocityFilter",
     "Verdict",
+    "Violation",
     "VirtualBody",
     "VirtualCoupling",
     "Wall",

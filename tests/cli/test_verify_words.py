@@ -123,3 +123,21 @@ def test_the_index_of_a_port_is_no_verdict(outcome: str) -> None:
 def test_only_what_is_checked_is_shown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A law beside the proof of a spring is no part of it."""
     assert "99999" not in told({**SPRING, "law": {"stiffness_N_per_m": "99999"}}, tmp_path, capsys)
+
+
+def test_an_active_loop_without_a_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A law that is too slow for a motion to be written down: active all the same, and the proof verifies."""
+    path = tmp_path / "verdict.json"
+    law = ["--type", "pulse-transfer-function", "--numerator", "1,0", "--denominator", "1,-1"]
+    device = ["--damping", "900", "--rate", "1 kHz"]
+    assert main(["check", *device, *law, "--save", str(path)]) == 1
+    said = " ".join(capsys.readouterr().out.split())
+    assert "ACTIVE The hand can take any amount of energy out of this loop: at" in said
+    assert "No motion that shows it was found short enough to be written down." in said
+    document = json.loads(path.read_text(encoding="utf-8"))
+    assert ("violation" in document, "witness" in document) == (True, False)
+    assert main(["verify", str(path)]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert said.startswith(
+        "VALID A hand can take any amount of energy out of the loop below, proved: the linear"
+    )

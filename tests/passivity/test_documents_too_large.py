@@ -47,6 +47,12 @@ def motion(system: dict[str, Any], **moved: Any) -> dict[str, Any]:
     return {"kind": kind, "system": {"time": "continuous", **system}, "motion": moved, **PORT}
 
 
+def violation(coefficients: list[str], **proof: str) -> dict[str, Any]:
+    """A criterion violated, of a law 1/Σ c zʲ."""
+    law = {"numerator": ["1"], "denominator": coefficients}
+    return {"format": "zwidth violation 1", "kind": "violation", "loop": {**LOOP, **law}, "proof": proof}
+
+
 BURST = {"kind": "burst", "step_rad_per_s": "1", "power": 400, "cosine": ["1", "1"], "sine": ["1", "1"]}
 LONG = {"numerator": ONES, "denominator": ONES}
 LONG_MATRIX = {"numerators": [[ONES, ONES], [ONES, ONES]], "denominator": ONES}
@@ -60,6 +66,11 @@ DOCUMENTS = {
         "plant": {"numerator": LAW["numerator"], "denominator": LAW["denominator"]},
         **{"slope": "1", "center": "1", "taps": [], "convexity": "0", "smoothness": "0"},
     },
+    "violation of many digits": violation(ONES, kind="criterion", cosine="0." + "123456789" * 500),
+    "violation of many coefficients": violation(
+        ["1"] * 2000, kind="criterion", cosine="0.1234567890123456789012345678901234567890"
+    ),
+    "violation of many poles": violation(["1"] * 2000, kind="unstable environment", offset="1"),
     "port": motion(LAW, kind="polynomial"),
     "ports": motion({"numerators": [[LAW["numerator"]]], "denominator": LAW["denominator"]}),
     "line": {"kind": "linear", "loop": {**LOOP, "numerator": ratios(31, 3), "denominator": ratios(31, 4)}},

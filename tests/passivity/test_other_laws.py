@@ -70,7 +70,7 @@ def energy_out(device, spring, x):
 
 @pytest.mark.parametrize("seed", range(12))
 def test_no_motion_gains_from_a_spring_that_is_proved(seed):
-    """Random springs at their bounds against motions of their own scale: no more comes out than was stored."""
+    """Random springs at their bounds against motions of their own scale: only what was stored comes out."""
     random, rng = Random(seed), np.random.default_rng(seed)
     places = np.cumsum(rng.uniform(0.2, 3.0, 6)) - 5
     forces = rng.normal(size=6)
@@ -93,7 +93,7 @@ def test_no_motion_gains_from_a_spring_that_is_proved(seed):
 
 
 def test_below_its_bounds_a_motion_takes_energy_out():
-    """Half of the damping and no friction: values are iterated, and a motion gains; it is replayed exactly."""
+    """Half of the damping and no friction: values are iterated, and a motion gains, replayed exactly."""
     spring = zw.NonlinearSpring.detents(2, "0.013", "1.7")
     device = device_for(spring, step="0.0001")
     short = device.replace(damping=device.exact("damping") * Fraction(1, 2), coulomb_friction=0)

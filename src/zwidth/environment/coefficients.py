@@ -24,7 +24,7 @@ _DECADES = 76
 def read_transfer_function(
     numerator: object, denominator: Sequence[RealLike] | None
 ) -> tuple[Coefficients, Coefficients, LinearSystem | None]:
-    """Numerator and denominator as a person gives them: two sequences, or a system.
+    """Numerator and denominator as a person gives them: two sequences, or a system, read already or not.
 
     Leading zeros are dropped and nothing else is: common factors stay.
 
@@ -33,6 +33,8 @@ def read_transfer_function(
     InputError
         If they are not coefficients, the denominator is zero, or the order above 200.
     """
+    if isinstance(numerator, LinearSystem):
+        return (*_checked(*_in_range(numerator.numerator, numerator.denominator)), numerator)
     if not is_system(numerator):
         if denominator is None:
             raise InputError("a transfer function needs a numerator and a denominator, or a system")
@@ -78,7 +80,6 @@ def _without_leading_zeros(coefficients: Coefficients) -> Coefficients:
 def _in_range(numerator: Polynomial, denominator: Polynomial) -> tuple[Coefficients, Coefficients]:
     """Both polynomials times one power of ten, where they need it to be within range."""
     sizes = [_decade(c) for c in (*numerator, *denominator) if c]
-    shift = Fraction(1)
     if sizes and max(sizes) - min(sizes) > _DECADES:
         raise InputError(
             f"the coefficients of the transfer function lie {max(sizes) - min(sizes)} decades apart, "
@@ -86,8 +87,9 @@ def _in_range(numerator: Polynomial, denominator: Polynomial) -> tuple[Coefficie
         )
     if sizes and (min(sizes) < -39 or max(sizes) > 39):
         shift = Fraction(10) ** (-(min(sizes) + max(sizes)) // 2)
+        numerator, denominator = (tuple(c * shift for c in part) for part in (numerator, denominator))
     num, den = (
-        tuple(read_coefficient(c * shift, key) for c in part)
+        tuple(read_coefficient(c, key) for c in part)
         for part, key in ((numerator, "numerator"), (denominator, "denominator"))
     )
     return num, den

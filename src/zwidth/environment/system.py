@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple
 
@@ -86,7 +87,7 @@ def number_of(value: Any, key: str) -> Fraction:
     number = float(value)
     if not math.isfinite(number):
         raise InputError(f"{key} holds {number}; expected finite numbers")
-    return Fraction(repr(number))
+    return Fraction(Decimal(repr(number)))
 
 
 def _single(coefficients: Any, key: str) -> Polynomial:

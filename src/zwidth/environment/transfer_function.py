@@ -201,13 +201,13 @@ def as_environment(thing: object, discretization: Discretization | None = None) 
     system = read_system(thing)
     if system.time == "discrete" or (discretization is None and _is_constant(system)):
         _refuse(discretization, "a discrete system has its own H(z)")
-        return PulseTransferFunction(thing)
+        return PulseTransferFunction(system)
     if system.time == "unsaid" and discretization is None:
         raise InputError(
             "the system has dt=None and so does not say whether it is H(s) or H(z); give it a dt, or write "
             "PulseTransferFunction(system) or ContinuousTransferFunction(system, discretization=…)"
         )
-    return ContinuousTransferFunction(thing, discretization=discretization)
+    return ContinuousTransferFunction(system, discretization=discretization)
 
 
 def _refuse(discretization: object, why: str) -> None:

@@ -6,18 +6,16 @@ from typing import TYPE_CHECKING
 
 from zwidth.device import Device
 from zwidth.passivity.witness import Witness
-from zwidth.quantity.exact import ends
+from zwidth.quantity.exact import Exact, Interval, ends
 
 if TYPE_CHECKING:
     from zwidth.passivity.worst_hand.gain import Gain
 
 
-def actuator_demand(device: Device, witness: Witness | Gain) -> str | None:
-    """Says whether the motion asks for more force than the actuator has; None where its limit is not known."""
-    if device.force_limit is None:
-        return None
+def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | Gain) -> str:
+    """Whether the motion asks for more force than the limit of the device's actuator [N; N·m]."""
     unit = "N·m" if device.motion == "rotary" else "N"
-    most, needed = float(ends(device.force_limit)[1]), _peak_force(witness)
+    most, needed = float(ends(limit)[1]), _peak_force(witness)
     if needed <= most:
         return f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}"
     return (

@@ -86,8 +86,8 @@ def _undecided(verdict: Verdict) -> str:
         )
     if verdict.finding == "depends on values":
         return (
-            "The answer depends on where in its intervals the loop lies: a motion takes energy out at the "
-            "worst corner, and for other values none is known to."
+            "The answer depends on where in its intervals the loop lies: energy can be taken out at the "
+            "worst corner, and for other values that is not known."
         )
     if verdict.finding == "no lowest energy":
         return (
@@ -115,8 +115,8 @@ def _open(decision: Decision) -> str:
         return _clamped(decision)
     if isinstance(decision.viscous, LinearRefutation):
         return (
-            f"Passivity cannot be proved ({decision.viscous.reason}); that energy comes out was not confirmed "
-            "by the independent checker within its bounds."
+            f"Passivity cannot be proved ({decision.viscous.reason}); that energy comes out was not "
+            "confirmed by the independent checker within its bounds."
         )
     if not decision.loop.hidden_modes_decay:
         return (

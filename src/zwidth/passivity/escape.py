@@ -1,8 +1,8 @@
 """Motions that refute a loop whose criterion is nonnegative but whose environment is not stable.
 
 A negative static stiffness gives energy to a slow press.  An unstable law
-builds up force from a small disturbance while the hand holds still; the hand
-then lets itself be moved.
+builds up force while the hand holds still; the hand then lets itself be moved.
+A pole on the unit circle is followed at its own frequency.
 """
 
 from __future__ import annotations
@@ -10,13 +10,14 @@ from __future__ import annotations
 from cmath import phase
 from collections.abc import Iterator
 from fractions import Fraction
-from math import cos, log
+from math import copysign, cos, isfinite, log
 
 from flint import fmpz_poly
 
 from zwidth.passivity.linear import closed_loop, offset_of
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion, Pattern, Repeat, convolve
+from zwidth.passivity.oscillation import forces_of
 
 _LENGTHS = (8, 32, 128, 512, 2048)
 _SIZE = 1024
@@ -30,6 +31,20 @@ def slow_press(loop: LinearLoop) -> Pattern:
 
 
 PRESS_LENGTHS = tuple(4**k for k in range(1, 40))
+
+
+def holds(loop: LinearLoop) -> Iterator[Motion]:
+    """In by one step, still while the force of an unstable law grows, and one move with the newest force."""
+    for length in _LENGTHS:
+        x = [0, *[_SIZE] * length]
+        force = forces_of(loop, x)[length - loop.whole_delay] if length > loop.whole_delay else 0.0
+        if not isfinite(force):
+            return
+        share = float((1 - loop.part_delay) * loop.period)
+        move = force * share / 2 / float(loop.damping) if loop.damping else copysign(_SIZE, force)
+        if move and isfinite(move):
+            positions = (*map(Fraction, x), _SIZE - Fraction(f"{move:.3g}"))
+            yield Motion(positions, positions[:-1] if loop.part_delay else ())
 
 
 def buildups(loop: LinearLoop, unilateral: bool) -> Iterator[Motion]:

@@ -173,8 +173,8 @@ def _q(value: Fraction) -> fmpq:
 def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...], bool]:
     """N and D as coprime integer polynomials in ζ, D(1) ≥ 0, and whether what was cancelled decays."""
     scale = lcm(*(c.denominator for c in (*h.numerator, *h.denominator)))
-    n = fmpz_poly([int(c * scale) for c in reversed(h.numerator)])
-    d = fmpz_poly([int(c * scale) for c in reversed(h.denominator)])
+    n = fmpz_poly([c.numerator * (scale // c.denominator) for c in reversed(h.numerator)])
+    d = fmpz_poly([c.numerator * (scale // c.denominator) for c in reversed(h.denominator)])
     if d.degree() < 0:
         raise InputError("the denominator of H(z) is zero")
     if n.degree() > d.degree():

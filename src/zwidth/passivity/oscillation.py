@@ -42,7 +42,7 @@ def _switches(loop: LinearLoop, x: list[int]) -> tuple[Fraction, ...]:
     alpha, d = loop.part_delay, loop.whole_delay
     if not alpha:
         return ()
-    force = _forces(loop, x)
+    force = forces_of(loop, x)
     gain = float(loop.period / (2 * (loop.damping or any_damping(loop))) * alpha * (1 - alpha))
 
     def at(k: int) -> float:
@@ -55,7 +55,7 @@ def _switches(loop: LinearLoop, x: list[int]) -> tuple[Fraction, ...]:
     return tuple(Fraction(round(16 * y), 16) for y in ideal)
 
 
-def _forces(loop: LinearLoop, x: list[int]) -> list[float]:
+def forces_of(loop: LinearLoop, x: list[int]) -> list[float]:
     """f(k) to rounding."""
     d = [c / loop.denominator[0] for c in loop.denominator]
     n = [c / loop.denominator[0] for c in loop.numerator]

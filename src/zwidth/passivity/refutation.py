@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import partial
+from itertools import chain
 from math import ceil
 
-from zwidth.passivity.escape import PRESS_LENGTHS, buildups, slow_press
+from zwidth.passivity.escape import PRESS_LENGTHS, buildups, holds, slow_press
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion, Pattern, realize, round_up
 from zwidth.passivity.oscillation import oscillations
@@ -44,7 +45,7 @@ def refute_linear(setting: Setting, reason: str) -> Witness | None:
         return _first(_sized(setting, press, times) for times in PRESS_LENGTHS)
     return _first(
         _scaled(setting, _unit(setting, one), partial(_multiplied, one))
-        for one in buildups(setting.loop, setting.unilateral)
+        for one in chain(holds(setting.loop), buildups(setting.loop, setting.unilateral))
     )
 
 

@@ -124,8 +124,9 @@ class Verdict:
     @cached_property
     def demand(self) -> tuple[str, ...]:
         """What the motion asks of the actuator, where there is one and the actuator's limit is known."""
-        said = None if self.witness is None else actuator_demand(self.device, self.witness)
-        return () if said is None else (said,)
+        if self.device.force_limit is None or self.witness is None:
+            return ()
+        return (actuator_demand(self.device, self.device.force_limit, self.witness),)
 
     def to_dict(self) -> dict[str, Any]:
         """The whole verdict as plain data, a unit in every key of a physical quantity."""

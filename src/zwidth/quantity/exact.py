@@ -19,6 +19,8 @@ from zwidth.errors import InputError
 LARGEST_EXPONENT = 40
 """Magnitudes outside 1e-40 … 1e40 are refused: no haptic quantity has them."""
 
+_LARGEST = 10**LARGEST_EXPONENT
+
 RealLike = float | int | str | Fraction | Decimal
 """What a person may type for a number."""
 
@@ -63,7 +65,9 @@ def _fraction(value: RealLike) -> Fraction:
     if isinstance(value, bool):
         raise InputError(f"expected a number, got {value!r}; give the value itself, such as 0.15")
     try:
-        if isinstance(value, Rational):
+        if type(value) is Fraction:
+            fraction = value
+        elif isinstance(value, Rational):
             fraction = Fraction(int(value.numerator), int(value.denominator))
         else:
             if isinstance(value, str):
@@ -81,10 +85,15 @@ def _fraction(value: RealLike) -> Fraction:
             fraction = Fraction(decimal)
     except InvalidOperation:
         raise InputError(f"expected a number, got {value!r}") from None
-    limit = 10**LARGEST_EXPONENT
-    if fraction and not Fraction(1, limit) <= abs(fraction) <= limit:
+    if not _is_of_ordinary_size(fraction):
         raise InputError(_magnitude(value))
     return fraction
+
+
+def _is_of_ordinary_size(fraction: Fraction) -> bool:
+    """True for 0 and magnitudes 1e-40 … 1e40, without a division: many numbers are read."""
+    top, bottom = abs(fraction.numerator), fraction.denominator
+    return top == 0 or (top <= bottom * _LARGEST and bottom <= top * _LARGEST)
 
 
 def _magnitude(value: object) -> str:

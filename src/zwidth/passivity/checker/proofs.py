@@ -142,7 +142,8 @@ def _criterion(p: Loop) -> list[Fraction]:
     if p.part:
         return _bounded_criterion(p, p.part * (1 - p.part))
     damped, hold, _ = _cosine_sums(p)
-    return [2 * p.damping / p.period * x + y for x, y in zip(damped, hold, strict=True)]
+    gain = 2 * p.damping / p.period
+    return [gain * x + y for x, y in zip(damped, hold, strict=True)]
 
 
 def _bounded_criterion(p: Loop, share: Fraction) -> list[Fraction]:
@@ -178,7 +179,7 @@ def _cosine_sums(p: Loop) -> tuple[list[int], list[Fraction], list[int]]:
 def _whole(coefficients: list[Fraction], p: Loop) -> list[int]:
     """N or D times the integer that makes both whole."""
     scale = lcm(*(c.denominator for c in (*p.numerator, *p.denominator)))
-    return [int(c * scale) for c in coefficients]
+    return [c.numerator * (scale // c.denominator) for c in coefficients]
 
 
 def _chebyshev(degree: int) -> tuple[list[list[int]], list[list[int]]]:
@@ -220,24 +221,29 @@ def _positivity(proof: Mapping[str, Any], q: list[Fraction]) -> None:
     square, g = numbers(get(proof, "square")), numbers(get(proof, "factor"))
     if not g or at_one + at_minus_one > MOST_COEFFICIENTS:
         raise Invalid("the factors of the criterion are missing")
-    product = _multiply(_multiply(square, square), g) if square else [Fraction(0)]
-    for times, root in ((at_one, Fraction(-1)), (at_minus_one, Fraction(1))):
+    root, rest = _cleared(square), _cleared(g)
+    product = _multiply(_multiply(root, root), rest) if square else [0]
+    for times, constant in ((at_one, -1), (at_minus_one, 1)):
         for _ in range(times):
-            product = _multiply(product, [Fraction(1), root])
-    _proportional(q, product)
+            product = _multiply(product, [1, constant])
+    _proportional(_cleared(q), product)
     _strictly_positive(g)
 
 
-def _proportional(a: list[Fraction], b: list[Fraction]) -> None:
+def _cleared(a: Sequence[Fraction]) -> list[int]:
+    """A polynomial times the positive integer that makes it whole."""
+    scale = lcm(*(c.denominator for c in a))
+    return [c.numerator * (scale // c.denominator) for c in a]
+
+
+def _proportional(a: list[int], b: list[int]) -> None:
     size = max(len(a), len(b))
-    a, b = a + [Fraction(0)] * (size - len(a)), b + [Fraction(0)] * (size - len(b))
+    a, b = a + [0] * (size - len(a)), b + [0] * (size - len(b))
     pivot = next((i for i in range(size) if a[i] or b[i]), None)
     if pivot is None:
         return
-    if a[pivot] * b[pivot] <= 0:
-        raise Invalid("the factors do not multiply to the criterion")
-    ratio = a[pivot] / b[pivot]
-    if any(x != ratio * y for x, y in zip(a, b, strict=True)):
+    x, y = a[pivot], b[pivot]
+    if x * y <= 0 or any(u * y != v * x for u, v in zip(a, b, strict=True)):
         raise Invalid("the factors do not multiply to the criterion")
 
 
@@ -324,26 +330,33 @@ def _positive_real_denominator(p: Loop, offset: Fraction) -> list[Fraction]:
 
 
 def _require_coprime(p: Loop) -> None:
-    a, b = _trim(p.numerator), _trim(p.denominator)
-    while b:
-        a, b = b, _remainder(a, b)
-    if len(a) > 1:
+    """Coprime modulo a prime that does not divide the highest coefficient of D: then coprime."""
+    n, d = _trim(_whole(p.numerator, p)), _trim(_whole(p.denominator, p))
+    if not any(d[-1] % prime and _coprime_modulo(prime, n, d) for prime in _PRIMES):
         raise Invalid("numerator and denominator of H(z) have a common factor")
 
 
-def _trim(a: Sequence[Fraction]) -> list[Fraction]:
-    out = list(a)
-    while out and out[-1] == 0:
-        out.pop()
-    return out
+_PRIMES = (2**61 - 1, 2**89 - 1, 2**127 - 1)
 
 
-def _remainder(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
-    a = list(a)
-    while len(a) >= len(b):
-        ratio, shift = a[-1] / b[-1], len(a) - len(b)
-        a = [x - ratio * b[i - shift] if i >= shift else x for i, x in enumerate(a)]
+def _coprime_modulo(prime: int, n: list[int], d: list[int]) -> bool:
+    a, b = (_trim([c % prime for c in part]) for part in (d, n))
+    while b:
+        a, b = b, _remainder(a, b, prime)
+    return len(a) == 1
+
+
+def _trim(a: list[int]) -> list[int]:
+    while a and a[-1] == 0:
         a.pop()
+    return a
+
+
+def _remainder(a: list[int], b: list[int], prime: int) -> list[int]:
+    inverse = pow(b[-1], -1, prime)
+    while len(a) >= len(b):
+        ratio, shift = a[-1] * inverse % prime, len(a) - len(b)
+        a = a[:shift] + [(x - ratio * y) % prime for x, y in zip(a[shift:], b, strict=True)]
         a = _trim(a)
     return a
 

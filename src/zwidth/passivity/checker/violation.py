@@ -1,11 +1,12 @@
 """A violated criterion: a proof that a hand can take any amount of energy out of the loop.
 
-With ζ = z⁻¹ = e^{−jθ}, c = cos θ, H = N(ζ)/D(ζ), M = ζᵈ (1 − α + α ζ) N and the delay (d + α) T any one of these is
-enough, whatever Coulomb friction and encoder are, behind a surface and without one (docs/theory/criterion.md):
+With ζ = z⁻¹ = e^{−jθ}, c = cos θ, H = N(ζ)/D(ζ), M = ζᵈ (1 − α + α ζ) N and the delay (d + α) T any one
+of these is enough, whatever Coulomb friction and encoder are, behind a surface and without one
+(docs/theory/criterion.md):
 
 criterion
-    2b²/T |D|² + b (−R + (1 + c) S) − T α(1−α)/2 |N|² < 0 at one c of [−1, 1], where M D̄ = R + j sin θ S; for α = 0
-    without the factor b and the last term.
+    2b²/T |D|² + b (−R + (1 + c) S) − T α(1−α)/2 |N|² < 0 at one c of [−1, 1], where M D̄ = R + j sin θ S;
+    for α = 0 without the factor b and the last term.
 negative static stiffness
     H(1) < 0.
 unstable environment
@@ -24,8 +25,11 @@ from typing import Any, NamedTuple
 from .proofs import _inside_unit_circle, _positive_real_denominator, _require_coprime, _whole
 from .reading import Invalid, Loop, get, number, read_loop, with_no_more_than
 
-MOST_WORK = 2e11
-"""Length of the polynomials squared, times the bits of c, times the bits of the longest number in a product."""
+MOST_WORK = 2e10
+"""Length of the polynomials squared, times the bits of c, times the bits of the longest factor."""
+
+MOST_TERMS = 150
+"""Coefficients of H(z) and samples of delay up to which roots are placed."""
 
 
 def violation(document: Mapping[str, Any]) -> str:
@@ -68,7 +72,7 @@ def _negative(p: Loop) -> str:
 
 def _not_positive_real(p: Loop, offset: Fraction) -> str:
     """With b + T z⁻ᵈ H/(z − 1) = n/d in lowest terms, n + g d has a root on or outside the circle, g > 0."""
-    _require_coprime(p)
+    _require_lowest_terms(p)
     if offset <= 0:
         raise Invalid("the offset must be positive")
     if _inside_unit_circle(_positive_real_denominator(p, offset)):
@@ -77,36 +81,46 @@ def _not_positive_real(p: Loop, offset: Fraction) -> str:
 
 
 def _unstable(p: Loop) -> str:
-    _require_coprime(p)
+    _require_lowest_terms(p)
     if _inside_unit_circle(p.denominator):
         raise Invalid("every pole of H(z) lies inside the unit circle")
     return "the environment is unstable: H(z) has a pole on or outside the unit circle"
 
 
-class _Value(NamedTuple):
-    """Σ a_j ζʲ at one point: `even` − j sin θ `odd`."""
+def _require_lowest_terms(p: Loop) -> None:
+    if len(p.denominator) + p.whole > MOST_TERMS:
+        raise Invalid("too many coefficients and samples of delay for the roots to be placed")
+    _require_coprime(p)
 
-    even: Fraction
-    odd: Fraction
+
+class _Value(NamedTuple):
+    """Σ a_j ζʲ at one point, even − j sin θ odd, times the denominator of c to the power of its degree."""
+
+    even: int
+    odd: int
 
 
 def criterion_at(p: Loop, c: Fraction) -> Fraction:
-    """The criterion at cos θ = c, times b where α > 0, to a positive factor."""
+    """The criterion at cos θ = c = x/y, times b where α > 0, and times a power of y."""
     n, d = _whole(p.numerator, p), _whole(p.denominator, p)
     _bounded(len(n) + p.whole + 1, c, [*n, *d])
-    late = [*[0] * p.whole, *_mixed(n, p.part)]
-    top, bottom = _at(late, c), _at(d, c)
-    sine_squared = 1 - c * c
-    real = top.even * bottom.even + sine_squared * top.odd * bottom.odd
+    x, y = c.numerator, c.denominator
+    top, bottom, law = _at([*[0] * p.whole, *_mixed(n, p.part)], c), _at(d, c), _at(n, c)
+    longer: int = y ** (p.whole + 1)  # M has so many coefficients more than D
+    real = y * y * top.even * bottom.even + (y * y - x * x) * top.odd * bottom.odd
     slope = top.even * bottom.odd - top.odd * bottom.even
-    dissipated = bottom.even**2 + sine_squared * bottom.odd**2
-    hold = ((1 + c) * slope - real) / p.part.denominator
+    hold = Fraction((x + y) * y * slope - real, p.part.denominator)
+    dissipated = longer * _square_modulus(bottom, c)
     if not p.part:
         return 2 * p.damping / p.period * dissipated + hold
-    law = _at(n, c)
-    switching = law.even**2 + sine_squared * law.odd**2
-    lost = p.period * p.part * (1 - p.part) / 2 * switching
-    return 2 * p.damping**2 / p.period * dissipated + p.damping * hold - lost
+    lost = p.period * p.part * (1 - p.part) / 2 * longer * _square_modulus(law, c)
+    return 2 * p.damping * p.damping / p.period * dissipated + p.damping * hold - lost
+
+
+def _square_modulus(value: _Value, c: Fraction) -> int:
+    """even² + sin² θ odd², times y²."""
+    x, y = c.numerator, c.denominator
+    return (y * value.even) ** 2 + (y * y - x * x) * value.odd**2
 
 
 def _mixed(n: list[int], part: Fraction) -> list[int]:
@@ -119,7 +133,7 @@ def _bounded(size: int, c: Fraction, coefficients: list[int]) -> None:
     bits = max(c.denominator.bit_length(), 2)
     longest = bits + max(abs(x).bit_length() for x in coefficients)
     if size**2 * bits * longest > MOST_WORK:
-        raise Invalid("the criterion of so high an order, with so many digits, is not evaluated")
+        raise Invalid("too many coefficients and digits for the criterion to be evaluated")
 
 
 def _at(a: Sequence[int], c: Fraction) -> _Value:
@@ -131,5 +145,4 @@ def _at(a: Sequence[int], c: Fraction) -> _Value:
         even, odd = even * y + coefficient * cosine, odd * y + coefficient * sine
         cosine, next_cosine = next_cosine, 2 * x * next_cosine - y * y * cosine
         sine, next_sine = next_sine, 2 * x * next_sine - y * y * sine
-    scale = y ** (len(a) - 1)
-    return _Value(Fraction(even, scale), Fraction(odd, scale))
+    return _Value(even, odd)

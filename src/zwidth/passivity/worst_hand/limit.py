@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from math import inf, log2, sqrt
 from pathlib import Path
@@ -21,6 +21,7 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import save_json, unit_suffix
 from zwidth.passivity.scope import Scope
+from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.wording import describe_hands, lines
 from zwidth.passivity.worst_hand.gain import Gain
@@ -48,7 +49,7 @@ class Bracket:
     parameter, unit
         Which, and its SI unit.
     passive, active
-        Proved passive; refuted by a motion.  None where no such value was found.
+        Proved passive; refuted.  None where no such value was found.
     certificate, witness
         The evidence at either value.
     scope
@@ -60,6 +61,8 @@ class Bracket:
         Loops decided, and the time that took [s].
     storage
         The storage function at `passive`, to look at; None where a closed condition proves it.
+    violation
+        What of the linear criterion is violated at `active`, where closed conditions found it.
     """
 
     parameter: str
@@ -73,6 +76,7 @@ class Bracket:
     evaluations: int
     seconds: float
     storage: Storage | None = None
+    violation: Violation | None = None
 
     @property
     def hand(self) -> str:
@@ -122,6 +126,8 @@ class Bracket:
         }
         if self.certificate is not None:
             document["certificate"] = self.certificate.to_dict()
+        if self.violation is not None:
+            document["violation"] = self.violation.to_dict()
         if self.witness is not None:
             document["witness"] = rounded_energy(self.witness.to_dict())
         return document
@@ -279,7 +285,8 @@ class _Search:
         bad = None if active is None else verdict(active)
         scope = (good or bad or verdict(self._first())).scope
         proof, motion = good and good.certificate, bad and bad.witness
-        return self._bracket(passive, active, proof, motion, (passive, active), scope)
+        bracket = self._bracket(passive, active, proof, motion, (passive, active), scope)
+        return replace(bracket, violation=bad and bad.violation)
 
     def by_games(
         self,
