@@ -51,7 +51,7 @@ def process(*argv: str, **environment: str) -> subprocess.CompletedProcess[bytes
         [sys.executable, "-m", "zwidth", *argv],
         capture_output=True,
         env={"PATH": "/usr/bin:/bin", **environment},
-        timeout=60,
+        timeout=600,
         check=False,
     )
 
@@ -322,7 +322,7 @@ def test_reader_that_leaves() -> None:
     assert writer.stdout is not None
     assert writer.stderr is not None
     writer.stdout.close()
-    assert writer.wait(60) == 1
+    assert writer.wait(600) == 1
     assert writer.stderr.read() == b""
     writer.stderr.close()
 
@@ -351,7 +351,7 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
 )
 def test_nothing_is_imported_before_it_is_needed(code: str, absent: tuple[str, ...]) -> None:
     program = f"import sys\n{code}\nsys.exit(str([m for m in {absent} if m in sys.modules] or ''))"
-    result = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=60, check=False)
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=600, check=False)
     assert result.stderr.strip() == b""
 
 
