@@ -46,7 +46,14 @@ def _plain_terminal() -> Iterator[None]:
 def _time_enough() -> Iterator[None]:
     """A game that is to be decided is decided, also on a busy machine and where it is compiled first."""
     with pytest.MonkeyPatch.context() as patch:
-        for limit in ("passivity.game.SECONDS", "bench.bench._PATIENCE", "bench.motions.SECONDS"):
-            patch.setattr(f"zwidth.{limit}", 600.0)
-        patch.setattr("zwidth.maps.workers._PATIENCE", "600 s")
+        patch.setattr("zwidth.passivity.game.SECONDS", 600.0)
+        yield
+
+
+@pytest.fixture(scope="session")
+def time_enough_on_the_bench() -> Iterator[None]:
+    """The same for the games of the bench, which takes a while to import."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("zwidth.bench.bench._PATIENCE", 600.0)
+        patch.setattr("zwidth.bench.motions.SECONDS", 600.0)
         yield
