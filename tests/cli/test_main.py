@@ -227,15 +227,15 @@ def test_an_existing_file_is_not_lost(run: Run, tmp_path: Path) -> None:
     path = tmp_path / "verdict.json"
     path.write_text("mine")
     assert "exists" in complaint(run(*PASSIVE, "--save", str(path)))
-    assert path.read_text() == "mine"
+    assert path.read_text(encoding="utf-8") == "mine"
     assert run(*PASSIVE, "--save", str(path), "--force").status == 0
-    assert json.loads(path.read_text())["outcome"] == "passive"
+    assert json.loads(path.read_text(encoding="utf-8"))["outcome"] == "passive"
 
 
 def test_a_forged_proof_is_not_valid(run: Run, tmp_path: Path) -> None:
     path = tmp_path / "verdict.json"
     run(*PASSIVE, "-o", str(path))
-    path.write_text(path.read_text().replace('"300"', '"301"'))
+    path.write_text(path.read_text(encoding="utf-8").replace('"300"', '"301"'), encoding="utf-8")
     result = run("verify", str(path))
     assert result.status == 1
     assert "NOT VALID" in result.out

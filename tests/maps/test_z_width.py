@@ -298,7 +298,7 @@ def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:
     (tmp_path / "else" / "notes.txt").write_text("mine")
     with pytest.raises(zw.InputError, match="holds"):
         zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=tmp_path / "else")
-    assert (tmp_path / "else" / "notes.txt").read_text() == "mine"
+    assert (tmp_path / "else" / "notes.txt").read_text(encoding="utf-8") == "mine"
 
 
 def test_a_cluster_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
