@@ -187,6 +187,29 @@ def test_the_readme_table_is_what_comes_out() -> None:
         assert zw.passivity_indices(wall).passive
 
 
+def _bounds() -> dict[str, set[str]]:
+    """The lower bounds of each library that is asked for, but for those of the docs and of the card."""
+    project = PYPROJECT["project"]
+    extras = [
+        asked for name, asked in project["optional-dependencies"].items() if name not in ("docs", "gpu")
+    ]
+    bounds: dict[str, set[str]] = {}
+    for line in [*project["dependencies"], *(line for lines in extras for line in lines)]:
+        asked = re.fullmatch(r"([\w-]+)(\[[\w,]+\])?>=([\d.]+)(;.+)?", line)
+        assert asked, f"{line}: no lower bound"
+        bounds.setdefault(asked[1], set()).add(asked[3])
+    return bounds
+
+
+def test_the_oldest_versions_that_are_tested_are_the_lower_bounds() -> None:
+    """Whoever has the oldest that pyproject.toml admits has what `.ci/oldest` tests."""
+    lines = (ROOT / ".ci" / "oldest.txt").read_text(encoding="utf-8").splitlines()
+    pins = dict(line.split("==") for line in lines if line and not line.startswith("#"))
+    for name, bounds in _bounds().items():
+        (bound,) = bounds
+        assert re.fullmatch(rf"{re.escape(bound)}(\.0)*", pins[name]), f"{name}: {bound}, tested {pins[name]}"
+
+
 def _blocks(page: str, language: str) -> list[str]:
     text = (ROOT / page).read_text(encoding="utf-8")
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)

@@ -51,7 +51,7 @@ def test_saved_and_verified(capsys: pytest.CaptureFixture[str], tmp_path: Path) 
     assert out.count("VALID") == 3
     assert out.count("No hand of this activity") == 2
     assert "10 Hz" in out
-    document = json.loads(file.read_text())
+    document = json.loads(file.read_text(encoding="utf-8"))
     document["active_hand"]["contact_kept"]["certificate"]["activity_N_s_per_m"] = "0.2"
     file.write_text(json.dumps(document))
     assert main(["verify", str(file)]) == 1

@@ -207,7 +207,7 @@ def saved(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
         path = tmp_path_factory.mktemp("saved") / f"{number}.json"
         status("check", "haptic-paddle", *line, "-o", str(path))
         assert status("verify", str(path)) == 0
-        verdict = json.loads(path.read_text(), parse_float=str)
+        verdict = json.loads(path.read_text(encoding="utf-8"), parse_float=str)
         documents.append(verdict.get("certificate") or verdict["witness"])
     return documents
 

@@ -156,7 +156,7 @@ def test_a_delay_counts_in_the_wall_and_in_the_file(run: Run) -> None:
     stiffest = float(words(delayed).split("Spring walls up to ")[1].split()[0])
     plain = float(words(run("plain.csv")).split("Spring walls up to ")[1].split()[0])
     assert 0.4 * plain < stiffest < 0.55 * plain
-    assert "delay = 0.0005  # s: as given" in Path("d.toml").read_text()
+    assert "delay = 0.0005  # s: as given" in Path("d.toml").read_text(encoding="utf-8")
     assert run("d.toml", "--stiffness", f"{0.999 * stiffest:g}", command="check").status == 0
     assert run("d.toml", "--stiffness", f"{1.002 * stiffest:g}", command="check").status != 0
 
@@ -183,7 +183,7 @@ def test_the_wrong_model_is_the_headline(run: Run) -> None:
 
 def test_several_logs_are_one(run: Run) -> None:
     """Runs of one device are identified together; a log of another rate is refused."""
-    header, *lines = Path("plain.csv").read_text().splitlines(keepends=True)
+    header, *lines = Path("plain.csv").read_text(encoding="utf-8").splitlines(keepends=True)
     half = len(lines) // 2
     Path("one.csv").write_text(header + "".join(lines[:half]))
     Path("two.csv").write_text(header + "".join(lines[half:]))
@@ -204,10 +204,10 @@ def test_files_are_not_replaced_unasked(run: Run) -> None:
         result = run("plain.csv", option, path)
         assert result.status == 2
         assert "exists" in result.err
-        assert Path(path).read_text() == "old"
+        assert Path(path).read_text(encoding="utf-8") == "old"
     result = run("plain.csv", "-o", "mine.toml", "--plot", "fig.png", "--force")
     assert "written: mine.toml" in words(result)
-    assert "[device]" in Path("mine.toml").read_text()
+    assert "[device]" in Path("mine.toml").read_text(encoding="utf-8")
     assert Path("fig.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -79,7 +79,7 @@ def test_what_is_saved_is_verified_on_both_sides(run: Run) -> None:
     assert "No hand within these bounds" in words(result)
     assert "up to 23 counts inside and with any memory, for moves of up to 13.3929 counts" in words(result)
     assert "is passive, proved" not in words(result)
-    document = json.loads(Path("limit.json").read_text())
+    document = json.loads(Path("limit.json").read_text(encoding="utf-8"))
     document["certificate"]["loop"]["damping_N_s_per_m"] = "0.1"
     Path("forged.json").write_text(json.dumps(document))
     forged = run("verify", "forged.json")
@@ -91,7 +91,7 @@ def test_what_is_saved_is_verified_on_both_sides(run: Run) -> None:
 def test_bounded_evidence_does_not_carry_a_verdict_for_every_hand(run: Run) -> None:
     """A storage function alone cannot say that a loop is passive."""
     run(*BOUNDED, "-o", "limit.json")
-    certificate = json.loads(Path("limit.json").read_text())["certificate"]
+    certificate = json.loads(Path("limit.json").read_text(encoding="utf-8"))["certificate"]
     Path("verdict.json").write_text(json.dumps({"outcome": "passive", "certificate": certificate}))
     result = run("verify", "verdict.json")
     assert result.status == 1
@@ -101,13 +101,13 @@ def test_bounded_evidence_does_not_carry_a_verdict_for_every_hand(run: Run) -> N
 def test_the_saved_motion_is_prescribed_to_the_simulator(run: Run) -> None:
     """Its repeats are one object, not a list."""
     run(*BOUNDED, "-o", "limit.json")
-    active = json.loads(Path("limit.json").read_text())["proved_active_N_per_m"]
+    active = json.loads(Path("limit.json").read_text(encoding="utf-8"))["proved_active_N_per_m"]
     result = run(
         "simulate", "haptic-paddle", "--stiffness", str(active), "--virtual-damping", "0.05",
         "--operator", "witness", "--operator.file", "limit.json", "--operator.rounds", "100000",
         "--amplifier", "ideal", "--json",
     )  # fmt: skip
-    energy = json.loads(Path("limit.json").read_text())["witness"]["energy_J"]
+    energy = json.loads(Path("limit.json").read_text(encoding="utf-8"))["witness"]["energy_J"]
     assert -json.loads(result.out)["energy"]["hand_work_J"] == pytest.approx(energy, rel=1e-6)
 
 

@@ -97,7 +97,7 @@ def test_certificates_of_the_columns(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert main(command) == 0
     assert main(command) == 2
     assert "exists" in capsys.readouterr().err
-    document = json.loads(path.read_text())
+    document = json.loads(path.read_text(encoding="utf-8"))
     found = zw.z_width(
         zw.catalogue.device("haptic-paddle"), (0, 600), (0, "0.3"), (60, 12), velocity_filter=zw.Window(2)
     )

@@ -254,7 +254,7 @@ def test_the_proof_of_a_wall_in_pose_is_verified(rest: tuple[str, ...], run: Run
     assert f"in pose, with up to 40 N/m and 0.4 N·m/rad, {where}" in words
     assert "stiffness [[40, 0, 0, 0, 0, 0], [0, 40," in words
     assert "0.4]] in N, m, rad" in words
-    document = json.loads((tmp_path / "proof.json").read_text())
+    document = json.loads((tmp_path / "proof.json").read_text(encoding="utf-8"))
     document["certificate"]["wall"]["stiffness_N_m_rad"][5][5] = "4000"
     (tmp_path / "more.json").write_text(json.dumps(document))
     assert run("verify", "more.json")[0] != 0

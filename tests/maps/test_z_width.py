@@ -299,13 +299,14 @@ def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:
     (tmp_path / "else" / "notes.txt").write_text("mine")
     with pytest.raises(zw.InputError, match="holds"):
         zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=tmp_path / "else")
-    assert (tmp_path / "else" / "notes.txt").read_text() == "mine"
+    assert (tmp_path / "else" / "notes.txt").read_text(encoding="utf-8") == "mine"
 
 
-def test_a_cluster_gives_the_same_bits() -> None:
+def test_a_cluster_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two workers, each a process of its own, against the threads of this one."""
     import distributed
 
+    monkeypatch.setattr("zwidth.maps.workers._PATIENCE", "600 s")  # they may start slowly
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, scheduler_port=0
     ) as cluster:

@@ -227,7 +227,7 @@ def test_json_of_an_active_verdict(tmp_path):
     assert witness["energy_J"] == pytest.approx(verdict.witness.energy, rel=1e-12)
     assert verify_document(document).valid
     verdict.save(tmp_path / "verdict.json")
-    assert verify_document(json.loads((tmp_path / "verdict.json").read_text())).energy > 0
+    assert verify_document(json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))).energy > 0
 
 
 def test_json_of_a_rotary_device():

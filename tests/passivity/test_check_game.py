@@ -146,7 +146,7 @@ def test_the_json_names_the_game_and_a_saved_file_holds_its_proof(
     told = json.loads(verdict.to_json())
     assert set(told["worst_hand"]) == {"format", "outcome", "claim", "scope", "assumptions"}
     verdict.save(tmp_path / "verdict.json")
-    saved = json.loads((tmp_path / "verdict.json").read_text())
+    saved = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
     parts = verifications(saved)
     assert all(part.verification.valid for part in parts)
     kinds = {"active": ["contact motion"], "undecided": ["storage"]}

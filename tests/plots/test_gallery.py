@@ -7,6 +7,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pytest
+from printed import shows
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -58,6 +59,6 @@ def test_script_prints_its_number(name, capsys, monkeypatch):
     finally:
         plt.close("all")
     printed = capsys.readouterr().out
-    assert NUMBERS[name] in printed
+    assert shows(printed, NUMBERS[name])
     if name == "plot_soft_tissue":
         assert float(printed.rsplit(" ", 1)[1]) <= 1e-12

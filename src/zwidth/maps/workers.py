@@ -50,7 +50,7 @@ def on_cluster(ready: Plan, places: list[Place], address: str) -> Finished:
             "start one with dask scheduler"
         ) from None
     with client:
-        shared = client.scatter(ready, broadcast=True)
+        (shared,) = client.scatter([ready], broadcast=True)  # in a list: a tuple is scattered part by part
         futures = {client.submit(compute, shared, place, pure=False): place for place in places}
         for future, layers in dask.as_completed(futures, with_results=True):
             yield futures[future], layers

@@ -96,7 +96,7 @@ def test_a_joint_may_have_the_name_of_its_link(urdf: Path) -> None:
     """The hand is at the link."""
     q = [0.4, 0.9]
     expected = read_arm(urdf, frame="tip").forward(q)
-    urdf.write_text(urdf.read_text().replace('joint name="hand"', 'joint name="tip"'))
+    urdf.write_text(urdf.read_text(encoding="utf-8").replace('joint name="hand"', 'joint name="tip"'))
     assert read_arm(urdf, frame="tip").forward(q) == pytest.approx(expected)
 
 
@@ -119,7 +119,7 @@ def test_what_cannot_be_read_is_said_in_one_message(tmp_path: Path, urdf: Path) 
     broken = tmp_path / "broken.urdf"
     broken.write_text("<robot")
     undamped = tmp_path / "undamped.urdf"
-    undamped.write_text(urdf.read_text().replace("damping", "nothing"))
+    undamped.write_text(urdf.read_text(encoding="utf-8").replace("damping", "nothing"))
     for path, words in (
         (tmp_path / "none.urdf", "no file"),
         (broken, "broken.urdf cannot be read: it is no XML"),
@@ -137,7 +137,7 @@ def test_the_words_of_the_parsers_are_in_the_message_alone(
 ) -> None:
     """One line each, in which no place in a C++ file stands, and nothing on standard error."""
     lost = tmp_path / "lost.urdf"
-    lost.write_text(urdf.read_text().replace(LINK.format("tip"), ""))
+    lost.write_text(urdf.read_text(encoding="utf-8").replace(LINK.format("tip"), ""))
     empty = tmp_path / "empty.xml"
     empty.write_text('<robot name="another format"/>')
     for path in (lost, empty):

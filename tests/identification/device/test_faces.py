@@ -160,9 +160,9 @@ def test_a_file_is_not_replaced_unasked(found: zw.Identified, tmp_path: Path) ->
     path.write_text("old")
     with pytest.raises(zw.InputError, match="exists"):
         found.save(path)
-    assert path.read_text() == "old"
+    assert path.read_text(encoding="utf-8") == "old"
     found.save(path, force=True)
-    assert path.read_text() == found.to_toml()
+    assert path.read_text(encoding="utf-8") == found.to_toml()
     assert [p.name for p in tmp_path.iterdir()] == ["mine.toml"]
     with pytest.raises(zw.InputError, match="no directory"):
         found.save(tmp_path / "nowhere" / "mine.toml")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from printed import shows
+
 PAGE = Path(__file__).parents[3] / "docs" / "tissue.md"
 
 
@@ -15,6 +17,6 @@ def test_the_page_says_what_comes_out():
     for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
         exec(block, names)
     (printed,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
-    assert repr(names["fit"]) + "\n" == printed
+    assert shows(repr(names["fit"]) + "\n", printed)
     assert names["models"].best.model.name == "standard-linear-solid"
     assert names["verdict"].outcome == "passive"

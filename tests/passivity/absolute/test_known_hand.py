@@ -132,7 +132,7 @@ def test_saved_and_verified(result, tmp_path):
     path = tmp_path / "wall.json"
     result.save(path)
     assert verify_document(read_document(path)).valid
-    data = json.loads(path.read_text())
+    data = json.loads(path.read_text(encoding="utf-8"))
     data["certificate"]["corners"][0]["slope"] = "400"
     path.write_text(json.dumps(data))
     assert not verify_document(read_document(path)).valid

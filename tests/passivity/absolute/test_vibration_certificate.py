@@ -154,7 +154,7 @@ def test_saved_with_the_result_and_verified(tmp_path, capsys) -> None:
     assert "to rest" in told
     assert "vibrates" in told
     assert "passive" not in told
-    doc = json.loads(path.read_text())
+    doc = json.loads(path.read_text(encoding="utf-8"))
     doc["witness"]["slope"] = "0.9"
     path.write_text(json.dumps(doc))
     assert main(["verify", str(path)]) == 1

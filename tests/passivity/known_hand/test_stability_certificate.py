@@ -222,7 +222,7 @@ def test_saved_and_read_by_the_command_line(tmp_path, capsys) -> None:
     told = " ".join(capsys.readouterr().out.split())
     assert "come to rest" in told
     assert "passive" not in told
-    doc = json.loads(path.read_text())
+    doc = json.loads(path.read_text(encoding="utf-8"))
     path.write_text(json.dumps({"outcome": "passive", "certificate": doc}))
     assert main(["verify", str(path)]) == 1
     doc["loop"]["stiffness_N_m_per_rad"] = "200000"
