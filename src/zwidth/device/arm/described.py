@@ -147,7 +147,9 @@ class DescribedArm(Arm):
         for joint in reversed(self._path()):
             i = self.model.joints[joint].idx_v
             if slides(self.model, i):
-                length += max(map(abs, self.joint_range[i])) + (self.resolution[i] if self.resolution else 0.0)
+                length += max(map(abs, self.joint_range[i])) + (
+                    self.resolution[i] if self.resolution else 0.0
+                )
             beyond[i] = length
             length += float(np.linalg.norm(self.model.jointPlacements[joint].translation))
 

@@ -134,10 +134,8 @@ def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
     return {"geometry": "chain", "joints": joints, "end_m": _texts(end)}
 
 
-def _add_steps(
-    document: dict[str, Any], arm: Chain, steps: EncoderSteps, limits: tuple[float, ...]
-) -> None:
-    """Encoders and Coulomb friction of the joints, bounds on the columns of J, and the forces that are covered."""
+def _add_steps(document: dict[str, Any], arm: Chain, steps: EncoderSteps, limits: tuple[float, ...]) -> None:
+    """Encoders and Coulomb friction of the joints, bounds on the columns of J, and the forces covered."""
     friction = arm.coulomb_friction
     for joint, at in zip(document["arm"]["joints"], arm.placements()[0], strict=True):
         unit, per = ("m", "N") if at.slides else ("rad", "N_m")

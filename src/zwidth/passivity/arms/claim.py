@@ -37,9 +37,8 @@ def claim(outcome: str, covers: Covers, account: Account, without: str, steps: E
             f"The condition holds at every point; between the points {part:.4g} % of the region are proved."
         )
     else:
-        text = (
-            f"{part:.4g} % of the region are proved; at other points the condition fails"
-            + (", and no motion was found that takes energy out." if covers.can_be_refuted else ".")
+        text = f"{part:.4g} % of the region are proved; at other points the condition fails" + (
+            ", and no motion was found that takes energy out." if covers.can_be_refuted else "."
         )
     if outcome in ("theorem", "undecided") and without:
         text += f" There is no certificate: {without}."
@@ -57,10 +56,15 @@ def _counted(covers: Covers, outcome: str) -> str:
     """How the arm is read, and what becomes of the torque within a period."""
     up_to = f", with wall forces up to {in_words(covers.forces)}" if covers.forces else ""
     if covers.encoder == "counted":
-        torque = "is held over a period" if covers.torque == "held" else "follows the readings within a period"
+        torque = (
+            "is held over a period" if covers.torque == "held" else "follows the readings within a period"
+        )
         limit = "" if outcome == "active" else up_to
-        return f"Encoder steps are counted{limit}: force and Jacobian are those of the readings, and the torque {torque}."
-    torque = f"held over a period{up_to}" if covers.torque == "held" else "taken to follow the arm within a period"
+        read = "force and Jacobian are those of the readings"
+        return f"Encoder steps are counted{limit}: {read}, and the torque {torque}."
+    torque = (
+        f"held over a period{up_to}" if covers.torque == "held" else "taken to follow the arm within a period"
+    )
     steps = f" Encoder steps are not counted: {covers.why_ideal}." if covers.why_ideal else ""
     return f"The arm is taken to be read without steps.{steps} The torque is {torque}."
 

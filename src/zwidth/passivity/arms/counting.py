@@ -14,7 +14,6 @@ from zwidth.errors import InputError
 from zwidth.passivity.arms.edges import first_motion
 from zwidth.passivity.arms.encoders import EncoderSteps, encoder_steps, with_encoders
 from zwidth.passivity.arms.held import in_words
-from zwidth.passivity.arms.replay import ArmMotion
 
 Array = npt.NDArray[np.float64]
 
@@ -28,8 +27,8 @@ class Counting:
     steps
         What they ask of friction; None where there are none, or where nothing is known.
     limits
-        Force [N], in pose and moment [N·m], up to which friction covers them: those asked for, or all that it does;
-        empty where it does not.
+        Force [N], in pose and moment [N·m], up to which friction covers them: those asked for, or all that it
+        does; empty where it does not.
     reason
         Why not.
     """
@@ -88,7 +87,7 @@ def with_motion(
 
 
 def _too_small(steps: EncoderSteps, asked: tuple[float, ...]) -> str:
-    up_to = f"Coulomb friction covers them up to {in_words(steps.covered)}" if steps.covered else (
-        "Coulomb friction is too small for them at any force"
-    )
+    if not steps.covered:
+        return "Coulomb friction is too small for them at any force"
+    up_to = f"Coulomb friction covers them up to {in_words(steps.covered)}"
     return f"{up_to}, and not up to {in_words(asked)}"

@@ -17,7 +17,6 @@ from zwidth.device.arm import Arm
 from zwidth.errors import InputError
 from zwidth.passivity.arms.joints import sampled_jacobian_damping
 
-
 _DIGITS = 4
 
 
@@ -44,7 +43,8 @@ def held_torque_damping(arm: Arm, period: float, samples: int, largest: tuple[fl
             "compute the torque several times in each period, and leave torque_held_up_to out"
         )
     return sum(
-        sampled_jacobian_damping(h or 0.0, force, period) for h, force in zip(curvatures, largest, strict=True)
+        sampled_jacobian_damping(h or 0.0, force, period)
+        for h, force in zip(curvatures, largest, strict=True)
     )
 
 
