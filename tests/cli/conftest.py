@@ -13,8 +13,3 @@ def compiled_before() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("zwidth.compiled.is_compiled", lambda chapter: True)
         yield
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _on_the_bench(time_enough_on_the_bench: None) -> None:
-    """Its games are decided."""

@@ -131,7 +131,10 @@ def test_the_map_is_saved_and_drawn(run: Run, tmp_path: Path) -> None:
             ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--delay", "0.3 ms"),
             "whole number of samples",
         ),
-        (("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--delay", "3"), 'delay is 3 s, 3000 samples'),
+        (
+            ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--delay", "3"),
+            "delay is 3 s, 3000 samples",
+        ),
         (
             ("two-link", "--joint-damping", "0.1", "--stiffness", "1", "--largest-force", "3"),
             "--joint-resolution 0.001",
@@ -163,7 +166,9 @@ def test_encoder_steps_are_counted_up_to_a_force(run: Run) -> None:
     assert status == 0
     assert "Encoder steps are counted, with wall forces up to 28.6 N" in words
     assert re.search(r"0.005774 N·m, 0.002954 N·m in joint 1, 2, and .* more for each newton", words)
-    assert re.search(r"encoder steps covered up to 28.6 N; from 89[.0-9]* N on a motion takes energy out", words)
+    assert re.search(
+        r"encoder steps covered up to 28.6 N; from 89[.0-9]* N on a motion takes energy out", words
+    )
     words = " ".join(run("verify", "proof.json")[1].split())
     assert "its encoder steps counted: force and Jacobian are those of the readings" in words
     found = json.loads(run(*COUNTED, "--json")[1])

@@ -8,7 +8,8 @@ from typing import Any
 from zwidth.cli.table import plain
 
 _UNITS = {
-    "_N_m_s_per_rad": "N·m·s/rad", "_m_per_rad2": "m/rad²", "_N_s_per_m": "N·s/m", "_N_per_m": "N/m",
+    "_N_m_s_per_rad": "N·m·s/rad", "_m_per_rad2": "m/rad²", "_m_per_rad": "m/rad",
+    "_N_s_per_m": "N·s/m", "_N_per_m": "N/m", "_N_m": "N·m", "_N": "N",
     "_N_m_s_rad": "in N, m, s, rad", "_N_m_rad": "in N, m, rad", "_rad": "rad", "_m": "m",
 }  # fmt: skip
 

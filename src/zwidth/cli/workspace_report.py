@@ -94,7 +94,8 @@ def _motion(motion: ArmMotion) -> str:
     middle = ", ".join(f"{q:.4g}" for q in motion.joints.mean(axis=0))
     gain, force = shown(-motion.energy, "J"), shown(motion.largest_force, "N")
     read = "" if motion.encoder == "ideal" else ", at the readings of the encoders"
-    return f"{len(motion.joints)} samples round the joints at {middle} take {gain} out, forces up to {force}{read}"
+    around = f"{len(motion.joints)} samples round the joints at {middle}"
+    return f"{around} take {gain} out, forces up to {force}{read}"
 
 
 def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]]:
@@ -105,12 +106,8 @@ def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]
     enough = ", ".join(shown(f, "N*m") for f in steps.friction)
     more = ", ".join(shown(f, "N*m") for f in steps.friction_per_force)
     has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "it has none that is known"
-    yield (
-        "Coulomb friction",
-        (
-            f"{enough} in joint {_joints(space)}, and {more} more for each newton of the wall, cover the steps; {has}"
-        ),
-    )
+    more = f"{more} more for each newton of the wall"
+    yield "Coulomb friction", f"{enough} in joint {_joints(space)}, and {more}, cover the steps; {has}"
     from zwidth.passivity.arms.held import in_words
 
     covered = f"covered up to {in_words(steps.covered)}" if steps.covered else "covered at no force"

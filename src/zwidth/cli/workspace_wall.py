@@ -103,17 +103,16 @@ def wall_in_words(wall: Wall | MatrixWall) -> str:
     """Stiffness and virtual damping, of one direction or as matrices."""
     from zwidth.environment.wall import Wall
 
-    parts: list[tuple[str, Any, int]] = [
-        ("stiffness", wall.stiffness, 0),
-        ("virtual damping", wall.damping, 1),
-    ]
     if isinstance(wall, Wall):
-        found = [f"{float(value):g} {('N/m', 'N·s/m')[i]}" for _, value, i in parts if float(value)]
-        return ", ".join(found or ["0 N/m"]) + " in every direction"
+        damper = float(wall.damping)  # type: ignore[arg-type]  # no interval: an arm refuses them
+        more = f", {damper:g} N·s/m" if damper else ""
+        return f"{float(wall.stiffness):g} N/m{more} in every direction"  # type: ignore[arg-type]
+    import numpy as np
+
     units = ("N, m, rad", "N, m, s, rad") if wall.turns else ("N/m", "N·s/m")
-    return "; ".join(
-        f"{name} {_rows(value)} {units[i]}" for name, value, i in parts if i == 0 or any(map(any, value))
-    )
+    matrix = np.asarray(wall.damping)
+    more = f"; virtual damping {_rows(matrix)} {units[1]}" if matrix.any() else ""
+    return f"stiffness {_rows(np.asarray(wall.stiffness))} {units[0]}{more}"
 
 
 def _rows(matrix: Any) -> str:

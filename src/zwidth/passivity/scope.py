@@ -26,6 +26,9 @@ Encoder = Literal["ideal", "counted", "not counted"]
 Sampling = Literal["constant", "any"]
 """A constant period and delay; or whatever the clock does."""
 
+Torque = Literal["", "follows the arm", "follows the readings", "held"]
+"""Of an arm, within a period: it is always that of the arm, or of its readings; or computed once."""
+
 FedWith = Literal["position", "penetration", ""]
 """Its memory hears the position outside too, or the depth max(x, 0); or that makes no difference."""
 
@@ -95,8 +98,10 @@ class Scope:
         Whether the encoder's steps are in it.
     force_limit, force_steps
         Whether the actuator's force limit, and its converter's steps, are in it; else the actuator is ideal.
-    largest_force
-        Forces of the wall up to which it holds [N; N·m]; None: any.
+    largest_force, largest_moment
+        Forces of the wall [N; N·m], and of an arm in pose moments [N·m], up to which it holds; None: any.
+    torque
+        Of an arm: what becomes of the torque within a period; "" for a device of one axis.
     sampling
         What is asked of the clock.
     damping, coulomb_friction
@@ -128,6 +133,8 @@ class Scope:
     force_limit: bool = False
     force_steps: bool = False
     largest_force: float | None = None
+    largest_moment: float | None = None
+    torque: Torque = ""
     sampling: Sampling = "constant"
     damping: float | None = None
     coulomb_friction: float | None = None

@@ -50,6 +50,11 @@ _ENCODER = {
     "counted": "encoder counts of one size, their phase against the surface unknown",
     "not counted": "encoder steps are left out",
 }
+_TORQUE = {
+    "follows the arm": "the torque follows the arm within a period",
+    "follows the readings": "the torque follows the readings of the encoders within a period",
+    "held": "the torque is computed once a sample and held",
+}
 _SAMPLING = {
     "constant": "a constant sample period and delay, no missed samples",
     "any": "any sample period, delays and missed samples",
@@ -94,8 +99,11 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
         limit = "limits on" if " and " in speed else "limit on"
         yield f"a hand without {limit} {speed}; the mass of the device plays no part"
     yield _actuator(scope)
+    if scope.torque:
+        yield _TORQUE[scope.torque]
     if scope.largest_force is not None:
-        yield f"forces of the wall up to {scope.largest_force:.6g} {_units(scope.motion)['N']}"
+        moment = "" if scope.largest_moment is None else f" and moments up to {scope.largest_moment:.6g} N·m"
+        yield f"forces of the wall up to {scope.largest_force:.6g} {_units(scope.motion)['N']}{moment}"
     yield _SAMPLING[scope.sampling]
     yield _ENCODER[scope.encoder]
     yield from (f"{key.replace('_', ' ')} was not given and taken as 0" for key in scope.assumed)
@@ -195,6 +203,10 @@ def document(scope: Scope) -> dict[str, Any]:
     if scope.largest_force is not None:
         force = unit_suffix(GLOSSARY["force"].unit_for(scope.motion))
         written[f"largest_force_{force}"] = scope.largest_force
+    if scope.largest_moment is not None:
+        written["largest_moment_N_m"] = scope.largest_moment
+    if scope.torque:
+        written["torque"] = scope.torque
     if scope.friction is not None:
         written["friction"] = "curve"
     if scope.region is not None:

@@ -510,3 +510,8 @@ def test_no_encoders_of_parallel_arms() -> None:
     """How their Jacobian changes over a step is not bounded."""
     loop = {"loop": {**counted()["loop"]}}
     assert "not bounded" in checker.verify(pantograph() | loop).reason
+
+
+def test_words_say_no_more_than_is_proved() -> None:
+    """The force is rounded down."""
+    assert "up to 2.99999 N" in checker.verify(counted(loop__largest_force_N="2.9999999")).reason

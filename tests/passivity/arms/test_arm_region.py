@@ -352,6 +352,16 @@ def test_bad_input_has_one_clear_message(options: dict[str, Any], words: str) ->
         zw.workspace(built_in("two-link", damping=0.01), zw.Wall(100), **options)
 
 
+def test_an_arm_that_nobody_refutes_says_so() -> None:
+    """With more joints than coordinates no motion is looked for; the claim and the data say it."""
+    arm = PlanarChain(links=(0.1,) * 3, damping=(1e-4,) * 3)
+    space = zw.workspace(arm, zw.Wall(1000), rate=1000, points=20)
+    assert (space.outcome, space.can_be_refuted) == ("undecided", False)
+    assert "No motion is looked for: with more joints than the hand has coordinates" in space.claim
+    assert "no motion was found" not in space.claim
+    assert zw.workspace(built_in("two-link", damping=0.1), zw.Wall(1), rate=1000, points=20).can_be_refuted
+
+
 def test_other_bad_input() -> None:
     """No arm, no point in reach, a redundant arm without damping in a joint."""
     with pytest.raises(zw.InputError, match="first argument"):

@@ -1,5 +1,6 @@
 """Devices with several joints: what damping a wall needs, what damping the joints give."""
 
+from zwidth.passivity.arms.encoders import EncoderSteps
 from zwidth.passivity.arms.joints import (
     end_effector_damping,
     end_effector_friction,
@@ -15,6 +16,7 @@ from zwidth.passivity.arms.replay import ArmMotion
 
 __all__ = [
     "ArmMotion",
+    "EncoderSteps",
     "WallNeed",
     "Workspace",
     "damping_at",

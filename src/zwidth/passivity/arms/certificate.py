@@ -135,7 +135,7 @@ def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
 
 
 def _add_steps(document: dict[str, Any], arm: Chain, steps: EncoderSteps, limits: tuple[float, ...]) -> None:
-    """Encoders and Coulomb friction of the joints, bounds on the columns of J, and the forces that are covered."""
+    """Encoders and Coulomb friction of the joints, bounds on the columns of J, and the forces covered."""
     friction = arm.coulomb_friction
     for joint, at in zip(document["arm"]["joints"], arm.placements()[0], strict=True):
         unit, per = ("m", "N") if at.slides else ("rad", "N_m")

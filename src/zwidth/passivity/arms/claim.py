@@ -60,7 +60,8 @@ def _counted(covers: Covers, outcome: str) -> str:
             "is held over a period" if covers.torque == "held" else "follows the readings within a period"
         )
         limit = "" if outcome == "active" else up_to
-        return f"Encoder steps are counted{limit}: force and Jacobian are those of the readings, and the torque {torque}."
+        read = "force and Jacobian are those of the readings"
+        return f"Encoder steps are counted{limit}: {read}, and the torque {torque}."
     torque = (
         f"held over a period{up_to}" if covers.torque == "held" else "taken to follow the arm within a period"
     )

@@ -27,8 +27,8 @@ class Counting:
     steps
         What they ask of friction; None where there are none, or where nothing is known.
     limits
-        Force [N], in pose and moment [N·m], up to which friction covers them: those asked for, or all that it does;
-        empty where it does not.
+        Force [N], in pose and moment [N·m], up to which friction covers them: those asked for, or all that it
+        does; empty where it does not.
     reason
         Why not.
     """
@@ -79,17 +79,14 @@ def with_motion(
 ) -> EncoderSteps | None:
     """The steps with the smallest force at which a motion across their edges is known to take energy out."""
     chain, steps = with_encoders(arm), found.steps
-    if chain is None or steps is None:
-        return steps
-
+    if chain is None or steps is None or (isinstance(wall, Wall) and wall.clamped):
+        return steps  # a wall that never pulls has a normal, and the motion's forces may not be along it
     motion = first_motion(chain, wall, period, samples, sites.joints, torque_held)
     return steps if motion is None else replace(steps, refuted=motion.largest_force, motion=motion)
 
 
 def _too_small(steps: EncoderSteps, asked: tuple[float, ...]) -> str:
-    up_to = (
-        f"Coulomb friction covers them up to {in_words(steps.covered)}"
-        if steps.covered
-        else ("Coulomb friction is too small for them at any force")
-    )
+    if not steps.covered:
+        return "Coulomb friction is too small for them at any force"
+    up_to = f"Coulomb friction covers them up to {in_words(steps.covered)}"
     return f"{up_to}, and not up to {in_words(asked)}"

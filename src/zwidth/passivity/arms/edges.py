@@ -1,13 +1,13 @@
-"""A motion across edges of the encoders that takes energy out of a wall, because Coulomb friction is too small.
+"""A motion across edges of the encoders that takes energy out of a wall: Coulomb friction is too small.
 
 Where one or more readings step, the torque of joint i changes by
 
     Σ_j ± Δ_j (J_iᵀ K J_j + Fᵀ ∂J_i/∂q_j)
 
-Four moves make a small rectangle: joint i goes by ℓ with the readings before the step and comes back with those after
-it; between the two the other joints cross their edges by next to nothing.  It gains ℓ times this change less
-2 f_c,i ℓ and 2 b_i ℓ²/T.  The wall rests where its force F at the edge has the worst direction.  What is said is said
-by `replay_cycle`, with the full kinematics at the readings.
+Four moves make a small rectangle: joint i goes by ℓ with the readings before the step and comes back with
+those after it; between the two the other joints cross their edges by next to nothing.  It gains ℓ times this
+change less 2 f_c,i ℓ and 2 b_i ℓ²/T.  The wall rests where its force F at the edge has the worst direction.
+What is said is said by `replay_cycle`, with the full kinematics at the readings.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ def _corners(arm: Chain, wall: Wall | MatrixWall, place: Array, torque_held: boo
 
 
 def _step_force(arm: Chain, wall: Wall | MatrixWall, corners: Sequence[Corner]) -> float:
-    """What a step of the encoders changes the wall's force by: less than twice this is no force at an edge [N]."""
+    """Twice what a step of the encoders changes the wall's force by: with less there is no edge [N]."""
     if not corners:
         return 0.0
     jacobian = arm.resting(corners[0].at).jacobian(corners[0].at)
@@ -213,6 +213,5 @@ def _rectangle(arm: Chain, corner: Corner, period: float, force: float) -> Array
     small = min(_ACROSS, _SHARE * length * gain / cost) if cost else _ACROSS
     along = np.where(np.arange(len(steps)) == i, 1.0, 0.0)
     near, far = small * length * along, -length * along
-    return np.asarray(
-        [near + small * across, far + small * across, far - small * across, near - small * across] + corner.at
-    )
+    points = (near + small * across, far + small * across, far - small * across, near - small * across)
+    return np.asarray(corner.at + np.asarray(points))

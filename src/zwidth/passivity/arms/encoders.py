@@ -1,18 +1,19 @@
 """What Coulomb friction in the joints covers the steps of their encoders, and up to which force of the wall.
 
-A controller has only readings q̂, each the count in which its joint is: q_j = q̂_j + o_j ± Δ_j/2, with the same
-o_j in every count.  It renders the torque J(q̂)ᵀF(p(q̂)).  The arm with q′ = q − o moves as this one does, and is
-the one that the wall thinks it has; from its torque the rendered one differs by
+A controller has only readings q̂, each the count in which its joint is: q_j = q̂_j + o_j ± Δ_j/2, with the
+same o_j in every count.  It renders the torque J(q̂)ᵀF(p(q̂)).  The arm with q′ = q − o moves as this one
+does, and is the one that the wall thinks it has; from its torque the rendered one differs by
 
     J(q′)ᵀ(F(p(q̂)) − F(p(q′))) + (J(q̂) − J(q′))ᵀF(p(q̂)),
 
-the first of which grows with the step alone, the second with the force, too.  Friction takes Σ f_c,i |q̇_i|.  So the
-loop with encoders is as passive as without them, for forces up to F and moments up to M, if in every joint
+the first of which grows with the step alone, the second with the force, too.  Friction takes Σ f_c,i |q̇_i|.
+So the loop with encoders is as passive as without them, for forces up to F and moments up to M, if in every
+joint
 
     f_c,i ≥ ½ [Σ_a r_a,i Σ_b (‖K_ab‖ + 2 ‖B_ab‖/T) Σ_j Δ_j r_b,j + F Σ_j N_ij Δ_j + M Σ_j N′_ij Δ_j]
 
-r_a,i ≥ |J_a,i| in the region and one step around it, a and b for translation and rotation, N_ij and N′_ij bounds on
-the second derivatives of the point and of the turn.  Proof: docs/theory/arms.md.
+r_a,i ≥ |J_a,i| in the region and one step around it, a and b for translation and rotation, N_ij and N′_ij
+bounds on the second derivatives of the point and of the turn.  Proof: docs/theory/arms.md.
 """
 
 from __future__ import annotations
@@ -61,11 +62,11 @@ class EncoderSteps:
     columns
         r_i ≥ |∂p/∂q_i| in the region and one step around it [m/rad; 1].
     covered
-        The largest force [N], in pose with a moment [N·m], up to which the arm's own Coulomb friction covers the
-        steps; empty where it does not even at rest.
+        The largest force [N], in pose with a moment [N·m], up to which the arm's own Coulomb friction covers
+        the steps; empty where it does not even at rest.
     refuted
-        The smallest force at which a motion across their edges is known to take energy out [N]; None: none is.
-        Between `covered` and this nothing is known.
+        The smallest force at which a motion across their edges is known to take energy out [N]; None: none
+        is. Between `covered` and this nothing is known.
     motion
         That motion.
     """
@@ -79,7 +80,7 @@ class EncoderSteps:
     motion: ArmMotion | None = None
 
     def friction_up_to(self, force: float, moment: float = 0.0) -> tuple[float, ...]:
-        """Coulomb friction of each joint that covers the steps up to a force [N] and a moment [N·m] of the wall."""
+        """Coulomb friction of each joint that covers the steps up to a force [N] and a moment [N·m]."""
         each = zip(self.friction, self.friction_per_force, self.friction_per_moment, strict=True)
         return tuple(own + (force * f if f else 0.0) + (moment * m if m else 0.0) for own, f, m in each)
 
@@ -119,7 +120,7 @@ def with_encoders(arm: Arm) -> Chain | None:
 
 
 def columns_in_cells(arm: Chain, sites: Sites) -> Array:
-    """r_i ≥ |∂p/∂q_i| in each cell and one encoder step around it (…, m): a reading may be in another cell."""
+    """r_i ≥ |∂p/∂q_i| in each cell and one step around it (…, m): a reading may be in another cell."""
     point = sites.jacobians[..., : sites.jacobians.shape[-2] - arm.turns, :]
     ranges = np.array(arm.joint_range)
     moving = ranges[:, 0] < ranges[:, 1]

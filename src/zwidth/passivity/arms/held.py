@@ -15,6 +15,7 @@ import numpy as np
 
 from zwidth.device.arm import Arm
 from zwidth.errors import InputError
+from zwidth.passivity.arms.encoders import MOST
 from zwidth.passivity.arms.joints import sampled_jacobian_damping
 
 _DIGITS = 4
@@ -66,4 +67,5 @@ def in_words(largest: Sequence[float]) -> str:
     """The force, and the moment, rounded down: a claim goes no further than its proof."""
     down = Context(prec=_DIGITS, rounding=ROUND_FLOOR)
     units = zip(largest, ("N", "N·m"), strict=False)
-    return " and ".join(f"{float(down.create_decimal(repr(value))):g} {unit}" for value, unit in units)
+    bounds = [f"{float(down.create_decimal(repr(value))):g} {unit}" for value, unit in units if value < MOST]
+    return " and ".join(bounds) or "any"

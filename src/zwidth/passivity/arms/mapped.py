@@ -144,7 +144,7 @@ def _encoders(
     columns: dict[str, Column] = {"friction_margin": (margin, "N*m", words)}
     if arm.turns != SPATIAL:
         columns["covered_force"] = (
-            np.maximum(most, 0.0), "N", "largest force of the wall up to which friction covers the encoder steps here"
+            np.maximum(most, 0.0), "N", "largest force of the wall up to which friction covers the steps here"
         )  # fmt: skip
     return columns
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +33,7 @@ from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
 from zwidth.passivity.arms.report import workspace_document
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json
+from zwidth.passivity.scope import Scope, Torque
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.units import parse_number
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 
+_OUTSIDE = "a reading may be outside the region, and one step around it nothing is proved"
 _MOST_DELAY = 100
 """Samples."""
 _TRIES = 20
@@ -82,19 +84,19 @@ class Workspace:
     region
         In words: where the claim holds.
     torque
-        "follows": the torque of each instant is that of the arm then, or of its readings. "held": it is computed
-        once a sample.
+        "follows": the torque of each instant is that of the arm then, or of its readings. "held": it is
+        computed once a sample.
     encoder
-        "counted": the claim is of the wall's force and the Jacobian at the readings. "ideal": of an arm that is read
-        without steps.
+        "counted": the claim is of the wall's force and the Jacobian at the readings. "ideal": of an arm that
+        is read without steps.
     largest_forces
         The force of the wall [N], in pose with its moment [N·m], up to which the claim goes; empty: any.
     encoder_steps
-        What the steps ask of Coulomb friction, up to which force it covers them, and from which on a motion across
-        them takes energy out; None where there are none, or no bound is known.
+        What the steps ask of Coulomb friction, up to which force it covers them, and from which on a motion
+        across them takes energy out; None where there are none, or no bound is known.
     can_be_refuted
-        False of an arm with more joints than the hand has coordinates: no hand at its end makes them go round a path
-        of their own, so that no motion is looked for.
+        False of an arm with more joints than the hand has coordinates: no hand at its end makes them go round
+        a path of their own, so that no motion is looked for.
     motion
         What takes energy out, if one was found.
     certificate
@@ -126,6 +128,25 @@ class Workspace:
     def coordinates(self) -> int:
         """Of the hand: those of its point, and in pose those of its turn."""
         return int(self.data.attrs["coordinates"])
+
+    @property
+    def scope(self) -> Scope:
+        """What the outcome is about: the wall pulls and pushes about its point of rest."""
+        limits: tuple[float | None, ...] = (*self.largest_forces, None, None)
+        follows: Torque = "follows the readings" if self.encoder == "counted" else "follows the arm"
+        return Scope(
+            contact="both sides",
+            encoder="counted" if self.encoder == "counted" else self._encoder_left_out,
+            largest_force=limits[0],
+            largest_moment=limits[1],
+            torque="held" if self.torque == "held" else follows,
+            region=self.region,
+            motion="linear",
+        )
+
+    @property
+    def _encoder_left_out(self) -> Literal["ideal", "not counted"]:
+        return "not counted" if any(self.arm.resolution) else "ideal"
 
     def __repr__(self) -> str:
         stiffest = f"{self.stiffness_factor:.6g} times this one"
@@ -173,9 +194,9 @@ def workspace(
         this; for chains and descriptions, whose curvature is bounded, and without delay. In pose a force
         and a moment [N], [N·m].
     largest_force
-        Of the wall, ≥ 0 [N], in pose with a moment: up to it encoder steps are to be counted, and the answer is
-        "undecided" where they cannot be. None: as far as Coulomb friction covers them, else the arm is taken to be
-        read without steps; `Workspace.encoder` says which.
+        Of the wall, ≥ 0 [N], in pose with a moment: up to it encoder steps are to be counted, and the answer
+        is "undecided" where they cannot be. None: as far as Coulomb friction covers them, else the arm is
+        taken to be read without steps; `Workspace.encoder` says which.
 
     Raises
     ------
@@ -240,7 +261,7 @@ def workspace(
         torque="held" if held_to else "follows",
         encoder=encoder,
         forces=limits,
-        why_ideal=count.reason if any(arm.resolution) else "",
+        why_ideal=(count.reason or _OUTSIDE) if any(arm.resolution) else "",
         can_be_refuted=m <= n,
     )
     return Workspace(
@@ -297,7 +318,9 @@ def _outcome(
 
 
 def _within(motion: ArmMotion | None, asked: tuple[float, ...]) -> bool:
-    return motion is not None and motion.encoder == "counted" and motion.largest_force <= asked[0]
+    if motion is None or motion.encoder != "counted":
+        return False
+    return motion.largest_force <= asked[0] and motion.largest_moment <= (*asked, 0.0)[1]
 
 
 def _timing(rate: float, delay: float) -> tuple[float, int]:
@@ -308,8 +331,9 @@ def _timing(rate: float, delay: float) -> tuple[float, int]:
     samples = round(delay * rate)
     if samples > _MOST_DELAY:
         raise InputError(
-            f"delay is {delay:g} s, {samples} samples at {rate:g} Hz, and no controller of a haptic device waits "
-            f'for more than {_MOST_DELAY}; a number without a unit is in seconds: write "3 ms" for milliseconds'
+            f"delay is {delay:g} s, {samples} samples at {rate:g} Hz, and no controller of a haptic device "
+            f"waits for more than {_MOST_DELAY}; a number without a unit is in seconds: "
+            'write "3 ms" for milliseconds'
         )
     if abs(delay * rate - samples) > 1e-9 * max(1, samples):
         raise InputError(

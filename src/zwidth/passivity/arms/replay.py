@@ -4,12 +4,12 @@ The joints go round a small closed path, straight from sample to sample:
 
     q(k) = q₀ + ε Re(w e^{jkθ}),   θ = 2π/N
 
-Where the wall's force is held and its torque J(q)ᵀF follows the arm, its work over a period
-is exactly F(k)·(p(q(k+1)) − p(q(k))); where the torque is held it is F(k)·J(q(k)) Δq.  Behind encoders
-F and J are those of the readings ⌊q/Δ⌋Δ: then the work of a torque that follows is the sum of F(k)·J(q̂) δq over
-the pieces of the way between two edges.  The joints lose Σ b_i Δq_i²/T + f_c,i |Δq_i|.  Nothing is linearized.
-A hand at the end can make this motion wherever it can hold every joint:
-where J has as many independent columns as there are joints.
+Where the wall's force is held and its torque J(q)ᵀF follows the arm, its work over a period is exactly
+F(k)·(p(q(k+1)) − p(q(k))); where the torque is held it is F(k)·J(q(k)) Δq.  Behind encoders F and J are those
+of the readings ⌊q/Δ⌋Δ: then the work of a torque that follows is the sum of F(k)·J(q̂) δq over the pieces of
+the way between two edges.  The joints lose Σ b_i Δq_i²/T + f_c,i |Δq_i|.  Nothing is linearized. A hand at
+the end can make this motion wherever it can hold every joint: where J has as many independent columns as
+there are joints.
 """
 
 from __future__ import annotations
@@ -60,8 +60,11 @@ class ArmMotion:
         Where the wall rests, n [m]; in pose its rotation comes last [rad].
     largest_force
         That the wall renders on the way [N].
+    largest_moment
+        The same of what it gives for rotations, 0 of a point [N·m].
     encoder
-        "ideal": position and Jacobian are read without steps. "counted": at the readings of the arm's encoders.
+        "ideal": position and Jacobian are read without steps. "counted": at the readings of the arm's
+        encoders.
     """
 
     joints: Array
@@ -70,6 +73,7 @@ class ArmMotion:
     loss: float
     rest: Array
     largest_force: float
+    largest_moment: float = 0.0
     encoder: str = "ideal"
 
     @property
@@ -121,6 +125,7 @@ def replay_cycle(
         moved = np.einsum("kij,kj->ki", arm.jacobian(seen), turned)
     else:
         moved = _followed(arm, joints, turned) if counted else np.roll(p, -1, axis=0) - p
+    point = force.shape[1] - arm.turns
     friction = np.asarray(arm.coulomb_friction or (0.0,) * joints.shape[-1])
     viscous = np.einsum("ki,ij,kj->", turned, as_matrix(arm.damping), turned) / sample_period
     return ArmMotion(
@@ -129,7 +134,8 @@ def replay_cycle(
         work=float((force * moved).sum()),
         loss=float(viscous + (np.abs(turned) @ friction).sum()),
         rest=rest,
-        largest_force=float(np.linalg.norm(force[:, : force.shape[1] - arm.turns], axis=1).max()),
+        largest_force=float(np.linalg.norm(force[:, :point], axis=1).max()),
+        largest_moment=float(np.linalg.norm(force[:, point:], axis=1).max()),
         encoder="counted" if counted else "ideal",
     )
 

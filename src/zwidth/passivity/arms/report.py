@@ -21,6 +21,7 @@ def workspace_document(space: Workspace) -> dict[str, Any]:
     return {
         "outcome": space.outcome,
         "claim": space.claim,
+        "scope": space.scope.to_dict(),
         "arm": space.arm.name,
         "region": space.region,
         "wall": _wall(space),

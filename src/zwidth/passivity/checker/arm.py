@@ -14,6 +14,7 @@ gives for them, no less than its moment.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from decimal import ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -91,13 +92,19 @@ def _claim(document: Mapping[str, Any]) -> Claim:
 
 def _how(held: bool, counted: bool, limits: tuple[Fraction, Fraction], pose: Pose) -> str:
     """How the arm is read, and what becomes of the torque within a period."""
-    moment = f" and moments up to {float(limits[1]):g} N·m" if pose.turns else ""
-    forces = f", for forces up to {float(limits[0]):g} N{moment}"
+    moment = f" and moments up to {_down(limits[1])} N·m" if pose.turns else ""
+    forces = f", for forces up to {_down(limits[0])} N{moment}"
     if counted:
         torque = "is held over a period" if held else "follows the readings"
         steps = "its encoder steps counted: force and Jacobian are those of the readings, and the torque "
         return f"{steps}{torque}{forces}"
     return f"read without encoder steps; the torque {f'is held{forces}' if held else 'follows the arm'}"
+
+
+def _down(x: Fraction) -> str:
+    """Six digits, rounded down: words say no more than is proved."""
+    down = Context(prec=6, rounding=ROUND_FLOOR)
+    return f"{float(down.divide(Decimal(x.numerator), Decimal(x.denominator))):g}"
 
 
 def _torque(loop: Mapping[str, Any]) -> bool:

@@ -31,7 +31,7 @@ Function = Callable[[Sequence[Jet]], list[list[Jet]]]
 
 def positive_in(box: Cell, matrix: Function, fails: str = "the damping is not enough") -> int:
     """The number of cells that show it, halved where needed; `matrix` takes the coordinates as jets and gives
-    the rows of S from the diagonal on; S has as many as there are coordinates. `fails`: what it is if S is not."""
+    the rows of S from the diagonal on; S has as many as there are coordinates. `fails`: what it is else."""
     moving = sum(map(_moves, box))
     if moving > MOST_MOVING:
         raise Invalid(f"more than {MOST_MOVING} coordinates move")

@@ -129,8 +129,8 @@ def _moved(slides: bool, q: Jet, point: list[Jet], columns: list[list[Jet]]) -> 
 
 
 def levers(chain: Chain) -> Callable[[Sequence[Jet]], list[Jet]]:
-    """The square of the hand's distance from the axis of each joint: |∂p/∂q_i|² of one that turns, but for the
-    lengths of what only nearly rotates. No joint but those beyond moves it."""
+    """The square of the hand's distance from the axis of each joint, which only the joints beyond it change:
+    |∂p/∂q_i|² of one that turns, but for the lengths of what only nearly rotates."""
     fixed = [
         ([[enclosed(x) for x in row] for row in j.rotation], [Jet(enclosed(x)) for x in j.translation])
         for j in chain.joints

@@ -1,11 +1,12 @@
-"""Encoders of a chain whose steps Coulomb friction covers, for forces of the wall up to F and moments up to M.
+"""Encoders of a chain whose steps Coulomb friction covers, for forces up to F and moments up to M.
 
     f_c,i ≥ ½ [Σ_a r_a,i Σ_b (‖K_ab‖ + 2 ‖B_ab‖/T) Σ_j Δ_j r_b,j + F Σ_j N_ij Δ_j + M Σ_j N′_ij Δ_j]
 
-a and b stand for translation and rotation. r_i bounds |∂p/∂q_i| in the region and one step around it, and is proved
-there as r_i² − |∂p/∂q_i|² > 0; where a joint slides it is 1, and of the turn it is 1 for joints that turn. Every
-later column turns with an earlier joint: N_ij = r_max(i,j) for two that turn, 1 where one slides, else 0. N′ = ½ for
-two joints that turn the hand in space. What only nearly rotates makes lengths longer by a millionth. A joint whose range is one number stays at its reading, and has no steps.
+a and b stand for translation and rotation. r_i bounds |∂p/∂q_i| in the region and one step around it, and is
+proved there as r_i² − |∂p/∂q_i|² > 0; where a joint slides it is 1, and of the turn it is 1 for joints that
+turn. Every later column turns with an earlier joint: N_ij = r_max(i,j) for two that turn, 1 where one slides,
+else 0. N′ = ½ for two joints that turn the hand in space. What only nearly rotates makes lengths longer by a
+millionth. A joint whose range is one number stays at its reading, and has no steps.
 """
 
 from __future__ import annotations

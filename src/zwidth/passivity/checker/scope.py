@@ -156,7 +156,7 @@ _SCOPES: dict[str, Callable[[Mapping[str, Any]], Scope]] = {
     "storage": _on_a_grid(PASSIVE),
     "row storage": _of_a_table(PASSIVE),
     "active hand": _activity,
-    "arm": lambda document: Scope(PASSIVE),
+    "arm": lambda document: Scope(PASSIVE, encoder=document["loop"]["encoder"]),
     "endless pull": lambda document: Scope(ACTIVE, encoder=_encoder(document["loop"])),
     "violation": _of_every_hand(KEPT, ACTIVE),
     "motion": _motion,
