@@ -31,6 +31,7 @@ _BOUNDED = {"storage", "row storage"}
 _TABLES = {
     **dict.fromkeys(_OF_A_PORT, ("system", "motion")),
     **dict.fromkeys(("contact", "relaxing contact", "multiplier contact", "force bounding"), ("loop", "law")),
+    "touching motion": ("loop", "law"),
     **dict.fromkeys((*_BOUNDED, "contact motion", "row motion"), ("loop", "law", "domain")),
 }
 """What a document of each kind is of, besides its loop: only what is checked is shown."""
