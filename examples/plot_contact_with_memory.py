@@ -262,11 +262,11 @@ needed.plot([], [], "^", color=BLUE, mfc="white", label="refuted by check")
 needed.plot([], [], "o", color=GREY, mfc="white", label="game: 12 counts")
 needed.plot([], [], "x", color=RED, mew=2, label="a run of 1900 counts or more")
 needed.set(xscale="log", yscale="log", xticks=(0.5, 1, 3, 9, 19, 40), xticklabels=(0.5, 1, 3, 9, 19, 40))
-needed.set(yticks=(0.5, 1, 2, 5, 10), yticklabels=(0.5, 1, 2, 5, 10), ylim=(0.5, 16))
+needed.set(yticks=(0.5, 1, 2, 5, 10), yticklabels=(0.5, 1, 2, 5, 10), ylim=(0.5, 60))
 needed.minorticks_off()
 needed.set(xlabel="time constant of the filter τ/T", ylabel="device damping b/(KT)")
 needed.set_title("(b) damping that the wall needs")
-needed.legend(loc="upper right", bbox_to_anchor=(1, 0.92))
+needed.legend(loc="upper right")
 
 # %%
 # The numbers.
