@@ -189,7 +189,7 @@ def test_a_contact(run: Run) -> None:
         (("--speed", "3 N"), "speed is in m/s"),
         (("--seconds", "0"), "seconds must be > 0"),
         (("--tolerance", "2"), "tolerance must be a number from"),
-        (("--resolution", "0", "--velocity-filter", "window 3"), "resolution is 0"),
+        (("--resolution", "0", "--penetration", "1 mm"), "resolution is 0"),
         (("--damping", "0.1 .. 0.2"), "no single value"),
         (("--plot", "limit.txt"), ".png"),
         (("--plot", "same.svg", "-o", "same.svg"), "same file"),

@@ -49,7 +49,7 @@ def test_each_column_has_its_stiffest_passive_wall(name: str, delay: str) -> Non
 
 @pytest.mark.parametrize("name", list(FILTERS))
 def test_below_a_certified_wall_all_softer_ones_are_passive(name: str) -> None:
-    """20 walls below the stiffest of a column are proved too; a hundredth beyond the limit none is."""
+    """20 walls below the stiffest of a column are proved too; a hundredth beyond the limit none is, so."""
     velocity = FILTERS[name]
     found = zw.z_width(PADDLE, (0, 400), ("0.01", "0.02"), (400, 1), velocity_filter=velocity, hands={})
     limit, b = float(found["limit_passive"][0]), float(found["virtual_damping"][0])
@@ -58,7 +58,7 @@ def test_below_a_certified_wall_all_softer_ones_are_passive(name: str) -> None:
         assert verdict.certificate is not None
         assert verdict.outcome == "passive"
     beyond = check_by_closed_forms(PADDLE, zw.Wall(limit * 1.01, b, velocity)).certificate
-    assert beyond is None or beyond.covered().contact == "kept"
+    assert beyond is None or beyond.kind not in ("spring", "contact")
 
 
 def test_nothing_passive_nothing_certified() -> None:

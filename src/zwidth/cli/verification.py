@@ -25,6 +25,7 @@ _TABLES = {
     ),
     **dict.fromkeys(("contact", "relaxing contact", "multiplier contact", "force bounding"), ("loop", "law")),
     "nonlinear spring": ("loop",),
+    "touching motion": ("loop", "law"),
     **dict.fromkeys(("storage", "row storage", "contact motion", "row motion"), ("loop", "law", "domain")),
 }
 """What a document of each kind is of, besides its loop: only what is checked is shown."""

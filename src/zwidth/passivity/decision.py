@@ -113,7 +113,9 @@ class Decision:
     @cached_property
     def covers_contact(self) -> bool:
         """True when both conditions for a wall touched and left hold."""
-        return self._covered_by(self.wall) or self._covered_by(self.multiplier)
+        if self._covered_by(self.wall):
+            return True
+        return isinstance(self.viscous, LinearProof) and self._covered_by(self.multiplier)
 
     @cached_property
     def viscous(self) -> LinearProof | LinearRefutation:

@@ -13,6 +13,7 @@ polynomial E, ‖R/S‖₁ ≤ ‖R E‖₁/(|e₀| − ‖S E − e₀‖₁), 
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import NamedTuple
 
 from flint import fmpq, fmpq_poly, fmpz_poly
@@ -45,8 +46,14 @@ class NormBound(NamedTuple):
 
 def bound_one_norm(loop: LinearLoop) -> NormBound | None:
     """An exact upper bound on ‖h‖₁; None where too slow a part is left."""
-    numerator, denominator = fmpq_poly(list(loop.numerator)), fmpq_poly(list(loop.denominator))
-    if len(loop.denominator) == 1:
+    return _bounded(loop.numerator, loop.denominator)
+
+
+@lru_cache(maxsize=128)
+def _bounded(top: tuple[int, ...], bottom: tuple[int, ...]) -> NormBound | None:
+    """The same for N and D: limits and advice ask for one law on many devices."""
+    numerator, denominator = fmpq_poly(list(top)), fmpq_poly(list(bottom))
+    if len(bottom) == 1:
         return _bound((), numerator, denominator, (1,))
     modes, numerator, denominator = _split_slow(numerator, denominator)
     whole = [int(c) for c in denominator.numer().coeffs()]

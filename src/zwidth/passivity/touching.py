@@ -36,6 +36,9 @@ _LONGEST_RETURN = 20_000
 
 _LONGEST_DEEP = 1000
 
+_MOST_EFFORT = 60_000
+"""Products times a thousand bits of exact numbers, about, that one check of a motion may take."""
+
 
 @dataclass(frozen=True)
 class TouchedSetting(Setting):
@@ -123,6 +126,10 @@ def _deep(surface: Surface) -> Iterator[list[float]]:
 
 def _sized(setting: TouchedSetting, surface: Surface, positions: list[float]) -> Witness | None:
     """The motion on a grid, with a slow way back, large enough for friction and on whole counts."""
+    inside = max(k for k, x in enumerate(positions) if x > 0)
+    bits = abs(setting.loop.follower[0]).bit_length()
+    if inside * len(setting.loop.denominator) * (1 + inside * bits / 2000) > _MOST_EFFORT:
+        return None
     for steps in _FINENESS:
         knots = _knots(positions, steps)
         gained = surface.energy([float(k) for k in knots])

@@ -8,10 +8,10 @@ from math import gcd, lcm
 from typing import Any
 
 from .proofs import _inside_unit_circle
-from .reading import Invalid, Loop, get, number, numbers, read_loop, with_no_more_than
+from .reading import Invalid, Loop, common_scale, get, number, numbers, read_loop, with_no_more_than
 
 MOST_POSITIONS = 50_000
-MOST_EFFORT = 3e7
+MOST_EFFORT = 2e6
 """Of the samples that the law is run for: products times a thousand bits of their factors, about."""
 
 
@@ -31,17 +31,18 @@ def touching_motion_energy(document: Mapping[str, Any]) -> Fraction:
     if number(get(document, "sample_period_s")) != p.period:
         raise Invalid("the sample period is not that of the loop")
     _require_sound(p, x, switches)
-    forces = _forces(p, x, penetration, never_pulls)
     unit = lcm(*(v.denominator for v in (*x, *switches)))
-    work, path, early_squares, late_squares = Fraction(0), 0, 0, 0
+    path, early_squares, late_squares = 0, 0, 0
+    ways = [0] * len(x)  # how far the hand moves under the force of each sample
     for k, (here, at, there) in enumerate(zip(x, switches, x[1:], strict=False)):
         early, late = int((at - here) * unit), int((there - at) * unit)
-        for move, sample in ((early, k - p.whole - 1), (late, k - p.whole)):
-            path += abs(move)
-            if move and sample in forces:
-                work += forces[sample] * move
+        path += abs(early) + abs(late)
         early_squares += early * early
         late_squares += late * late
+        for move, sample in ((early, k - p.whole - 1), (late, k - p.whole)):
+            if sample >= 0:
+                ways[sample] += move
+    work = _work(p, x, ways, penetration, never_pulls)
     squares = late_squares / (1 - p.part) + (early_squares / p.part if p.part else 0)
     return -(work + p.coulomb_friction * path + p.damping / p.period * squares / unit) / unit
 
@@ -70,37 +71,37 @@ def _read(p: Loop, x: Fraction) -> Fraction:
     return p.resolution * (x // p.resolution) if p.resolution else x
 
 
-def _forces(p: Loop, x: list[Fraction], penetration: bool, never_pulls: bool) -> dict[int, Fraction]:
-    """The force of each sample inside: the direct form D w = u in whole numbers, f = N w.
+def _work(p: Loop, x: list[Fraction], ways: list[int], penetration: bool, never_pulls: bool) -> Fraction:
+    """Σ f times its way, f of the samples inside: the direct form D w = u in whole numbers, f = N w.
 
     u is counted from the first reading, at which the law rests with the force H(1) q; w after k
     samples is a whole number over the k-th power of the first coefficient of D.
     """
     q = [_read(p, position) for position in x]
-    inside = [k for k, reading in enumerate(q) if reading > 0]
-    if not inside:
-        return {}
+    last = max((k for k, reading in enumerate(q) if reading > 0), default=-1)
     rest = Fraction(0) if penetration else q[0]
-    u = [max(reading, Fraction(0)) if penetration else reading - rest for reading in q[: inside[-1] + 1]]
-    held = rest * sum(p.numerator) / sum(p.denominator)
-    unit = lcm(*(v.denominator for v in u))
-    scale = lcm(*(c.denominator for c in (*p.numerator, *p.denominator)))
+    u = [max(reading, Fraction(0)) if penetration else reading - rest for reading in q[: last + 1]]
+    held = rest * sum(p.numerator, Fraction(0)) / sum(p.denominator, Fraction(0))
+    scale = common_scale((*p.numerator, *p.denominator))
     top, bottom = ([int(c * scale) for c in part] for part in (p.numerator, p.denominator))
     content = gcd(*bottom)
     bottom = [c // content for c in bottom]
+    unit = lcm(held.denominator, *(v.denominator for v in u))
+    at_rest = int(held * unit) * content
     lead, order = bottom[0], len(bottom) - 1
     feed = [c * lead**i for i, c in enumerate(top)]
     back = [c * lead ** max(i - 1, 0) for i, c in enumerate(bottom)]
-    past, power, effort, values = [0] * order, 1, 0.0, dict[int, Fraction]()
+    past, power, effort, work = [0] * order, 1, 0.0, 0
     for k, v in enumerate(u):
         effort += (order + 2) * (1 + power.bit_length() / 1000)
         if effort > MOST_EFFORT:
             raise Invalid("the motion is too long, or its exact numbers grow too long, to be checked")
         w = int(v * unit) * power - sum(a * old for a, old in zip(back[1:], past, strict=True))
         power *= lead
+        work *= lead
         if q[k] > 0:
-            f = feed[0] * w + sum(b * old for b, old in zip(feed[1:], past, strict=True))
-            force = held + Fraction(f, power * unit * content)
-            values[k] = max(force, Fraction(0)) if never_pulls else force
+            f = at_rest * power + feed[0] * w + sum(b * old for b, old in zip(feed[1:], past, strict=True))
+            if f * power > 0 or not never_pulls:
+                work += f * ways[k]
         past = [w, *past[:-1]] if order else past
-    return values
+    return Fraction(work, power * unit * content)
