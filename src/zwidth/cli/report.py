@@ -132,7 +132,10 @@ def _budget(verdict: LinearVerdict, fancy: bool) -> Iterator[Table]:
     account, motion = verdict.budget, verdict.device.motion
     scale = max(account.hold, account.hold + account.dynamics, account.required, account.damping)
     unit = GLOSSARY["damping"].unit_for(motion)
-    grid = _account(f"viscous, at {shown(account.frequency, 'Hz')}")
+    kept = (
+        "" if verdict.decision.is_spring or verdict.scope.contact == "both sides" else "while contact lasts, "
+    )
+    grid = _account(f"viscous, {kept}at {shown(account.frequency, 'Hz')}")
     done = 0.0
     for name in ("hold", "dynamics", "delay"):
         share = getattr(account, name)

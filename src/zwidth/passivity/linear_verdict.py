@@ -53,6 +53,12 @@ class LinearVerdict(Verdict):
         return self.outcome == "active" and self.decision.is_provable
 
     @property
+    def _with_contact_broken(self) -> bool:
+        """True where the numbers are those of contact made and broken, as the outcome is."""
+        proved = self.outcome == "passive" and self.scope.contact == "made and broken"
+        return self._in_contact_only or (proved and not self.decision.is_spring)
+
+    @property
     def mode(self) -> str | None:
         """How a violation shows itself (Abbott & Okamura 2005, section IV-C).
 
@@ -69,12 +75,12 @@ class LinearVerdict(Verdict):
         inf if every stiffness is passive; None if none is, or the law has none
         (see `max_gain`).
         """
-        return limits.max_stiffness(self.device, self.environment, self._in_contact_only)
+        return limits.max_stiffness(self.device, self.environment, self._with_contact_broken)
 
     @cached_property
     def max_gain(self) -> float | None:
         """Largest passive factor on H(z), for a law without a stiffness of its own."""
-        return limits.max_gain(self.device, self.environment, self._in_contact_only)
+        return limits.max_gain(self.device, self.environment, self._with_contact_broken)
 
     @cached_property
     def required_damping(self) -> float | None:
@@ -82,7 +88,7 @@ class LinearVerdict(Verdict):
 
         None if no damping would do.  Coulomb friction is a need of its own: see `margins`.
         """
-        return limits.required_damping(self.decision, self._in_contact_only)
+        return limits.required_damping(self.decision, self._with_contact_broken)
 
     @property
     def critical_frequency(self) -> float:
@@ -112,7 +118,7 @@ class LinearVerdict(Verdict):
         Keys "damping" [N·s/m; N·m·s/rad] and "coulomb_friction" [N; N·m]; None where the need is unbounded.
         """
         need, friction = self.required_damping, self.decision.sufficient_friction
-        friction = self.decision.contact_friction if self._in_contact_only else friction
+        friction = self.decision.contact_friction if self._with_contact_broken else friction
         b, setting = self.decision.loop.damping, self.decision.setting
         return {
             "damping": None if need is None else _difference(b, need),
@@ -122,7 +128,7 @@ class LinearVerdict(Verdict):
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
         """The smallest single changes that would do, or the slack of each parameter."""
-        return advise(self.device, self.environment, self.is_proved, self._in_contact_only)
+        return advise(self.device, self.environment, self.is_proved, self._with_contact_broken)
 
     @cached_property
     def actuator(self) -> tuple[ActuatorCheck, ...]:
@@ -175,6 +181,9 @@ class LinearVerdict(Verdict):
         if self.admissible_speed is not None:
             per_second = "rad/s" if self.device.motion == "rotary" else "m/s"
             rows.append(("slower hands are safe up to", as_text(self.admissible_speed, per_second)))
+        if self.outcome == "passive in contact" and self.decision.contact_damping is not None:
+            enough = as_text(float(self.decision.contact_damping), unit["damping"])
+            rows.append(("damping, contact broken too", enough))
         return [*rows, *super().rows()]
 
 
