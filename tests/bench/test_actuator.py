@@ -211,7 +211,7 @@ def test_a_loop_and_its_twin_in_other_units_get_one_answer(device):
 def random_loop(rng):
     """A device with steps, a wall that it renders alone, and what is said to be proved of it."""
     b, period, step = 10 ** rng.uniform(-1, 0.5), 10 ** rng.uniform(-3.5, -2.5), 10 ** rng.uniform(-3, -1)
-    friction = step * rng.choice([0.0, 0.2, 0.45, 0.5000001, 0.7])
+    friction = step * rng.choice([0.0, 0.2, 0.5000001, 0.7])
     device = zw.Device(
         mass=0.05,
         damping=b,
@@ -236,16 +236,14 @@ def random_loop(rng):
 
 
 def random_motion(rng, depth):
-    """In and out beside the steps, or slowly in and out at once, a few hundred times."""
-    kind = rng.integers(3)
-    at = depth * (rng.integers(0, 4) + 0.5)
-    if kind == 0:
-        part = np.array([-1, 1]) * depth * 10 ** rng.uniform(-2, -0.3) + at
-    elif kind == 1:
-        part = np.append(np.linspace(0, at + depth * rng.uniform(0, 1), int(rng.integers(3, 30))), 0.0)
+    """To and fro beside a step, counted from the surface or from where the hand is, or slowly in and out at once."""
+    begin = depth * rng.choice([0.0, 0.05, 1.0])
+    at, size = depth * (rng.integers(0, 3) + 0.5), depth * 10 ** rng.uniform(-1.5, -0.35)
+    if rng.random() < 0.6:
+        part = at + begin + size * np.array([-1, 1])
     else:
-        part = at + depth * rng.uniform(-1, 1, int(rng.integers(2, 8)))
-    return np.concatenate([[0.0], np.tile(part, int(rng.choice([1, 3, 200]))), [0.0]])
+        part = np.append(np.linspace(0, at + size, int(rng.integers(3, 30))), 0.0) - 0.01 * depth
+    return np.concatenate([[begin], np.tile(part, int(rng.choice([1, 40]))), [begin]])
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -253,14 +251,14 @@ def test_random_loops_with_steps_have_no_promise_that_a_motion_breaks(seed):
     """Whatever is called passive or a theorem, none of the motions about its steps takes anything out."""
     rng = np.random.default_rng(seed)
     promised = 0
-    for _ in range(10):
+    for _ in range(8):
         device, law, depth = random_loop(rng)
-        motions = [random_motion(rng, depth) for _ in range(10)]
+        motions = [random_motion(rng, depth) for _ in range(8)]
         if known_of(device, law).status in PROMISES:
             promised += 1
             size = float(device.exact("force_resolution")) * depth
             assert max(taken(device, law, motion) for motion in motions) <= 1e-9 * size
-    assert promised
+    assert promised >= 3
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0013", "0.002"])
