@@ -230,7 +230,9 @@ def taken_out(device: Device, law: Environment, positions: Floats, switches: Flo
     """What a whole motion takes out, from rest to rest, by the simulator [J]."""
     hand = PrescribedMotion(np.append(positions, positions[-1]), switch_positions=_stay(positions, switches))
     trace = simulate(device, law, hand, len(positions) * device.exact("sample_period"))
-    return float(trace["kinetic_energy"][-1] - trace["hand_work"][-1])
+    lost = float(trace["coulomb_loss"][-1] + trace["viscous_loss"][-1])
+    taken = float(trace["kinetic_energy"][-1] - trace["hand_work"][-1])
+    return taken if abs(taken) > ROUNDING * lost else 0.0
 
 
 def _stay(positions: Floats, switches: Floats | None) -> Floats | None:

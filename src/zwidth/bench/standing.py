@@ -122,7 +122,8 @@ def _by_a_covering_wall(device: Device, law: Environment) -> Standing | list[str
     verdict, why_not = _with_the_actuator(device, covering)
     added = f"What the laws add is never more than that of {covering.damping} N·s/m"
     if verdict is None:
-        return [f"{added}. {why_not}"] if why_not else []
+        promised = check_by_closed_forms(device, covering).outcome == "passive"
+        return [f"{added}, which is covered for an ideal actuator. {why_not}"] if promised else []
     return Standing(
         status="passive",
         reason=f"{added}, and every such force is covered, contact made and broken: "
@@ -137,9 +138,8 @@ def _by_bounding(device: Device, law: Environment) -> Standing | list[str]:
         return []
     bounding = check_bounding(device, law)
     if bounding.outcome != "passive":
-        return [f"Force bounding is not proved here: {bounding.claim}"]
-    slow = _slow_current(device)
-    return slow or Standing(status="passive", reason=bounding.claim, scope=bounding.scope)
+        return [f"The promise of force bounding is withheld. {bounding.claim}"]
+    return Standing(status="passive", reason=bounding.claim, scope=bounding.scope)
 
 
 def _by_a_theorem(device: Device, law: Environment) -> Standing | list[str]:
@@ -175,13 +175,11 @@ def _with_the_actuator(device: Device, law: Environment) -> tuple[Verdict | None
         return verdict, ""
     if verdict.outcome == "passive in contact":
         return None, "Making and breaking contact is not covered."
-    return None, _too_little(device)
-
-
-def _too_little(device: Device) -> str:
-    if device.force_resolution is None:
-        return ""
-    return "The converter's steps are not covered: Coulomb friction is needed for other things."
+    half = float(half_a_step(device))
+    return (
+        None,
+        f"The converter's steps are not covered: the {half:.6g} N that they take is needed elsewhere.",
+    )
 
 
 def _without(device: Device, friction: Fraction) -> Device:

@@ -6,7 +6,8 @@ takes out
     −∫ f dx − f_c Σ|Δx| − (b/T) Σ Δx²
 
 Once the law has begun two rounds in the same state to the bit, all that follow are the same: they are
-counted, not run.
+counted, not run.  So are those of a hand that has lost the same to the bit in very many rounds: the law only
+adds to its account what the hand loses.
 """
 
 from __future__ import annotations
@@ -14,6 +15,9 @@ from __future__ import annotations
 from zwidth.compiled import Array, compiled
 from zwidth.loop.kernel import commanded
 from zwidth.loop.law import PHASE, RESOLUTION, measured
+
+LOSING = 40
+"""Rounds with the same loss after which a hand goes on losing."""
 
 
 @compiled
@@ -51,7 +55,7 @@ def run_rounds(
     """
     samples, kept, rounds = positions.shape[0], waiting.shape[0], taken.shape[0]
     needed = 1 + (late + 1 + samples - 1) // samples  # rounds until no command of another one is waiting
-    total, paid, same, k = 0.0, 0.0, 0, 0
+    total, paid, same, losing, last, k = 0.0, 0.0, 0, 0, 0.0, 0
     for r in range(rounds):
         for i in range(memory.shape[0]):
             before[i] = memory[i]
@@ -71,7 +75,9 @@ def run_rounds(
         paid += lost
         taken[r] = total
         same = same + 1 if unchanged(memory, before) else 0
-        if same > needed:
+        losing = losing + 1 if gain < 0.0 and gain == last else 0
+        last = gain
+        if same > needed or losing > LOSING:
             for later in range(r + 1, rounds):
                 total += gain
                 taken[later] = total

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from zwidth.device import Device
+from zwidth.device.actuator import current_rise
 from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
@@ -78,7 +79,8 @@ class Bounding:
 def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
     """Decide whether force bounding, the last law in a row, makes a loop passive.
 
-    Nothing is asked of the environment and of the laws before it: what they command may be anything.
+    Nothing is asked of the environment and of the laws before it: what they command may be anything.  Where
+    the record says that the current rises slowly, nothing is proved.
 
     Parameters
     ----------
@@ -103,6 +105,10 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
     scope = _scope(device, law)
     if found.scope is None:
         return Bounding("undecided", f"Not proved: {found.reason}.", scope, None)
+    rise = current_rise(device)
+    if rise.ok is False:
+        claim = f"Not proved: a force is taken as instant, and it is not: {rise.text}."
+        return Bounding("undecided", claim, scope, None)
     claim = (
         "No motion of the hand, however fast or skilled, takes energy out of this loop, whatever comes "
         f"before force bounding: {found.reason}."

@@ -210,8 +210,11 @@ def _passive(
     covered = certificate.covered()
     if covered is None or covered.shows != "passive":  # nothing is claimed that the checker does not accept
         return _undecided(device, law, at, decision, "unconfirmed")
+    narrowed = asked == "kept" and covered.contact == "made and broken"  # no more is said than was asked
     scope = _scope(device, law, decision).replace(
-        contact=covered.contact, fed_with=covered.fed_with, also=_also(certificate, law)
+        contact="kept" if narrowed else covered.contact,
+        fed_with="" if narrowed else covered.fed_with,
+        also=() if narrowed else _also(certificate, law),
     )
     return LinearVerdict(
         "passive in contact" if covered.contact == "kept" != asked else "passive",
