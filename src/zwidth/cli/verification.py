@@ -113,8 +113,10 @@ def print_verifications(parts: Sequence[Part]) -> None:
 def _claim(part: Part) -> str:
     """What was checked, with the bounds on the hand where there are some."""
     reason, covered = plain(part.verification.reason, 400), part.verification.scope
-    if covered is None or part.verification.energy is not None:
+    if not part.verification.valid or part.verification.energy is not None:
         return reason
+    if covered is None:  # of corners that show different things no headline is that of all
+        return f"Proved: {reason}"
     return f"{_head(covered, str(part.evidence.get('kind')))}: {reason}"
 
 
