@@ -25,13 +25,13 @@ _OF_A_KNOWN_HAND = {"absolute stability", "stability", "instability", "vibration
 _OF_A_PORT = {"positive real", "positive real matrix", "extraction", "matrix extraction"}
 """Kinds that say of a port on which side of a level its index lies."""
 
-_BOUNDED = {"storage", "row storage"}
-"""Storage functions: they speak of the hands on their board only."""
+_BOUNDED = {"storage", "coarse storage", "row storage", "slow hands"}
+"""Proofs of hands within bounds: storage functions speak of the hands on their board only."""
 
 _TABLES = {
     **dict.fromkeys(_OF_A_PORT, ("system", "motion")),
     **dict.fromkeys(("contact", "force bounding"), ("loop", "law")),
-    **dict.fromkeys((*_BOUNDED, "contact motion", "row motion"), ("loop", "law", "domain")),
+    **dict.fromkeys((*_BOUNDED, "contact motion", "row motion"), ("loop", "law", "domain", "bounds")),
 }
 """What a document of each kind is of, besides its loop: only what is checked is shown."""
 

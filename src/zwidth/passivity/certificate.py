@@ -80,7 +80,7 @@ def certify(decision: Decision) -> dict[str, Any]:
     document = _document(decision, kind)
     if kind == "contact":
         assert decision.wall is not None
-        document["law"] = _law(decision.wall, decision.setting.motion)
+        document["law"] = wall_document(decision.wall, decision.setting.motion)
     elif kind != "spring":
         document["proof"] = linear_proof(decision)
     return document
@@ -105,7 +105,7 @@ def linear_proof(decision: Decision) -> dict[str, Any]:
     return document
 
 
-def _law(wall: DampedWall, motion: str) -> dict[str, Any]:
+def wall_document(wall: DampedWall, motion: str) -> dict[str, Any]:
     estimate = wall.estimate
     weights: object = (
         {"pole": str(estimate.pole)} if isinstance(estimate, Decay) else [str(w) for w in estimate.weights]

@@ -29,6 +29,8 @@ from .proofs import PROOFS
 from .reading import Invalid, get, number
 from .rest import instability, stability
 from .row_motion import row_motion_energy
+from .slow_hands import slow_hands
+from .storage_coarse import coarse_storage
 from .storage_proof import storage
 from .storage_row import storage_of_row
 from .vibration import vibration
@@ -40,11 +42,13 @@ _KINDS = {
     "absolute stability": absolute,
     "active hand": active_hand,
     "arm": arm,
+    "coarse storage": coarse_storage,
     "contact": contact,
     "force bounding": force_bounding,
     "instability": instability,
     "positive real": positive_real,
     "positive real matrix": positive_real_matrix,
+    "slow hands": slow_hands,
     "stability": stability,
     "storage": storage,
     "row storage": storage_of_row,

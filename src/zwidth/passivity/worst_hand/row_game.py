@@ -15,6 +15,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.worst_hand.board import Domain
 from zwidth.passivity.worst_hand.domain import counts_of, losses_of
 from zwidth.passivity.worst_hand.gain import Gain
+from zwidth.passivity.worst_hand.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.row_board import NO_LAW, RowBoard
 from zwidth.passivity.worst_hand.row_gain import row_gain
@@ -51,6 +52,21 @@ class RowGame:
         return self.device.motion
 
     @property
+    def too_large(self) -> None:
+        """Nothing: a board that is too large has no table, and no game."""
+        return
+
+    @property
+    def is_large(self) -> bool:
+        """True where a storage function takes its time: no closed form stands in for it."""
+        return False
+
+    def checking_time(self, steps: int) -> float:
+        """How long the checker may take over a storage function [s]."""
+        moves = self.table.successors.size * (steps + 1) ** 2
+        return 0.02 + moves / 300_000_000
+
+    @property
     def hand(self) -> str:
         """The hands that a proof covers, in words."""
         length, speed = ("rad", "rad/s") if self.motion == "rotary" else ("m", "m/s")
@@ -61,6 +77,11 @@ class RowGame:
             f"hands of up to {fastest:.4g} {speed} over one sample ({counts:.4g} counts a sample), up to "
             f"{deepest:.4g} {length} ({self.domain.highest + 1} counts) on either side of the surface"
         )
+
+    @property
+    def bounds(self) -> HandBounds:
+        """The same as data."""
+        return hand_bounds(NO_LAW, self.losses, self.domain)
 
     @property
     def contact(self) -> str:
@@ -94,6 +115,9 @@ class RowGame:
         """A storage function on so many steps per count, or None."""
         played = self._play(steps, "generous", self.domain, self.table, deadline, tell, on)
         return None if played.value is None else RowStorage(played, self.motion, self.law)
+
+    def prove_on_cells(self, cells: int, deadline: float = float("inf"), tell: Any = None) -> None:
+        """Nothing: a table has the states of every count."""
 
     def refute(
         self, steps: int, deadline: float = float("inf"), tell: Any = None, on: str = "cpu"
