@@ -203,7 +203,11 @@ IIR = zw.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
         (SPRING, {"penetration": "1 mm", "speed": 1}, "expected a number"),
         (SPRING, {"penetration": "0.001", "speed": 0}, "speed must be > 0"),
         (SPRING, {"penetration": "0.001", "speed": float("nan")}, "finite"),
-        (DAMPED, {"penetration": "0.001", "speed": 1000}, "too many states"),
+        (
+            (DAMPED[0], zw.HuntCrossley(20000, "1.5", 2)),
+            {"penetration": "0.8", "speed": 5, "seconds": 0},
+            "too many",
+        ),
         (SPRING, {"tolerance": 0}, "tolerance must be"),
         (SPRING, {"tolerance": 1}, "tolerance must be"),
         (SPRING, {"tolerance": float("nan")}, "tolerance must be"),

@@ -1,4 +1,4 @@
-"""Fine encoders: closed forms for slow hands, storage functions on cells of many counts, motions on every n-th."""
+"""Fine encoders: closed forms for slow hands, proofs on cells of many counts, motions on every n-th."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def limit_of_slow_hands(loop, virtual, speed):
 @pytest.mark.parametrize("counts", [4096, 65536, 2**20])
 @pytest.mark.parametrize("virtual", ["0", "0.02"])
 def test_slow_hands_from_both_sides(counts, virtual):
-    """Proved at the closed limit whatever the encoder; a thousandth above it not, and 2 % above a motion gains."""
+    """Proved at the closed limit, a thousandth above it not; 2 % above a motion gains."""
     loop, speed = device(counts), Fraction(1, 4)
     limit = limit_of_slow_hands(loop, virtual, speed)
     proof = slow_hands(loop, zw.Wall(limit, virtual), speed)
@@ -95,7 +95,7 @@ WALLS = {
 
 @pytest.mark.parametrize("name", WALLS)
 def test_cells_of_many_counts_from_both_sides(name):
-    """What is proved has no motion on any board; a little stiffer has one; the two are a few per cent apart."""
+    """What is proved has no motion on any board, and a little stiffer one has: a few per cent apart."""
     wall, delay, damping = WALLS[name]
     loop = device(2**20, damping, "0.05", delay)
     bounds = {"penetration": "0.002", "speed": "0.5"}
@@ -140,7 +140,7 @@ def test_a_coarse_proof_that_was_tampered_with():
 
 @pytest.mark.parametrize("name", WALLS)
 def test_hands_between_the_ends_of_cells(name):
-    """Random hands behind the fine encoder, half of them toggling, end with no more than a fine board stores."""
+    """Random rounds behind the fine encoder, turns within a sample too: none gains where it is proved."""
     wall, delay, damping = WALLS[name]
     loop = device(4096 * 20, damping, "0.05", delay)
     bracket = zw.passive_limit(loop, wall, penetration="0.002", speed="0.5", tolerance=0.1, seconds=20)
@@ -184,7 +184,7 @@ LOOPS = 40
 
 @pytest.mark.parametrize("seed", range(LOOPS))
 def test_refuting_motions_keep_the_stated_bounds(seed):
-    """Way in, rounds and turns within a sample: no faster, no deeper than stated; and the checker sees to it."""
+    """Way in, rounds and turns: no faster, no deeper than stated; and the checker sees to it."""
     random = Random(seed)
     period = random.choice(["0.0005", "0.001"])
     step = Fraction(random.choice([1, 2, 5, 10]), 100_000)

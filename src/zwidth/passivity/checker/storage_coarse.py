@@ -4,12 +4,13 @@ y = x − Δ: the law acts inside where the reading is above 0, exactly where y 
 y + Δ/2 but for Δ/2.  So a law of readings, f = Σ c_j q_{k−j}, is F = Σ c_j (y_{k−j} + Δ/2), but for ‖c‖₁ Δ/2,
 which Coulomb friction pays for.  F is linear between the cells' ends in all coordinates y_k, y_{k−1}, …
 
-V is given at these ends and linear on the simplices between them that are cut where y_i − y_j is whole.  There
-y' − y is D or D + 1, and F at the corners differs by κ h at most, κ = max(Σ c⁺, Σ c⁻).  So for φ |d| + β d² + F d
+V is given at these ends and linear on the simplices between them that are cut where y_i − y_j is whole.
+There y' − y is D or D + 1, and F at the corners differs by κ h at most, κ = max(Σ c⁺, Σ c⁻).  So for a
+cost of φ |d| + β d²
 
     V(s) ≥ −F (y' − y) − φ D − L(D) + V(s'),   L(0) = 0,  L(1) = −κ h²,  L(D) = β D² h² − (β + κ) h²/4
 
-at the corners is enough for all positions between.  At y = 0 all has two values, from outside and from inside.
+at the corners is enough for all positions between.  At y = 0 all has two values, from outside and inside.
 """
 
 from __future__ import annotations
@@ -76,10 +77,11 @@ def coarse_storage(document: Mapping[str, Any]) -> str:
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     speed = line.fastest * line.length / losses.period
+    length = "rad" if any(str(key).endswith("_rad") for key in get(document, "loop")) else "m"
     return (
-        "no move takes out more than the storage function falls, anywhere within "
-        f"{float(line.places[-1] * line.length):.6g} of the surface and between the cells' ends, for speeds of "
-        f"up to {float(speed):.6g} a second over each time in which one force is held"
+        "no move takes out more than the storage function falls, at any position up to "
+        f"{float(line.places[-1] * line.length):.6g} {length} and at any count, for hands of up to "
+        f"{float(speed):.6g} {length}/s over each time in which one force is held"
     )
 
 
@@ -146,7 +148,8 @@ def _costs(law: Law, losses: Losses, line: _Line, unit: Fraction, off: int, part
 
     friction, damping = losses.models[0]
     friction -= sum((abs(c) for c in law.taps), Fraction(0)) * losses.resolution / 2
-    bend = max(sum((c for c in law.taps if c > 0), Fraction(0)), -sum((c for c in law.taps if c < 0), Fraction(0)))
+    rising, falling = (sum((max(sign * c, Fraction(0)) for c in law.taps), Fraction(0)) for sign in (1, -1))
+    bend = max(rising, falling)
     drag = damping / (part * losses.period) * line.length // unit
     lost = -(-bend * line.length // unit)
     far = np.arange(ceil(line.fastest * part) + 1, dtype=object)

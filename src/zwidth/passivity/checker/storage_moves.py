@@ -225,9 +225,10 @@ def first_violation_on_line(value: Any, exists: Any, forces: Any, costs: Any, pl
             for h in range(newer * width, (newer + 1) * width):
                 for to in range(size):
                     d = to - start
-                    if exists[n, h] and abs(d) < costs.size:
-                        if value[n, h] < goal[to] - forces[n, h] * d - costs[abs(d)]:
-                            worst[n] = n * histories + h
+                    if not exists[n, h] or abs(d) >= costs.size:
+                        continue
+                    if value[n, h] < goal[to] - forces[n, h] * d - costs[abs(d)]:
+                        worst[n] = n * histories + h
     for n in range(corners):
         if worst[n] >= 0:
             return int(worst[n])

@@ -77,7 +77,7 @@ class Domain:
         return Fraction(self.reach) if self.fastest is None else self.fastest
 
     def every(self, counts: int, remembered: int, sides: bool) -> Domain | None:
-        """Cells of so many counts each within the bounds, the hand in the first count of each; None without any.
+        """Cells of so many counts within the bounds, the hand in the first count of each; None without any.
 
         `remembered` readings before the last one; `sides`: the board ends outside as it does inside.
         """

@@ -69,8 +69,8 @@ class CoarseBoard(Board):
         far = np.arange(ceil(self.domain.speed * part) + 1, dtype=np.int64)
         friction = self.losses.coulomb_friction - sum(map(abs, taps), Fraction(0)) * self.count / 2
         drag = floor(self.losses.damping / (part * self.losses.period) * cell / unit)
-        bend = max(sum((c for c in taps if c > 0), Fraction(0)), -sum((c for c in taps if c < 0), Fraction(0)))
-        lost = ceil(bend * cell / unit)
+        rising, falling = (sum((max(s * c, Fraction(0)) for c in taps), Fraction(0)) for s in (1, -1))
+        lost = ceil(max(rising, falling) * cell / unit)
         curved = np.where(far > 1, drag * far**2 - (drag + lost + 3) // 4, np.where(far > 0, -lost, 0))
         out: Integers = (floor(friction / unit) - self.rounding) * far + curved
         return out

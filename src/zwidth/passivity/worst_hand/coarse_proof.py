@@ -21,7 +21,13 @@ MOST_STATES = 400_000
 
 
 def prove_on_cells(
-    law: FiniteLaw, losses: Losses, domain: Domain, motion: str, cells: int, deadline: float, tell: Tell | None
+    law: FiniteLaw,
+    losses: Losses,
+    domain: Domain,
+    motion: str,
+    cells: int,
+    deadline: float,
+    tell: Tell | None,
 ) -> Certificate | None:
     """A storage function that the checker accepts, or None."""
     board = coarse_board(law, losses, domain, cells)

@@ -115,7 +115,7 @@ def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
 
 def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
     """Cells, readings before and averages of a board together."""
-    states = domain.cells * (2 * domain.reach + 1) ** (law.memory + losses.delay)
+    states = int(domain.cells * (2 * domain.reach + 1) ** (law.memory + losses.delay))
     return states * domain.cells if law.relaxing is not None else states
 
 

@@ -39,7 +39,7 @@ def grids(law: FiniteLaw, losses: Losses, domain: Domain) -> list[tuple[int, Dom
     found = []
     for reach in _REACHES if far > _FEW else ():
         counts = _counts(far, reach)
-        cells = domain.every(counts, remembered, _two_sided(law))
+        cells = domain.every(counts, remembered, _two_sided(law)) if counts > 1 else None
         if cells is not None:
             found.append((counts, _shallow(law, cells)))
     boards = within, _shallow(law, within), _near(law, within, remembered)
@@ -54,7 +54,7 @@ def _work(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
 def _counts(far: Fraction, reach: int) -> int:
     """Counts in a cell with which the longest way is about `reach` cells and hardly anything more."""
     about = far / reach
-    candidates = range(max(2, floor(about * 3 / 4)), floor(about * 4 / 3) + 1)
+    candidates = range(max(1, floor(about * 3 / 4)), max(1, floor(about * 4 / 3)) + 1)
     return max(candidates, key=lambda n: (floor((far + 1) / n) * n / (far + 1), n))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -237,6 +238,25 @@ class Game:
             return None
         return Storage(played, self.motion)
 
+    def warm_up(self) -> None:
+        """Play a few cells, so that what is compiled is compiled before any time is counted."""
+        if self.losses.curve is not None:
+            return
+        enough = sum(map(abs, self.law.taps), Fraction(0)) * self.losses.period * 9 + 1
+        easy = replace(self.losses, damping=self.losses.damping + enough, coulomb_friction=enough)
+        for reach in (1, 30) if self.is_large else (1,):
+            remembered = self.law.memory + self.losses.delay
+            outside = 1 - (remembered + 1) * reach if self.law.surface != "none" else -2 * reach - 1
+            few = Game(self.law, easy, Domain(min(outside, -2 * reach - 1), 2 * reach, reach), self.motion)
+            if reach > 1:
+                few.prove_on_cells(4)
+                few.refute(4, time.monotonic() + 1)
+                continue
+            found = few.prove(1)
+            if found is not None:
+                found.certificate().verify()
+            few.refute(4)
+
     def prove_on_cells(
         self, cells: int, deadline: float = float("inf"), tell: Tell | None = None
     ) -> Certificate | None:
@@ -365,6 +385,8 @@ def worst_hand(
     game = game_of(device, environment, penetration, speed, force_limit, force_resolution, friction)
     law = as_environment(environment)
     said = assumptions(device, game)
+    if isinstance(game, Game):
+        game.warm_up()
     deadline = time.monotonic() + patience(seconds)
     counted = force_limit or force_resolution or friction is not None
     slow = None if counted else slow_hands(device, law, game.bounds.speed)

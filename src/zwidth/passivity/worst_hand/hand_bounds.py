@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
 
 from zwidth.passivity.document import exact_text, unit_key
 from zwidth.passivity.motion import Motion

@@ -190,7 +190,7 @@ def passive_limit(
     tolerance
         Relative width of the bracket that is wanted.
     seconds
-        Time after which the bracket so far is returned.
+        Time after which the bracket so far is returned; that of compiling, once, is not counted.
     progress
         Told (loops decided, about how many there will be).
 
@@ -208,9 +208,12 @@ def passive_limit(
     if not isinstance(parameter, str):
         raise InputError(f"parameter is the name of one, such as 'stiffness', got {parameter!r}")
     law = as_environment(environment)
-    search = _Search(
-        _parameter(device, law, parameter), tolerance, time.monotonic(), patience(seconds), progress
-    )
+    asked = _parameter(device, law, parameter)
+    patience(seconds)
+    counted = penetration, speed, force_limit, force_resolution, friction
+    if isinstance(first := None if isinstance(law, Rendered) else game_of(device, law, *counted), Game):
+        first.warm_up()
+    search = _Search(asked, tolerance, time.monotonic(), patience(seconds), progress)
     if friction is not None and search.parameter.name in ("device.damping", "device.coulomb_friction"):
         raise InputError(f"{parameter} plays no part beside a friction curve: leave out one of the two")
     closed = not (force_limit or force_resolution or friction is not None)
@@ -219,7 +222,6 @@ def passive_limit(
     if not bounded and search.is_close(every.passive, every.active):
         return search.bracket(every, "every hand", (every.passive, every.active))
 
-    counted = penetration, speed, force_limit, force_resolution, friction
     boards = _one_board(device, law, *counted) if isinstance(law, Rendered) else ()
 
     def game(value: Exact) -> Game | RowGame:
@@ -348,6 +350,9 @@ class _Search:
         closed = _nearer(every.passive, slowest, first.towards)
         if every.passive is not None and every.certificate is not None:
             proofs[every.passive] = every.certificate
+        shown: dict[Exact | None, Certificate] = {
+            value: proof for value, proof in proofs.items() if isinstance(proof, Certificate)
+        }
         if at_first.is_large:
             first.good = closed
             for cells in CELLS:
@@ -369,11 +374,11 @@ class _Search:
             raise InputError(at_first.too_large)
         proof = None if passive is None else proofs[passive]
         storage = None if isinstance(proof, Certificate) else proof
-        certificate = proof if isinstance(proof, Certificate) else proof and proof.certificate()
-        if storage is not None and certificate is not None and not certificate.verify():
-            # nothing is claimed that the checker does not accept
-            passive, storage = closed, None
-            certificate = None if closed is None else proofs[closed]  # type: ignore[assignment]
+        certificate = proof if isinstance(proof, Certificate) else None
+        if storage is not None:
+            certificate = storage.certificate()
+            if not certificate.verify():  # nothing is claimed that the checker does not accept
+                passive, storage, certificate = closed, None, shown.get(closed)
         motion = None if active is None else motions[active]
         said = assumptions(device, at_first)
         known = _Found(passive, active, certificate, motion, said)

@@ -108,7 +108,7 @@ def _document(
 
 
 def _way_in(board: RowBoard, goal: int, end: Fraction, halvings: int) -> list[Fraction] | None:
-    """Positions on the shortest way to a state of the table, within each count as near to the next as may be."""
+    """Positions on the shortest way to a state, within each count as near to the next as may be."""
     way = board.table.way(goal, floor(board.domain.speed))
     if way is None:
         return None

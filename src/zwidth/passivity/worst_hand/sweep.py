@@ -43,7 +43,8 @@ def sweep(
     """Improve the states of the groups first … last − 1; returns how many knots improved.
 
     value and choice are (cells, histories, knots); choice holds the flat index of the best move.
-    A cell has so many steps; the hand stands on the knots of it.  With costs that are not φ d + β d², squares is False and no point is left out beforehand.
+    A cell has so many steps, and the hand stands on the knots of it.  With costs that are not φ d + β d²,
+    squares is False and no point is left out beforehand.
     """
     values, choices = value.reshape(-1), choice.reshape(-1)
     most_points = (2 * reach + 1) * knots.size
