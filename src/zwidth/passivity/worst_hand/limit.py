@@ -231,7 +231,9 @@ def passive_limit(
         return game_of(changed, environment, *counted)
 
     def slow(value: Exact) -> Certificate | None:
-        return slow_hands(*search.parameter.change(value), game(value).bounds.speed) if closed else None
+        if not closed or isinstance(law, Rendered):
+            return None
+        return slow_hands(*search.parameter.change(value), game(value).bounds.speed)
 
     return search.by_games(device, game, slow, every)
 
