@@ -350,6 +350,8 @@ class _Search:
         first, second = self._sides(slowly, refuted(FINE[0]))
         slowest = self._slow_limit(slowly)
         closed = _nearer(every.passive, slowest, first.towards)
+        if closed is None and at_first.too_large is not None:
+            raise InputError(at_first.too_large)
         if every.passive is not None and every.certificate is not None:
             proofs[every.passive] = every.certificate
         shown: dict[Exact | None, Certificate] = {
@@ -372,8 +374,6 @@ class _Search:
         passive, active = _nearer(first.good, every.passive, first.towards), second.good
         if not self.is_close(passive, active):
             passive = _nearer(passive, slowest, first.towards)
-        if passive is None and active is None and at_first.too_large is not None:
-            raise InputError(at_first.too_large)
         proof = None if passive is None else proofs[passive]
         storage = None if isinstance(proof, Certificate) else proof
         certificate = proof if isinstance(proof, Certificate) else None
