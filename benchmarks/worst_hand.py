@@ -86,10 +86,10 @@ def bracket() -> dict:
 
 
 @njit
-def plain_sweep(value, choice, forces, costs, knots, first, last, reach):
+def plain_sweep(value, choice, forces, costs, knots, steps, first, last, reach):
     """The update by its definition, move by move."""
     cells, histories, edges = value.shape
-    width, steps = 2 * reach + 1, knots[-1]
+    width = 2 * reach + 1
     per_cell = histories // width
     bests, goals = np.empty(width, np.int64), np.empty(width, np.int64)
     improved = 0
@@ -118,10 +118,10 @@ def plain_sweep(value, choice, forces, costs, knots, first, last, reach):
     return improved
 
 
-def numpy_sweep(value, choice, forces, costs, knots, first, last, reach):
+def numpy_sweep(value, choice, forces, costs, knots, steps, first, last, reach):
     """The same, all readings and targets of a group and a knot at once."""
     cells, histories, edges = value.shape
-    width, steps = 2 * reach + 1, knots[-1]
+    width = 2 * reach + 1
     per_cell = histories // width
     values, improved = value.reshape(-1), 0
     for group in range(first, last):
@@ -147,7 +147,7 @@ def numpy_sweep(value, choice, forces, costs, knots, first, last, reach):
 
 def side_by_side(board: Board) -> dict:
     """One sweep from V = 0 by each, seconds and nanoseconds per state and move."""
-    tables = board.forces, board.costs, board.knots, 0, len(board.forces), board.domain.reach
+    tables = board.forces, board.costs, board.knots, board.steps, 0, len(board.forces), board.domain.reach
     pairs = counted(board)["pairs"]
     ends, rows = {}, {}
     for name, one, runs in (
@@ -170,14 +170,14 @@ def side_by_side(board: Board) -> dict:
 def counted(board: Board) -> dict:
     """States and moves, and what the hull looks at in one sweep."""
     value = board.first_guess.reshape(-1)
-    tables = board.forces, board.costs, board.knots, board.domain.reach
+    tables = board.forces, board.costs, board.knots, board.steps, board.domain.reach
     pairs, targets, points, states = _counts(value, *tables)
     return {"pairs": pairs, "targets": targets, "hull_points": points, "states": states}
 
 
 @njit
-def _counts(values, forces, costs, knots, reach):
-    cells, edges, steps = len(forces), knots.size, knots[-1]
+def _counts(values, forces, costs, knots, steps, reach):
+    cells, edges = len(forces), knots.size
     scratch = np.empty((3, (2 * reach + 1) * edges), np.int64)
     pairs = targets = points = states = 0
     for n in range(cells):
@@ -187,7 +187,7 @@ def _counts(values, forces, costs, knots, reach):
         targets += (high - low + 1) * edges
         least, most = extremes(forces, n, reach)
         points += edges * worthwhile(
-            values, forces, costs, knots, n, reach, least, most, scratch[0], scratch[1], scratch[2]
+            values, forces, costs, knots, steps, n, reach, least, most, scratch[0], scratch[1], scratch[2]
         )
         for n2 in range(low, high + 1):
             for j in range(edges):
@@ -198,7 +198,7 @@ def _counts(values, forces, costs, knots, reach):
 
 
 @njit
-def loads_alone(values, forces, costs, knots, reach, points):
+def loads_alone(values, forces, costs, knots, steps, reach, points):
     """What the hull reads, as a plain stream: every target, every hull point, every state."""
     cells, histories = forces.shape
     edges, seen = knots.size, 0
@@ -241,7 +241,7 @@ def limits(board: Board) -> dict:
     targets, points, states = found["targets"], found["hull_points"], found["states"]
     value = solve.play(board).value
     choice = np.full(value.shape, -1, np.int64)
-    tables = board.forces, board.costs, board.knots
+    tables = board.forces, board.costs, board.knots, board.steps
     per_knot = points // (len(board.forces) * board.knots.size)
     reach = board.domain.reach
     actions = {

@@ -26,7 +26,10 @@ _TABLES = {
     **dict.fromkeys(("contact", "relaxing contact", "multiplier contact", "force bounding"), ("loop", "law")),
     "nonlinear spring": ("loop",),
     "touching motion": ("loop", "law"),
-    **dict.fromkeys(("storage", "row storage", "contact motion", "row motion"), ("loop", "law", "domain")),
+    **dict.fromkeys(
+        ("storage", "coarse storage", "row storage", "slow hands", "contact motion", "row motion"),
+        ("loop", "law", "domain", "bounds"),
+    ),
 }
 """What a document of each kind is of, besides its loop: only what is checked is shown."""
 

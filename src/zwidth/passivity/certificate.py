@@ -84,7 +84,7 @@ def certify(decision: Decision) -> dict[str, Any]:
     kind = decision.kind
     document = _document(decision, kind)
     if isinstance(decision.wall, DampedWall) and kind == "contact":
-        document["law"] = _law(decision.wall, decision.setting.motion)
+        document["law"] = wall_document(decision.wall, decision.setting.motion)
     elif isinstance(decision.wall, RelaxingLaw) and kind == "relaxing contact":
         document["law"] = _relaxing_law(decision.wall, decision.setting.motion)
     elif kind == "multiplier contact":
@@ -113,7 +113,7 @@ def linear_proof(decision: Decision) -> dict[str, Any]:
     return document
 
 
-def _law(wall: DampedWall, motion: str) -> dict[str, Any]:
+def wall_document(wall: DampedWall, motion: str) -> dict[str, Any]:
     estimate = wall.estimate
     weights: object = (
         {"pole": str(estimate.pole)} if isinstance(estimate, Decay) else [str(w) for w in estimate.weights]

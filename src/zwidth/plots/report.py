@@ -82,7 +82,7 @@ def _panels(verdict: Verdict) -> list[_Draw]:
         panels += [_criterion, _plane, _budget] if has_place else [_criterion, _budget]
     if verdict.witness is not None:
         panels.append(_witness)
-    elif verdict.worst_hand is not None:
+    elif verdict.worst_hand is not None and verdict.worst_hand.storage is not None:
         panels.append(_storage)
     return panels
 

@@ -44,7 +44,10 @@ def storage(found: WorstHand) -> Figure:
         If it is not passive: there is no such function.
     """
     if found.storage is None:
-        raise InputError(f"the loop is {found.outcome}: there is no storage function to draw")
+        why = "by a closed form" if found.outcome == "passive" else ""
+        raise InputError(
+            f"the loop is {found.outcome} {why}".rstrip() + ": there is no storage function to draw"
+        )
     figure = new_figure()
     draw_storage(figure.add_subplot(), found.storage)
     return figure

@@ -95,7 +95,10 @@ def test_both_sides_are_evidence(name, bounds):
     assert Fraction(proof["loop"]["coulomb_friction_N"]) == held.exact("coulomb_friction")
     assert Fraction(proof["loop"]["resolution_m"]) == held.exact("resolution")
     assert Fraction(proof["loop"]["sample_period_s"]) == held.exact("sample_period")
-    if law.linear:
+    if proof["kind"] != "storage":  # no worse than what covers every hand
+        assert proof["kind"] in ("spring", "contact")
+        assert bracket.passive == bracket.every_hand[0]
+    elif law.linear:
         taps = sum(Fraction(c) for c in proof["law"]["taps_N_per_m"])
         assert taps == law.stiffness.fraction
         motion = bracket.witness.to_dict()
@@ -200,7 +203,11 @@ IIR = zw.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
         (SPRING, {"penetration": "1 mm", "speed": 1}, "expected a number"),
         (SPRING, {"penetration": "0.001", "speed": 0}, "speed must be > 0"),
         (SPRING, {"penetration": "0.001", "speed": float("nan")}, "finite"),
-        (DAMPED, {"penetration": "0.001", "speed": 1000}, "too many states"),
+        (
+            (DAMPED[0], zw.HuntCrossley(20000, "1.5", 2)),
+            {"penetration": "0.8", "speed": 100, "seconds": 0},
+            "too many",
+        ),
         (SPRING, {"tolerance": 0}, "tolerance must be"),
         (SPRING, {"tolerance": 1}, "tolerance must be"),
         (SPRING, {"tolerance": float("nan")}, "tolerance must be"),

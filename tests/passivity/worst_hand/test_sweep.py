@@ -81,7 +81,7 @@ def test_a_sweep_finds_the_best_move_of_every_state(memory: int) -> None:
         choice = np.full(value.shape, -1, np.int64)
         own_value, own_choice = value.copy(), choice.copy()
         groups = len(value) * (board.histories // board.width if memory else 1)
-        tables = board.forces, board.costs, board.knots
+        tables = board.forces, board.costs, board.knots, board.steps
         improved += sweep(own_value, own_choice, *tables, 0, groups, board.domain.reach)
         _by_definition(board, value, choice)
         assert (own_value == value).all()

@@ -329,7 +329,9 @@ def active():
     [
         (("loop", "damping_N_s_per_m"), "2", "none comes out"),
         (("loop", "coulomb_friction_N"), "1", "none comes out"),
-        (("loop", "sample_period_s"), "0.0000001", "none comes out"),
+        (("loop", "sample_period_s"), "0.0000001", "keep to its speed"),
+        (("bounds", "depth_m"), "0", "keep to its depth"),
+        (("bounds", "force_N"), "1", "not understood"),
         (("loop", "resolution_m"), "1", "none comes out"),
         (("loop", "resolution_m"), "0", "must be > 0"),
         (("loop", "delay_s"), "0.0005", "switch_positions_m is missing"),

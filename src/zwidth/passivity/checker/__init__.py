@@ -33,6 +33,8 @@ from .relaxing_contact import relaxing_contact
 from .rest import instability, stability
 from .row_motion import row_motion_energy
 from .scope import Scope, scope_of
+from .slow_hands import slow_hands
+from .storage_coarse import coarse_storage
 from .storage_proof import storage
 from .storage_row import storage_of_row
 from .touching_motion import touching_motion_energy
@@ -46,6 +48,7 @@ _KINDS = {
     "absolute stability": absolute,
     "active hand": active_hand,
     "arm": arm,
+    "coarse storage": coarse_storage,
     "contact": contact,
     "relaxing contact": relaxing_contact,
     "endless pull": endless_pull,
@@ -55,6 +58,7 @@ _KINDS = {
     "nonlinear spring": nonlinear_spring,
     "positive real": positive_real,
     "positive real matrix": positive_real_matrix,
+    "slow hands": slow_hands,
     "stability": stability,
     "storage": storage,
     "row storage": storage_of_row,

@@ -9,6 +9,7 @@ from typing import Any
 
 from .contact_law import Law, Losses, read_law, read_losses
 from .reading import Invalid, get, integer, numbers
+from .stated_bounds import require_within
 
 MOST_POSITIONS = 100_000
 MOST_SAMPLES = 2_000_000
@@ -21,7 +22,7 @@ def contact_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fracti
 
     The motion begins at rest with the reading 0 or less, at which the law gives
     no force, and ends wherever it ends.  `repeats` names the part that is done
-    `times` times; it must return to where it began.
+    `times` times; it must return to where it began.  It keeps to the bounds that are stated.
     """
     losses, law = read_losses(document), read_law(document)
     key = next((k for k in ("positions_m", "positions_rad") if k in document), None)
@@ -33,6 +34,7 @@ def contact_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fracti
         switches = numbers(get(document, f"switch_{key}"), MOST_POSITIONS)
         if len(switches) != len(x) - 1:
             raise Invalid("there must be one switch position in each interval")
+    require_within(document, losses, x, switches)
     part = get(document, "repeats")
     first, last, times = (integer(get(part, k)) for k in ("first", "last", "times"))
     if not 0 <= first < last < len(x) or times < 1 or x[first] != x[last]:

@@ -14,6 +14,7 @@ from typing import Any
 
 from .contact_law import read_losses
 from .reading import Invalid, get, integer, numbers
+from .stated_bounds import require_within
 
 MOST_POSITIONS = 100_000
 
@@ -29,6 +30,7 @@ def row_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
     x, forces = (_column(document, name) for name in ("positions", "forces"))
     if len(forces) != len(x) - 1:
         raise Invalid("there must be one force for each move")
+    require_within(document, losses, x, ())
     part = get(document, "repeats")
     first, last, times = (integer(get(part, k)) for k in ("first", "last", "times"))
     if not 0 <= first < last < len(x) or times < 1 or x[first] != x[last]:

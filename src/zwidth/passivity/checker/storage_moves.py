@@ -195,3 +195,82 @@ def first_relaxing_violation(
         if worst[n] >= 0:
             return int(worst[n])
     return -1
+
+
+@njit(cache=True)
+def _corners(value: Any, places: Any, n: int, newer: int, reach: int, goal: Any) -> int:
+    """The best value at every place within reach of corner n; returns how far out the first place is."""
+    corners, histories = value.shape
+    older = histories // (2 * reach + 1) if histories > 1 else 1
+    low, high = max(0, n - reach), min(corners, n + reach + 1)
+    goal[:] = -1.0
+    for n2 in range(low, high):
+        h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
+        at = places[n2] - places[low]
+        goal[at] = max(goal[at], value[n2, h2])
+    return int(places[n] - places[low])
+
+
+@njit(cache=True, parallel=True)
+def first_violation_on_line(value: Any, exists: Any, forces: Any, costs: Any, places: Any, reach: int) -> int:
+    """As first_violation, V at the corners of a line; value, exists and forces are (corners, histories)."""
+    corners, histories = value.shape
+    width = 2 * reach + 1 if histories > 1 else 1
+    worst = np.full(corners, -1, np.int64)
+    for n in prange(corners):
+        size = places[min(corners - 1, n + reach)] - places[max(0, n - reach)] + 1
+        goal = np.empty(size)
+        for newer in range(histories // width):
+            start = _corners(value, places, n, newer, reach, goal)
+            for h in range(newer * width, (newer + 1) * width):
+                for to in range(size):
+                    d = to - start
+                    if not exists[n, h] or abs(d) >= costs.size:
+                        continue
+                    if value[n, h] < goal[to] - forces[n, h] * d - costs[abs(d)]:
+                        worst[n] = n * histories + h
+    for n in range(corners):
+        if worst[n] >= 0:
+            return int(worst[n])
+    return -1
+
+
+@njit(cache=True, parallel=True)
+def first_violation_in_parts_on_line(
+    value: Any,
+    exists: Any,
+    forces: Any,
+    costs: Any,
+    later_forces: Any,
+    later_costs: Any,
+    places: Any,
+    reach: int,
+) -> int:
+    """The same where each interval is two moves with two forces, the hand anywhere between them."""
+    corners, histories = value.shape
+    width = 2 * reach + 1
+    worst = np.full(corners, -1, np.int64)
+    for n in prange(corners):
+        size = places[min(corners - 1, n + reach)] - places[max(0, n - reach)] + 1
+        goal, middle = np.empty(size), np.empty(size)
+        for newer in range(histories // width):
+            start = _corners(value, places, n, newer, reach, goal)
+            later = np.nan
+            for h in range(newer * width, (newer + 1) * width):
+                if not exists[n, h]:
+                    continue
+                if later != later_forces[n, h]:
+                    later = later_forces[n, h]
+                    for m in range(size):
+                        middle[m] = goal[m]
+                        for to in range(max(0, m - later_costs.size + 1), min(size, m + later_costs.size)):
+                            lost = later * (to - m) + later_costs[abs(to - m)]
+                            middle[m] = max(middle[m], goal[to] - lost)
+                for m in range(max(0, start - costs.size + 1), min(size, start + costs.size)):
+                    lost = forces[n, h] * (m - start) + costs[abs(m - start)]
+                    if value[n, h] < middle[m] - lost:
+                        worst[n] = n * histories + h
+    for n in range(corners):
+        if worst[n] >= 0:
+            return int(worst[n])
+    return -1

@@ -16,11 +16,16 @@ generous   every step is a knot.  A move over D steps costs φ D + β (D² − �
 strict     it costs φ D + β D², forces rounded against the hand.  Whoever wins by
            these rules has a real motion that gains.  The knots lie close to the
            edges, where it pays to be.
+
+Of a fine encoder a hand may keep to every n-th count.  A cell is then n counts long
+and the hand stands in the first of them only: a strict game with few cells, in which
+every reading and every move is one of the fine encoder.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
@@ -71,13 +76,29 @@ class Domain:
         """The longest way in one sample, in counts."""
         return Fraction(self.reach) if self.fastest is None else self.fastest
 
+    def every(self, counts: int, remembered: int, sides: bool) -> Domain | None:
+        """Cells of so many counts within the bounds, the hand in the first count of each; None without any.
+
+        `remembered` readings before the last one; `sides`: the board ends outside as it does inside.
+        """
+        within = self.within
+        highest, reach = within.highest // counts, floor((self.speed + 1) / counts)
+        if highest < 1 or reach < 1:
+            return None
+        lowest = 1 - (remembered + 1) * reach
+        if sides:
+            lowest = -(-within.lowest // counts)
+        deepest = self.highest + 1 if self.deepest is None else self.deepest
+        return Domain(lowest, highest, reach, Fraction(deepest) / counts, self.speed / counts)
+
     @property
     def within(self) -> Domain:
         """Only the cells that lie within the bounds."""
         if self.deepest is None:
             return self
         highest = floor(self.deepest) - 1
-        lowest = self.lowest if self.lowest < -self.highest else max(self.lowest, -floor(self.deepest))
+        beyond = self.lowest < -self.highest - 1  # farther out than deep: no depth counts there
+        lowest = self.lowest if beyond else max(self.lowest, -floor(self.deepest))
         return Domain(lowest, highest, self.reach, self.deepest, self.fastest)
 
 
@@ -93,6 +114,9 @@ class Board:
         Into how many a cell is cut.
     rules
         "generous" or "strict".
+    every
+        Counts of the encoder in a cell; more than 1 by the strict rules only.  Losses and
+        domain are in cells.
     """
 
     law: FiniteLaw
@@ -100,18 +124,33 @@ class Board:
     domain: Domain
     steps: int
     rules: Rules
+    every: int = 1
 
     @cached_property
     def knots(self) -> Integers:
         """Where in a cell the hand may stand, in steps."""
         if self.rules == "generous":
             return np.arange(self.steps + 1, dtype=np.int64)
+        if self.every > 1:  # where in its count the hand stands hardly matters
+            return np.array([0, self.count_steps], dtype=np.int64)
         spans = (self.losses.part, 1 - self.losses.part)
         far = (self._farthest(span) % self.steps for span in spans)  # from an edge as far as it may go
-        near = [0, 1, isqrt(self.steps), self.steps // 4, *far]
+        count = self.count_steps
+        near = [0, 1, isqrt(count), count // 4, *far]
         if self.losses.part < 1:  # the hand turns within the cell
-            near += range(0, self.steps, max(self.steps // 16, 1))
-        return np.unique([*near, self.steps // 2, *(self.steps - k for k in near)]).astype(np.int64)
+            near += range(0, count, max(count // 16, 1))
+        places = np.unique([*near, count // 2, *(count - k for k in near)]).astype(np.int64)
+        return places[(places >= 0) & (places <= count)]
+
+    @property
+    def count_steps(self) -> int:
+        """Steps in one count of the encoder."""
+        return self.steps // self.every
+
+    @property
+    def encoder(self) -> Losses:
+        """The losses with the encoder as it is, a cell being one count or more."""
+        return replace(self.losses, resolution=self.losses.resolution / self.every)
 
     @property
     def memory(self) -> int:
@@ -154,10 +193,14 @@ class Board:
         drag = self.losses.largest[1] / self.losses.period * (self.domain.reach + 1 / shortest)
         return (stiffness * n + drag) * self.losses.resolution + spring + (self.law.force_step or 0)
 
-    def law_document(self, motion: str) -> dict[str, Any]:
-        """The law as exact data, a contact by its force at every reading on the board."""
-        readings = range(self.domain.highest + 1)
-        return self.law.document(motion, (n * self.losses.resolution for n in readings))
+    def law_document(self, motion: str, places: Iterable[Fraction] | None = None) -> dict[str, Any]:
+        """The law as exact data, a contact by its force at every reading on the board, or of these places."""
+        step = self.encoder.resolution
+        if places is None:
+            readings = set(range((self.domain.highest + 1) * self.every))
+        else:
+            readings = {0, *(max(x // step, 0) for x in places)}
+        return self.law.document(motion, (n * step for n in sorted(readings)))
 
     @property
     def rounding(self) -> int:
@@ -190,7 +233,10 @@ class Board:
     def _farthest(self, part: Fraction) -> int:
         """The longest move, in steps; generous: between two knots it reaches no farther than the next one."""
         longest = self.domain.speed * part * self.steps
-        return floor(longest) if self.rules == "strict" else ceil(longest)
+        if self.rules == "generous":
+            return ceil(longest)
+        whole = floor(longest)  # a hand that stays below an edge may have to go a little farther
+        return max(whole - 1, 0) if longest == whole and whole % self.steps else whole
 
     @cached_property
     def forces(self) -> Integers:

@@ -14,6 +14,7 @@ def gather(
     forces: Integers,
     costs: Integers,
     knots: Integers,
+    steps: int,
     reach: int,
     ranges: Integers,
     height: Integers,
@@ -27,7 +28,7 @@ def gather(
         points = 0
         if least <= most:
             columns = height[:, group], place[:, group], there[:, group]
-            points = worthwhile(values, forces, costs, knots, group, reach, least, most, *columns)
+            points = worthwhile(values, forces, costs, knots, steps, group, reach, least, most, *columns)
         ranges[0, group], ranges[1, group], ranges[2, group] = least, most, points
 
 

@@ -71,8 +71,7 @@ def domain_for(
     Raises
     ------
     InputError
-        If a number is not positive, the board would be too large, or a law that relaxes
-        meets a delay that is not whole samples.
+        If a number is not positive, or a law that relaxes meets a delay that is not whole samples.
     """
     if law.relaxing is not None and losses.curve is not None:
         raise InputError("a friction curve is not played against a law that relaxes: take a model below it")
@@ -95,21 +94,29 @@ def domain_for(
         lowest = -highest - 1
     elif law.relaxing is not None and law.surface == "position":  # which never is
         lowest = min(lowest, -highest - 1)
-    if law.power is not None and highest > MOST_DEPTHS:
-        raise InputError(
-            f"a contact is played up to {MOST_DEPTHS} counts deep, and penetration is {highest + 1} counts: "
-            "give a smaller one"
+    return Domain(lowest, highest, reach, deepest, fastest or None)
+
+
+def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
+    """Why a board has more states than are played, in words; None if it has not."""
+    if law.power is not None and domain.highest > MOST_DEPTHS:
+        return (
+            f"a contact is played up to {MOST_DEPTHS} counts deep, and penetration is {domain.highest + 1} "
+            "counts: give a smaller one"
         )
-    domain = Domain(lowest, highest, reach, deepest, fastest or None)
-    states = domain.cells * (2 * reach + 1) ** memory * 9
-    if law.relaxing is not None:
-        states *= domain.cells
-    if states > MOST_STATES:
-        raise InputError(
-            f"the law remembers {memory} readings before the last one, and {domain.cells} counts with moves "
-            f"of up to {reach} counts make too many states: give a smaller penetration or speed"
-        )
-    return domain
+    memory = law.memory + losses.delay
+    if states_of(law, losses, domain) * 9 <= MOST_STATES:
+        return None
+    return (
+        f"the law remembers {memory} readings before the last one, and {domain.cells} counts with moves "
+        f"of up to {domain.reach} counts make too many states: give a smaller penetration or speed"
+    )
+
+
+def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
+    """Cells, readings before and averages of a board together."""
+    states = int(domain.cells * (2 * domain.reach + 1) ** (law.memory + losses.delay))
+    return states * domain.cells if law.relaxing is not None else states
 
 
 def counts_of(name: str, value: RealLike | None, unit: Fraction) -> Fraction:

@@ -5,16 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import pairwise
 from math import ceil
 from pathlib import Path
 from typing import Any
 
 from zwidth.passivity import checker
+from zwidth.passivity.checker.contact_law import read_losses
+from zwidth.passivity.checker.contact_motion import contact_motion_energy
+from zwidth.passivity.checker.reading import Invalid
 from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.motion import Motion, Repeat
 from zwidth.passivity.witness import FORMAT, rounded_energy
 from zwidth.passivity.worst_hand.board import Board
+from zwidth.passivity.worst_hand.hand_bounds import HandBounds, fastest, hand_bounds
 from zwidth.passivity.worst_hand.law import FiniteLaw
 from zwidth.passivity.worst_hand.solve import Played
 from zwidth.passivity.worst_hand.storage import loop_document
@@ -79,13 +82,14 @@ class Gain:
 
     @cached_property
     def peak_speed(self) -> float:
-        """Largest mean speed over a sample in the cycle [m/s; rad/s]."""
-        return max(abs(b - a) for a, b in pairwise(self.cycle)) / self.sample_period
+        """Largest mean speed of the whole motion, over each time in which one force is held [m/s; rad/s]."""
+        return float(fastest(self.motion, self.period, read_losses(self.document).part))
 
-    @property
+    @cached_property
     def depth(self) -> float:
-        """Deepest position [m; rad]."""
-        return float(max(self.motion.positions))
+        """Deepest position of the whole motion; on either side where the law acts there too [m; rad]."""
+        places = (*self.motion.positions, *self.motion.switch_positions)
+        return float(max(map(abs, places)) if self.law.surface == "none" else max(places))
 
     def verify(self) -> bool:
         """True when the independent checker finds energy coming out."""
@@ -111,17 +115,21 @@ class Gain:
         return f"<p>{self.describe()}</p>"
 
 
-def gain(played: Played, motion: str) -> Gain | None:
-    """The winning cycle of a game as a witness, or None if exactly recomputed it gains nothing."""
+def gain(played: Played, motion: str, bounds: HandBounds | None = None) -> Gain | None:
+    """The winning cycle of a game as a witness, or None if exactly recomputed it gains nothing.
+
+    It keeps to the bounds, those of the board unless others are given.
+    """
     board = played.board
-    for halvings in range(6, _NEAREST, 4):
+    bounds = bounds or hand_bounds(board.law, board.losses, board.domain)
+    for halvings in range(board.count_steps.bit_length() - 1, _NEAREST, 4):
         round_ = [_place(board, knot, cell, halvings) for knot, cell in played.cycle]
         start = _outside(board)
-        approach = _steps(start, round_[0], board.domain.reach * board.losses.resolution)
+        approach = _steps(start, round_[0], board.domain.speed * board.losses.resolution)
         x = [*approach, *round_[1:], round_[0]]
         part = Repeat(len(approach) - 1, len(x) - 1, 1)
         path = Motion(tuple(x), switch_positions(board, x, part), (part,))
-        document = _document(board, path, motion)
+        document = _document(board, path, motion, bounds)
         for _ in range(3):  # rounds that settle the law, rounds that pay for the approach, and once more
             found = _recomputed(document, _settling(board, len(round_)))
             if found is None:
@@ -130,15 +138,15 @@ def gain(played: Played, motion: str) -> Gain | None:
             if energy > 0:
                 return _witness(board, document, path, energy, per_round, motion)
             path = path.repeated(document["repeats"]["times"] + ceil(-energy / per_round) + 1)
-            document = _document(board, path, motion)
+            document = _document(board, path, motion, bounds)
     return None
 
 
 def _place(board: Board, knot: int, cell: int, halvings: int) -> Fraction:
     """Where the hand stands; on the upper edge of its cell it stays just below."""
     x = Fraction(knot, board.steps)
-    if x == cell + 1:
-        x -= Fraction(1, 2**halvings)
+    if x == cell + Fraction(1, board.every):
+        x -= Fraction(1, 2**halvings * board.every)
     return x * board.losses.resolution
 
 
@@ -167,21 +175,23 @@ def _settling(board: Board, samples: int) -> int:
 
 def _recomputed(document: dict[str, Any], settling: int) -> tuple[Fraction, Fraction] | None:
     """Energy and gain per round, over enough rounds for the law to settle; None without gain."""
-    from zwidth.passivity.checker.contact_motion import contact_motion_energy
-
     document["repeats"]["times"] = max(document["repeats"]["times"], settling)
-    energy, per_round = contact_motion_energy(document)
+    try:
+        energy, per_round = contact_motion_energy(document)
+    except Invalid:  # it would leave the bounds, or does not settle
+        return None
     return (energy, per_round) if per_round > 0 else None
 
 
-def _document(board: Board, motion: Motion, kind: str) -> dict[str, Any]:
+def _document(board: Board, motion: Motion, kind: str, bounds: HandBounds) -> dict[str, Any]:
     length = unit_key("position", kind).removeprefix("position_")
     part = motion.repeats[0]
     return {
         "format": FORMAT,
         "kind": "contact motion",
-        "loop": loop_document(board.losses, kind),
-        "law": board.law_document(kind),
+        "loop": loop_document(board.encoder, kind),
+        "law": board.law_document(kind, motion.positions if board.every > 1 else None),
+        "bounds": bounds.document(kind),
         unit_key("sample_period"): board.losses.period,
         "energy_J": Fraction(0),
         "repeats": part._asdict(),

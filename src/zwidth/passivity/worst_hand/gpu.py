@@ -37,7 +37,7 @@ class OnCard:
     def __init__(self, board: Board, value: Integers, choice: Integers) -> None:
         cuda = cuda_or_message()
         points = board.width * board.knots.size
-        self.reach = board.domain.reach
+        self.steps, self.reach = board.steps, board.domain.reach
         self.groups = value.size // points if board.memory else len(value)
         self.items = self.groups * board.knots.size
         threads = min(self.items, max(_SCRATCH // points, _THREADS))
@@ -54,7 +54,9 @@ class OnCard:
         from zwidth.passivity.worst_hand.cuda_kernel import gather, improve_all
 
         values, choices = self.states
-        gather[_blocks(self.groups), _THREADS](values, *self.rules, self.reach, self.ranges, *self.points)
+        gather[_blocks(self.groups), _THREADS](
+            values, *self.rules, self.steps, self.reach, self.ranges, *self.points
+        )
         improve_all[_blocks(self.improved.size), _THREADS](
             values,
             choices,

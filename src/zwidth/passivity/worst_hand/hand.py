@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,17 +18,21 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json
 from zwidth.passivity.outcome import TOLD, Outcome
 from zwidth.passivity.scope import Contact, Hands, Law, Scope, scope_of
+from zwidth.passivity.slow_hands import slow_hands
 from zwidth.passivity.witness import rounded_energy
 from zwidth.passivity.wording import claim_of_passivity, lines
 from zwidth.passivity.worst_hand.board import Board, Domain
-from zwidth.passivity.worst_hand.domain import domain_for, losses_of
+from zwidth.passivity.worst_hand.coarse_proof import CELLS, prove_on_cells
+from zwidth.passivity.worst_hand.domain import domain_for, losses_of, states_of, too_large
 from zwidth.passivity.worst_hand.gain import Gain, gain
+from zwidth.passivity.worst_hand.grids import grids
+from zwidth.passivity.worst_hand.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.worst_hand.law import FiniteLaw, finite_law
 from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.play_relaxing import play_relaxing
 from zwidth.passivity.worst_hand.relaxing import RelaxingBoard
 from zwidth.passivity.worst_hand.row_game import RowGame, row_game
-from zwidth.passivity.worst_hand.solve import Played, play
+from zwidth.passivity.worst_hand.solve import Played, Tell, play
 from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import RealLike
 from zwidth.rendering.rendered import Rendered
@@ -40,6 +45,20 @@ STEPS = (8, 16, 32, 64)
 
 FINE = (1024, 16384)
 """The same when a motion is sought; its knots lie near the edges."""
+
+_QUICK = 100_000_000
+"""Pairs of states and moves up to which a storage function is sought at once."""
+
+_CHECKED_IN_A_SECOND, _SLOWER = 300_000_000, 10
+"""Of such pairs, on a slow processor; and by how much laws that relax take longer."""
+
+_STEPS_PER_MOVE = 256
+"""Steps in the longest move of a hand, at least, when a motion is sought."""
+
+_MOST_STEPS = 2**20
+
+_STEPS_OF_MANY = 4
+"""Steps per count at least, where a cell is many counts: what a move costs is not to be rounded much."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +105,11 @@ class WorstHand:
         InputError
             If the loop is not passive: a hand can take out without end.
         """
+        if self.outcome == "passive" and self.storage is None:
+            raise InputError(
+                "there is no available storage to give: a closed form proves this loop passive, and the game "
+                "was not played; give a smaller penetration"
+            )
         if self.storage is None:
             raise InputError(
                 f"there is no available storage: the loop is {self.outcome}, and what a hand can take out "
@@ -140,20 +164,33 @@ class Game:
     @property
     def hands(self) -> Hands:
         """The hands that a proof covers."""
-        domain, resolution = self.domain, self.losses.resolution
-        inside = float((domain.highest + 1) * resolution)
-        outside = None
-        if self.law.surface == "none":
-            outside = inside
-        elif self.law.relaxing is not None and self.law.surface == "position":
-            outside = float(-domain.lowest * resolution)
-        return Hands(
-            speed=float(domain.speed * resolution / self.losses.period),
-            in_each_part=self.losses.part != 1,
-            inside=inside,
-            outside=outside,
-            resolution=float(resolution),
-        )
+        return self.bounds.hands(self.losses.part != 1)
+
+    @property
+    def bounds(self) -> HandBounds:
+        """The same, exact."""
+        return hand_bounds(self.law, self.losses, self.domain)
+
+    @property
+    def too_large(self) -> str | None:
+        """Why no storage function is sought on this board, in words; None where one is."""
+        return too_large(self.law, self.losses, self.domain)
+
+    @property
+    def is_large(self) -> bool:
+        """True where a storage function takes its time."""
+        return self._moves(STEPS[0]) > _QUICK or self.too_large is not None
+
+    def checking_time(self, steps: int) -> float:
+        """How long the checker may take over a storage function [s]."""
+        return 0.02 + self._moves(steps) / _CHECKED_IN_A_SECOND
+
+    def _moves(self, steps: int) -> int:
+        """Pairs of states and moves on the board, by the generous rules."""
+        moves = states_of(self.law, self.losses, self.domain) * (2 * self.domain.reach + 1) * (steps + 1) ** 2
+        if self.law.relaxing is not None:
+            return moves * max(1, steps // 8) * _SLOWER
+        return moves if self.losses.part == 1 else moves * 2
 
     @property
     def contact(self) -> Contact:
@@ -176,10 +213,37 @@ class Game:
         self, steps: int, deadline: float = float("inf"), tell: Tell | None = None, on: str = "cpu"
     ) -> Storage | None:
         """A storage function on so many steps per count that the checker accepts, or None."""
-        played = self._play(steps, "generous", deadline, tell, on)
+        if self.too_large is not None:
+            return None
+        played = self._play(self.losses, self.domain, steps, "generous", deadline, tell, on)
         if played.value is None:
             return None
         return Storage(played, self.motion)
+
+    def warm_up(self) -> None:
+        """Play a few cells, so that what is compiled is compiled before any time is counted."""
+        if self.losses.curve is not None:
+            return
+        enough = sum(map(abs, self.law.taps), Fraction(0)) * self.losses.period * 9 + 1
+        easy = replace(self.losses, damping=self.losses.damping + enough, coulomb_friction=enough)
+        for reach in (1, 30) if self.is_large else (1,):
+            remembered = self.law.memory + self.losses.delay
+            outside = 1 - (remembered + 1) * reach if self.law.surface != "none" else -2 * reach - 1
+            few = Game(self.law, easy, Domain(min(outside, -2 * reach - 1), 2 * reach, reach), self.motion)
+            if reach > 1:
+                few.prove_on_cells(4)
+                few.refute(4, time.monotonic() + 1)
+                continue
+            found = few.prove(1)
+            if found is not None:
+                found.certificate().verify()
+            few.refute(4)
+
+    def prove_on_cells(
+        self, cells: int, deadline: float = float("inf"), tell: Tell | None = None
+    ) -> Certificate | None:
+        """A proof that the checker accepts, on cells of which the longest move has so many, or None."""
+        return prove_on_cells(self.law, self.losses, self.domain, self.motion, cells, deadline, tell)
 
     def refute(
         self, steps: int, deadline: float = float("inf"), tell: Tell | None = None, on: str = "cpu"
@@ -187,21 +251,42 @@ class Game:
         """A motion that gains, recomputed exactly, or None."""
         if self.domain.within.highest < 1:  # no reading inside lies within the bounds
             return None
-        played = self._play(steps, "strict", deadline, tell, on)
-        return gain(played, self.motion) if played.cycle else None
+        for every, domain in grids(self.law, self.losses, self.domain):
+            if time.monotonic() >= deadline:
+                break
+            cells = replace(self.losses, resolution=self.losses.resolution * every)
+            fine = max(self._fine_enough(steps) // every, _STEPS_OF_MANY) * every
+            played = self._play(cells, domain, fine, "strict", deadline, tell, on, every)
+            motion = gain(played, self.motion, self.bounds) if played.cycle else None
+            if motion is not None:
+                return motion
+        return None
 
-    def _play(self, steps: int, rules: Any, deadline: float, tell: Tell | None, on: str) -> Played:
-        domain = self.domain.within if rules == "strict" else self.domain
+    def _fine_enough(self, steps: int) -> int:
+        """Steps per count, more of them for a hand that goes less than a count in each part of a sample."""
+        shortest = self.domain.speed * (min(self.losses.part, 1 - self.losses.part) or 1)
+        while steps * shortest < _STEPS_PER_MOVE and steps < _MOST_STEPS:
+            steps *= 2
+        return steps
+
+    def _play(
+        self,
+        losses: Losses,
+        domain: Domain,
+        steps: int,
+        rules: Any,
+        deadline: float,
+        tell: Tell | None,
+        on: str,
+        every: int = 1,
+    ) -> Played:
         if self.law.relaxing is not None:
             if on != "cpu":
                 raise InputError("a law that relaxes is played on the processor: leave out on")
             levels = max(1, steps // 8) if rules == "generous" else 2
-            board = RelaxingBoard(self.law, self.losses, domain, steps, rules, levels)
+            board = RelaxingBoard(self.law, losses, domain, steps, rules, every, levels)
             return play_relaxing(board, deadline, tell)
-        return play(Board(self.law, self.losses, domain, steps, rules), deadline, tell, on)
-
-
-Tell = Callable[[int], None]
+        return play(Board(self.law, losses, domain, steps, rules, every), deadline, tell, on)
 
 
 def game_of(
@@ -282,9 +367,18 @@ def worst_hand(
     game = game_of(device, environment, penetration, speed, force_limit, force_resolution, friction)
     law = as_environment(environment)
     said = game_scope(device, law, game)
+    if isinstance(game, Game):
+        game.warm_up()
     deadline = time.monotonic() + patience(seconds)
+    counted = force_limit or force_resolution or friction is not None
+    slow = None if counted else slow_hands(device, law, game.bounds.speed)
+    if game.is_large:
+        slow = slow or _on_cells(game, deadline, progress)
+        if slow is not None:
+            return WorstHand("passive", said, device, law, slow, None, None)
     for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
-        storage = game.prove(steps, deadline, progress, on)
+        in_time = time.monotonic() + (deadline - time.monotonic()) / 2 - game.checking_time(steps)
+        storage = game.prove(steps, in_time, progress, on)
         if storage is not None:
             certificate = storage.certificate()
             if certificate.verify():  # nothing is claimed that the checker does not accept
@@ -294,7 +388,17 @@ def worst_hand(
             return WorstHand("active", said, device, law, None, motion, None)
         if time.monotonic() >= deadline:
             break
+    if slow is not None:
+        return WorstHand("passive", said, device, law, slow, None, None)
+    if game.too_large is not None:
+        raise InputError(game.too_large)
     return WorstHand("undecided", said, device, law, None, None, None)
+
+
+def _on_cells(game: Game | RowGame, deadline: float, tell: Tell | None) -> Certificate | None:
+    """The first proof on cells of many counts."""
+    found = (game.prove_on_cells(cells, deadline, tell) for cells in CELLS)
+    return next((certificate for certificate in found if certificate is not None), None)
 
 
 def patience(seconds: float) -> float:

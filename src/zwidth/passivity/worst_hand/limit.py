@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from fractions import Fraction
-from math import inf, log2, sqrt
+from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,14 +21,20 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.document import save_json, unit_suffix
 from zwidth.passivity.scope import Scope
+from zwidth.passivity.slow_hands import slow_hands
 from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.passivity.wording import describe_hands, lines
+from zwidth.passivity.worst_hand.coarse_proof import CELLS
 from zwidth.passivity.worst_hand.gain import Gain
-from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, Tell, game_of, game_scope, patience
+from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, game_of, game_scope, patience
+from zwidth.passivity.worst_hand.hand_bounds import HandBounds
 from zwidth.passivity.worst_hand.row_game import RowGame, row_game
+from zwidth.passivity.worst_hand.row_storage import RowStorage
 from zwidth.passivity.worst_hand.row_table import DoesNotClose
+from zwidth.passivity.worst_hand.solve import Tell
 from zwidth.passivity.worst_hand.storage import Storage
+from zwidth.passivity.worst_hand.two_sides import Side, approach
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.rendering.rendered import Rendered
@@ -36,8 +42,8 @@ from zwidth.rendering.rendered import Rendered
 MORE_IS_SAFER = frozenset({"device.damping", "device.coulomb_friction", "device.rate"})
 """Parameters of which a loop needs enough; of all others it may have too much."""
 
-_FARTHEST = 60
-"""Doublings from the first guess after which there is no limit."""
+_Holds = Callable[[Exact, float], bool]
+"""Whether a claim is shown at a value by a time."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,8 @@ class Bracket:
         Loops decided, and the time that took [s].
     storage
         The storage function at `passive`, to look at; None where a closed condition proves it.
+    bounds
+        The bounds on the hand, exact; None where the bracket is about every hand.
     violation
         What of the linear criterion is violated at `active`, where closed conditions found it.
     """
@@ -75,7 +83,8 @@ class Bracket:
     every_hand: tuple[float | None, float | None]
     evaluations: int
     seconds: float
-    storage: Storage | None = None
+    storage: Storage | RowStorage | None = None
+    bounds: HandBounds | None = None
     violation: Violation | None = None
 
     @property
@@ -194,7 +203,7 @@ def passive_limit(
     tolerance
         Relative width of the bracket that is wanted.
     seconds
-        Time after which the bracket so far is returned.
+        Time after which the bracket so far is returned; that of compiling, once, is not counted.
     progress
         Told (loops decided, about how many there will be).
 
@@ -211,23 +220,24 @@ def passive_limit(
         )
     if not isinstance(parameter, str):
         raise InputError(f"parameter is the name of one, such as 'stiffness', got {parameter!r}")
-    _refuse_without_part(parameter.removeprefix("device."), force_limit, force_resolution)
     law = as_environment(environment)
-    search = _Search(
-        _parameter(device, law, parameter), tolerance, time.monotonic(), patience(seconds), progress
-    )
+    _refuse_without_part(parameter.removeprefix("device."), force_limit, force_resolution)
+    asked = _parameter(device, law, parameter)
+    patience(seconds)
+    counted = penetration, speed, force_limit, force_resolution, friction
+    ideal = ends(device.resolution)[1] == 0
+    if not (ideal or isinstance(law, Rendered)) and isinstance(first := game_of(device, law, *counted), Game):
+        first.warm_up()
+    search = _Search(asked, tolerance, time.monotonic(), patience(seconds), progress)
     if friction is not None and search.parameter.name in ("device.damping", "device.coulomb_friction"):
         raise InputError(f"{parameter} plays no part beside a friction curve: leave out one of the two")
     closed = not (force_limit or force_resolution or friction is not None)
-    bracket = search.by_closed_forms() if closed else None
+    every = (search.by_closed_forms() if closed else None) or _NOTHING
     bounded = penetration is not None or speed is not None
-    if bracket is not None and not bounded:
-        settled = bracket.passive is not None or bracket.active is not None
-        if bracket.relative_width <= tolerance or (settled and ends(device.resolution)[1] == 0):
-            return bracket  # with an ideal encoder there is no game that would narrow it
-    known = (None, None) if bracket is None else (bracket.passive, bracket.active)
+    settled = every.passive is not None or every.active is not None
+    if not bounded and (search.is_close(every.passive, every.active) or (settled and ideal)):
+        return search.bracket(every, (every.passive, every.active))  # no game narrows an ideal encoder's
 
-    counted = penetration, speed, force_limit, force_resolution, friction
     boards = _one_board(device, law, *counted) if isinstance(law, Rendered) else ()
 
     def game(value: Exact) -> Game | RowGame:
@@ -236,12 +246,31 @@ def passive_limit(
             return row_game(changed, environment, *counted, boards)
         return game_of(changed, environment, *counted)
 
-    return search.by_games(device, game, known)
+    def slow(value: Exact) -> Certificate | None:
+        if not closed or isinstance(law, Rendered):
+            return None
+        return slow_hands(*search.parameter.change(value), game(value).bounds.speed)
+
+    return search.by_games(device, game, slow, every)
 
 
 def _one_board(device: Device, law: Rendered, *counted: Any) -> tuple[tuple[int, int]]:
     """The board on which laws in a row close as they are given, for all values of a parameter."""
     return (row_game(device, law, *counted).board,)
+
+
+class _Found(NamedTuple):
+    """Two values and their evidence."""
+
+    passive: Exact | None
+    active: Exact | None
+    certificate: Certificate | None
+    witness: Gain | Witness | None
+    scope: Scope
+    violation: Violation | None = None
+
+
+_NOTHING = _Found(None, None, None, None, Scope())
 
 
 class _Search:
@@ -258,9 +287,10 @@ class _Search:
         self.parameter, self.tolerance = parameter, tolerance
         self.start, self.deadline, self.progress = start, start + seconds, progress
         self.evaluations = 0
+        self.first = Exact(parameter.now or 1.0)
 
-    def by_closed_forms(self) -> Bracket | None:
-        """A bracket from certificates and motions for every hand; None for a law that has none."""
+    def by_closed_forms(self) -> _Found | None:
+        """What certificates and motions show of every hand; None for a law that has none."""
         verdicts: dict[Exact, Any] = {}
 
         def verdict(value: Exact) -> Any:
@@ -269,164 +299,157 @@ class _Search:
                 verdicts[value] = check_by_closed_forms(*self.parameter.change(value))
             return verdicts[value]
 
-        def proved(value: Exact) -> bool:
+        def proved(value: Exact, _: float) -> bool:
             found = verdict(value)
             return bool(found.outcome == "passive")
 
-        def refuted(value: Exact) -> bool:
+        def refuted(value: Exact, _: float) -> bool:
             return bool(verdict(value).outcome == "active")
 
         try:
-            verdict(self._first())
+            verdict(self.first)
         except InputError:  # a law without H(z), which only the game can decide
             return None
-        passive, active = self._both_sides(proved, refuted)
+        sides = self._sides(proved, refuted)
+        approach(*sides, self.tolerance / 4, self.deadline)
+        passive, active = (side.good for side in sides)
         good = None if passive is None else verdict(passive)
         bad = None if active is None else verdict(active)
-        scope = (good or bad or verdict(self._first())).scope
+        scope = (good or bad or verdict(self.first)).scope
         proof, motion = good and good.certificate, bad and bad.witness
-        bracket = self._bracket(passive, active, proof, motion, (passive, active), scope)
-        return replace(bracket, violation=bad and bad.violation)
+        return _Found(passive, active, proof, motion, scope, bad and bad.violation)
 
     def by_games(
         self,
         device: Device,
         game: Callable[[Exact], Game | RowGame],
-        every_hand: tuple[float | None, float | None],
+        slow: Callable[[Exact], Certificate | None],
+        every: _Found,
     ) -> Bracket:
-        """A bracket from games on finer and finer boards."""
-        proofs: dict[Exact, Any] = {}
-        motions: dict[Exact, Any] = {}
-        passive: Exact | None = None
-        active: Exact | None = None
+        """A bracket of a bounded hand: by what covers slow hands, and by games on finer and finer boards."""
+        at_first = game(self.first)
+        proofs: dict[Exact, Certificate | Storage | RowStorage] = {}
+        motions: dict[Exact, Gain] = {}
+        tell = self._tell()
+
+        def slowly(value: Exact, _: float) -> bool:
+            self._count()
+            return _kept(proofs, value, slow(value))
+
+        def coarsely(cells: int) -> _Holds:
+            def holds(value: Exact, deadline: float) -> bool:
+                self._count()
+                return _kept(proofs, value, game(value).prove_on_cells(cells, deadline, tell))
+
+            return holds
+
+        def proved(steps: int) -> _Holds:
+            def holds(value: Exact, deadline: float) -> bool:
+                self._count()
+                try:
+                    found = game(value)
+                    in_time = min(deadline, self.deadline - found.checking_time(steps))
+                    return _kept(proofs, value, found.prove(steps, in_time, tell))
+                except DoesNotClose:
+                    return False
+
+            return holds
+
+        def refuted(fine: int) -> _Holds:
+            def holds(value: Exact, deadline: float) -> bool:
+                self._count()
+                try:
+                    return _kept(motions, value, game(value).refute(fine, deadline, tell))
+                except DoesNotClose:
+                    return False
+
+            return holds
+
+        first, second = self._sides(slowly, refuted(FINE[0]))
+        slowest = self._slow_limit(slowly)
+        closed = _nearer(every.passive, slowest, first.towards)
+        if closed is None and at_first.too_large is not None:
+            raise InputError(at_first.too_large)
+        if every.passive is not None and every.certificate is not None:
+            proofs[every.passive] = every.certificate
+        shown: dict[Exact | None, Certificate] = {
+            value: proof for value, proof in proofs.items() if isinstance(proof, Certificate)
+        }
+        if at_first.is_large:
+            first.good = closed
+            for cells in CELLS:
+                first.holds = coarsely(cells)
+                approach(first, second, self.tolerance / 4, self._share(0.5))
+                if self.is_close(first.good, second.good):
+                    break
         for steps, fine in zip(STEPS, (FINE[0], *[FINE[1]] * 3), strict=True):
-            tell = self._tell()
-
-            def proved(value: Exact, steps: int = steps, tell: Tell = tell) -> bool:
-                self._count()
-                try:
-                    storage = game(value).prove(steps, self.deadline, tell)
-                except DoesNotClose:
-                    return False
-                if storage is not None:
-                    proofs.clear()
-                    proofs[value] = storage
-                return storage is not None
-
-            def refuted(value: Exact, fine: int = fine, tell: Tell = tell) -> bool:
-                self._count()
-                try:
-                    motion = game(value).refute(fine, self.deadline, tell)
-                except DoesNotClose:
-                    return False
-                if motion is not None:
-                    motions[value] = motion
-                return motion is not None
-
-            passive, active = self._both_sides(proved, refuted, passive, active)
-            if passive is None or self._late():
+            if self._late() or self.is_close(first.good, second.good):
                 break
-            if active is not None and abs(active - passive) <= self.tolerance * max(active, passive):
+            first.holds, second.holds = proved(steps), refuted(fine)
+            approach(first, second, self.tolerance / 4, self.deadline)
+            if first.good is None:
                 break
-        at_first = game(self._first())
-        storage = None if passive is None else proofs[passive]
-        proof = None if storage is None else storage.certificate()
-        if proof is not None and not proof.verify():  # nothing is claimed that the checker does not accept
-            passive, proof, storage = None, None, None
-        motion = None if active is None else motions.get(active)
-        scope = game_scope(*self.parameter.change(self._first()), at_first)
-        return self._bracket(passive, active, proof, motion, every_hand, scope, storage)
+        passive, active = _nearer(first.good, every.passive, first.towards), second.good
+        if not self.is_close(passive, active):
+            passive = _nearer(passive, slowest, first.towards)
+        proof = None if passive is None else proofs[passive]
+        storage = None if isinstance(proof, Certificate) else proof
+        certificate = proof if isinstance(proof, Certificate) else None
+        if storage is not None:
+            certificate = storage.certificate()
+            if not certificate.verify():  # nothing is claimed that the checker does not accept
+                passive, storage, certificate = closed, None, shown.get(closed)
+        motion = None if active is None else motions[active]
+        scope = game_scope(*self.parameter.change(self.first), at_first)
+        known = _Found(passive, active, certificate, motion, scope)
+        beyond = every.passive, _nearer(every.active, active, second.towards)
+        return self.bracket(known, beyond, at_first.bounds, storage)
 
-    def _first(self) -> Exact:
-        return Exact(self.parameter.now or 1.0)
+    def _slow_limit(self, slowly: Callable[[Exact, float], bool]) -> Exact | None:
+        """The last value at which a closed form covers this hand; None without one."""
+        side, nobody = self._sides(slowly, lambda *_: False)
+        approach(side, nobody, self.tolerance / 40, self.deadline)
+        return side.good
 
-    def _both_sides(
+    def bracket(
         self,
-        proved: Callable[[Exact], bool],
-        refuted: Callable[[Exact], bool],
-        passive: Exact | None = None,
-        active: Exact | None = None,
-    ) -> tuple[Exact | None, Exact | None]:
-        """The last proved value and the first refuted one, better than those known already."""
-        down = -1.0 if self.parameter.more_is_safer else 1.0
-        fine = self.tolerance / 4
-        best, unproved = self._edge(proved, passive or self._first(), passive, active, down, fine)
-        passive = best if best is not None else passive
-        if passive is None and unproved is None:
-            return None, active
-        start = unproved if unproved is not None else passive
-        assert start is not None
-        if active is None or abs(active - start) > fine * abs(active):
-            found, _ = self._edge(refuted, start, active, passive, -down, fine)
-            active = found if found is not None else active
-        return passive, active
-
-    def _edge(
-        self,
-        holds: Callable[[Exact], bool],
-        start: Exact,
-        known: Exact | None,
-        other: Exact | None,
-        towards: float,
-        fine: float,
-    ) -> tuple[Exact | None, Exact | None]:
-        """The farthest value towards which a claim holds, and the nearest beyond at which it was not shown.
-
-        It is taken to hold on the near side of some value: each answer is evidence by
-        itself, so that a law for which this is not so loses only the best bracket.
-        """
-        good, bad = known, other
-        value, factor = start, 1.0 + 4 * fine
-        for _ in range(_FARTHEST + 40):
-            if good is not None and bad is not None:
-                break
-            if self._late():
-                return good, None
-            if holds(value):
-                good = value
-            else:
-                bad = value
-            forward = good is not None
-            if good is None or bad is None:
-                value = _decimal(value * (factor if (towards > 0) == forward else 1 / factor))
-                factor = min(factor**2, 4.0)
-            if max(abs(log2(value / origin)) for origin in (start, self._first())) > _FARTHEST:
-                break
-        while good is not None and bad is not None and abs(bad - good) > fine * max(bad, good):
-            if self._late():
-                break
-            value = _decimal(sqrt(good * bad))
-            if value in (good, bad):
-                break
-            if holds(value):
-                good = value
-            else:
-                bad = value
-        return good, bad
-
-    def _bracket(
-        self,
-        passive: Exact | None,
-        active: Exact | None,
-        certificate: Certificate | None,
-        witness: Any,
-        every_hand: tuple[float | None, float | None],
-        scope: Scope,
-        storage: Storage | None = None,
+        found: _Found,
+        every_hand: tuple[Exact | None, Exact | None],
+        bounds: HandBounds | None = None,
+        storage: Storage | RowStorage | None = None,
     ) -> Bracket:
+        """What was found, as it is given back."""
         return Bracket(
             self.parameter.name,
             self.parameter.unit,
-            _plain(passive),
-            _plain(active),
-            certificate,
-            witness,
-            scope,
+            _plain(found.passive),
+            _plain(found.active),
+            found.certificate,
+            found.witness,
+            found.scope,
             (_plain(every_hand[0]), _plain(every_hand[1])),
             self.evaluations,
             time.monotonic() - self.start,
             storage,
+            bounds,
+            found.violation,
         )
+
+    def _sides(self, proved: _Holds, refuted: _Holds) -> tuple[Side, Side]:
+        """What is sought on either side: a proof as far as it goes, and a motion from beyond."""
+        onward = -1 if self.parameter.more_is_safer else 1
+        return Side(proved, onward, self.first), Side(refuted, -onward, self.first)
+
+    def is_close(self, passive: Exact | None, active: Exact | None) -> bool:
+        """True where the two are as near to each other as is wanted."""
+        if passive is None or active is None:
+            return False
+        return abs(active - passive) <= self.tolerance * max(active, passive)
+
+    def _share(self, part: float) -> float:
+        """When a part of the time that is left will be over."""
+        now = time.monotonic()
+        return now + part * max(self.deadline - now, 0.0)
 
     def _late(self) -> bool:
         return time.monotonic() >= self.deadline
@@ -448,9 +471,21 @@ def _plain(value: float | None) -> float | None:
     return None if value is None else float(value)
 
 
-def _decimal(value: float) -> Exact:
-    """A value of six digits, as a person would write it down."""
-    return Exact(f"{value:.6g}")
+def _nearer(a: Exact | None, b: Exact | None, towards: int) -> Exact | None:
+    """The value at which a claim reaches farther; the one there is, if there is only one."""
+    known = [value for value in (a, b) if value is not None]
+    return max(known, key=lambda value: towards * value) if known else None
+
+
+def _kept(evidence: dict[Exact, Any], value: Exact, found: Any) -> bool:
+    """Put evidence where it is looked for; of storage functions, which are large, only the last."""
+    if found is None:
+        return False
+    if not isinstance(found, Certificate | Gain):
+        for old in [v for v, other in evidence.items() if not isinstance(other, Certificate)]:
+            del evidence[old]
+    evidence[value] = found
+    return True
 
 
 _NO_PART = {

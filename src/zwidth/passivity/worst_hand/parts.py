@@ -7,6 +7,9 @@ reading for the rest.  Between them the hand is at some m, which no sample sees:
     W(m) =  max over moves of  −f' (x' − m) − C'(x' − m) + V(x')
 
 All states of a group, which differ in their oldest reading only, share f' and W.
+
+On cells of many counts the hand is at a sample in the first count of a cell, but in between it may be
+anywhere: m is then sought where it is best, and whoever wins so has a motion to be counted exactly.
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ def sweep_parts(
     forces: Integers,
     costs: Integers,
     knots: Integers,
+    steps: int,
     later_forces: Integers,
     later_costs: Integers,
     first: int,
@@ -55,13 +59,75 @@ def sweep_parts(
         for h in range(newer * (2 * reach + 1), (newer + 1) * (2 * reach + 1)):
             if later == NOWHERE:
                 later = later_forces[n, h]
-        points = targets(values, forces, knots, group, reach, worth, place, there)
+        points = targets(values, forces, knots, steps, group, reach, worth, place, there)
         second_moves(worth, place, there, points, later, later_costs, best, ends)
         for knot in range(knots.size):
             improved += improve(
                 values, choices, forces, costs, knots, group, reach, least, most, points, best, itself,
                 place, ends, knot, gain, move, goal,
             )  # fmt: skip
+    return improved
+
+
+@compiled
+def sweep_turning(
+    value: Integers,
+    choice: Integers,
+    forces: Integers,
+    costs: Integers,
+    knots: Integers,
+    steps: int,
+    later_forces: Integers,
+    later_costs: Integers,
+    first: int,
+    last: int,
+    reach: int,
+    part: float,
+    swing: float,
+    friction: int,
+    deepest: int,
+) -> int:
+    """The same with m anywhere; move by move, for boards of few cells.
+
+    m = x + α D + swing (f' − f − φ (s − s')), or an end of what is allowed; steps and force units.
+    """
+    values, choices = value.reshape(-1), choice.reshape(-1)
+    cells, histories = forces.shape
+    edges, width = knots.size, 2 * reach + 1
+    per_cell = histories // width
+    improved = 0
+    for group in range(first, last):
+        n, newer = group // per_cell, group % per_cell
+        for h in range(newer * width, (newer + 1) * width):
+            f = forces[n, h]
+            if f == NOWHERE:
+                continue
+            later = later_forces[n, h]
+            for j in range(edges):
+                state = (n * histories + h) * edges + j
+                best, goal = values[state], -1
+                for n2 in range(max(0, n - reach), min(cells - 1, n + reach) + 1):
+                    h2 = (n - n2 + reach) * per_cell + newer
+                    for j2 in range(edges):
+                        d = (n2 - n) * steps + knots[j2] - knots[j]
+                        low = max(1 - costs.size, d - later_costs.size + 1)
+                        high = min(costs.size - 1, d + later_costs.size - 1, deepest - n * steps - knots[j])
+                        if low > high:
+                            continue
+                        target = (n2 * histories + h2) * edges + j2
+                        for sign in range(-2, 5, 2):
+                            turn = part * d + swing * (later - f - friction * sign)
+                            m = round(turn) if sign < 4 else d
+                            m = min(max(m, low), high)
+                            back = d - m
+                            energy = (
+                                values[target] - f * m - costs[abs(m)] - later * back - later_costs[abs(back)]
+                            )
+                            if energy > best:
+                                best, goal = energy, target
+                if goal >= 0:
+                    values[state], choices[state] = best, goal
+                    improved += 1
     return improved
 
 

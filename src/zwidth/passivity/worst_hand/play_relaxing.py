@@ -5,12 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import numpy as np
 
 from zwidth.passivity.worst_hand.board import Integers
 from zwidth.passivity.worst_hand.relaxing import RelaxingBoard, sweep_relaxing
-from zwidth.passivity.worst_hand.solve import THREADS, Played
+from zwidth.passivity.worst_hand.solve import THREADS, Played, in_time, slices
 
 _LOOK = 4
 """Rounds between two searches for a cycle."""
@@ -41,19 +42,20 @@ def play_relaxing(
     """
     value = board.relaxing_guess
     inwards, outwards = board.all_forces
-    tables = (board.rows, inwards, outwards, *board.images, board.costs, board.knots)
-    parts = np.linspace(0, board.domain.cells, 4 * THREADS + 1).astype(int)
+    tables = (board.rows, inwards, outwards, *board.images, board.costs, board.knots, board.steps)
+    parts = slices(board.domain.cells, value.size)
     generous = board.rules == "generous"
     rounds = 0
     with ThreadPoolExecutor(THREADS) as pool:
         while time.monotonic() < deadline and rounds < _UNENDING[board.rules]:
             rounds += 1
             jobs = [
-                pool.submit(sweep_relaxing, value, *tables, first, last, board.domain.reach, generous)
-                for first, last in zip(parts[:-1], parts[1:], strict=True)
-                if first < last
+                partial(sweep_relaxing, value, *tables, first, last, board.domain.reach, generous)
+                for first, last in parts
             ]
-            improved = sum(job.result() for job in jobs)
+            improved = in_time(pool, deadline, jobs)
+            if improved is None:
+                break
             if progress is not None:
                 progress(improved)
             if improved == 0:

@@ -148,6 +148,7 @@ def sweep_relaxing(
     above: Integers,
     costs: Integers,
     knots: Integers,
+    steps: int,
     first: int,
     last: int,
     reach: int,
@@ -158,7 +159,6 @@ def sweep_relaxing(
     value is (cells, histories, levels, knots).
     """
     cells, histories, levels, edges = value.shape
-    steps = knots[edges - 1]
     older = histories // (2 * reach + 1) if histories > 1 else 1
     there = np.empty((cells, edges), np.int64)
     improved = 0

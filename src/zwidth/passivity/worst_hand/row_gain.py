@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from math import ceil
+from math import ceil, floor
 from typing import Any
 
 import numpy as np
@@ -18,11 +18,13 @@ from zwidth.loop.kernel import R_HAND_WORK
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup
 from zwidth.operator import PrescribedMotion
+from zwidth.passivity.checker.reading import Invalid
 from zwidth.passivity.checker.row_motion import row_motion_energy
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.motion import Motion, Repeat
 from zwidth.passivity.witness import FORMAT
 from zwidth.passivity.worst_hand.gain import Gain
+from zwidth.passivity.worst_hand.hand_bounds import hand_bounds
 from zwidth.passivity.worst_hand.row_board import NO_LAW, RowBoard
 from zwidth.passivity.worst_hand.row_document import MOTION, Run, columns, law_document, same_law
 from zwidth.passivity.worst_hand.row_law import RowLaw
@@ -31,6 +33,9 @@ from zwidth.passivity.worst_hand.storage import loop_document
 
 _NEAREST = 40
 """Halvings of a count by which a hand at an edge may have to stay inside its cell."""
+
+_SLOWEST, _SETTLING = 50_000, 40
+"""Samples of a slow way in, and rounds within which a law settles, at most."""
 
 _LONGEST = 2_000_000
 """Samples that are simulated at most; of a longer motion the first rounds."""
@@ -44,9 +49,15 @@ def row_gain(played: Played, law: RowLaw, device: Device, environment: Environme
     """
     board = played.board
     assert isinstance(board, RowBoard)
-    for halvings in range(6, _NEAREST, 4):
-        document, path = _document(board, played.cycle, law, halvings, device.motion)
-        energy, per_round = row_motion_energy(document)
+    for halvings in range(board.count_steps.bit_length(), _NEAREST, 4):
+        found_motion = _document(board, played.cycle, law, halvings, device.motion)
+        if found_motion is None:
+            return None
+        document, path = found_motion
+        try:
+            energy, per_round = row_motion_energy(document)
+        except Invalid:  # it would leave the bounds
+            continue
         if per_round <= 0:
             continue
         times = 1 if energy > 0 else ceil(-energy / per_round) + 2
@@ -69,14 +80,16 @@ def row_gain(played: Played, law: RowLaw, device: Device, environment: Environme
 
 def _document(
     board: RowBoard, cycle: tuple[tuple[int, int], ...], law: RowLaw, halvings: int, motion: str
-) -> tuple[dict[str, Any], Motion]:
-    """Way in, one round, and the forces that the law gives."""
+) -> tuple[dict[str, Any], Motion] | None:
+    """Way in, one round, and the forces that the law gives; None if no way in is found."""
     resolution, counts = board.losses.resolution, board.table.counts
     round_ = [_place(board, knot, int(counts[state]), halvings) for knot, state in cycle]
-    way = [int(counts[s]) for s in board.table.way(cycle[0][1])]
-    x = [*((Fraction(2 * n + 1, 2)) * resolution for n in way[:-1]), *round_, round_[0]]
+    way = _way_in(board, cycle[0][1], round_[0], halvings) or _slow_way_in(board, law, round_)
+    if way is None:
+        return None
+    x = [*way, *round_[1:], round_[0]]
     part = Repeat(len(way) - 1, len(x) - 1, 1)
-    run = Run(law, way[0])
+    run = Run(law, int(x[0] // resolution))
     forces = [Fraction(run.force(int(p // resolution))) for p in x[:-1]]
     positions, held = columns(motion)
     document = {
@@ -84,6 +97,7 @@ def _document(
         "kind": MOTION,
         "loop": loop_document(board.losses, motion),
         "law": law_document(law),
+        "bounds": hand_bounds(NO_LAW, board.losses, board.domain).document(motion),
         unit_key("sample_period"): board.losses.period,
         "energy_J": Fraction(0),
         "repeats": part._asdict(),
@@ -91,6 +105,42 @@ def _document(
         held: forces,
     }
     return document, Motion(tuple(x), (), (part,))
+
+
+def _way_in(board: RowBoard, goal: int, end: Fraction, halvings: int) -> list[Fraction] | None:
+    """Positions on the shortest way to a state, within each count as near to the next as may be."""
+    way = board.table.way(goal, floor(board.domain.speed))
+    if way is None:
+        return None
+    near = Fraction(1, 2**halvings)
+    x = [end / board.losses.resolution]
+    for state in reversed(way[:-1]):
+        count = int(board.table.counts[state])
+        x.append(min(max(x[-1], count + near / 2**8), count + 1 - near))
+    return [p * board.losses.resolution for p in reversed(x)]
+
+
+def _slow_way_in(board: RowBoard, law: RowLaw, round_: list[Fraction]) -> list[Fraction] | None:
+    """Straight in as fast as may be, then round until the law remembers after a round what it did before."""
+    resolution = board.losses.resolution
+    end = round_[0] // resolution
+    begin = min(law.resting, key=lambda n: abs(n - end))
+    start = round_[0] if begin == end else (begin + Fraction(1, 2)) * resolution
+    count = max(1, ceil(abs(round_[0] - start) / (board.domain.speed * resolution)))
+    way = [start + (round_[0] - start) * Fraction(k, count) for k in range(count + 1)]
+    if count > _SLOWEST:
+        return None
+    run, before = Run(law, begin), b""
+    for p in way:
+        run.force(int(p // resolution))
+    for _ in range(_SETTLING):
+        if run.memory == before:
+            return way
+        before = run.memory
+        for p in (*round_[1:], round_[0]):
+            run.force(int(p // resolution))
+        way += [*round_[1:], round_[0]]
+    return None
 
 
 def _place(board: RowBoard, knot: int, cell: int, halvings: int) -> Fraction:

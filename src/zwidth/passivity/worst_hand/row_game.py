@@ -16,6 +16,7 @@ from zwidth.passivity.scope import Contact, Hands, Law
 from zwidth.passivity.worst_hand.board import Domain
 from zwidth.passivity.worst_hand.domain import counts_of, losses_of
 from zwidth.passivity.worst_hand.gain import Gain
+from zwidth.passivity.worst_hand.hand_bounds import HandBounds, hand_bounds
 from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.row_board import NO_LAW, RowBoard
 from zwidth.passivity.worst_hand.row_gain import row_gain
@@ -52,12 +53,32 @@ class RowGame:
         return self.device.motion
 
     @property
+    def too_large(self) -> None:
+        """Nothing: a board that is too large has no table, and no game."""
+        return
+
+    @property
+    def is_large(self) -> bool:
+        """True where a storage function takes its time: no closed form stands in for it."""
+        return False
+
+    def checking_time(self, steps: int) -> float:
+        """How long the checker may take over a storage function [s]."""
+        moves = self.table.successors.size * (steps + 1) ** 2
+        return 0.02 + moves / 300_000_000
+
+    @property
+    def bounds(self) -> HandBounds:
+        """Bounds on the hand, exact."""
+        return hand_bounds(NO_LAW, self.losses, self.domain)
+
+    @property
     def hands(self) -> Hands:
         """The hands that a proof covers: they begin at rest outside, or at the first count."""
-        resolution = self.losses.resolution
-        far = float((self.domain.highest + 1) * resolution)
-        speed = float(self.domain.speed * resolution / self.losses.period)
-        return Hands(speed=speed, inside=far, outside=far, resolution=float(resolution))
+        far = float(self.bounds.penetration)
+        return Hands(
+            speed=float(self.bounds.speed), inside=far, outside=far, resolution=float(self.losses.resolution)
+        )
 
     @property
     def contact(self) -> Contact:
@@ -85,6 +106,9 @@ class RowGame:
         """A storage function on so many steps per count, or None."""
         played = self._play(steps, "generous", self.domain, self.table, deadline, tell, on)
         return None if played.value is None else RowStorage(played, self.motion, self.law)
+
+    def prove_on_cells(self, cells: int, deadline: float = float("inf"), tell: Any = None) -> None:
+        """Nothing: a table has the states of every count."""
 
     def refute(
         self, steps: int, deadline: float = float("inf"), tell: Any = None, on: str = "cpu"

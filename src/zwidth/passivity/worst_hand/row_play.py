@@ -11,13 +11,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 import numpy as np
 
 from zwidth.compiled import compiled
 from zwidth.passivity.worst_hand.board import Integers
 from zwidth.passivity.worst_hand.row_board import RowBoard
-from zwidth.passivity.worst_hand.solve import THREADS, Played, threads_for
+from zwidth.passivity.worst_hand.solve import Played, in_time, slices, threads_for
 from zwidth.passivity.worst_hand.sweep import best_cycle
 
 _LOOK = 4
@@ -33,18 +34,16 @@ def play_row(
     """
     value = board.first_guess.copy()
     choice = np.full(value.shape, -1, np.int64)
-    parts = np.linspace(0, len(value), THREADS * 4 + 1).astype(int)
+    parts = slices(len(value), value.size)
     tables = board.table.successors, board.forces, board.costs, board.knots
     rounds = 0
     with ThreadPoolExecutor(threads_for(value)) as pool:
         while time.monotonic() < deadline:
             rounds += 1
-            jobs = [
-                pool.submit(sweep_row, value, choice, *tables, int(first), int(last))
-                for first, last in zip(parts[:-1], parts[1:], strict=True)
-                if first < last
-            ]
-            improved = sum(job.result() for job in jobs)
+            jobs = [partial(sweep_row, value, choice, *tables, first, last) for first, last in parts]
+            improved = in_time(pool, deadline, jobs)
+            if improved is None:
+                break
             if progress is not None:
                 progress(improved)
             if improved == 0:

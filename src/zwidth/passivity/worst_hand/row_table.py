@@ -69,13 +69,19 @@ class Table:
         """How many there are."""
         return len(self.counts)
 
-    def way(self, goal: int) -> list[int]:
-        """The states through which a hand that has rested comes to one, by the fewest samples."""
+    def way(self, goal: int, most: int) -> list[int] | None:
+        """The states through which a hand that has rested comes to one, by the fewest samples.
+
+        It goes no more than `most` counts in each; None if it does not come there.
+        """
         before = np.full(self.states, -1, np.int64)
         before[self.starts] = self.starts
         newest = np.unique(self.starts)
+        most = min(most, self.reach)
         while before[goal] < 0:
-            onward = self.successors[newest]
+            if len(newest) == 0:
+                return None
+            onward = self.successors[newest, self.reach - most : self.reach + most + 1]
             reached, first = np.unique(onward, return_index=True)
             origin = newest[first // onward.shape[1]]
             new = (reached >= 0) & (before[reached] < 0)

@@ -9,24 +9,32 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.passivity.worst_hand.board import Board, Integers
+from zwidth.passivity.worst_hand.coarse_board import CoarseBoard, sweep_line, sweep_line_parts
 from zwidth.passivity.worst_hand.gpu import OnCard
-from zwidth.passivity.worst_hand.parts import sweep_parts
+from zwidth.passivity.worst_hand.parts import sweep_parts, sweep_turning
 from zwidth.passivity.worst_hand.sweep import best_cycle, sweep
+
+Tell = Callable[[int], None]
 
 THREADS = min(os.cpu_count() or 1, 8)
 
 ALONE = 100_000
 """States up to which one thread plays: several improve the same values in an order of their own, and then the
 same game may end in another motion each time."""
+
+AT_ONCE = 20_000
+"""States that are improved before the clock is looked at."""
 
 _LOOK = 4
 """Rounds between two searches for a cycle: a search costs less than a round."""
@@ -92,7 +100,9 @@ def play(
     with ThreadPoolExecutor(threads_for(value)) as pool:
         while time.monotonic() < deadline:
             rounds += 1
-            improved = _round(pool, board, value, choice) if card is None else card.round()
+            improved = _round(pool, board, value, choice, deadline) if card is None else card.round()
+            if improved is None:
+                break
             if progress is not None:
                 progress(improved)
             if card is not None and (improved == 0 or rounds % _LOOK == 0):
@@ -111,20 +121,58 @@ def threads_for(value: Integers) -> int:
     return 1 if value.size <= ALONE else THREADS
 
 
-def _round(pool: ThreadPoolExecutor, board: Board, value: Integers, choice: Integers) -> int:
-    """Improve every state, on all threads; returns how many improved."""
+def in_time(pool: ThreadPoolExecutor, deadline: float, jobs: Iterable[Callable[[], int]]) -> int | None:
+    """What all jobs improve together; None if the deadline came before the last of them had begun."""
+
+    def done(job: Callable[[], int]) -> int | None:
+        return None if time.monotonic() >= deadline else job()
+
+    found = list(pool.map(done, jobs))
+    return None if None in found else sum(count for count in found if count is not None)
+
+
+def slices(items: int, states: int) -> list[tuple[int, int]]:
+    """The groups of a board, first and last, in parts that each take a fraction of a second."""
+    parts = max(THREADS * 4, states // AT_ONCE)
+    ends = np.linspace(0, items, parts + 1).astype(int).tolist()
+    return [(first, last) for first, last in pairwise(ends) if first < last]
+
+
+def _round(
+    pool: ThreadPoolExecutor, board: Board, value: Integers, choice: Integers, deadline: float
+) -> int | None:
+    """Improve every state, on all threads; returns how many improved, None if the time ran out."""
     groups = len(value) * (board.histories // board.width if board.memory else 1)
-    parts = np.linspace(0, groups, THREADS * 4 + 1).astype(int)
-    tables: tuple[Integers, ...] = board.forces, board.costs, board.knots
+    tables: tuple[Any, ...] = board.forces, board.costs, board.knots, board.steps
     improve: Callable[..., int] = partial(sweep, squares=board.losses.curve is None)
-    if board.losses.part < 1:
+    if isinstance(board, CoarseBoard):
+        tables = board.forces, board.costs, board.places
+        improve = sweep_line
+        if board.losses.part < 1:
+            tables, improve = (*tables, board.later_forces, board.later_costs), sweep_line_parts
+    elif board.losses.part < 1:
         tables, improve = (*tables, board.later_forces, board.later_costs), sweep_parts
+        if board.every > 1:
+            improve = partial(sweep_turning, **_turning(board))
     jobs = [
-        pool.submit(improve, value, choice, *tables, first, last, board.domain.reach)
-        for first, last in zip(parts[:-1], parts[1:], strict=True)
-        if first < last
+        partial(improve, value, choice, *tables, first, last, board.domain.reach)
+        for first, last in slices(groups, value.size)
     ]
-    return sum(job.result() for job in jobs)
+    return in_time(pool, deadline, jobs)
+
+
+def _turning(board: Board) -> dict[str, Any]:
+    """Where a hand turns within a sample, in steps and force units; of no use without damping."""
+    losses, domain = board.losses, board.domain
+    step = losses.resolution / board.steps
+    swing = losses.period / (2 * losses.damping) * losses.part * (1 - losses.part) if losses.damping else 0
+    top = domain.highest + 1 if domain.deepest is None else domain.deepest
+    return {
+        "part": float(losses.part),
+        "swing": float(swing * board.force_unit / step),
+        "friction": int(losses.coulomb_friction / board.force_unit),
+        "deepest": int((top - domain.lowest) * board.steps),
+    }
 
 
 def _gaining(board: Board, choice: Integers) -> tuple[tuple[int, int], ...]:

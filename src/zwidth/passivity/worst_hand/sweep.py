@@ -34,6 +34,7 @@ def sweep(
     forces: Integers,
     costs: Integers,
     knots: Integers,
+    steps: int,
     first: int,
     last: int,
     reach: int,
@@ -42,7 +43,8 @@ def sweep(
     """Improve the states of the groups first … last − 1; returns how many knots improved.
 
     value and choice are (cells, histories, knots); choice holds the flat index of the best move.
-    With costs that are not φ d + β d², squares is False and no point is left out beforehand.
+    A cell has so many steps, and the hand stands on the knots of it.  With costs that are not φ d + β d²,
+    squares is False and no point is left out beforehand.
     """
     values, choices = value.reshape(-1), choice.reshape(-1)
     most_points = (2 * reach + 1) * knots.size
@@ -55,9 +57,11 @@ def sweep(
         if least > most:
             continue
         if squares:
-            points = worthwhile(values, forces, costs, knots, group, reach, least, most, gain, place, there)
+            points = worthwhile(
+                values, forces, costs, knots, steps, group, reach, least, most, gain, place, there
+            )
         else:
-            points = targets(values, forces, knots, group, reach, gain, place, there)
+            points = targets(values, forces, knots, steps, group, reach, gain, place, there)
         for knot in range(knots.size):
             improved += improve(
                 values, choices, forces, costs, knots, group, reach, least, most, points, values, there,
@@ -71,6 +75,7 @@ def targets(
     values: Integers,
     forces: Integers,
     knots: Integers,
+    steps: int,
     group: int,
     reach: int,
     worth: Integers,
@@ -79,7 +84,7 @@ def targets(
 ) -> int:
     """Where a group may go, by place, the better state where an edge is two; returns how many."""
     cells, histories = forces.shape
-    edges, steps = knots.size, knots[knots.size - 1]
+    edges = knots.size
     has_memory = histories > 1
     per_cell = histories // (2 * reach + 1) if has_memory else 1
     n, newer = group // per_cell, group % per_cell
@@ -119,6 +124,7 @@ def worthwhile(
     forces: Integers,
     costs: Integers,
     knots: Integers,
+    steps: int,
     group: int,
     reach: int,
     least: int,
@@ -133,7 +139,7 @@ def worthwhile(
     the flat index of the state; height is scratch.  Returns how many there are.
     """
     cells, histories = forces.shape
-    edges, steps = knots.size, knots[knots.size - 1]
+    edges = knots.size
     has_memory = histories > 1
     per_cell = histories // (2 * reach + 1) if has_memory else 1
     n, newer = group // per_cell, group % per_cell

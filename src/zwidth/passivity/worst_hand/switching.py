@@ -26,11 +26,12 @@ def switch_positions(board: Board, x: list[Fraction], part: Repeat) -> tuple[Fra
         return ()
     law, losses = board.law, board.losses
     used = law.memory + 1
-    readings = [losses.resolution * (x[0] // losses.resolution)] * (used + losses.delay)
+    step = board.encoder.resolution
+    readings = [step * (x[0] // step)] * (used + losses.delay)
     found: dict[int, Fraction] = {}
     rounds = 2 + len(readings) // (part.last - part.first)  # until all readings are of the cycle
     for k in [*range(part.first), *[*range(part.first, part.last)] * rounds, *range(part.last, len(x) - 1)]:
-        readings = [losses.resolution * (x[k] // losses.resolution), *readings[:-1]]
+        readings = [step * (x[k] // step), *readings[:-1]]
         older = law.force(tuple(readings[losses.delay : losses.delay + used]))
         newer = law.force(tuple(readings[losses.delay - 1 : losses.delay - 1 + used]))
         found[k] = _best(losses, x[k], x[k + 1], older, newer, *_allowed(board, x[k], x[k + 1]))

@@ -1,0 +1,60 @@
+"""A proof on cells of many counts, as data."""
+
+from __future__ import annotations
+
+import base64
+import zlib
+
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.document import exact_text
+from zwidth.passivity.worst_hand.board import Domain
+from zwidth.passivity.worst_hand.coarse_board import CoarseBoard, coarse_board
+from zwidth.passivity.worst_hand.law import FiniteLaw
+from zwidth.passivity.worst_hand.losses import Losses
+from zwidth.passivity.worst_hand.solve import Tell, play
+from zwidth.passivity.worst_hand.storage import loop_document
+
+CELLS = (16, 32, 64, 128)
+"""Cells in the longest move, coarse to fine."""
+
+MOST_STATES = 400_000
+
+
+def prove_on_cells(
+    law: FiniteLaw,
+    losses: Losses,
+    domain: Domain,
+    motion: str,
+    cells: int,
+    deadline: float,
+    tell: Tell | None,
+) -> Certificate | None:
+    """A storage function that the checker accepts, or None."""
+    board = coarse_board(law, losses, domain, cells)
+    if board is None or len(board.places) * board.histories > MOST_STATES:
+        return None
+    value = play(board, deadline, tell).value
+    if value is None:
+        return None
+    packed = zlib.compress(value.astype("<i8").tobytes(), 6)
+    certificate = Certificate((_document(board, losses, motion, packed),))
+    return certificate if certificate.verify() else None
+
+
+def _document(board: CoarseBoard, losses: Losses, motion: str, packed: bytes) -> dict[str, object]:
+    domain = board.domain
+    return {
+        "format": FORMAT,
+        "kind": "coarse storage",
+        "loop": loop_document(losses, motion),
+        "law": board.law.document(motion),
+        "domain": {
+            "lowest_cell": domain.lowest,
+            "highest_cell": domain.highest - board.sheets,
+            "counts_per_cell": exact_text(board.losses.resolution / losses.resolution),
+            "largest_move_cells": int(domain.speed),
+            "remembered": board.memory,
+        },
+        "force_unit": exact_text(board.force_unit),
+        "storage": base64.b64encode(packed).decode("ascii"),
+    }
