@@ -240,4 +240,6 @@ def test_the_python_of_the_page_says_what_comes_out(tmp_path: Path, monkeypatch:
     assert found.outcome == "passive"
     for speed in ("0.1", "0.25", "0.5", "1"):
         row = zw.passive_limit(names["paddle"], names["wall"], speed=speed, penetration="0.002")
-        assert f"| {speed} m/s | {row.passive:.0f} N/m | {row.active:.0f} N/m |" in PAGE
+        (found,) = re.findall(rf"^\| {re.escape(speed)} m/s \| (\d+) N/m \| (\d+) N/m \|$", PAGE, re.M)
+        for told, value in zip(map(float, found), (row.passive, row.active), strict=True):
+            assert told == pytest.approx(value, rel=0.015)  # the bracket may be one per cent wide

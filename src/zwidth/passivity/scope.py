@@ -60,8 +60,8 @@ class Hands:
         True if the bound on speed is for each part of a sample with one force.
     inside, outside
         How deep, and how far outside it goes [m; rad]; None: any distance.
-    resolution
-        One encoder count, in which the bounds are told too [m; rad]; None: they are not.
+    counts_a_sample, counts_inside
+        The speed and the depth in counts of the encoder, told beside them; None: they are not.
     impedance
         The one hand that is known, in words; None for all others.
     activity, below
@@ -73,7 +73,8 @@ class Hands:
     in_each_part: bool = False
     inside: float | None = None
     outside: float | None = None
-    resolution: float | None = None
+    counts_a_sample: float | None = None
+    counts_inside: float | None = None
     impedance: str | None = None
     activity: float | None = None
     below: float | None = None

@@ -157,26 +157,25 @@ def describe_hands(hands: Hands, motion: str) -> str:
     if hands.speed is not None:
         over = "each part of a sample with one force" if hands.in_each_part else "one sample"
         bounds.append(
-            f"up to {hands.speed:.4g} {unit['m/s']} over {over}" + _counts(hands, hands.speed, "a sample")
+            f"up to {hands.speed:.4g} {unit['m/s']} over {over}" + _counts(hands.counts_a_sample, " a sample")
         )
     if hands.inside is not None:
-        bounds.append(f"up to {hands.inside:.4g} {unit['m']}{_counts(hands, hands.inside)} {_sides(hands)}")
+        counts = _counts(hands.counts_inside)
+        bounds.append(f"up to {hands.inside:.4g} {unit['m']}{counts} {_sides(hands, unit['m'])}")
     return f"hands of {', '.join(bounds)}" if bounds else "every hand"
 
 
-def _counts(hands: Hands, value: float, per: str = "") -> str:
+def _counts(counts: float | None, per: str = "") -> str:
     """The same in counts of the encoder."""
-    if hands.resolution is None:
-        return ""
-    return f" ({value / hands.resolution:.4g} counts{f' {per}' if per else ''})"
+    return "" if counts is None else f" ({counts:.4g} counts{per})"
 
 
-def _sides(hands: Hands) -> str:
+def _sides(hands: Hands, unit: str) -> str:
     if hands.outside is None:
         return "inside and any distance outside"
     if hands.inside is not None and hands.outside == hands.inside:
         return "on either side"
-    return f"inside and {hands.outside:.4g} outside"
+    return f"inside and {hands.outside:.4g} {unit} outside"
 
 
 def _units(motion: str) -> dict[str, str]:

@@ -59,7 +59,10 @@ class PlainGame:
 
     def _all_costs(self, part):
         far = self.domain.speed * part * self.steps
-        return [self._cost(d, part) for d in range((ceil(far) if self.generous else floor(far)) + 1)]
+        whole = ceil(far) if self.generous else floor(far)
+        if not self.generous and whole == far and whole % self.steps:
+            whole = max(whole - 1, 0)  # a hand that stays below an edge may have to go a little farther
+        return [self._cost(d, part) for d in range(whole + 1)]
 
     def _rounded_force(self, state, age):
         """Of the reading of an age and those before it, in units, every tap, limit and point rounded down."""

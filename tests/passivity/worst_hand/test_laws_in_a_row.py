@@ -96,7 +96,7 @@ def test_the_bracket_of_a_wall_alone_is_that_of_the_wall_behind_such_a_law(name)
     assert row.passive < alone.active
     assert alone.passive < row.active
     assert row.certificate.kind == "row storage"
-    assert "on either side of the surface" in row.hand
+    assert row.scope.hands.outside == row.scope.hands.inside
 
 
 @pytest.mark.parametrize("stiffness", [150, 180, 200, 220, 260])
@@ -202,8 +202,8 @@ def test_what_cannot_be_played_is_said():
     ):
         with pytest.raises(zw.InputError, match=said):
             zw.worst_hand(at, law, **more)
-    with pytest.raises(zw.InputError, match=r"laws are not linear.*zwidth\.worst_hand"):
-        zw.check(DEVICE, law)
+    with pytest.raises(zw.InputError, match=r"laws are not linear.*zwidth\.check"):
+        law.pulse_transfer_function(DEVICE.exact("sample_period"))
 
 
 def test_a_motion_is_replayed_by_the_simulator():

@@ -31,7 +31,7 @@ def prove_on_cells(
 ) -> Certificate | None:
     """A storage function that the checker accepts, or None."""
     board = coarse_board(law, losses, domain, cells)
-    if board is None or len(board.places) * board.histories > MOST_STATES:
+    if board is None or not has_cells(law, losses, domain, cells):
         return None
     value = play(board, deadline, tell).value
     if value is None:
@@ -39,6 +39,12 @@ def prove_on_cells(
     packed = zlib.compress(value.astype("<i8").tobytes(), 6)
     certificate = Certificate((_document(board, losses, motion, packed),))
     return certificate if certificate.verify() else None
+
+
+def has_cells(law: FiniteLaw, losses: Losses, domain: Domain, cells: int) -> bool:
+    """True for a law that can be proved on such cells, of which there are not too many."""
+    board = coarse_board(law, losses, domain, cells)
+    return board is not None and len(board.places) * board.histories <= MOST_STATES
 
 
 def _document(board: CoarseBoard, losses: Losses, motion: str, packed: bytes) -> dict[str, object]:

@@ -22,7 +22,7 @@ from zwidth.passivity.slow_hands import slow_hands
 from zwidth.passivity.witness import rounded_energy
 from zwidth.passivity.wording import claim_of_passivity, lines
 from zwidth.passivity.worst_hand.board import Board, Domain
-from zwidth.passivity.worst_hand.coarse_proof import CELLS, prove_on_cells
+from zwidth.passivity.worst_hand.coarse_proof import CELLS, has_cells, prove_on_cells
 from zwidth.passivity.worst_hand.domain import domain_for, losses_of, states_of, too_large
 from zwidth.passivity.worst_hand.gain import Gain, gain
 from zwidth.passivity.worst_hand.grids import grids
@@ -238,6 +238,11 @@ class Game:
             if found is not None:
                 found.certificate().verify()
             few.refute(4)
+
+    @property
+    def has_cells(self) -> bool:
+        """True where a proof may be sought on cells of many counts."""
+        return any(has_cells(self.law, self.losses, self.domain, cells) for cells in CELLS)
 
     def prove_on_cells(
         self, cells: int, deadline: float = float("inf"), tell: Tell | None = None

@@ -56,7 +56,8 @@ class HandBounds:
             in_each_part=in_each_part,
             inside=float(self.penetration),
             outside=None if self.outside is None else float(self.outside),
-            resolution=float(self.resolution),
+            counts_a_sample=float(self.counts_per_sample),
+            counts_inside=float(self.counts_deep),
         )
 
     def document(self, motion: str) -> dict[str, str]:

@@ -368,7 +368,7 @@ class _Search:
         first, second = self._sides(slowly, refuted(FINE[0]))
         slowest = self._slow_limit(slowly)
         closed = _nearer(every.passive, slowest, first.towards)
-        if closed is None and at_first.too_large is not None:
+        if closed is None and at_first.too_large is not None and not at_first.has_cells:
             raise InputError(at_first.too_large)
         if every.passive is not None and every.certificate is not None:
             proofs[every.passive] = every.certificate

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import ceil
@@ -58,6 +58,11 @@ class RowGame:
         return
 
     @property
+    def has_cells(self) -> bool:
+        """False: a table has the states of single counts."""
+        return False
+
+    @property
     def is_large(self) -> bool:
         """True where a storage function takes its time: no closed form stands in for it."""
         return False
@@ -76,9 +81,7 @@ class RowGame:
     def hands(self) -> Hands:
         """The hands that a proof covers: they begin at rest outside, or at the first count."""
         far = float(self.bounds.penetration)
-        return Hands(
-            speed=float(self.bounds.speed), inside=far, outside=far, resolution=float(self.losses.resolution)
-        )
+        return replace(self.bounds.hands(False), outside=far)
 
     @property
     def contact(self) -> Contact:
