@@ -51,7 +51,7 @@ def test_it_joins_the_delays_of_whole_samples():
     for near, exact in zip(("0.001", "0.999"), whole, strict=True):
         found = bracket(near)
         assert found.passive == pytest.approx(exact.passive, rel=0.02)
-        assert found.active == pytest.approx(exact.active, rel=0.03)  # nor is the hand faster in the short part
+        assert found.active == pytest.approx(exact.active, rel=0.03)  # no faster in the short part
     between = [bracket(d) for d in ("0.3", "0.6")]
     ordered = [whole[0], *between, whole[1]]
     assert all(a.passive > b.active for a, b in pairwise(ordered))
