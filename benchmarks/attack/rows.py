@@ -15,9 +15,7 @@ import numpy as np
 from numba import njit
 
 import zwidth as zw
-from zwidth.errors import InputError
 from zwidth.passivity.bounding import check_bounding, is_bounded
-from zwidth.passivity.check import check_by_closed_forms
 from zwidth.rendering import DualRate, EnergyBounding, Extrapolation, ForceBounding, PassiveLeap, Saturation
 from zwidth.rendering.stage import Surroundings
 
@@ -120,15 +118,16 @@ def judge(row: Row, rng: np.random.Generator) -> Judged:
 
 
 def claimed(device: zw.Device, law: Any, full: bool) -> str:
-    """What is said of a row: by `check`, or without its game, which takes seconds where there are counts."""
-    try:
-        return str((zw.check if full else check_by_closed_forms)(device, law).outcome)
-    except InputError:
-        pass
+    """What is said of a row: by `check`, or without its game, which takes seconds where there are counts.
+
+    `check` speaks of an ideal actuator: behind converter steps only what counts them is held to its word.
+    """
+    if full and device.force_resolution is None:
+        return str(zw.check(device, law).outcome)
     if device.delay == 0 and is_bounded(law):
         return str(check_bounding(device, law).outcome)
-    theorem = getattr(law.stages[-1], "theorem", lambda at: None)
-    return "theorem" if theorem(Surroundings(device, law.environment)) else "refused"
+    theorem = law.stages[-1].theorem(Surroundings(device, law.environment))
+    return "theorem" if theorem is not None and theorem.holds_on(device) else "refused"
 
 
 def attack(row: Row, rng: np.random.Generator, motions: int, climbs: int) -> tuple[float, np.ndarray]:

@@ -98,7 +98,10 @@ def check(
     InputError
         If the environment cannot be sampled at this rate or is not an environment.
     """
+    asked = as_contact(contact)
     if not isinstance(device, Device):
+        if asked == "kept":
+            raise InputError("contact: the wall of an arm acts on both sides of its rest; leave it out")
         return _check_arm(device, environment, of_an_arm)
     if of_an_arm:
         raise InputError(
@@ -108,7 +111,7 @@ def check(
     if not law.has_transfer_function:
         return check_other(device, law, check_by_closed_forms, progress)
     verdict = check_by_closed_forms(device, law, contact=contact)
-    if as_contact(contact) == "kept" or not has_gap(device, law, verdict):
+    if asked == "kept" or not has_gap(device, law, verdict):
         return verdict
     return with_game(device, law, verdict, progress)
 
