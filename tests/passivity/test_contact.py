@@ -13,6 +13,7 @@ import zwidth as zw
 from zwidth.passivity import checker
 from zwidth.passivity import closed_forms as forms
 from zwidth.passivity.certificate import verify_document
+from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
 
 TINY = Fraction(1, 10**9)
@@ -58,7 +59,7 @@ def test_proved_at_each_bound_and_not_below_it(name, delay, clamped):
     law = zw.Wall(k, b, FILTERS[name][0], clamped=clamped)
     damping, friction = bounds(k, b, name, step, delay)
     for more in (1, 1 + TINY):
-        verdict = zw.check(device(damping * more, friction * more, step, delay), law)
+        verdict = check_by_closed_forms(device(damping * more, friction * more, step, delay), law)
         assert verdict.outcome == "passive"
         assert verdict.certificate.kind == "contact"
         assert verify_document(verdict.certificate.to_dict()).valid
@@ -68,7 +69,7 @@ def test_proved_at_each_bound_and_not_below_it(name, delay, clamped):
         device(damping * (1 - TINY), friction, step, delay),
         device(damping, friction * (1 - TINY), step, delay),
     ):
-        verdict = zw.check(short, law)
+        verdict = check_by_closed_forms(short, law)
         assert verdict.certificate is None or verdict.certificate.kind != "contact"
         if verdict.certificate is not None and verdict.certificate.kind != "multiplier contact":
             assert not clamped
@@ -84,10 +85,12 @@ def test_both_bounds_are_necessary_for_the_backward_difference(seed):
     friction = forms.damped_wall_friction(k, b, step, T).fraction
     assert damping / (k * T) == Fraction(1, 2) + b / (k * T)  # β ≥ ½ + β_v
     assert friction / (k * step) == Fraction(1, 2) + b / (k * T)  # σ ≥ ½ + β_v
-    assert zw.check(device(damping, friction, step, 0), zw.Wall(k, b)).certificate.kind == "contact"
+    assert (
+        check_by_closed_forms(device(damping, friction, step, 0), zw.Wall(k, b)).certificate.kind == "contact"
+    )
     short = 1 - Fraction(1, 1000)
     for active in (device(damping * short, friction, step, 0), device(damping, friction * short, step, 0)):
-        verdict = zw.check(active, zw.Wall(k, b))
+        verdict = check_by_closed_forms(active, zw.Wall(k, b))
         assert verdict.outcome == "active"
         assert verdict.witness.verify()
 
@@ -221,7 +224,7 @@ def touch(seed, surface):
 def test_no_hand_takes_energy_out_of_a_certified_wall(seed, surface):
     """At the bounds no step of a greedy hand, in and out at will, takes out more than the storage loses."""
     hand, (damping, friction), law = touch(seed, surface)
-    verdict = zw.check(device(damping, friction, hand.step, hand.delay), law)
+    verdict = check_by_closed_forms(device(damping, friction, hand.step, hand.delay), law)
     assert (verdict.outcome, verdict.certificate.kind) == ("passive", "contact")
     least, put_in = hand.least_left(damping, friction, 60)
     assert least == 0
@@ -252,7 +255,7 @@ def test_simulated_hands_take_nothing_out(seed, clamped):
     damping, friction = bounds(k, b, name, step, 1)
     held = device(damping, friction, step, 1).replace(mass="0.05")
     wall = zw.Wall(k, b, FILTERS[name][0], clamped=clamped)
-    assert zw.check(held, wall).certificate.kind == "contact"
+    assert check_by_closed_forms(held, wall).certificate.kind == "contact"
     wild = list(accumulate((random.gauss(0, 2e-3) for _ in range(300)), initial=-1e-3))
     hands = (zw.operators.Dowel(), zw.operators.TypicalTouch(), zw.operators.PrescribedMotion(wild))
     for hand in hands:
@@ -263,9 +266,9 @@ def test_simulated_hands_take_nothing_out(seed, clamped):
 
 DEVICE = device("0.5", "0.2", "0.0005", 1)
 DOCUMENTS = {
-    "backward difference": zw.check(DEVICE, zw.Wall("180", "0.04")),
-    "window": zw.check(DEVICE, zw.Wall("180", "-0.06", zw.Window(3))),
-    "one pole": zw.check(DEVICE, zw.Wall("180", "0.07", zw.OnePole("0.004"), clamped=True)),
+    "backward difference": check_by_closed_forms(DEVICE, zw.Wall("180", "0.04")),
+    "window": check_by_closed_forms(DEVICE, zw.Wall("180", "-0.06", zw.Window(3))),
+    "one pole": check_by_closed_forms(DEVICE, zw.Wall("180", "0.07", zw.OnePole("0.004"), clamped=True)),
 }
 
 
@@ -345,7 +348,7 @@ def test_rotary_certificate():
     knob = zw.Device(
         damping="0.004", coulomb_friction="0.01", resolution="0.0015", rate=2000, motion="rotary"
     )
-    verdict = zw.check(knob, zw.Wall(3, "0.001"))
+    verdict = check_by_closed_forms(knob, zw.Wall(3, "0.001"))
     assert set(verdict.certificate.to_dict()["law"]) == {
         "stiffness_N_m_per_rad", "virtual_damping_N_m_s_per_rad", "weights"
     }  # fmt: skip
@@ -363,10 +366,10 @@ STILL_SUSTAINED = {
 def test_where_it_does_not_apply(name):
     """The linear proof stays, for sustained contact; clamped, the same law is undecided and says why."""
     loop, law = STILL_SUSTAINED[name]
-    verdict = zw.check(loop, law)
+    verdict = check_by_closed_forms(loop, law)
     assert (verdict.outcome, verdict.certificate.kind) == ("passive in contact", "quantized")
     assert verdict.scope.contact == "kept"
-    clamped = zw.check(loop, law.replace(clamped=True))
+    clamped = check_by_closed_forms(loop, law.replace(clamped=True))
     assert (clamped.outcome, clamped.certificate, clamped.witness) == ("undecided", None, None)
     assert clamped.claim.startswith("The linear criterion does not cover a law whose force is clamped")
     assert clamped.scope.contact == "made and broken"
@@ -375,8 +378,8 @@ def test_where_it_does_not_apply(name):
 def test_an_active_clamped_wall_has_a_motion_of_its_own():
     """A witness in the linear law is not shown for the clamped one; what would be enough is named."""
     loop = device("0.1", 0, 0, 0)
-    assert zw.check(loop, zw.Wall(300, "0.1")).outcome == "active"
-    verdict = zw.check(loop, zw.Wall(300, "0.1", clamped=True))
+    assert check_by_closed_forms(loop, zw.Wall(300, "0.1")).outcome == "active"
+    verdict = check_by_closed_forms(loop, zw.Wall(300, "0.1", clamped=True))
     assert verdict.outcome == "active"
     assert verdict.witness.to_dict()["law"] == {"fed_with": "position", "never_pulls": True}
     assert verdict.required_damping == 0.25
@@ -388,7 +391,7 @@ def test_a_clamped_spring_is_the_spring():
     """Without virtual damping there is nothing to clamp: the same verdict, the same motion."""
     for k in (300, 770):
         loop = device("0.15", "0.12", "0.0000224", 0)
-        plain, clamped = (zw.check(loop, zw.Wall(k, clamped=c)) for c in (False, True))
+        plain, clamped = (check_by_closed_forms(loop, zw.Wall(k, clamped=c)) for c in (False, True))
         assert plain.to_dict() == clamped.to_dict()
 
 
@@ -396,7 +399,7 @@ def test_a_clamped_spring_is_the_spring():
 def test_the_limit_of_a_clamped_wall(short, limited):
     """At the bound on b, and only there, the claim says that nothing is left."""
     loop = device(Fraction("0.25"), 1, 0, 0)
-    verdict = zw.check(loop, zw.Wall(300, Fraction("0.1") - short, clamped=True))
+    verdict = check_by_closed_forms(loop, zw.Wall(300, Fraction("0.1") - short, clamped=True))
     assert verdict.outcome == "passive"
     assert ("exactly at its limit" in verdict.claim) is limited
 
@@ -432,7 +435,7 @@ INTERVALS = {
 def test_intervals(name):
     """Contact is claimed for a box only if it is proved at every corner, and between them."""
     loop, law, outcome, covered = INTERVALS[name]
-    verdict = zw.check(loop, law)
+    verdict = check_by_closed_forms(loop, law)
     assert verdict.outcome == outcome
     if covered is None:
         assert verdict.certificate is None
