@@ -79,7 +79,6 @@ def test_half_a_step_of_friction_pays_and_less_does_not(name):
     paid = known_of(made(friction="0.005"), law)
     assert paid.status == ("theorem" if name in ("leap", "dual") else "passive")
     assert paid.scope.force_steps
-    assert paid.scope.force_limit
     below = known_of(made(friction="0.004999999995"), law)
     assert below.status == "undecided"
     assert below.withheld

@@ -150,18 +150,17 @@ def test_limit_plays_the_game_against_laws_in_a_row(tmp_path, monkeypatch, capsy
     assert "row motion" in shown
 
 
-def test_check_says_that_laws_in_a_row_have_no_transfer_function(tmp_path, monkeypatch, capsys):
-    """One line that names the commands that take them."""
+def test_check_decides_laws_in_a_row_and_a_map_names_who_takes_them(tmp_path, monkeypatch, capsys):
+    """From a file and from the command line; one line where they have no place."""
     monkeypatch.chdir(tmp_path)
-    Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "saturation"\n', encoding="utf-8")
-    said = (
-        "laws in a row have no H(z) to check: zwidth limit plays the game of the worst hand against them, "
-        "zwidth compare judges them, zwidth simulate shows a touch\n"
-    )
-    assert main(["check", "loop.toml"]) == 2
-    assert capsys.readouterr().err == f"zwidth: loop.toml: [[law]]: {said}"
-    assert main(["check", "haptic-paddle", "--stiffness", "400", "--law", "saturation"]) == 2
-    assert capsys.readouterr().err == f"zwidth: --law: {said}"
+    Path("loop.toml").write_text(LOOP + '[[law]]\ntype = "force-bounding"\n', encoding="utf-8")
+    assert main(["check", "loop.toml"]) == 0
+    assert "force bounding, the last law in the row" in " ".join(capsys.readouterr().out.split())
+    assert main(["check", "haptic-paddle", "--stiffness", "770", "--law", "force-bounding"]) == 0
+    capsys.readouterr()
+    Path("device.toml").write_text('[device]\ncatalogue = "haptic-paddle"\n[[law]]\ntype = "held"\n', "utf-8")
+    assert main(["map", "device.toml", "--stiffness", "0:100", "--damping", "0:1"]) == 2
+    assert "laws in a row have no place in this command: zwidth check decides them" in capsys.readouterr().err
 
 
 BAD = [

@@ -331,7 +331,7 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("zwidth.cli.specification.load", interrupted)
+    monkeypatch.setattr("zwidth.cli.specification.read_tables", interrupted)
     assert run(*PASSIVE).status == 130
 
 

@@ -19,6 +19,7 @@ def test_the_report_and_the_json_say_the_same(capsys: pytest.CaptureFixture[str]
     report = capsys.readouterr().out
     assert main((*MAP, "--json")) == 0
     document = json.loads(capsys.readouterr().out)
+    assert document["regions"]["passive"].pop("scope")["contact"] == "made and broken"
     found = zw.z_width(zw.catalogue.device("haptic-paddle"), (0, 600), (0, "0.3"))
     assert document["regions"]["passive"] == {
         "largest_stiffness_N_per_m": found["largest_stiffness"].sel(region="passive").item(),
@@ -40,6 +41,7 @@ def test_options_reach_the_map(capsys: pytest.CaptureFixture[str]) -> None:
     )  # fmt: skip
     assert status == 0
     document = json.loads(capsys.readouterr().out)
+    assert document["regions"]["passive"].pop("scope")["contact"] == "made and broken"
     found = zw.z_width(
         zw.catalogue.device("haptic-paddle", damping=0.3, rate=2000), (0, 600), ("-0.1", "0.3"), (30, 20),
         velocity_filter=zw.OnePole(0.03), hands={"finger": zw.operators.Finger()}, speed=1,
@@ -171,6 +173,7 @@ def test_not_covered_is_not_none(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "a spring alone, B = 0, is passive up to 28.33 N·m/rad" in said
     assert main([*asked, "--json", "--plot", str(tmp_path / "map.svg")]) == 0
     document = json.loads(capsys.readouterr().out)
+    assert document["regions"]["passive"].pop("scope")["contact"] == "made and broken"
     assert document["regions"]["passive"] == {
         "largest_stiffness_N_m_per_rad": None,
         "cells": 0,

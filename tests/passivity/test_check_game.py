@@ -149,8 +149,8 @@ def test_the_json_names_the_game_and_a_saved_file_holds_its_proof(
     saved = json.loads((tmp_path / "verdict.json").read_text(encoding="utf-8"))
     parts = verifications(saved)
     assert all(part.verification.valid for part in parts)
-    kinds = {"active": ["contact motion"], "undecided": ["storage"]}
-    kinds["passive in contact"] = ["quantized", "storage"]
+    kinds = {"active": ["contact motion"], "undecided": ["slow hands"]}
+    kinds["passive in contact"] = ["quantized", "slow hands"]
     assert [part.evidence["kind"] for part in parts] == kinds[verdict.outcome]
 
 

@@ -29,21 +29,21 @@ LAWS = {
 def test_every_delay_of_a_proved_interval_is_passive(name):
     """Whatever delay is picked from a proved interval, its own verdict is passive."""
     law, longest = LAWS[name]
-    verdict = zw.check(PADDLE.replace(delay=("0.0001", longest)), law)
+    verdict = zw.check(PADDLE.replace(delay=("0.0001", longest)), law, contact="kept")
     assert verdict.outcome == "passive"
     assert verdict.certificate.kind == "delays"
     assert verdict.certificate.verify()
     random = Random(7)
     for _ in range(12):
         delay = Fraction(random.randint(100, int(float(longest) * 1e6)), 10**6)
-        assert zw.check(PADDLE.replace(delay=delay), law).outcome == "passive"
+        assert zw.check(PADDLE.replace(delay=delay), law, contact="kept").outcome == "passive"
 
 
 @pytest.mark.parametrize("name", LAWS)
 def test_an_interval_that_reaches_too_far_is_not_proved(name):
     """An interval of delays with an active end is never passive."""
     law, _ = LAWS[name]
-    verdict = zw.check(PADDLE.replace(delay=("0.0001", "0.02")), law)
+    verdict = zw.check(PADDLE.replace(delay=("0.0001", "0.02")), law, contact="kept")
     assert verdict.outcome == "undecided"
     assert verdict.certificate is None
 
@@ -52,12 +52,14 @@ def test_a_worse_delay_between_passive_ends_is_found():
     """Passive ends do not make an interval passive: with an active delay between them nothing is claimed."""
     law = zw.PulseTransferFunction([90, 0], [1, "0.8"])
     ends = ("0.001", "0.003")
-    needs = [zw.check(PADDLE.replace(delay=d), law).required_damping for d in (*ends, "0.002")]
+    needs = [
+        zw.check(PADDLE.replace(delay=d), law, contact="kept").required_damping for d in (*ends, "0.002")
+    ]
     assert needs[2] > max(needs[:2])
     device = PADDLE.replace(damping=(max(needs[:2]) + needs[2]) / 2)
-    assert all(zw.check(device.replace(delay=d), law).outcome == "passive" for d in ends)
-    assert zw.check(device.replace(delay="0.002"), law).outcome == "active"
-    assert zw.check(device.replace(delay=ends), law).outcome == "undecided"
+    assert all(zw.check(device.replace(delay=d), law, contact="kept").outcome == "passive" for d in ends)
+    assert zw.check(device.replace(delay="0.002"), law, contact="kept").outcome == "active"
+    assert zw.check(device.replace(delay=ends), law, contact="kept").outcome == "undecided"
 
 
 def test_pieces_cover_the_interval_and_none_crosses_a_sample():
@@ -75,7 +77,7 @@ def test_pieces_cover_the_interval_and_none_crosses_a_sample():
 def document():
     """A certificate of two pieces or more, fresh."""
     law, longest = LAWS["filtered"]
-    certificate = zw.check(PADDLE.replace(delay=(0, longest)), law).certificate
+    certificate = zw.check(PADDLE.replace(delay=(0, longest)), law, contact="kept").certificate
     return copy.deepcopy(certificate.to_dict())
 
 

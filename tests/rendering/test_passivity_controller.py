@@ -186,7 +186,6 @@ def test_a_row_of_laws_is_one_environment():
         (lambda: zw.render(zw.Wall(300)), "no law was given"),
         (lambda: zw.render(zw.Wall(300), zw.Wall(2)), "zwidth.rendering"),
         (lambda: zw.render("wall", PassivityController()), "environment"),
-        (lambda: zw.check(PADDLE, zw.render(zw.Wall(300), PassivityController())), "no H"),
         (
             lambda: zw.simulate(
                 PADDLE,

@@ -92,6 +92,8 @@ def check(
         those alone.
     progress
         Told the number of states that still improve, where values are iterated.
+    of_an_arm
+        Further arguments of `workspace`, by name.
 
     Raises
     ------

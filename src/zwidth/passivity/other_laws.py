@@ -13,18 +13,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
-from zwidth.environment.hunt_crossley import HuntCrossley
-from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.errors import InputError
 from zwidth.passivity import game
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Need, Verdict
 from zwidth.quantity.exact import Exact, ends
+
+if TYPE_CHECKING:
+    from zwidth.environment.nonlinear_spring import NonlinearSpring
 
 _ACTUATOR = ("force_limit", "force_resolution", "motor_inductance", "supply_voltage", "current_limit")
 """What a device states of its actuator."""
@@ -55,6 +57,8 @@ def check_other(
     InputError
         If it is none of these, or another parameter is an interval.
     """
+    from zwidth.environment.hunt_crossley import HuntCrossley  # few loops have one of these
+    from zwidth.environment.nonlinear_spring import NonlinearSpring
     from zwidth.rendering.rendered import Rendered
 
     worst = _at_its_worst(device)

@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from zwidth.environment.hunt_crossley import DIGITS
 from zwidth.passivity.document import unit_key, unit_suffix
-from zwidth.passivity.scope import Contact, Hands, Scope
+from zwidth.passivity.scope import Contact, Hands, Law, Scope
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ _ALSO = {
 }
 _LAW = {
     "rounded coefficients": "H(z) has the coefficients of its discretization rounded to double precision",
-    "rounded power": f"K uⁿ is rounded to {DIGITS} digits, as no decimal writes it",
+    "rounded power": "K uⁿ is rounded to {digits} digits, as no decimal writes it",
     "table": (
         "the law is a table of its states and forces, as the simulator's compiled law gives them in doubles; "
         "the checker takes the table as it stands, same_law compares it with the law"
@@ -107,7 +106,15 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
     yield _SAMPLING[scope.sampling]
     yield _ENCODER[scope.encoder]
     yield from (f"{key.replace('_', ' ')} was not given and taken as 0" for key in scope.assumed)
-    yield from (_LAW[note] for note in scope.law)
+    yield from map(_of_the_law, scope.law)
+
+
+def _of_the_law(note: Law) -> str:
+    if note != "rounded power":
+        return _LAW[note]
+    from zwidth.environment.hunt_crossley import DIGITS  # few loops have such a contact
+
+    return _LAW[note].format(digits=DIGITS)
 
 
 def intervals(scope: Scope, outcome: Outcome) -> str | None:

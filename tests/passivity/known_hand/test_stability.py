@@ -247,7 +247,7 @@ def test_what_a_claim_rests_on() -> None:
     notes = " ".join(found.assumptions)
     assert "contact is kept" in notes
     assert "Coulomb friction" in notes
-    assert "not asked to pull" in notes
+    assert "never pulls" in notes
     assert str(found).startswith("stable: ")
     assert found.margin == pytest.approx(1 - found.spectral_radius)
 
