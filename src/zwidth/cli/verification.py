@@ -85,7 +85,8 @@ def _misfit(covered: Scope | None, outcome: str, told: Mapping[str, Any]) -> str
         return None if covered.shows == "active" else "is a proof of passivity"
     if covered.shows == "active":
         return "shows that energy comes out"
-    if covered.contact == "kept" and outcome == "passive" and _contact(told) != "kept":
+    kept = covered.contact == "kept" and covered.hands == "every"
+    if kept and outcome == "passive" and _contact(told) != "kept":
         return "covers a hand that keeps contact only"
     return None
 

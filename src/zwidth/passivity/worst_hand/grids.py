@@ -11,7 +11,7 @@ from fractions import Fraction
 from math import floor
 
 from zwidth.passivity.worst_hand.board import Domain
-from zwidth.passivity.worst_hand.domain import states_of
+from zwidth.passivity.worst_hand.domain import states_of, too_large
 from zwidth.passivity.worst_hand.law import FiniteLaw
 from zwidth.passivity.worst_hand.losses import Losses
 
@@ -37,13 +37,16 @@ def grids(law: FiniteLaw, losses: Losses, domain: Domain) -> list[tuple[int, Dom
     far = min(domain.speed, Fraction(within.highest))
     remembered = law.memory + losses.delay
     found = []
-    for reach in _REACHES if far > _FEW else ():
+    many = far > _FEW or _work(law, losses, within) > _MOST_WORK
+    for reach in _REACHES if many else ():
         counts = _counts(far, reach)
         cells = domain.every(counts, remembered, _two_sided(law)) if counts > 1 else None
         if cells is not None:
             found.append((counts, _shallow(law, cells)))
     boards = within, _shallow(law, within), _near(law, within, remembered)
-    return [*found, (1, next((d for d in boards if _work(law, losses, d) <= _MOST_WORK), boards[-1]))]
+    chosen = next((d for d in boards if _work(law, losses, d) <= _MOST_WORK), boards[-1])
+    whole = [] if chosen == within or too_large(law, losses, within) else [(1, within)]  # last, as it is slow
+    return [*found, (1, chosen), *whole]
 
 
 def _work(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
