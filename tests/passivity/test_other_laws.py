@@ -158,3 +158,12 @@ def test_an_arm_and_its_wall():
         zw.check(PADDLE, zw.Wall(100), rate=1000)
     with pytest.raises(zw.InputError, match="a Device or an arm"):
         zw.check("paddle", zw.Wall(100))
+
+
+def test_a_refutation_at_the_worst_of_an_interval_is_not_one_of_the_whole_interval():
+    """A pull of 0.5 N beats 0.12 N of Coulomb friction and not 3 N: the interval decides nothing."""
+    pulling = zw.NonlinearSpring([-0.01, 0.01], [0.5, 1])
+    assert zw.check(PADDLE.replace(coulomb_friction="0.12 N"), pulling).outcome == "active"
+    found = zw.check(PADDLE.replace(coulomb_friction=zw.Interval("0.12", "3")), pulling)
+    assert (found.outcome, found.finding) == ("undecided", "depends on values")
+    assert not any("every value" in line for line in found.assumptions)

@@ -64,12 +64,16 @@ def check_other(
     worst = _at_its_worst(device)
     asked = scope_of(device, law)
     if isinstance(law, NonlinearSpring):
-        return _spring(worst, law, asked, progress)
-    if isinstance(law, HuntCrossley):
-        return _by_values(Verdict("undecided", asked, worst, law), progress)
-    if isinstance(law, Rendered):
-        return _row(worst, law, asked, closed, progress)
-    raise InputError(f"no road is known to a verdict on {law.describe(device.motion)}")
+        verdict = _spring(worst, law, asked, progress)
+    elif isinstance(law, HuntCrossley):
+        verdict = _by_values(Verdict("undecided", asked, worst, law), progress)
+    elif isinstance(law, Rendered):
+        verdict = _row(worst, law, asked, closed, progress)
+    else:
+        raise InputError(f"no road is known to a verdict on {law.describe(device.motion)}")
+    if verdict.outcome == "active" and not device.is_certain:  # at the worst: more friction may hold it
+        return replace(verdict, outcome="undecided", scope=asked, finding="depends on values")
+    return verdict
 
 
 def _at_its_worst(device: Device) -> Device:
