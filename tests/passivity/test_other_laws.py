@@ -167,3 +167,11 @@ def test_a_refutation_at_the_worst_of_an_interval_is_not_one_of_the_whole_interv
     found = zw.check(PADDLE.replace(coulomb_friction=zw.Interval("0.12", "3")), pulling)
     assert (found.outcome, found.finding) == ("undecided", "depends on values")
     assert not any("every value" in line for line in found.assumptions)
+
+
+def test_values_on_one_board_of_counts_say_nothing_of_counts_of_another_size():
+    """What value iteration proves holds for the counts it was played with, and not for smaller ones."""
+    slew = zw.render(zw.Wall(770), SlewLimit(rate=1000))
+    step = PADDLE.exact("resolution")
+    assert zw.check(PADDLE.replace(coulomb_friction=zw.Interval("0.12", "0.13")), slew).worst_hand is not None
+    assert zw.check(PADDLE.replace(resolution=zw.Interval(step / 2, step)), slew).worst_hand is None

@@ -23,7 +23,7 @@ from zwidth.passivity import game
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Need, Verdict
-from zwidth.quantity.exact import Exact, ends
+from zwidth.quantity.exact import Exact, Interval, ends
 
 if TYPE_CHECKING:
     from zwidth.environment.nonlinear_spring import NonlinearSpring
@@ -73,6 +73,10 @@ def check_other(
         raise InputError(f"no road is known to a verdict on {law.describe(device.motion)}")
     if verdict.outcome == "active" and not device.is_certain:  # at the worst: more friction may hold it
         return replace(verdict, outcome="undecided", scope=asked, finding="depends on values")
+    if verdict.worst_hand is not None and isinstance(
+        device.resolution, Interval
+    ):  # other counts, other boards
+        return replace(verdict, worst_hand=None)
     return verdict
 
 
