@@ -32,7 +32,7 @@ from attack.self_test import self_test
 from rich.progress import track
 
 HERE = Path(__file__).parent
-CAMPAIGN = 20_250
+CAMPAIGN = 20_251
 """The first half of every seed."""
 
 PATIENCE = 120

@@ -34,11 +34,12 @@ HEAVY_SHARE = 0.04
 SLOWEST = 1e-12
 """The smallest ωT that is looked at."""
 
-MOTION_SHARE = 0.02
+MOTION_SHARE = 0.005
 """Of violations whose motion is made and run again."""
 
-SHORT, LONG = 250, 20_000
-"""Samples of a motion that is always run again, and of one that is where nothing else confirms it."""
+SHORT, LONG, FEW = 250, 20_000, 2_000
+"""Samples of a motion that is always run again, of one that is where nothing else confirms it, and those
+that longer ones are cut to."""
 
 
 @dataclass(frozen=True)
@@ -180,7 +181,7 @@ def _switches_of(witness: Any) -> list[Fraction] | None:
 def _by_fewer_rounds(motion: Any, loop: PlainLoop) -> bool:
     """Whether a long motion gains more in later rounds, of those that can be run."""
     span = max(r.last - r.first for r in motion.repeats)
-    few = max(2, LONG // (4 * span))
+    few = max(2, FEW // span)
     listed = [motion.repeated(n).listed() for n in (few, 2 * few)]
     if len(listed[1].positions) > 4 * LONG:
         return False

@@ -64,13 +64,6 @@ def near(rng: Rng, value: Fraction | float) -> Fraction:
     return exact * (1 + off if rng.random() < 0.5 else 1 - off)
 
 
-def draw(seed: int) -> Case:
-    """The loop of a seed."""
-    rng = np.random.default_rng([20_250, seed])
-    kind = str(rng.choice(list(SHARES), p=list(SHARES.values())))
-    return KINDS[kind](rng)
-
-
 # -- laws -----------------------------------------------------------------------------------------------
 
 
@@ -418,8 +411,8 @@ SHARES = {
     "counts": 0.2,
     "delay": 0.1,
     "rows": 0.05,
-    "intervals": 0.0495,
+    "intervals": 0.0498,
     "rotary": 0.05,
-    "game": 0.0005,
+    "game": 0.0002,
 }
 """Of the loops drawn; those decided with the game take seconds each."""

@@ -16,8 +16,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
-from math import floor, pi
+from functools import cached_property, lru_cache
+from math import pi
 from typing import Literal
 
 import numpy as np
@@ -55,17 +55,17 @@ class PlainLoop:
     resolution: Fraction = Fraction(0)
     delay: Fraction = Fraction(0)
 
-    @property
+    @cached_property
     def whole(self) -> int:
         """Whole samples of delay."""
         return int(self.delay // self.period)
 
-    @property
+    @cached_property
     def part(self) -> Fraction:
         """The rest, as a part of a sample."""
         return self.delay / self.period - self.whole
 
-    @property
+    @cached_property
     def remembers(self) -> bool:
         """Whether the force depends on more than the last reading."""
         return any(self.numerator[1:]) or any(self.denominator[1:])
@@ -75,13 +75,13 @@ class PlainLoop:
         """Whether H(z) says all about the law inside: a clamp does not touch a spring."""
         return not self.clamped or not self.remembers
 
-    @property
+    @cached_property
     def static(self) -> Fraction | None:
         """H(1); None with a pole there."""
         below = sum(self.denominator)
         return Fraction(sum(self.numerator)) / below if below else None
 
-    @property
+    @cached_property
     def stored(self) -> Fraction:
         """What the spring may hold at rest within the first count, H(1) Δ²/8 [J]; 0 for a spring wall."""
         if self.fed != "both" and not self.remembers:
@@ -129,46 +129,57 @@ def energies(
 
 
 def _energies(
-    loop: PlainLoop, x: Sequence[Fraction], switches: Sequence[Fraction] | None, phase: Fraction
+    loop: PlainLoop, positions: Sequence[Fraction], switches: Sequence[Fraction] | None, phase: Fraction
 ) -> list[arb]:
     b, fc, period = ball(loop.damping), ball(loop.friction), ball(loop.period)
     whole, part = loop.whole, loop.part
-    commands = [arb(0)] * (whole + 1) + _commands(loop, x, phase)
+    x = [_rational(v) for v in positions]
+    first, second = b / (period * ball(part or Fraction(1))), b / (period * ball(1 - part))
+    commands = [arb(0)] * (whole + 1) + _commands(loop, x, _rational(phase))
     out, total = [arb(0)], arb(0)
     for k in range(len(x) - 1):
         early, late = commands[k], commands[k + 1]
-        legs = [(late, x[k + 1] - x[k], Fraction(1))]
+        legs = [(late, x[k + 1] - x[k], second)]
         if part:
-            y = switches[k] if switches else _best_switch(loop, x[k], x[k + 1], float(early), float(late))
-            legs = [(early, y - x[k], part), (late, x[k + 1] - y, 1 - part)]
-        for force, moved, share in legs:
-            step = ball(moved)
-            total = total - force * step - fc * abs(step) - b * step * step / (period * ball(share))
+            if switches:
+                here = _rational(switches[k])
+            else:
+                here = _best_switch(loop, x[k], x[k + 1], float(early), float(late))
+            legs = [(early, here - x[k], first), (late, x[k + 1] - here, second)]
+        for force, moved, drag in legs:
+            step = arb(moved)
+            total = total - force * step - fc * abs(step) - drag * step * step
         out.append(total)
     return out
 
 
-def _commands(loop: PlainLoop, x: Sequence[Fraction], phase: Fraction) -> list[arb]:
+def _rational(value: Fraction) -> fmpq:
+    return fmpq(value.numerator, value.denominator)
+
+
+def _commands(loop: PlainLoop, x: Sequence[fmpq], phase: fmpq) -> list[arb]:
     """f of every reading, before it is late."""
-    num, den = ([ball(c) for c in side] for side in (loop.numerator, loop.denominator))
-    given: list[Fraction] = []
-    first = Fraction(0)
+    num = [(i, ball(c)) for i, c in enumerate(loop.numerator) if c]
+    den = [(i, ball(c)) for i, c in enumerate(loop.denominator) if c and i]
+    count, static = _rational(loop.resolution), _rational(loop.static or Fraction(0))
+    given: list[arb] = []
+    first: fmpq | None = None
     linear: list[arb] = []
     out: list[arb] = []
     for here in x:
-        q = loop.resolution * (floor(here / loop.resolution + phase) + phase) if loop.resolution else here
-        u = max(q, Fraction(0)) if loop.fed == "penetration" else q
-        first = first if given else u  # where the law has been at rest for ever
-        given.append(u - first)
+        q = count * ((here / count + phase).floor() + phase) if count else here
+        u = max(q, fmpq(0)) if loop.fed == "penetration" else q
+        first = u if first is None else first  # where the law has been at rest for ever
+        given.append(arb(u - first))
         force = arb(0)
-        for i in range(min(len(num), len(given))):
-            if num[i]:
-                force += num[i] * ball(given[-1 - i])
-        for i in range(1, min(len(den), len(given))):
-            if den[i]:
-                force -= den[i] * linear[-i]
+        for i, c in num:
+            if i < len(given):
+                force += c * given[-1 - i]
+        for i, c in den:
+            if i < len(given):
+                force -= c * linear[-i]
         linear.append(force)
-        force = force + ball((loop.static or Fraction(0)) * first)
+        force = force + arb(static * first)
         if loop.fed != "both" and q <= 0:
             force = arb(0)
         if loop.clamped:
@@ -177,10 +188,10 @@ def _commands(loop: PlainLoop, x: Sequence[Fraction], phase: Fraction) -> list[a
     return out
 
 
-def _best_switch(loop: PlainLoop, here: Fraction, there: Fraction, early: float, late: float) -> Fraction:
+def _best_switch(loop: PlainLoop, here: fmpq, there: fmpq, early: float, late: float) -> fmpq:
     """Where the hand is best when the force changes within a sample, to rounding."""
     part, b, fc = float(loop.part), float(loop.damping), float(loop.friction)
-    moved, drag = float(there - here), b / float(loop.period)
+    moved, drag = float(arb(there - here)), b / float(loop.period)
     lean = part * (1 - part) / (2 * drag) if drag else 0.0
     tries = [0.0, moved, *(part * moved - lean * (early - late + s) for s in (0.0, 2 * fc, -2 * fc))]
 
@@ -188,7 +199,7 @@ def _best_switch(loop: PlainLoop, here: Fraction, there: Fraction, early: float,
         v = moved - u
         return early * u + late * v + fc * (abs(u) + abs(v)) + drag * (u * u / part + v * v / (1 - part))
 
-    return here + Fraction(min(tries, key=cost))
+    return here + _rational(Fraction(min(tries, key=cost)))
 
 
 def needed_at(loop: PlainLoop, angle: float, digits: int = 80) -> arb:
@@ -246,16 +257,16 @@ def _needed(loop: PlainLoop) -> tuple[float, float]:
     theta = np.concatenate([theta, *near]) if near else theta
     theta = np.unique(theta[(theta > 0) & (theta <= pi)])
     values = _needs(loop, theta)
-    best = (-np.inf, pi)
-    for k in np.argsort(values)[-4:]:
-        low, high = theta[max(k - 1, 0)], theta[min(k + 1, theta.size - 1)]
-        for _ in range(6):
-            fine = np.linspace(low, high, 41)
-            asked = _needs(loop, fine)
-            at = int(np.argmax(asked))
-            low, high = fine[max(at - 1, 0)], fine[min(at + 1, 40)]
-        best = max(best, (float(asked[at]), float(fine[at])))
-    return best
+    tops = np.argsort(values)[-4:]
+    low, high = theta[np.maximum(tops - 1, 0)], theta[np.minimum(tops + 1, theta.size - 1)]
+    rows = np.arange(tops.size)
+    for _ in range(6):
+        fine = np.linspace(low, high, 41, axis=1)
+        asked = _needs(loop, fine)
+        at = np.argmax(asked, axis=1)
+        low, high = fine[rows, np.maximum(at - 1, 0)], fine[rows, np.minimum(at + 1, 40)]
+    top = max(rows, key=lambda k: asked[k, at[k]])
+    return float(asked[top, at[top]]), float(fine[top, at[top]])
 
 
 def _needs(loop: PlainLoop, theta: np.ndarray) -> np.ndarray:

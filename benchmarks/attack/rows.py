@@ -26,7 +26,7 @@ from .motions import ANGLE, COUNTED, DRAG, FAMILIES, FRICTION, GATE, POSITION, _
 ROUNDING = 1e-9
 """Of what friction and damping took: the laws reckon with doubles."""
 
-FULL_SHARE = 0.005
+FULL_SHARE = 0.002
 """Of rows behind an encoder that the whole of `check` decides."""
 
 (WALL, AHEAD, SATURATED, LAW, STEP, RESETS, SAMPLES, SLOPE, COUNT, CREDITED) = range(10)

@@ -38,9 +38,11 @@ def best_waits(loop: LinearLoop) -> Waits:
     response = _impulse_response(loop)
     extra = loop.whole_delay + (1 if loop.part_delay else 0)
     best = Waits(1 + extra, 1 + extra, float("-inf"))
+    periods = range(2 * (1 + extra), 2 * (LONGEST_WAIT + extra) + 1)
+    turns = {period: [sum(response[r::period]) for r in range(period)] for period in periods}
     for above in range(1, LONGEST_WAIT + 1):
         for below in range(1, LONGEST_WAIT + 1):
-            gain = _gain(response, above + extra, below + extra, loop)
+            gain = _gain(turns[above + below + 2 * extra], above + extra, loop)
             if gain > best.gain * (1 + 1e-12) + 1e-300:
                 best = Waits(above + extra, below + extra, gain)
     return best
@@ -58,13 +60,16 @@ def _impulse_response(loop: LinearLoop) -> list[float]:
     return [float(Fraction(v, 1 << bits)) if abs(v) >> bits < 10**100 else 0.0 for v in h]
 
 
-def _gain(h: list[float], above: int, below: int, loop: LinearLoop) -> float:
-    """Force going out minus force coming in over one settled cycle, per count."""
-    period, d, alpha = above + below, loop.whole_delay, float(loop.part_delay)
+def _gain(turn: list[float], above: int, loop: LinearLoop) -> float:
+    """Force going out minus force coming in over one settled cycle, per count.
+
+    `turn` is h summed over all cycles that came before, for each sample of a cycle.
+    """
+    period, d, alpha = len(turn), loop.whole_delay, float(loop.part_delay)
 
     def force(phase: int) -> float:
         """Computed `phase` samples after coming above."""
-        return sum(h[i] for i in range(len(h)) if (phase - i) % period < above)
+        return sum(turn[(phase - k) % period] for k in range(above))
 
     def applied(phase: int) -> float:
         return alpha * force(phase - d - 1) + (1 - alpha) * force(phase - d)
