@@ -15,7 +15,7 @@ import numpy as np
 from flint import arb
 from numba import njit
 
-from .referee import DIGITS, PlainLoop, ball, digits_of, energies
+from .referee import DIGITS, PlainLoop, ball, digits_of, energies, largest_pole
 
 GATE, CLAMPED, COUNTED, PHASE, FRICTION, DRAG, WHOLE, PART, KEPT, STORED, ANGLE, POLE, STATIC = range(13)
 BOTH, POSITION, PENETRATION = 0.0, 1.0, 2.0
@@ -80,6 +80,8 @@ def refutes(loop: PlainLoop, found: Found, *, kept: bool) -> bool:
         return False
     last = found.positions[-turn:]
     if found.positions[-turn - 1] != last[-1]:
+        return False
+    if largest_pole(loop) ** (20 * turn) > 0.1:  # what a round gains may come from the start, and fade
         return False
     longer = [*found.positions, *(last * 60)]
     out = energies(loop, longer, phase=found.phase)

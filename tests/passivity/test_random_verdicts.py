@@ -73,6 +73,21 @@ def test_a_wall_fed_with_the_position_gives_energy_to_a_hand_that_touches_and_le
     assert energies(loop, inside)[-1] < 0
 
 
+def test_a_start_that_fades_slowly_is_no_gain_of_every_round():
+    """A pole at −0.999996 gives back what it took at the start for 270 000 samples: no refutation."""
+    from attack.motions import Found, refutes
+    from attack.referee import PlainLoop, energies
+
+    law = (Fraction("0.157947"), Fraction("-0.0607235")), (Fraction(1), Fraction("0.9999962771479166"))
+    damping, friction, period = Fraction("15.7005011804"), Fraction("0.000617"), Fraction("0.00066")
+    loop = PlainLoop(*law, "both", False, damping, friction, period, delay=Fraction("0.0014454"))
+    near, far = Fraction("0.11683501039871909"), Fraction("0.11683514838867086")
+    x = (Fraction(0), *((far, near) * 6))
+    out = [float(v) for v in energies(loop, x)]
+    assert out[0] > out[-1] > out[-3] > out[-5]  # 325 J went in, and every round gives a little back
+    assert not refutes(loop, Found(1, x, 2, Fraction(0)), kept=False)
+
+
 def test_what_the_referee_is_told_of_a_law_is_what_the_package_renders():
     """H(z) by the referee's formulas and by the package's."""
     from attack import loops
