@@ -36,7 +36,7 @@ CAMPAIGN = 20_251
 """The first half of every seed."""
 
 PATIENCE = 120
-"""Seconds after which a loop is given up, and said to be wrong."""
+"""Seconds of the processor after which a loop is given up, and said to be wrong."""
 
 
 class _TooLong(Exception):
@@ -49,8 +49,8 @@ def one(seed: int, only: str | None = None) -> tuple[Judged, str]:
     kind = str(rng.choice(list(SHARES), p=list(SHARES.values())))
     kind = only or kind
     case = rows.draw(rng) if kind == "rows" else KINDS[kind](rng)
-    signal.signal(signal.SIGALRM, _stop)
-    signal.alarm(PATIENCE)
+    signal.signal(signal.SIGPROF, _stop)
+    signal.setitimer(signal.ITIMER_PROF, PATIENCE)
     try:
         found = rows.judge(case, rng) if kind == "rows" else judge(case, rng)
     except _TooLong:
@@ -58,7 +58,7 @@ def one(seed: int, only: str | None = None) -> tuple[Judged, str]:
     except Exception as error:  # what the user would see as a traceback
         found = Judged(kind, "refused", f"{type(error).__name__}: {error}")
     finally:
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
     return found, f"{case.device!r}, {case.law!r}" if found.wrong else ""
 
 

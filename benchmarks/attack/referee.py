@@ -111,9 +111,13 @@ def _ball(numerator: int, denominator: int, digits: int) -> arb:
 
 
 def differs(value: arb, told: Fraction) -> bool:
-    """Whether a number is certainly another one than it is said to be, by more than 1e-30 of it."""
+    """Whether more is told than came out, by 1e-30 of it, or less by 1e-15.
+
+    Of a law that relaxes the game tells a bound from below.
+    """
     with digits_of(DIGITS):
-        return bool(abs(value - ball(told)) > abs(ball(told)) * ball(Fraction(1, 10**30)))
+        beyond, size = value - ball(told), abs(ball(told))
+        return bool(-beyond > size * ball(Fraction(1, 10**30)) or beyond > size * ball(Fraction(1, 10**15)))
 
 
 def energies(

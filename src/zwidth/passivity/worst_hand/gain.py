@@ -41,7 +41,7 @@ class Gain:
     motion
         Positions at the samples, the cycle as its repeated part.
     exact_energy, exact_gain
-        Taken out by the whole motion and by one more round [J].
+        Taken out by the whole motion and by one more round [J]; of a law that relaxes, at least so much.
     law
         What the hand plays against.
     """
