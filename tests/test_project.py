@@ -391,3 +391,9 @@ def test_every_file_that_the_newcomers_page_names_exists() -> None:
     assert len(named) > 15
     missing = [n for n in named if not (SOURCE / n).exists() and not (SOURCE / "passivity" / n).exists()]
     assert not missing
+
+
+def test_no_two_files_of_tests_have_one_name() -> None:
+    """Two of one name, in folders without `__init__.py`, cannot be collected in one run."""
+    names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
+    assert sorted(set(names)) == sorted(names)
