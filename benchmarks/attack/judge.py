@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import acos
 from typing import Any
 
 import numpy as np
@@ -132,7 +133,7 @@ def against_active(verdict: Any, loop: PlainLoop, rng: np.random.Generator) -> s
         wrong = _run_again(witness, loop)
         if wrong or violation is None:
             return wrong
-    if loop.linear_inside and _criterion(loop):
+    if loop.linear_inside and (_criterion(loop) or _violated_where_told(violation, loop)):
         return ""
     if motion is not None and samples <= LONG:
         return _run_again(witness, loop)
@@ -143,6 +144,14 @@ def against_active(verdict: Any, loop: PlainLoop, rng: np.random.Generator) -> s
     if motion is not None:
         return "" if motion.repeats and _by_fewer_rounds(motion, loop) else "a long motion, not confirmed"
     return "active, not confirmed"
+
+
+def _violated_where_told(violation: Any, loop: PlainLoop) -> bool:
+    """Whether the criterion, in the referee's own numbers, is violated at the frequency that is named."""
+    proof = violation.to_dict()["proof"] if violation is not None else {}
+    if proof.get("kind") != "criterion":
+        return False
+    return bool(needed_at(loop, acos(float(Fraction(proof["cosine"])))) > ball(loop.damping))
 
 
 def evidence_of(verdict: Any, *, with_motion: bool) -> tuple[Any, Any]:
