@@ -8,7 +8,7 @@ needs K T/2 everywhere, in every direction, so that the joints must have ::
 
     δ_m ⪰ Jᵀ (K T/2) J
 
-The Haply 2diy with one joint that turns more easily than the other:
+The Haply 2diy with one joint that turns more easily than the other, read as if its encoders had no steps:
 """
 
 import matplotlib.pyplot as plt
@@ -18,7 +18,7 @@ from zwidth import plots
 
 plt.rcParams.update(plots.LOOK)
 wall, rate = zw.Wall(500), 1000
-arm = zw.arms.built_in("haply-2diy", damping=(0.001, 0.004))
+arm = zw.arms.built_in("haply-2diy", damping=(0.001, 0.004), resolution=0)
 before = zw.workspace(arm, wall, rate=rate)
 print(before.claim)
 

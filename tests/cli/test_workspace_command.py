@@ -14,7 +14,9 @@ from described_arms import random_arm
 from zwidth.cli.main import main
 
 Run = Callable[..., tuple[int, str, str]]
-HAPLY = ("workspace", "haply-2diy", "--joint-damping", "0.003", "--points", "20")
+HAPLY = (
+    "workspace", "haply-2diy", "--joint-damping", "0.003", "--joint-resolution", "0", "--points", "20",
+)  # fmt: skip
 
 
 @pytest.fixture
@@ -30,14 +32,19 @@ def run(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.
 
 
 def test_a_wall_that_holds_everywhere(run: Run) -> None:
-    """Status 0, and nothing to change."""
+    """Status 0, and nothing to change; 4 behind its own encoders, whose steps are not in the proof."""
     status, out, _ = run(*HAPLY, "--stiffness", "300")
     words = " ".join(out.split())
     assert status == 0
     assert "PASSIVE No motion of the hand takes energy out with x from -0.05 to 0.05 m" in words
     assert "what to change" not in words
     assert "haply-2diy, 2 joints, 1 kHz" in words
-    assert "The arm is taken to be read without steps. Encoder steps are not counted:" in words
+    assert "The arm is taken to be read without steps. The torque" in words
+    status, out, _ = run(*HAPLY[:4], "--stiffness", "300", "--points", "20")
+    words = " ".join(out.split())
+    assert status == 4
+    assert "PASSIVE WITHOUT ENCODER STEPS Read without steps, no motion of the hand would take" in words
+    assert "Encoder steps are not counted:" in words
 
 
 def test_a_wall_that_fails_says_what_to_change(run: Run) -> None:
@@ -47,7 +54,7 @@ def test_a_wall_that_fails_says_what_to_change(run: Run) -> None:
     assert (status, found["outcome"]) == (1, "active")
     assert found["motion"]["energy_J"] < 0
     enough = 0.003 + found["addition_to_all_N_m_s_per_rad"]
-    better = ("workspace", "haply-2diy", "--joint-damping", str(enough), "--points", "20")
+    better = (*HAPLY[:3], str(enough), *HAPLY[4:])
     assert run(*better, "--stiffness", "800")[0] == 0
     words = " ".join(run(*HAPLY, "--stiffness", "800")[1].split())
     assert "take" in words
@@ -164,7 +171,7 @@ def test_encoder_steps_are_counted_up_to_a_force(run: Run) -> None:
     status, out, _ = run(*COUNTED, "-o", "proof.json")
     words = " ".join(out.split())
     assert status == 0
-    assert "Encoder steps are counted, with wall forces up to 28.6 N" in words
+    assert "for wall forces up to 28.6 N, proved. Encoder steps are counted" in words
     assert re.search(r"0.005774 N·m, 0.002954 N·m in joint 1, 2, and .* more for each newton", words)
     assert re.search(
         r"encoder steps covered up to 28.6 N; from 89[.0-9]* N on a motion takes energy out", words

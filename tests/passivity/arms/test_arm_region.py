@@ -16,7 +16,7 @@ DAMPING = {"hapkit": 0.001, "two-link": (0.02, 0.012), "haply-2diy": (0.003, 0.0
 
 
 def _space(name: str, stiffness: float, **options: Any) -> zw.Workspace:
-    arm = built_in(name, damping=DAMPING[name])
+    arm = built_in(name, damping=DAMPING[name], resolution=0)
     return zw.workspace(arm, zw.Wall(stiffness), rate=1000, points=30, **options)
 
 
@@ -55,15 +55,15 @@ def test_the_advice_is_enough(name: str) -> None:
     changed = [b + space.addition_to_all]
     changed += [b + t * np.eye(len(b))[i] for i, t in enumerate(space.additions) if np.isfinite(t)]
     for damping in changed:
-        arm = built_in(name, damping=tuple(damping))
+        arm = built_in(name, damping=tuple(damping), resolution=0)
         assert zw.workspace(arm, space.wall, rate=1000, points=30).outcome == "passive"
-    short = built_in(name, damping=tuple(b + 0.4 * space.addition_to_all))
+    short = built_in(name, damping=tuple(b + 0.4 * space.addition_to_all), resolution=0)
     assert zw.workspace(short, space.wall, rate=1000, points=30).outcome != "passive"
 
 
 def test_one_joint_can_be_enough() -> None:
     """A pantograph with one weak joint: damping that joint alone proves the region, and the map says so."""
-    arm = built_in("haply-2diy", damping=(0.0015, 0.008))
+    arm = built_in("haply-2diy", damping=(0.0015, 0.008), resolution=0)
     space = zw.workspace(arm, zw.Wall(400), rate=1000, points=30)
     assert np.isfinite(space.additions[0])
     assert set(np.unique(space.data["joint_to_damp"])) <= {0.0, 1.0}

@@ -15,6 +15,7 @@ from zwidth.device.arm import PlanarChain, read_arm
 from zwidth.passivity.arms.encoders import columns_in_cells, encoder_steps, friction_for, size_bound
 from zwidth.passivity.arms.replay import replay_cycle
 from zwidth.passivity.certificate import verify_document
+from zwidth.passivity.outcome import TOLD
 
 Array = npt.NDArray[np.float64]
 
@@ -194,7 +195,7 @@ def test_a_slow_rectangle_across_one_edge() -> None:
     space = zw.workspace(arm, wall, rate=1 / PERIOD, points=50)
     assert (space.outcome, space.encoder, space.torque) == ("passive", "counted", "follows")
     assert space.largest_forces == pytest.approx((35.19,), rel=1e-3)
-    assert "Encoder steps are counted, with wall forces up to 35.19 N" in space.claim
+    assert "for wall forces up to 35.19 N, proved. Encoder steps are counted" in space.claim
     steps = space.encoder_steps
     assert steps is not None
     assert steps.motion is not None
@@ -222,24 +223,46 @@ def test_up_to_a_force_that_is_asked_for() -> None:
     assert zw.workspace(bare, wall, rate=1 / PERIOD, points=50, largest_force=1).outcome == "active"
 
 
-def test_without_enough_friction_the_encoders_are_taken_as_ideal() -> None:
-    """And the claim says so, and why."""
-    for friction, words in (((), "none is given"), ((1e-4, 1e-4), "too small for them at any force")):
+def test_friction_that_covers_the_steps_at_no_force() -> None:
+    """A motion across their edges takes energy out, up to a hundredth below what covers them."""
+    bare = zw.workspace(PlanarChain(**EXAMPLE), zw.Wall(500), rate=1 / PERIOD, points=50)
+    assert bare.encoder_steps is not None
+    for share in (0.0, 0.5, 0.99):
+        friction = tuple(share * f for f in bare.encoder_steps.friction)
         arm = PlanarChain(coulomb_friction=friction, **EXAMPLE)
         space = zw.workspace(arm, zw.Wall(500), rate=1 / PERIOD, points=50)
-        assert (space.outcome, space.encoder, space.largest_forces) == ("passive", "ideal", ())
-        assert "Encoder steps are not counted" in space.claim
-        assert words in space.claim
+        assert (space.outcome, space.encoder, space.certificate) == ("active", "counted", None), share
+        motion = space.motion
+        assert motion is not None
+        again = replay_cycle(arm, zw.Wall(500), PERIOD, 0, motion.joints, counted=True, rest=motion.rest)
+        assert again.energy == motion.energy < 0
+
+
+def test_held_torques_are_refuted_by_forces_that_the_wall_gives() -> None:
+    """35.19 N are covered; up to 50 N a motion takes energy out, with no more than that."""
     arm = PlanarChain(coulomb_friction=FRICTION, **EXAMPLE)
-    space = zw.workspace(arm, zw.Wall(500), rate=1 / PERIOD, points=50, torque_held_up_to=50)
-    assert (space.outcome, space.encoder, space.torque) == ("passive", "ideal", "held")
-    assert "covers them up to 35.19 N, and not up to 50 N" in space.claim
+    for force, outcome in ((35, "passive"), (50, "active")):
+        space = zw.workspace(arm, zw.Wall(500), rate=1 / PERIOD, points=50, torque_held_up_to=force)
+        assert (space.outcome, space.encoder, space.torque) == (outcome, "counted", "held")
+    assert space.motion is not None
+    assert space.motion.largest_force <= 50
+
+
+def test_a_proof_without_steps_is_no_proof_of_an_arm_that_has_them() -> None:
+    """Of parallel arms the steps are not bounded: the outcome, its first words and its status say so."""
     legs = zw.arms.built_in("haply-2diy", damping=0.003, coulomb_friction=0.1)
     space = zw.workspace(legs, zw.Wall(100), rate=1000, points=20)
-    assert (space.encoder, space.encoder_steps) == ("ideal", None)
+    assert (space.outcome, space.encoder) == ("passive without encoder steps", "ideal")
+    assert (space.scope.encoder, space.encoder_steps) == ("not counted", None)
+    assert space.claim.startswith("Read without steps, no motion of the hand would take energy out")
     assert "of such an arm" in space.claim
+    assert TOLD[space.outcome].status == 4
+    assert space.certificate is not None
+    assert space.certificate.verify()
+    without = zw.workspace(legs.replace(resolution=(0.0, 0.0)), zw.Wall(100), rate=1000, points=20)
+    assert (without.outcome, without.scope.encoder) == ("passive", "ideal")
     free = zw.workspace(zw.arms.built_in("two-link", damping=0.05), zw.Wall(100), rate=1000, points=20)
-    assert free.encoder_steps is None
+    assert free.outcome == "passive"
     assert "Encoder steps" not in free.claim
 
 

@@ -23,10 +23,13 @@ class Covers(NamedTuple):
 def claim(outcome: str, covers: Covers, account: Account, without: str, steps: EncoderSteps | None) -> str:
     """One sentence on what holds, others on what is not counted."""
     part = 100 * account.proved.mean()
+    where = f"{covers.region}{_up_to(covers)}"
     if outcome == "passive":
-        text = f"No motion of the hand takes energy out with {covers.region}, proved."
+        text = f"No motion of the hand takes energy out with {where}, proved."
+    elif outcome == "passive without encoder steps":
+        text = f"Read without steps, no motion of the hand would take energy out with {where}, proved."
     elif outcome == "theorem":
-        text = f"No motion of the hand takes energy out with {covers.region}, by a proof on paper."
+        text = f"No motion of the hand takes energy out with {where}, by a proof on paper."
     elif outcome == "active":
         text = "At one point of this map a motion of the hand takes energy out."
     elif covers.encoder == "counted" and without and (account.margins >= 0).all():
@@ -54,19 +57,24 @@ def claim(outcome: str, covers: Covers, account: Account, without: str, steps: E
 
 def _counted(covers: Covers, outcome: str) -> str:
     """How the arm is read, and what becomes of the torque within a period."""
-    up_to = f", with wall forces up to {in_words(covers.forces)}" if covers.forces else ""
+    up_to = _up_to(covers) if outcome == "undecided" else ""  # what is proved says it first
     if covers.encoder == "counted":
         torque = (
             "is held over a period" if covers.torque == "held" else "follows the readings within a period"
         )
-        limit = "" if outcome == "active" else up_to
         read = "force and Jacobian are those of the readings"
-        return f"Encoder steps are counted{limit}: {read}, and the torque {torque}."
+        return f"Encoder steps are counted{up_to}: {read}, and the torque {torque}."
     torque = (
         f"held over a period{up_to}" if covers.torque == "held" else "taken to follow the arm within a period"
     )
     steps = f" Encoder steps are not counted: {covers.why_ideal}." if covers.why_ideal else ""
     return f"The arm is taken to be read without steps.{steps} The torque is {torque}."
+
+
+def _up_to(covers: Covers) -> str:
+    if not covers.forces or in_words(covers.forces) == "any":
+        return ""
+    return f", for wall forces up to {in_words(covers.forces)}"
 
 
 def _beyond(covers: Covers, steps: EncoderSteps | None, outcome: str) -> str:

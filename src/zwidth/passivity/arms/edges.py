@@ -39,7 +39,8 @@ _SHARE = 0.02
 """Of the gain that these crossings may cost."""
 _LONGEST = 0.4
 """Of a step: how far the joint goes, at most."""
-_MORE = 1.0001
+_MORE = 1.05
+"""Of what the force of the wall is above the one allowed: so much less it pulls at the edge."""
 _TIMES = (1.0001, 1.001, 1.003, 1.01, 1.03, 1.1, 1.3, 2.0, 4.0, 10.0)
 """Of the smallest force at which something is gained to first order."""
 _RANK = 1e-9
@@ -190,7 +191,7 @@ def _within(
     k, _ = wall_matrices(wall, len(corner.direction))
     softness = np.linalg.pinv(k, hermitian=True)
     pull = force
-    for _ in range(2):
+    for _ in range(3):
         rest = here.forward(corner.at) - softness @ corner.direction * pull
         motion = replay_cycle(here, wall, period, samples, path, torque_held, counted=True, rest=rest)
         if motion.largest_force <= force:

@@ -29,10 +29,11 @@ from zwidth.passivity.arms.least import least_additions
 from zwidth.passivity.arms.mapped import columns_of, dataset, scaled_stiffness, stiffness_factors
 from zwidth.passivity.arms.need import wall_need
 from zwidth.passivity.arms.pose import fits
-from zwidth.passivity.arms.replay import ArmMotion, refuting_motion
+from zwidth.passivity.arms.replay import ArmMotion, refuting_motion, steps_of
 from zwidth.passivity.arms.report import workspace_document
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json
+from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.scope import Scope, Torque
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.units import parse_number
@@ -57,6 +58,7 @@ class Workspace:
     ----------
     outcome
         "passive": the independent checker has shown the condition in the whole region, `certificate`.
+        "passive without encoder steps": it has of an arm that is read without them, and this one has some.
         "theorem": it holds in every cell, reckoned in doubles with room for rounding, without a certificate.
         "active": at one point a motion of the hand takes energy out, `motion`. "undecided": none of these.
     claim
@@ -100,10 +102,10 @@ class Workspace:
     motion
         What takes energy out, if one was found.
     certificate
-        The proof for `zwidth verify`, if "passive".
+        The proof for `zwidth verify`, if "passive", with encoder steps or without.
     """
 
-    outcome: str
+    outcome: Outcome
     claim: str
     arm: Arm
     wall: Wall | MatrixWall
@@ -195,8 +197,8 @@ def workspace(
         and a moment [N], [N·m].
     largest_force
         Of the wall, ≥ 0 [N], in pose with a moment: up to it encoder steps are to be counted, and the answer
-        is "undecided" where they cannot be. None: as far as Coulomb friction covers them, else the arm is
-        taken to be read without steps; `Workspace.encoder` says which.
+        is "undecided" where they cannot be. None: as far as Coulomb friction covers them; where it does at
+        no force, and no motion across them is found, the answer is "passive without encoder steps" at best.
 
     Raises
     ------
@@ -234,7 +236,7 @@ def workspace(
     factors = stiffness_factors(damping, need, fine.jacobians[account.reached])
     count = counting(arm, wall, period, fine, held_to or asked)
     steps = count.steps
-    if asked or any(arm.coulomb_friction):
+    if steps is not None:
         steps = with_motion(count, arm, wall, period, samples, sites, bool(held_to))
     certificate, words, encoder = None, "", "counted" if asked else "ideal"
     if account.reached.all() and (account.margins > 0).all():
@@ -242,15 +244,17 @@ def workspace(
     at = fine.joints[account.reached]
     read = (True, False) if count.limits else (True,) if asked else (False,)
     motion = _motion(arm, wall, period, samples, at, account.margins, bool(held_to), asked, read)
-    if motion is None and asked and steps is not None and _within(steps.motion, asked):
-        motion = steps.motion
+    if motion is None and steps is not None:
+        motion = _across(steps.motion, held_to or asked, count.limits)
     whole = np.zeros(account.reached.shape, dtype=bool)
     whole[account.reached] = account.proved
     if certificate is not None:
         whole[...] = True
         account = account._replace(counted=np.eye(m)[None])  # nothing is missing
-    outcome = _outcome(motion, certificate, bool(whole.all()), bool(asked))
-    encoder = encoder if motion is None else motion.encoder
+    if motion is not None:
+        certificate, encoder = None, motion.encoder
+    stepped = encoder == "ideal" and bool(steps_of(arm).any())
+    outcome = _outcome(motion, certificate, stepped, bool(whole.all()), bool(asked))
     limits = held_to or asked
     if encoder == "counted" and motion is None:
         limits = count.limits or limits
@@ -307,14 +311,27 @@ def _proof(
 
 
 def _outcome(
-    motion: ArmMotion | None, certificate: Certificate | None, everywhere: bool, required: bool
-) -> str:
+    motion: ArmMotion | None,
+    certificate: Certificate | None,
+    stepped: bool,
+    everywhere: bool,
+    required: bool,
+) -> Outcome:
     """Of an arm whose steps are to be counted there is no theorem: without a certificate nothing is said."""
     if motion is not None:
         return "active"
     if certificate is not None:
-        return "passive"
+        return "passive without encoder steps" if stepped else "passive"
     return "theorem" if everywhere and not required else "undecided"
+
+
+def _across(
+    motion: ArmMotion | None, asked: tuple[float, ...], covered: tuple[float, ...]
+) -> ArmMotion | None:
+    """A motion across the edges, if it says something of the forces asked for; where none is covered, any."""
+    if asked:
+        return motion if _within(motion, asked) else None
+    return None if covered else motion
 
 
 def _within(motion: ArmMotion | None, asked: tuple[float, ...]) -> bool:
