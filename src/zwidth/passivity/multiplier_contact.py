@@ -68,7 +68,10 @@ class Memory:
         exact = self._one_pole()
         if exact is not None and self.proof(*exact) is not None:
             return exact
-        curve = [(2 * g.real, abs(g) ** 2) for g in self._curve()]
+        curve = list[tuple[float, float]]()
+        for a, b in sorted((2 * g.real, abs(g) ** 2) for g in self._curve()):
+            if not curve or b > curve[-1][1]:  # another with less a and more b is above it for every λ > 0
+                curve.append((a, b))
 
         def level(multiplier: float) -> float:
             return max(1 - multiplier * a + multiplier**2 * b for a, b in curve) / (4 * multiplier)

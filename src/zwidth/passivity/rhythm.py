@@ -11,6 +11,7 @@ W the Gramian of what remembers.  All in floating point: what is found is checke
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -68,19 +69,21 @@ class Surface:
 
     def forces(self, readings: Row) -> Row:
         """The force of each sample, from rest at the first reading."""
-        n, d = self.numerator, self.denominator
+        first, n, d = self.numerator[0], self.numerator[1:], self.denominator[1:]
         start = 0.0 if self.penetration else readings[0]
-        u_past, y_past = [0.0] * (len(n) - 1), [0.0] * (len(d) - 1)
+        held = self.static * start
+        u_past, y_past = deque([0.0] * len(n), len(n)), deque([0.0] * len(d), len(d))
         out = []
         for q in readings:
             u = (max(q, 0.0) if self.penetration else q) - start
-            y = n[0] * u
-            for c, v in zip(n[1:], u_past, strict=True):
+            y = first * u
+            for c, v in zip(n, u_past, strict=True):
                 y += c * v
-            for c, v in zip(d[1:], y_past, strict=True):
+            for c, v in zip(d, y_past, strict=True):
                 y -= c * v
-            u_past, y_past = [u, *u_past][: len(u_past)], [y, *y_past][: len(y_past)]
-            f = y + self.static * start
+            u_past.appendleft(u)
+            y_past.appendleft(y)
+            f = y + held
             out.append(0.0 if q <= 0 or (self.never_pulls and f < 0) else f)
         return out
 
