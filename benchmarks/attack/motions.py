@@ -216,6 +216,8 @@ def _inside(law, x):
                 if not counted:
                     x[k] = max(x[k], least)
         x[0] = 0.0
+    elif law[PHASE] > 0.0:
+        x[0] = min(x[0], -2.0)  # the position is x + 2 φ: a reading of 0 or less may lie a count inside
     else:
         x[0] = min(x[0], -1.0 if counted else 0.0)
 
