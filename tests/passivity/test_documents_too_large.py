@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from zwidth.passivity import checker
-from zwidth.passivity.checker import rest
+from zwidth.passivity.checker import effort, rest
+from zwidth.passivity.checker.effort import MOST, one_document, spend
 from zwidth.passivity.checker.proofs import _bernstein
 from zwidth.passivity.checker.reading import Invalid, common_scale
 
@@ -90,12 +91,52 @@ DOCUMENTS = {
 }
 
 
+def taken_out(denominator: list[str], positions: list[str], **more: Any) -> dict[str, Any]:
+    """A motion before a law 1/D."""
+    law = {"numerator": ["1"], "denominator": denominator, "unilateral": False}
+    return {"kind": "motion", "loop": {**LOOP, **law}, "energy_J": "1", "positions_m": positions, **more}
+
+
+FOREVER = {"repeats": [{"first": 1, "last": 3, "times": 10**4000}]}
+DOCUMENTS |= {
+    "motion that never settles": taken_out(["1", "-0.5"], ["0", "0.1", "0.3", "0.1"], **FOREVER),
+    "motion of many coefficients": taken_out(ratios(100, 5), ["0", "0.1"] * 5000),
+    "law of high order and many digits": {
+        "kind": "linear",
+        "loop": {**LOOP, "numerator": ["1"] * 1999, "denominator": ["1", *["0." + "1" * 400] * 1998]},
+        "proof": {"positivity": {}},
+    },
+}
+
+
 @pytest.mark.parametrize("name", DOCUMENTS)
-def test_refused_for_its_size(name: str) -> None:
+def test_refused_for_its_size(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The reason is the number of digits, lines, terms or samples, not what a computation found."""
+    monkeypatch.setattr(effort, "MOST", MOST / 20)  # what is refused on the way is refused sooner
     found = checker.verify(DOCUMENTS[name])
     assert not found.valid
     assert "too many" in found.reason or "too long" in found.reason
+
+
+def test_factors_of_a_higher_degree_than_the_criterion() -> None:
+    """They are not multiplied: their degrees say enough."""
+    positivity = {"at_one": 1000, "at_minus_one": 1000, "square": ["1"], "factor": ["1e-5000", "1"]}
+    proof = {"positivity": positivity, "stability": {"kind": "open loop"}}
+    loop = {**LOOP, "numerator": ["300"], "denominator": ["1"]}
+    found = checker.verify({"kind": "linear", "loop": loop, "proof": proof})
+    assert (found.valid, found.reason) == (False, "the factors have a higher degree than the criterion")
+
+
+def test_what_is_spent_on_one_document_is_not_held_against_the_next() -> None:
+    """Both are refused for their own size alone, and outside a document every step stands for itself."""
+    with one_document():
+        spend(0.9 * MOST / 0.1)
+        with pytest.raises(Invalid, match="too large to be checked"):
+            spend(0.2 * MOST / 0.1)
+    with one_document():
+        spend(0.9 * MOST / 0.1)
+    spend(0.9 * MOST / 0.1)
+    spend(0.9 * MOST / 0.1)
 
 
 def test_the_effort_on_boxes_counts_the_series() -> None:

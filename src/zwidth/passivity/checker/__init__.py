@@ -20,6 +20,7 @@ from .active_hand import active_hand
 from .arm import arm
 from .contact_motion import contact_motion_energy
 from .contact_proof import contact
+from .effort import one_document
 from .force_bounding import force_bounding
 from .motions import motion_energy, stored_at_start
 from .multiplier_contact import multiplier_contact
@@ -79,7 +80,8 @@ class Verification(NamedTuple):
 def verify(document: Mapping[str, Any]) -> Verification:
     """Check one certificate, violation or witness, given as plain JSON data."""
     try:
-        found = _verified(document)
+        with one_document():
+            found = _verified(document)
         return found._replace(scope=scope_of(document)) if found.valid else found
     except Invalid as error:
         return Verification(False, str(error))

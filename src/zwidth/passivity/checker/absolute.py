@@ -17,7 +17,7 @@ from fractions import Fraction
 from typing import Any
 
 from .absolute_plant import Enclosed, Plant, read_plant
-from .proofs import _chebyshev, _multiply, _strictly_positive
+from .proofs import _in_powers, _multiply, _strictly_positive
 from .reading import Invalid, get, integer, number
 
 MOST_TAPS = 400
@@ -109,11 +109,7 @@ def _lags(a: Enclosed, b: Enclosed) -> tuple[dict[int, Fraction], dict[int, Frac
 
 def _positive_cosines(middle: Mapping[int, Fraction], error: Fraction) -> None:
     degree = max((j for j, x in middle.items() if x), default=0)
-    first, _ = _chebyshev(max(degree, 1))
-    total = [Fraction(0)] * (degree + 1)
-    for j, x in middle.items():
-        for i, c in enumerate(first[j] if x else ()):
-            total[i] += c * x
+    total = _in_powers([middle.get(j, Fraction(0)) for j in range(degree + 1)], 1)
     total[0] -= error
     while len(total) > 1 and total[-1] == 0:
         total.pop()

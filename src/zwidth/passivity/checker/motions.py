@@ -4,10 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from math import gcd, lcm
+from math import gcd
 from typing import Any, NamedTuple
 
-from .reading import MOST_BITS, MOST_EFFORT, MOST_SAMPLES, Invalid, Loop, get, integer, numbers, read_loop
+from .effort import spend
+from .reading import (
+    MOST_BITS,
+    MOST_SAMPLES,
+    Invalid,
+    Loop,
+    common_scale,
+    get,
+    integer,
+    numbers,
+    read_loop,
+)
 
 
 def motion_energy(document: Mapping[str, Any]) -> Fraction:
@@ -86,8 +97,8 @@ def _repeats(document: Mapping[str, Any], size: int) -> list[_Repeat]:
 
 def _energy_of(p: Loop, x: list[Fraction], y: list[Fraction], repeats: list[_Repeat]) -> Fraction:
     """Energy the hand takes out over the whole motion [J]."""
-    per_unit = lcm(p.resolution.denominator, *(v.denominator for v in x), *(v.denominator for v in y))
-    scale = lcm(*(c.denominator for c in (*p.numerator, *p.denominator)))
+    per_unit = common_scale((p.resolution, *x, *y), MOST_BITS)
+    scale = common_scale((*p.numerator, *p.denominator))
     denominator = [int(c * scale) for c in p.denominator]
     content = gcd(*denominator)
     run = _Run(
@@ -134,7 +145,8 @@ class _Run:
         self.scale = 1
         self.ahead = 0
         self.sums = [0, 0, 0, 0]  # Σ f Δx over scale, Σ |Δx|, Σ Δx² before and after the switch
-        self.effort = 0.0
+        self.bits = max(c.bit_length() for c in (*numerator, *denominator))
+        self.bits_of_x = max(v.bit_length() for v in x)
 
     def forward(self, start: int, stop: int) -> None:
         """Run from sample `start` to `stop`."""
@@ -174,11 +186,14 @@ class _Run:
         if self.memory:
             self.memory = [w, *self.memory[:-1]]
         bits = w.bit_length() + self.scale.bit_length()
-        self.effort += (len(self.denominator) + 2) * (1 + bits / 2000)
-        if self.effort > MOST_EFFORT or bits > MOST_BITS:
-            raise Invalid("the motion is too long, or its exact numbers grow too long, to be checked")
+        if bits > MOST_BITS:
+            raise Invalid("the exact numbers of the motion grow too long to be checked")
+        spend(14 + 4 * len(self.denominator), bits, self.bits)
+        spend(2, bits + self.bits_of_x, self.bits_of_x)
 
     def _rescale(self, factor: int) -> None:
+        bits = max(map(int.bit_length, (self.scale, *self.forces, *self.sums)))
+        spend(4 + len(self.memory) + len(self.forces), bits, factor.bit_length())
         self.scale *= factor
         self.memory = [factor * w for w in self.memory]
         self.forces = [factor * f for f in self.forces]

@@ -7,7 +7,7 @@ from fractions import Fraction
 from itertools import accumulate
 from typing import Any
 
-from .proofs import _chebyshev, _inside_unit_circle, _one_norm_bound, _positivity, _square_modulus
+from .proofs import _inside_unit_circle, _one_norm_bound, _positivity, _square_modulus
 from .reading import Invalid, Loop, common_scale, get, number, read_loop, with_no_more_than
 
 
@@ -53,7 +53,6 @@ def _circle(p: Loop, rest: list[Fraction], multiplier: Fraction, left: Fraction)
     scale = common_scale((*moved, *d))
     bottom = [int(c * scale) for c in d]
     gap = [int((x - y) * scale) for x, y in zip(d, moved, strict=True)]
-    first, _ = _chebyshev(size)
     share = 4 * multiplier * left
-    squares = (_square_modulus(part, first, size) for part in (bottom, gap))
+    squares = (_square_modulus(part, size) for part in (bottom, gap))
     return [share * x - y for x, y in zip(*squares, strict=True)]

@@ -11,7 +11,7 @@ from fractions import Fraction
 from math import comb, lcm, pi
 from typing import Any, NamedTuple
 
-from .proofs import _chebyshev, _hurwitz, _inside_unit_circle, _multiply, _positivity, _square_modulus, _sum
+from .proofs import _hurwitz, _inside_unit_circle, _multiply, _positivity, _square_modulus, _sum
 from .reading import MOST_COEFFICIENTS, MOST_SAMPLES, Invalid, common_scale, get, integer, number, numbers
 
 MOST_ORDER = 400
@@ -99,10 +99,9 @@ def _in_left_half_plane(descending: list[Fraction]) -> bool:
 
 def _on_circle(m: list[Fraction], p: _Port) -> list[Fraction]:
     """Re(M D̄) = ¼ (|M + D|² − |M − D|²), in c = cos θ."""
-    first, _ = _chebyshev(p.order)
     scale = lcm(*(c.denominator for c in (*m, *p.denominator)))
     plus, minus = ([int(c * scale) for c in _sum(m, [sign * c for c in p.denominator])] for sign in (1, -1))
-    sums = (_square_modulus(side, first, p.order) for side in (plus, minus))
+    sums = (_square_modulus(side, p.order) for side in (plus, minus))
     return [Fraction(a - b) for a, b in zip(*sums, strict=True)]
 
 

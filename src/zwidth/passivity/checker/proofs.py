@@ -7,6 +7,7 @@ from fractions import Fraction
 from math import comb, gcd, lcm
 from typing import Any, TypeVar
 
+from .effort import spend
 from .reading import MOST_COEFFICIENTS, Invalid, Loop, get, integer, number, numbers, read_loop
 
 MOST_SPLITS = 20_000
@@ -155,25 +156,23 @@ def _bounded_criterion(p: Loop, share: Fraction) -> list[Fraction]:
 def _cosine_sums(p: Loop) -> tuple[list[int], list[Fraction], list[int]]:
     """|D|², −R + (1 + c) S and |N|², from Chebyshev sums; ascending in c."""
     alpha, n, d = p.part, _whole(p.numerator, p), _whole(p.denominator, p)
+    size, bits = len(n) + len(d) + p.whole, _bits((*n, *d))
+    spend(size**2, bits)
+    spend(2 * size**2, bits, size)
     m = [0] * p.whole + _multiply(n, [alpha.denominator - alpha.numerator, alpha.numerator])
-    real: dict[int, int] = {}
-    slope: dict[int, int] = {}  # coefficients of (1 + c) U_{j−1}
+    degree = max(len(m), len(d), len(n)) - 1
+    real, slope = [0] * (degree + 1), [0] * degree  # Σ of T_j, and of (1 + c) U_j
     for i, x in enumerate(m):
         for k, y in enumerate(d):
             j = i - k
-            real[abs(j)] = real.get(abs(j), 0) + x * y
+            real[abs(j)] += x * y
             if j:
-                slope[abs(j) - 1] = slope.get(abs(j) - 1, 0) - x * y * (1 if j > 0 else -1)
-    degree = max([*real, *(j + 1 for j in slope), len(d) - 1, len(n) - 1])
-    first, second = _chebyshev(degree)
-    hold = [0] * (degree + 1)
-    for j, x in real.items():
-        _add(hold, first[j], -x)
-    for j, x in slope.items():
-        _add(hold, second[j], x)
-        _add(hold, [0, *second[j]], x)
+                slope[abs(j) - 1] -= x * y if j > 0 else -x * y
+    part = _in_powers(slope, 2)
+    raised = [x + y for x, y in zip([*part, 0], [0, *part], strict=True)]
+    hold = [y - x for x, y in zip(_in_powers(real, 1), raised, strict=True)]
     weight = Fraction(1, alpha.denominator)
-    return _square_modulus(d, first, degree), [weight * x for x in hold], _square_modulus(n, first, degree)
+    return _square_modulus(d, degree), [weight * x for x in hold], _square_modulus(n, degree)
 
 
 def _whole(coefficients: list[Fraction], p: Loop) -> list[int]:
@@ -182,28 +181,27 @@ def _whole(coefficients: list[Fraction], p: Loop) -> list[int]:
     return [c.numerator * (scale // c.denominator) for c in coefficients]
 
 
-def _chebyshev(degree: int) -> tuple[list[list[int]], list[list[int]]]:
-    first, second = [[1], [0, 1]], [[1], [0, 2]]
-    for table in (first, second):
-        while len(table) <= degree:
-            last, before = table[-1], table[-2]
-            twice = [0, *(2 * c for c in last)]
-            table.append([a - b for a, b in zip(twice, [*before, 0, 0], strict=True)])
-    return first, second
+def _in_powers(sums: Sequence[_Exact], kind: int) -> list[_Exact]:
+    """Σ sums_j T_j (kind 1) or Σ sums_j U_j (kind 2) in ascending powers, by Clenshaw's recursion."""
+    later: list[_Exact] = []
+    last: list[_Exact] = []
+    for c in reversed(sums[1:]):
+        later, last = _recurred(c, later, last, 2), later
+    return _recurred(sums[0], later, last, kind) if sums else []
 
 
-def _square_modulus(a: list[int], first: list[list[int]], degree: int) -> list[int]:
-    total = [0] * (degree + 1)
-    for j in range(len(a)):
-        lag = sum(a[i] * a[i + j] for i in range(len(a) - j))
-        _add(total, first[j], lag if j == 0 else 2 * lag)
-    return total
+def _recurred(c: _Exact, later: list[_Exact], last: list[_Exact], times: int) -> list[_Exact]:
+    """c + times x later − last."""
+    out: list[Any] = [c, *(times * v for v in later)]
+    for i, v in enumerate(last):
+        out[i] -= v
+    return out
 
 
-def _add(total: list[int], terms: Sequence[int], weight: int) -> None:
-    for i, c in enumerate(terms):
-        if c:
-            total[i] += weight * c
+def _square_modulus(a: list[int], degree: int) -> list[int]:
+    lags = [sum(a[i] * a[i + j] for i in range(len(a) - j)) for j in range(len(a))]
+    found = _in_powers([lags[0], *(2 * lag for lag in lags[1:])], 1)
+    return found + [0] * (degree + 1 - len(found))
 
 
 def _multiply(a: Sequence[_Exact], b: Sequence[_Exact]) -> list[_Exact]:
@@ -221,13 +219,22 @@ def _positivity(proof: Mapping[str, Any], q: list[Fraction]) -> None:
     square, g = numbers(get(proof, "square")), numbers(get(proof, "factor"))
     if not g or at_one + at_minus_one > MOST_COEFFICIENTS:
         raise Invalid("the factors of the criterion are missing")
+    if square and at_one + at_minus_one + 2 * (len(square) - 1) + len(g) > len(q):
+        raise Invalid("the factors have a higher degree than the criterion")
     root, rest = _cleared(square), _cleared(g)
+    spend(len(q) ** 2, 2 * _bits(root), max(_bits(root), _bits(rest)))
+    spend(len(q) * (at_one + at_minus_one), 2 * _bits(root) + _bits(rest), 1)
     product = _multiply(_multiply(root, root), rest) if square else [0]
     for times, constant in ((at_one, -1), (at_minus_one, 1)):
         for _ in range(times):
             product = _multiply(product, [1, constant])
     _proportional(_cleared(q), product)
     _strictly_positive(g)
+
+
+def _bits(a: Sequence[int]) -> int:
+    """Of the largest."""
+    return max((c.bit_length() for c in a), default=0)
 
 
 def _cleared(a: Sequence[Fraction]) -> list[int]:
@@ -243,6 +250,7 @@ def _proportional(a: list[int], b: list[int]) -> None:
     if pivot is None:
         return
     x, y = a[pivot], b[pivot]
+    spend(size, _bits(a), _bits(b))
     if x * y <= 0 or any(u * y != v * x for u, v in zip(a, b, strict=True)):
         raise Invalid("the factors do not multiply to the criterion")
 
@@ -267,6 +275,7 @@ def _bernstein(g: list[Fraction]) -> list[int]:
     """Bernstein coefficients of g(2t − 1) on [0, 1], times a positive integer."""
     n = len(g) - 1
     scale = lcm(*(c.denominator for c in g))
+    spend(2 * n**2, _bits(_cleared(g)) + 3 * n, n)
     in_t = [0]
     for c in reversed(g):
         in_t = _multiply(in_t, [-1, 2])
@@ -283,6 +292,7 @@ def _bernstein(g: list[Fraction]) -> list[int]:
 def _split(b: list[int]) -> tuple[list[int], list[int]]:
     """De Casteljau at the middle, times 2ⁿ."""
     n = len(b) - 1
+    spend(n**2, _bits(b) + n, 1)
     row, left, right = list(b), [b[0] << n], [b[-1] << n]
     for level in range(1, n + 1):
         row = [x + y for x, y in zip(row, row[1:], strict=False)]
@@ -363,18 +373,22 @@ def _remainder(a: list[int], b: list[int], prime: int) -> list[int]:
 
 def _inside_unit_circle(descending: Sequence[Fraction]) -> bool:
     """All roots of Σ a_i z^{n−i} inside |z| = 1, by z = (1 + s)/(1 − s) and Routh's table."""
-    n = len(descending) - 1
-    scale = lcm(*(c.denominator for c in descending))
-    p = [0] * (n + 1)
-    for i, c in enumerate(descending):
-        plus, minus = n - i, i
-        row = [int(c * scale)]
-        for _ in range(plus):
-            row = [a + b for a, b in zip([*row, 0], [0, *row], strict=True)]
-        for _ in range(minus):
-            row = [a - b for a, b in zip([*row, 0], [0, *row], strict=True)]
-        p = [a + b for a, b in zip(p, row, strict=True)]
-    return _hurwitz(p[::-1])
+    whole = _cleared(descending)
+    spend(2 * len(whole) ** 2, _bits(whole) + len(whole), 1)
+    # a(z) with z = w − 1 and w = 2/(1 − s): Σ b_k 2^k (1 − s)^(n−k), a polynomial in t = 1 − s, then in s
+    shifted = _shifted(whole[::-1], -1)
+    in_t = [b << k for k, b in enumerate(shifted)][::-1]
+    in_s = [-c if k % 2 else c for k, c in enumerate(_shifted(in_t, 1))]
+    return _hurwitz(in_s[::-1])
+
+
+def _shifted(ascending: Sequence[int], by: int) -> list[int]:
+    """The coefficients of a(x + by), `by` = ±1, by Horner's rule over and over."""
+    a = list(ascending)
+    for first in range(len(a) - 1):
+        for k in range(len(a) - 2, first - 1, -1):
+            a[k] += by * a[k + 1]
+    return a
 
 
 def _hurwitz(descending: list[int]) -> bool:

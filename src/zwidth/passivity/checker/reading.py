@@ -8,16 +8,26 @@ from fractions import Fraction
 from math import lcm
 from typing import Any, NamedTuple
 
+from .effort import spend
+from .refusal import Invalid
+
+__all__ = [
+    "Invalid",
+    "Loop",
+    "common_scale",
+    "get",
+    "in_its_unit",
+    "integer",
+    "number",
+    "numbers",
+    "read_loop",
+]
+
 MOST_COEFFICIENTS = 2000
 MOST_SAMPLES = 4_000_000
 LONGEST_NUMBER = 20_000
-MOST_EFFORT = 5e7
 MOST_BITS = 400_000
 MOST_BITS_OF_A_LAW = 20_000
-
-
-class Invalid(Exception):
-    """The document does not prove what it claims; the message says where."""
 
 
 def get(document: Mapping[str, Any], key: str) -> Any:
@@ -89,15 +99,19 @@ def numbers(values: Any, most: int = MOST_COEFFICIENTS) -> list[Fraction]:
     return [number(v) for v in values]
 
 
-def common_scale(values: Iterable[Fraction]) -> int:
-    """The smallest whole number that makes all of them whole, of ordinary size as they are then."""
+def common_scale(values: Iterable[Fraction], most: int = MOST_BITS_OF_A_LAW) -> int:
+    """The smallest whole number that makes all of them whole, of at most so many bits, they of twice that."""
     values, scale = list(values), 1
     for value in values:
-        scale = lcm(scale, value.denominator)
-        if scale.bit_length() > MOST_BITS_OF_A_LAW:
-            raise Invalid("the coefficients have too many digits")
-    if any((scale * value.numerator).bit_length() > 2 * MOST_BITS_OF_A_LAW for value in values):
-        raise Invalid("a coefficient has too many digits")
+        bits = value.denominator.bit_length()
+        spend(2, scale.bit_length(), bits)
+        if scale % value.denominator:
+            spend(bits / 30, scale.bit_length(), 30)
+            scale = lcm(scale, value.denominator)
+        if scale.bit_length() > most:
+            raise Invalid("the numbers have too many digits")
+    if any(scale.bit_length() + value.numerator.bit_length() > 2 * most for value in values):
+        raise Invalid("a number has too many digits")
     return scale
 
 
