@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from .contact_law import Law, Losses, read_law, read_losses
+from .effort import spend
 from .reading import Invalid, get, integer, numbers
 from .stated_bounds import require_within
 
@@ -15,6 +16,8 @@ MOST_POSITIONS = 100_000
 MOST_SAMPLES = 2_000_000
 FINEST = 2**80
 """An average is kept to so many parts of a count; what that may cost in energy is taken off."""
+_SAMPLE = 300
+"""Steps of work."""
 
 
 def contact_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
@@ -62,6 +65,7 @@ def contact_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fracti
     while done < times and before != state:
         if (done + 1) * (last - first) > MOST_SAMPLES:
             raise Invalid("the law takes too long to settle to the cycle")
+        spend(_SAMPLE * (last - first))
         before = state.copy()
         gain = run(first, last)
         energy += gain

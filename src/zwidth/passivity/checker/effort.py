@@ -14,6 +14,8 @@ from .refusal import Invalid
 
 MOST = 6_000_000.0
 """Of one document [µs]."""
+MOST_ROOM = 900_000_000.0
+"""At a time [bytes]."""
 
 _spent: ContextVar[list[float] | None] = ContextVar("spent", default=None)
 
@@ -43,3 +45,16 @@ def spend(steps: float, bits: float = 0, by: float | None = None) -> None:
         cost = spent[0]
     if cost > MOST:
         raise Invalid("the document is too large to be checked: too many numbers, or too many digits")
+
+
+def reserve(room: float) -> None:
+    """Before so many bytes are needed at a time.
+
+    Raises
+    ------
+    Invalid
+        If that is more than one document may have.
+    """
+    if room > MOST_ROOM:
+        size = f"{room / 1e9:.3g} GB"
+        raise Invalid(f"the document is too large to be checked: too many numbers, {size} of them")

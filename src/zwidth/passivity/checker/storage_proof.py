@@ -27,6 +27,7 @@ from math import ceil, lcm, prod
 from typing import Any
 
 from .contact_law import Law, Losses, read_law, read_losses
+from .effort import reserve, spend
 from .reading import Invalid, get, integer, number
 
 MOST_VALUES = 60_000_000
@@ -55,8 +56,11 @@ def storage(document: Mapping[str, Any]) -> str:
     width, cells = 2 * reach + 1, high - low + 1
     if cells < 1 or unit <= 0 or reach * steps > MOST_MOVES:
         raise Invalid("the board is empty, or its moves are longer than can be checked")
-    if cells * width**memory * (steps + 1) > MOST_VALUES:
+    states = cells * width**memory
+    if states * (steps + 1) > MOST_VALUES:
         raise Invalid("the board is larger than can be checked")
+    reserve(16 * states * (steps + 1) + 8 * (states + width**memory) * (memory + 3))
+    spend(0.05 * states * (memory + 2))
     _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
@@ -161,11 +165,20 @@ def _exists(low: int, high: int, reach: int, memory: int) -> Any:
 
     out = np.ones((high - low + 1, (2 * reach + 1) ** memory), dtype=np.bool_)
     cells = np.arange(low, high + 1)
-    for column, differences in enumerate(histories_of(reach, memory)):
-        reading = cells.copy()
-        for e in differences:
-            reading = reading + e
-            out[:, column] &= (reading >= low) & (reading <= high)
+    for back in np.cumsum(_columns(reach, memory), axis=1).T:
+        reading = cells[:, None] + back[None, :]
+        out &= (reading >= low) & (reading <= high)
+    return out
+
+
+def _columns(reach: int, memory: int) -> Any:
+    """The same histories, one in each row of an array."""
+    import numpy as np
+
+    width = 2 * reach + 1
+    places, out = np.arange(width**memory), np.empty((width**memory, memory), dtype=np.int64)
+    for k in range(memory):
+        out[:, k] = places // width ** (memory - 1 - k) % width - reach
     return out
 
 
@@ -176,8 +189,7 @@ def _forces(
     import numpy as np
 
     cells = np.arange(low, high + 1, dtype=np.int64)
-    histories = histories_of(reach, memory)
-    columns = np.array(histories, dtype=np.int64).reshape(len(histories), memory)
+    columns = _columns(reach, memory)
     ages = [cells[:, None] + columns[:, :a].sum(axis=1)[None, :] for a in range(memory + 1)]
     ages = [np.broadcast_to(a, (len(cells), len(columns))) for a in ages]
     ages = ages[age : age + law.memory + 1]
