@@ -141,3 +141,44 @@ def test_an_active_loop_without_a_motion(tmp_path: Path, capsys: pytest.CaptureF
     assert said.startswith(
         "VALID A hand can take any amount of energy out of the loop below, proved: the linear"
     )
+
+
+def test_a_key_that_is_given_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Which of the two was proved would be the reader's guess."""
+    text = json.dumps(SPRING)
+    assert text.count('"delay_s"') == 1
+    (tmp_path / "proof.json").write_text(text.replace('"delay_s"', '"delay_s": "9", "delay_s"'), "utf-8")
+    assert main(["verify", str(tmp_path / "proof.json")]) == 2
+    err = capsys.readouterr().err
+    assert "'delay_s' is given twice in one object" in err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("written", ["0_1", "٣", " 15", "1/2 ", "0x10", "1,5", "³", "1/0", "--1", ""])
+def test_numbers_are_in_plain_digits(written: str) -> None:
+    """Nothing that one reader takes for a number and another one does not."""
+    found = checker.verify({**SPRING, "loop": {**SPRING["loop"], "damping_N_s_per_m": written}})
+    assert (found.valid, found.reason) == (False, f"expected a number, got {written!r}")
+
+
+@pytest.mark.parametrize(
+    ("key", "other"),
+    [
+        ("damping_N_s_per_m", "damping_N_s_per_km"),
+        ("sample_period_s", "sample_period_ms"),
+        ("coulomb_friction_N", "coulomb_friction_mN"),
+        ("resolution_m", "resolution_um"),
+    ],
+)
+@pytest.mark.parametrize("kind", ["storage", "coarse storage", "contact motion", "force bounding", "spring"])
+def test_another_unit_is_refused(key: str, other: str, kind: str) -> None:
+    """Every reader of a loop wants the unit that the number is taken for."""
+    names = ("damping_N_s_per_m", "coulomb_friction_N", "resolution_m", "sample_period_s", "delay_s")
+    loop = {**dict.fromkeys(names, "0.001"), "force_resolution_N": "0"}
+    if kind == "spring":
+        loop = SPRING["loop"]
+    renamed = {other if k == key else k: v for k, v in loop.items()}
+    law = {"surface": "none", "clamped": False, "taps_N_per_m": ["1"]}
+    found = checker.verify({**SPRING, "kind": kind, "loop": renamed, "law": law})
+    assert not found.valid
+    assert "the unit of" in found.reason

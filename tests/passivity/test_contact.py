@@ -311,12 +311,12 @@ def _numbers(weights):
 @pytest.mark.parametrize(
     ("place", "value", "said"),
     [
-        (("law",), None, "the law must be an object"),
+        (("law",), None, "loop and law must be objects"),
         (("law", "weights"), {"pole": "1"}, "must lie in"),
         (("law", "weights"), {"pole": "-0.2"}, "must lie in"),
         (("law", "weights"), [], "H(z) is not the wall"),
         (("law", "weights"), "1", "list of numbers"),
-        (("law", "stiffness_N_per_rad"), "3", "stiffness once"),
+        (("law", "stiffness_N_per_rad"), "3", "stiffness must be given once"),
         (("loop", "delay_s"), "0.0015", "no whole number of samples"),
         (("loop", "damping_N_s_per_m"), "0.3099", "damping is below"),
         (("loop", "coulomb_friction_N"), "0.0649", "Coulomb friction is below"),

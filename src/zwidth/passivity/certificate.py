@@ -259,18 +259,30 @@ def read_document(path: str | Path) -> object:
     Raises
     ------
     InputError
-        If it cannot be read, is too large or is not JSON.
+        If it cannot be read, is too large, is not JSON, or gives a key twice in one object.
     """
     path = Path(path)
     try:
         if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path} is larger than {LARGEST_FILE} bytes; no certificate is")
+            raise InputError(f"larger than {LARGEST_FILE} bytes, and no certificate is")
         text = path.read_text(encoding="utf-8")
-        return json.loads(text, parse_float=Decimal, parse_int=_integer)
+        return json.loads(text, parse_float=Decimal, parse_int=_integer, object_pairs_hook=_once_each)
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path} is not JSON: {error}") from None
+
+
+def _once_each(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    """An object whose keys are all different: of two with one name nobody could say which is meant."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise InputError(f"{twice[:60]!r} is given twice in one object, and only one of them can be meant")
+    return found
 
 
 def _integer(text: str) -> object:

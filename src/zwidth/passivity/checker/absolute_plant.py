@@ -19,7 +19,7 @@ from math import factorial
 from typing import Any, NamedTuple
 
 from .proofs import _inside_unit_circle
-from .reading import Invalid, common_scale, get, in_its_unit, number, numbers, with_no_more_than
+from .reading import Invalid, common_scale, get, numbers, quantity, with_no_more_than
 
 MOST_ORDER = 300
 TERMS = 160
@@ -61,7 +61,7 @@ def _given(plant: Mapping[str, Any]) -> Plant:
 
 def _touched(loop: Mapping[str, Any]) -> Plant:
     names = ("mass", "damping", "hand_mass", "hand_damping", "hand_stiffness", "sample_period", "delay")
-    mass, b, hand_mass, c, k, period, delay = (_quantity(loop, name) for name in names)
+    mass, b, hand_mass, c, k, period, delay = (quantity(loop, name) for name in names)
     with_no_more_than(loop, len(names))
     total, damping = mass + hand_mass, b + c
     if min(mass, damping, k, period) <= 0 or min(b, c, hand_mass, delay) < 0:
@@ -82,15 +82,6 @@ def _touched(loop: Mapping[str, Any]) -> Plant:
     one, zero = (Fraction(1), Fraction(0)), (Fraction(0), Fraction(0))
     bottom = [zero] * (int(whole) + 1) + [determinant, _minus(zero, trace), one]
     return Plant(_enclosed(top), _enclosed(bottom))
-
-
-def _quantity(loop: Any, name: str) -> Fraction:
-    if not isinstance(loop, Mapping) or not all(isinstance(key, str) for key in loop):
-        raise Invalid("the loop must be an object")
-    names = [key for key in loop if key == name or key.startswith((name + "_N", name + "_kg", name + "_s"))]
-    if len(names) != 1:
-        raise Invalid(f"the loop must give {name} once")
-    return number(loop[in_its_unit(names[0], name)])
 
 
 _Ball = tuple[Fraction, Fraction]

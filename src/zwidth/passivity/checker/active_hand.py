@@ -14,7 +14,7 @@ from typing import Any
 from .contact_proof import contact
 from .multiplier_contact import multiplier_contact
 from .proofs import PROOFS, _criterion, _friction, _linear_part, _positivity
-from .reading import Invalid, Loop, get, in_its_unit, number, read_loop
+from .reading import Invalid, Loop, get, number, quantity, read_loop
 from .relaxing_contact import relaxing_contact
 
 MOST_BITS_OF_ANGLE = 4000  # high powers of it are taken
@@ -32,10 +32,7 @@ def active_hand(document: Mapping[str, Any]) -> str:
 
 
 def _activity(document: Mapping[str, Any]) -> Fraction:
-    keys = [key for key in document if key.startswith("activity_")]
-    if len(keys) != 1:
-        raise Invalid("the document must give activity once")
-    found = number(document[in_its_unit(keys[0], "activity")])
+    found = quantity(document, "activity")
     if found < 0:
         raise Invalid("the activity must be ≥ 0")
     return found

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from .reading import Invalid, get, number, numbers
+from .reading import Invalid, get, number, numbers, quantity, the_one, with_no_more_than
 
 MOST_TAPS = 50
 MOST_POINTS = 10_000
@@ -110,13 +110,10 @@ class Law(NamedTuple):
 
 def read_losses(document: Mapping[str, Any]) -> Losses:
     loop = get(document, "loop")
-
-    def quantity(name: str) -> Fraction:
-        return number(_one(loop, name))
-
-    resolution, period, delay = (quantity(n) for n in ("resolution", "sample_period", "delay"))
+    resolution, period, delay = (quantity(loop, n) for n in ("resolution", "sample_period", "delay"))
     curve = _curve(loop)
-    models = _models_below(loop, curve) if curve else [(quantity("coulomb_friction"), quantity("damping"))]
+    models = _models_below(loop, curve) if curve else [_friction(loop)]
+    with_no_more_than(loop, 5)
     if period <= 0 or resolution <= 0 or delay < 0 or min(min(m) for m in models) < 0:
         raise Invalid("T and Δ must be > 0, and b, f_c and the delay ≥ 0")
     whole = -(-delay // period)
@@ -127,8 +124,12 @@ def read_losses(document: Mapping[str, Any]) -> Losses:
     return Losses(models, curve, resolution, period, int(whole), delay / period - whole + 1)
 
 
+def _friction(loop: Any) -> tuple[Fraction, Fraction]:
+    return quantity(loop, "coulomb_friction"), quantity(loop, "damping")
+
+
 def _curve(loop: Any) -> list[tuple[Fraction, Fraction]]:
-    pairs = _one(loop, "friction_curve", [])
+    pairs = the_one(loop, "friction_curve", [])
     if not isinstance(pairs, list) or len(pairs) > MOST_POINTS:
         raise Invalid("the friction curve must be a short list")
     curve = [(number(v), number(f)) for v, f in pairs]
@@ -141,7 +142,7 @@ def _curve(loop: Any) -> list[tuple[Fraction, Fraction]]:
 
 def _models_below(loop: Any, curve: list[tuple[Fraction, Fraction]]) -> list[tuple[Fraction, Fraction]]:
     """f_c + b v below all points, and not steeper than the last chord: below the curve everywhere."""
-    pairs = _one(loop, "friction_models")
+    pairs = the_one(loop, "friction_models")
     if not isinstance(pairs, list) or not 0 < len(pairs) <= len(curve) + 1:
         raise Invalid("friction_models must be a short list")
     models = [(number(f), number(b)) for f, b in pairs]
@@ -164,8 +165,8 @@ def read_law(document: Mapping[str, Any]) -> Law:
             ("taps_", "points_", "force_limit_", "force_step_", "rate_per_")
         ):
             raise Invalid(f"the law has a key that is not understood: {str(key)[:40]}")
-    taps = numbers(_one(law, "taps"), MOST_TAPS)
-    pairs = _one(law, "points", [])
+    taps = numbers(the_one(law, "taps"), MOST_TAPS)
+    pairs = the_one(law, "points", [])
     if not isinstance(pairs, list) or len(pairs) > MOST_POINTS:
         raise Invalid("points must be a short list")
     points = [(number(x), number(f)) for x, f in pairs]
@@ -173,15 +174,15 @@ def read_law(document: Mapping[str, Any]) -> Law:
         raise Invalid("the positions of the points must increase")
     if bool(taps) == bool(points):
         raise Invalid("a law has either taps or points")
-    limit = _one(law, "force_limit", None)
+    limit = the_one(law, "force_limit", None)
     limit = None if limit is None else number(limit)
     if limit is not None and limit < 0:
         raise Invalid("the force limit must be ≥ 0")
-    step = _one(law, "force_step", None)
+    step = the_one(law, "force_step", None)
     step = None if step is None else number(step)
     if step is not None and (step <= 0 or law.get("relaxing") is not None):
         raise Invalid("the converter's step must be > 0, and the law none that relaxes")
-    rate = number(_one(law, "rate_per", "0"))
+    rate = number(the_one(law, "rate_per", "0"))
     if rate and not points:
         raise Invalid("only the force of points may grow with the way since the last reading")
     resets = law.get("resets", False)
@@ -194,19 +195,7 @@ def _relaxing(law: Mapping[str, Any], taps: list[Fraction]) -> tuple[Fraction, F
     part = law.get("relaxing")
     if part is None:
         return None
-    pole, stiffness = number(get(part, "pole")), number(_one(part, "stiffness"))
+    pole, stiffness = number(get(part, "pole")), number(the_one(part, "stiffness"))
     if not 0 <= pole < 1 or len(taps) != 1 or "points" in " ".join(law):
         raise Invalid("a relaxing part has a pole from 0 to 1 and stands beside one spring")
     return pole, stiffness
-
-
-_REQUIRED = object()
-
-
-def _one(table: Any, name: str, default: Any = _REQUIRED) -> Any:
-    if not isinstance(table, Mapping):
-        raise Invalid("expected an object")
-    keys = [k for k in table if isinstance(k, str) and (k == name or k.startswith(name + "_"))]
-    if len(keys) > 1 or (not keys and default is _REQUIRED):
-        raise Invalid(f"{name} must be given once")
-    return table[keys[0]] if keys else default

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from .reading import Invalid, Loop, get, in_its_unit, number, numbers, read_loop
+from .reading import Invalid, Loop, get, number, numbers, quantity, read_loop
 
 
 class _Estimate(NamedTuple):
@@ -30,25 +30,16 @@ def contact(document: Mapping[str, Any]) -> str:
     if p.part:
         raise Invalid("the delay is no whole number of samples")
     law = get(document, "law")
-    k, b = _quantity(law, "stiffness"), abs(_quantity(law, "virtual_damping"))
+    k, b = quantity(law, "stiffness"), abs(quantity(law, "virtual_damping"))
     if k < 0:
         raise Invalid(f"the stiffness is negative: {float(k):g}")
     estimate = _estimate(get(law, "weights"))
-    _same_law(p, k, _quantity(law, "virtual_damping"), estimate)
+    _same_law(p, k, quantity(law, "virtual_damping"), estimate)
     if p.damping < (2 * p.whole + 1) * k * p.period / 2 + b * estimate.gain:
         raise Invalid("the damping is below (2d + 1) K T/2 + |B| Σ|w|")
     if 2 * p.coulomb_friction < (k + b * estimate.variation / p.period) * p.resolution:
         raise Invalid("the Coulomb friction is below (K + |B| ‖h_v‖₁) Δ/2")
     return "b and f_c cover this wall, clamped or not, with contact made and broken"
-
-
-def _quantity(law: Any, name: str) -> Fraction:
-    if not isinstance(law, Mapping) or not all(isinstance(key, str) for key in law):
-        raise Invalid("the law must be an object")
-    keys = [key for key in law if key == name or key.startswith(name + "_")]
-    if len(keys) != 1:
-        raise Invalid(f"the law must give {name} once")
-    return number(law[in_its_unit(keys[0], name)])
 
 
 def _estimate(weights: Any) -> _Estimate:

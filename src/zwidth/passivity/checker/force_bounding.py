@@ -23,7 +23,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from .reading import Invalid, get, number
+from .reading import Invalid, get, quantity, with_no_more_than
 
 
 class _Device(NamedTuple):
@@ -58,7 +58,8 @@ def force_bounding(document: Mapping[str, Any]) -> str:
 def _device(document: Mapping[str, Any]) -> _Device:
     loop = get(document, "loop")
     names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay", "force_resolution")
-    b, friction, resolution, period, delay, step = (_quantity(loop, name) for name in names)
+    b, friction, resolution, period, delay, step = (quantity(loop, name) for name in names)
+    with_no_more_than(loop, len(names))
     if period <= 0 or min(b, friction, resolution, step) < 0:
         raise Invalid("T must be > 0 and b, f_c, Δ and ΔF ≥ 0")
     if delay != 0:
@@ -68,21 +69,13 @@ def _device(document: Mapping[str, Any]) -> _Device:
 
 def _law(document: Mapping[str, Any]) -> _Law:
     names = ("credit", "friction", "count", "half_step", "hair", "roundoff")
-    law = _Law(*(_quantity(get(document, "law"), name) for name in names))
+    law = _Law(*(quantity(get(document, "law"), name) for name in names))
+    with_no_more_than(get(document, "law"), len(names))
     if law.credit <= 0 or min(law) < 0:
         raise Invalid("the credit must be > 0, and no other number of the law below 0")
     if law.hair >= 1 or law.roundoff >= 1:
         raise Invalid("hair and roundoff must be below 1")
     return law
-
-
-def _quantity(table: Any, name: str) -> Fraction:
-    if not isinstance(table, Mapping) or not all(isinstance(key, str) for key in table):
-        raise Invalid("loop and law must be objects")
-    keys = [key for key in table if key == name or key.startswith(name + "_")]
-    if len(keys) != 1:
-        raise Invalid(f"{name} must be given once")
-    return number(table[keys[0]])
 
 
 def _moves_are_paid(device: _Device, law: _Law) -> None:

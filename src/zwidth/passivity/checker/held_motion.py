@@ -15,12 +15,11 @@ with s = η γ₁(1) + δ γ₂(1),
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from .enclosed import Enclosed, between, known
-from .reading import Invalid, in_its_unit, number
+from .reading import Invalid, number, the_one
 
 MOST_LATE = 300
 LARGEST_NORM = 500
@@ -87,12 +86,7 @@ def read_motion(mass: Range, damping: Range, stiffness: Range, period: Range, de
 
 def quantity(loop: Any, name: str) -> Range:
     """A number of the loop by its name and unit, or both ends of an interval."""
-    if not isinstance(loop, Mapping) or not all(isinstance(key, str) for key in loop):
-        raise Invalid("the loop must be an object")
-    keys = [key for key in loop if key == name or key.startswith((name + "_N", name + "_kg", name + "_s"))]
-    if len(keys) != 1:
-        raise Invalid(f"the loop must give {name} once")
-    value = loop[in_its_unit(keys[0], name)]
+    value = the_one(loop, name)
     ends = [number(end) for end in value] if isinstance(value, list) else [number(value)] * 2
     if len(ends) != 2 or ends[0] > ends[1]:
         raise Invalid(f"{name} must be a number, or the smaller and the larger end of an interval")

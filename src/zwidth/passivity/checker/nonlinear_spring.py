@@ -16,7 +16,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from .reading import MOST_COEFFICIENTS, Invalid, get, in_its_unit, number, with_no_more_than
+from .reading import MOST_COEFFICIENTS, Invalid, get, number, quantity, with_no_more_than
 
 MOST_POINTS = 10_000
 _NUMBERS = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
@@ -25,7 +25,7 @@ _POINTS = ("points_m_N", "points_rad_N_m")
 
 def nonlinear_spring(document: Mapping[str, Any]) -> str:
     loop, law = get(document, "loop"), get(document, "law")
-    b, friction, resolution, period, delay = (_one(loop, name) for name in _NUMBERS)
+    b, friction, resolution, period, delay = (quantity(loop, name) for name in _NUMBERS)
     with_no_more_than(loop, len(_NUMBERS))
     with_no_more_than(law, 1)
     if period <= 0 or min(b, friction, resolution, delay) < 0:
@@ -50,7 +50,7 @@ def endless_pull(document: Mapping[str, Any]) -> str:
     At a speed v the gain on a way s is (|f| − f_c − b v) s, > 0 for a small v, whatever b, T and the delay.
     """
     loop, law = get(document, "loop"), get(document, "law")
-    b, friction, _, period, _ = (_one(loop, name) for name in _NUMBERS)
+    b, friction, _, period, _ = (quantity(loop, name) for name in _NUMBERS)
     with_no_more_than(loop, len(_NUMBERS))
     with_no_more_than(law, 1)
     if period <= 0 or min(b, friction) < 0:
@@ -60,15 +60,6 @@ def endless_pull(document: Mapping[str, Any]) -> str:
     if pull <= friction:
         raise Invalid("Coulomb friction holds the spring beyond its ends")
     return f"beyond an end the spring pulls away with {float(pull):g} for ever, and friction holds less"
-
-
-def _one(loop: Any, name: str) -> Fraction:
-    if not isinstance(loop, Mapping) or not all(isinstance(key, str) for key in loop):
-        raise Invalid("the loop must be an object")
-    keys = [k for k in loop if k == name or k.startswith(name + "_")]
-    if len(keys) != 1:
-        raise Invalid(f"the loop must give {name} once")
-    return number(loop[in_its_unit(keys[0], name)])
 
 
 def _points(law: Mapping[str, Any]) -> list[tuple[Fraction, Fraction]]:

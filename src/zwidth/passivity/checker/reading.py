@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from fractions import Fraction
 from math import lcm
 from typing import Any, NamedTuple
@@ -20,7 +21,9 @@ __all__ = [
     "integer",
     "number",
     "numbers",
+    "quantity",
     "read_loop",
+    "the_one",
 ]
 
 MOST_COEFFICIENTS = 2000
@@ -37,16 +40,31 @@ def get(document: Mapping[str, Any], key: str) -> Any:
 
 
 _DAMPING, _STIFFNESS = ("N_s_per_m", "N_m_s_per_rad"), ("N_per_m", "N_m_per_rad")
-_UNITS = {
+_FORCE, _LENGTH = ("N", "N_m"), ("m", "rad")
+_UNITS: dict[str, tuple[str, ...]] = {
     "mass": ("kg", "kg_m2"),
     "damping": _DAMPING,
     "virtual_damping": _DAMPING,
     "activity": _DAMPING,
     "stiffness": _STIFFNESS,
-    "coulomb_friction": ("N", "N_m"),
-    "resolution": ("m", "rad"),
+    "taps": _STIFFNESS,
+    "coulomb_friction": _FORCE,
+    "force_limit": _FORCE,
+    "force_step": _FORCE,
+    "force_resolution": _FORCE,
+    "resolution": _LENGTH,
     "sample_period": ("s",),
     "delay": ("s",),
+    "points": ("m_N", "rad_N_m"),
+    "rate_per": _LENGTH,
+    "friction_curve": ("m_per_s_N", "rad_per_s_N_m"),
+    "friction_models": ("N_N_s_per_m", "N_m_N_m_s_per_rad"),
+    "credit": _STIFFNESS,
+    "friction": _FORCE,
+    "count": _LENGTH,
+    "half_step": _FORCE,
+    "hair": (),
+    "roundoff": (),
 }
 
 
@@ -54,14 +72,37 @@ def in_its_unit(key: str, name: str) -> str:
     """A key of a quantity, once its ending is the unit that the number is taken for, or nothing."""
     units = _UNITS[name.removeprefix("hand_")]
     if key != name and key.removeprefix(f"{name}_") not in units:
-        raise Invalid(f"the unit of {name} must be {' or '.join(units)}: {key[:60]}")
+        raise Invalid(f"the unit of {name} must be {' or '.join(units) or 'left out'}: {key[:60]}")
     return key
+
+
+_REQUIRED = object()
+
+
+def the_one(table: Any, name: str, default: Any = _REQUIRED) -> Any:
+    """What stands under a name and its unit, which must be there once, or once at most with a default."""
+    if not isinstance(table, Mapping) or not all(isinstance(key, str) for key in table):
+        raise Invalid("loop and law must be objects")
+    of_others = tuple(f"{other}_" for other in _UNITS if other.startswith(f"{name}_"))
+    keys = [k for k in table if k == name or (k.startswith(f"{name}_") and not k.startswith(of_others))]
+    if len(keys) > 1 or (not keys and default is _REQUIRED):
+        raise Invalid(f"{name} must be given once")
+    return table[in_its_unit(keys[0], name)] if keys else default
+
+
+def quantity(table: Any, name: str) -> Fraction:
+    """A number by its name, its unit in the key."""
+    return number(the_one(table, name))
 
 
 def with_no_more_than(table: Mapping[str, Any], count: int) -> None:
     """As many entries as were read: what nobody reads would be taken for a part of what is proved."""
     if len(table) != count:
         raise Invalid(f"{len(table)} entries where {count} are read: {', '.join(map(str, table))[:200]}")
+
+
+_NUMBER = re.compile(r"[+-]?[0-9]+/[0-9]+|[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+"""A fraction or a decimal in plain digits: no spaces, no underscores, no digits of other scripts."""
 
 
 def number(value: Any) -> Fraction:
@@ -72,14 +113,15 @@ def number(value: Any) -> Fraction:
     text = repr(value) if isinstance(value, float) else str(value)
     if len(text) > LONGEST_NUMBER:
         raise Invalid("a number has too many digits")
-    try:
-        if "/" in text:
-            top, bottom = text.split("/")
-            return Fraction(int(top), int(bottom))
-        decimal = Decimal(text)
-    except (ValueError, InvalidOperation, ZeroDivisionError):
-        raise Invalid(f"expected a number, got {text[:40]!r}") from None
-    if not decimal.is_finite() or (decimal and abs(decimal.adjusted()) > 5000):
+    if not _NUMBER.fullmatch(text):
+        raise Invalid(f"expected a number, got {text[:40]!r}")
+    top, _, bottom = text.partition("/")
+    if bottom:
+        if int(bottom) == 0:
+            raise Invalid(f"expected a number, got {text[:40]!r}")
+        return Fraction(int(top), int(bottom))
+    decimal = Decimal(text)
+    if decimal and abs(decimal.adjusted()) > 5000:
         raise Invalid(f"expected a finite number of ordinary size, got {text[:40]}")
     return Fraction(decimal)
 
@@ -132,14 +174,8 @@ def read_loop(document: Mapping[str, Any]) -> Loop:
     if not isinstance(loop, Mapping) or not all(isinstance(key, str) for key in loop):
         raise Invalid("the loop must be an object")
 
-    def quantity(name: str) -> Fraction:
-        keys = [k for k in loop if k == name or k.startswith(name + "_")]
-        if len(keys) != 1:
-            raise Invalid(f"the loop must give {name} once")
-        return number(loop[in_its_unit(keys[0], name)])
-
-    b, friction, resolution = (quantity(n) for n in ("damping", "coulomb_friction", "resolution"))
-    period, delay = quantity("sample_period"), quantity("delay")
+    names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
+    b, friction, resolution, period, delay = (quantity(loop, name) for name in names)
     if period <= 0 or min(b, friction, resolution, delay) < 0:
         raise Invalid("T must be > 0 and b, f_c, Δ and the delay ≥ 0")
     numerator, denominator = numbers(get(loop, "numerator")), numbers(get(loop, "denominator"))

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from .reading import Invalid, Loop, get, in_its_unit, number, read_loop, with_no_more_than
+from .reading import Invalid, Loop, get, number, quantity, read_loop, with_no_more_than
 
 MOST_PARTS = 60
 
@@ -67,7 +67,7 @@ def _read(law: Any) -> _Law:
     if fed_with not in ("penetration", "position") or not isinstance(never_pulls, bool):
         raise Invalid("fed_with must be penetration or position, and never_pulls true or false")
     with_no_more_than(law, 4)
-    stiffness = _stiffness(law)
+    stiffness = quantity(law, "stiffness")
     if stiffness < 0:
         raise Invalid(f"the stiffness is negative: {float(stiffness):g}")
     return _Law(stiffness, [_part(part) for part in parts], fed_with == "penetration", never_pulls)
@@ -78,14 +78,7 @@ def _part(part: Any) -> tuple[Fraction, Fraction]:
     if abs(pole) >= 1:
         raise Invalid("a part does not relax")
     with_no_more_than(part, 2)
-    return pole, _stiffness(part)
-
-
-def _stiffness(table: Mapping[str, Any]) -> Fraction:
-    keys = [key for key in table if isinstance(key, str) and key.startswith("stiffness")]
-    if len(keys) != 1:
-        raise Invalid("the law and each part must give stiffness once")
-    return number(table[in_its_unit(keys[0], "stiffness")])
+    return pole, quantity(part, "stiffness")
 
 
 def _same_law(p: Loop, law: _Law) -> None:
