@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 from pathlib import Path
 from typing import Any
@@ -57,11 +58,11 @@ PORT = {
 }
 
 
-def told(document: object, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> str:
-    """What is printed of a document that is valid, in one line."""
+def told(document: object, tmp_path: Path, capsys: pytest.CaptureFixture[str], status: int = 0) -> str:
+    """What is printed of a document, in one line: of one that is valid unless another status is given."""
     file = tmp_path / "proof.json"
     file.write_text(json.dumps(document))
-    assert main(["verify", str(file)]) == 0
+    assert main(["verify", str(file)]) == status
     return " ".join(capsys.readouterr().out.split())
 
 
@@ -93,12 +94,10 @@ def test_a_known_hand_keeps_contact(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 
 def test_corners_belong_to_the_kind_corners(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Other proofs beside a proof neither change its headline nor stand in the place of its loop."""
-    out = told({**STABLE, "corners": [SPRING]}, tmp_path, capsys)
-    assert "passive" not in out
-    assert "mass 0.05 kg" in out
-    out = told({**SPRING, "corners": [DAMPED]}, tmp_path, capsys)
-    assert "numerator [100] in" in out
+    """Other proofs beside a proof are no part of it, and would be shown as if they were."""
+    for document, other in ((STABLE, SPRING), (SPRING, DAMPED)):
+        out = told({**document, "corners": [other]}, tmp_path, capsys, status=1)
+        assert "NOT VALID entries that no proof of this kind has: corners" in out
 
 
 def test_corners_of_several_kinds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -113,6 +112,7 @@ def test_the_index_of_a_port_is_no_verdict(outcome: str) -> None:
     """A level of −5 N·s/m says nothing of passivity, and extraction above one nothing of activity."""
     motion = {"kind": "sequence", "latent": ["1"]}
     taken = {**PORT, "kind": "extraction", "level": "-3", "motion": motion}
+    del taken["proof"]
     for evidence in (PORT, taken):
         assert checker.verify(evidence).valid, checker.verify(evidence).reason
         (part,) = verifications({"outcome": outcome, "certificate": evidence})
@@ -121,8 +121,13 @@ def test_the_index_of_a_port_is_no_verdict(outcome: str) -> None:
 
 
 def test_only_what_is_checked_is_shown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A law beside the proof of a spring is no part of it."""
-    assert "99999" not in told({**SPRING, "law": {"stiffness_N_per_m": "99999"}}, tmp_path, capsys)
+    """A law beside the proof of a spring is no part of it: what nobody reads is refused, at any depth."""
+    for added in ({"law": {"stiffness_N_per_m": "99999"}}, {"stiffness_N_per_m": "99999"}, {"note": "9"}):
+        out = told({**SPRING, **added}, tmp_path, capsys, status=1)
+        assert f"NOT VALID entries that no proof of this kind has: {next(iter(added))}" in out
+    deep = copy.deepcopy(DAMPED)
+    deep["proof"]["norm"]["stiffness_N_per_m"] = "9"
+    assert checker.verify(deep).reason.endswith(": proof.norm.stiffness_N_per_m")
 
 
 def test_an_active_loop_without_a_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

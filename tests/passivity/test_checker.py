@@ -297,7 +297,8 @@ def test_tampered_motions(name):
             assert found.energy == independent_energy(tampered), path
             claimed = rational(tampered["energy_J"])
             close = abs(claimed - found.energy) <= abs(found.energy) / 10**9
-            assert found.valid is (found.energy > 0 and close)
+            periods = {rational(table["sample_period_s"]) for table in (tampered, tampered["loop"])}
+            assert found.valid is (found.energy > 0 and close and len(periods) == 1)
 
 
 @pytest.mark.parametrize("name", MOTIONS)

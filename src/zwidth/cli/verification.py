@@ -168,6 +168,10 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
             yield name, f"{plain(_text(value))} {unit}"
     for table in _TABLES.get(str(shown_part.get("kind")), ("loop",)):
         content = shown_part.get(table)
+        if table == "law" and str(shown_part.get("kind")) in ("row storage", "row motion"):
+            told = content.get("description") if isinstance(content, Mapping) else None
+            yield "told, not checked", plain(str(told))
+            continue
         for key, value in content.items() if isinstance(content, Mapping) else ():
             name, unit = known.get(str(key), (str(key).replace("_", " "), ""))
             yield plain(name), f"{plain(_text(value))} {unit}".rstrip()

@@ -18,6 +18,7 @@ from zwidth import rendering
 from zwidth.loop.every_reading import after_every_reading, scratch
 from zwidth.passivity import checker
 from zwidth.passivity.certificate import read_document, verify_document
+from zwidth.passivity.checker.row_motion import row_motion_energy
 from zwidth.passivity.saved import saved_motion
 from zwidth.passivity.worst_hand import same_law
 from zwidth.passivity.worst_hand.hand import game_of
@@ -338,6 +339,8 @@ def test_a_motion_that_was_tampered_with():
     assert "return to where it began" in rejected(changed(document, ["positions_m"], [*x[:-1], x[-1] / 2]))
     assert "none comes out" in rejected(changed(document, ["loop", "coulomb_friction_N"], "1"))
     stronger = changed(document, ["forces_N"], [2 * f for f in forces])
+    assert "the energy is" in rejected(stronger)
+    stronger["energy_J"] = row_motion_energy(stronger)[0]
     assert checker.verify(stronger).valid
     assert not same_law(stronger, DEVICE, found.environment)
 

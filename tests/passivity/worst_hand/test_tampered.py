@@ -15,6 +15,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.passivity import checker
+from zwidth.passivity.checker.contact_motion import contact_motion_energy
 from zwidth.passivity.worst_hand.board import Board
 from zwidth.passivity.worst_hand.hand import game_of
 from zwidth.passivity.worst_hand.solve import play
@@ -265,6 +266,7 @@ def test_a_force_that_wraps_around_is_not_believed():
         "repeats": repeats,
         "positions_m": positions,
     }
+    motion["energy_J"] = contact_motion_energy(motion)[0]
     assert checker.verify(motion).valid
     domain = {"lowest_count": -1, "highest_count": 0, "largest_move_counts": 1, "steps_per_count": 1}
     proof = {"kind": "storage", "loop": loop, "law": law, "domain": domain, "force_unit": "1"}

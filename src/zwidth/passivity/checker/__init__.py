@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from itertools import islice
 from typing import Any, NamedTuple
 
 from .absolute import absolute
@@ -29,7 +30,7 @@ from .multiport_motion import matrix_extraction
 from .nonlinear_spring import endless_pull, nonlinear_spring
 from .port import extraction, positive_real
 from .proofs import PROOFS
-from .reading import Invalid, get, number
+from .reading import Invalid, get, number, quantity
 from .relaxing_contact import relaxing_contact
 from .rest import instability, stability
 from .row_motion import row_motion_energy
@@ -41,6 +42,7 @@ from .storage_row import storage_of_row
 from .touching_motion import touching_motion_energy
 from .vibration import vibration
 from .violation import violation
+from .watched import watched
 
 __all__ = ["Scope", "Verification", "verify"]
 
@@ -80,13 +82,23 @@ class Verification(NamedTuple):
 def verify(document: Mapping[str, Any]) -> Verification:
     """Check one certificate, violation or witness, given as plain JSON data."""
     try:
+        read = watched(document)
         with one_document():
-            found = _verified(document)
+            found = _verified(read)
+        if found.valid:
+            _require_read(read)
         return found._replace(scope=scope_of(document)) if found.valid else found
     except Invalid as error:
         return Verification(False, str(error))
     except (TypeError, KeyError, ValueError, IndexError, OverflowError, ZeroDivisionError) as error:
         return Verification(False, f"the document is malformed: {str(error)[:200]}")
+
+
+def _require_read(document: Any) -> None:
+    """What nobody read would be taken for a part of what is proved."""
+    unread = [path[:60] for path in islice(document.unread(), 4)]
+    if unread:
+        raise Invalid(f"entries that no proof of this kind has: {', '.join(unread)}")
 
 
 def _verified(document: Mapping[str, Any]) -> Verification:
@@ -96,9 +108,9 @@ def _verified(document: Mapping[str, Any]) -> Verification:
     if kind == "touching motion":
         return _motion(document, touching_motion_energy(document), Fraction(0))
     if kind == "contact motion":
-        return _round_again(contact_motion_energy(document))
+        return _round_again(document, contact_motion_energy(document))
     if kind == "row motion":
-        return _round_again(row_motion_energy(document))
+        return _round_again(document, row_motion_energy(document))
     if kind == "extraction":
         return Verification(True, *extraction(document))
     if kind == "matrix extraction":
@@ -110,23 +122,33 @@ def _verified(document: Mapping[str, Any]) -> Verification:
 
 def _motion(document: Mapping[str, Any], energy: Fraction, stored: Fraction) -> Verification:
     """A motion is a witness if more energy comes out than was in, and as much as it says."""
-    claimed = number(get(document, "energy_J"))
     if energy <= stored:
         reason = (
             f"the motion extracts {float(energy):g} J, no more than the {float(stored):g} J stored before"
         )
         return Verification(False, reason, energy)
+    return _as_told(document, energy) or Verification(
+        True, f"the motion extracts {float(energy):g} J", energy
+    )
+
+
+def _as_told(document: Mapping[str, Any], energy: Fraction) -> Verification | None:
+    """Why the energy, or the sample period beside the motion, is not the one that is told; None if it is."""
+    claimed = number(get(document, "energy_J"))
     if abs(claimed - energy) > abs(energy) / 10**9:
         return Verification(False, f"the energy is {float(energy):g} J, not {float(claimed):g} J", energy)
-    return Verification(True, f"the motion extracts {float(energy):g} J", energy)
+    if "sample_period_s" in document:
+        told, period = (quantity(table, "sample_period") for table in (document, get(document, "loop")))
+        if told != period:
+            return Verification(False, f"T is {float(period):g} s, not {float(told):g} s", energy)
+    return None
 
 
-def _round_again(found: tuple[Fraction, Fraction]) -> Verification:
+def _round_again(document: Mapping[str, Any], found: tuple[Fraction, Fraction]) -> Verification:
     """A motion that gains in all, and gains again with every further round."""
     energy, gain = found
     if energy <= 0 or gain <= 0:
         less = min(energy, gain)
         return Verification(False, f"the motion extracts {float(less):g} J: none comes out", energy)
-    return Verification(
-        True, f"the motion extracts {float(energy):g} J, and {float(gain):g} J more with each round", energy
-    )
+    reason = f"the motion extracts {float(energy):g} J, and {float(gain):g} J more with each round"
+    return _as_told(document, energy) or Verification(True, reason, energy)

@@ -27,6 +27,7 @@ def row_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
     losses = read_losses(document)
     if losses.part < 1:
         raise Invalid("laws in a row are checked for delays of whole samples")
+    read_words(document)
     x, forces = (_column(document, name) for name in ("positions", "forces"))
     if len(forces) != len(x) - 1:
         raise Invalid("there must be one force for each move")
@@ -42,6 +43,15 @@ def row_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
 
     gain = taken(first, last)
     return taken(0, first) + times * gain + taken(last, len(x) - 1), gain
+
+
+def read_words(document: Mapping[str, Any]) -> None:
+    """What is said of laws in a row: the proof is of the table, or of the forces, and not of these words."""
+    words = get(document, "law")
+    if not isinstance(get(words, "description"), str):
+        raise Invalid("laws in a row are described in words")
+    if not all(isinstance(get(words, f"counts_force_{k}"), bool) for k in ("limit", "resolution")):
+        raise Invalid("counts_force_limit and counts_force_resolution must be true or false")
 
 
 def _column(document: Mapping[str, Any], name: str) -> list[Fraction]:

@@ -15,6 +15,7 @@ from typing import Any
 
 from .contact_law import read_losses
 from .reading import Invalid, get, integer, number
+from .row_motion import read_words
 from .storage_proof import MOST_MOVES, MOST_VALUES, costs_of, longest_move, signed, values_of
 
 _EXACT = 2**53
@@ -27,6 +28,7 @@ def storage_of_row(document: Mapping[str, Any]) -> str:
     losses = read_losses(document)
     if losses.part < 1:
         raise Invalid("laws in a row are checked for delays of whole samples")
+    read_words(document)
     domain, table = get(document, "domain"), get(document, "table")
     low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
     fastest, steps = longest_move(domain), integer(get(domain, "steps_per_count"), 1)
