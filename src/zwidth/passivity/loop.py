@@ -16,7 +16,7 @@ Everything is rational: N, D, b, T, α are the decimals that were typed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
 from math import gcd, inf, lcm
@@ -57,6 +57,10 @@ class LinearLoop:
     whole_delay: int
     part_delay: Fraction
     hidden_modes_decay: bool = True
+
+    def __getstate__(self) -> dict[str, object]:
+        """What was given: polynomials worked out from it cannot be pickled, and are worked out again."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @property
     def order(self) -> int:
