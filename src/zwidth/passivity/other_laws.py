@@ -73,9 +73,7 @@ def check_other(
         raise InputError(f"no road is known to a verdict on {law.describe(device.motion)}")
     if verdict.outcome == "active" and not device.is_certain:  # at the worst: more friction may hold it
         return replace(verdict, outcome="undecided", scope=asked, finding="depends on values")
-    if verdict.worst_hand is not None and isinstance(
-        device.resolution, Interval
-    ):  # other counts, other boards
+    if isinstance(device.resolution, Interval):  # values were iterated on counts of one size
         return replace(verdict, worst_hand=None)
     return verdict
 

@@ -232,6 +232,7 @@ def test_friction_that_covers_the_steps_at_no_force() -> None:
         arm = PlanarChain(coulomb_friction=friction, **EXAMPLE)
         space = zw.workspace(arm, zw.Wall(500), rate=1 / PERIOD, points=50)
         assert (space.outcome, space.encoder, space.certificate) == ("active", "counted", None), share
+        assert ("Coulomb friction is not given and taken as 0" in space.claim) is (share == 0)
         motion = space.motion
         assert motion is not None
         again = replay_cycle(arm, zw.Wall(500), PERIOD, 0, motion.joints, counted=True, rest=motion.rest)

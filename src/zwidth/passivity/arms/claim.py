@@ -18,6 +18,7 @@ class Covers(NamedTuple):
     forces: tuple[float, ...]
     why_ideal: str  # why the steps of an arm that has some are not counted
     can_be_refuted: bool
+    has_friction: bool  # whether any Coulomb friction is given
 
 
 def claim(outcome: str, covers: Covers, account: Account, without: str, steps: EncoderSteps | None) -> str:
@@ -32,6 +33,8 @@ def claim(outcome: str, covers: Covers, account: Account, without: str, steps: E
         text = f"No motion of the hand takes energy out with {where}, by a proof on paper."
     elif outcome == "active":
         text = "At one point of this map a motion of the hand takes energy out."
+        if covers.encoder == "counted" and not covers.has_friction:
+            text += " Coulomb friction is not given and taken as 0."
     elif covers.encoder == "counted" and without and (account.margins >= 0).all():
         text = f"Whether a motion takes energy out behind these encoders is not known: {without}."
         without = ""

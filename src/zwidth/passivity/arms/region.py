@@ -267,6 +267,7 @@ def workspace(
         forces=limits,
         why_ideal=(count.reason or _OUTSIDE) if any(arm.resolution) else "",
         can_be_refuted=m <= n,
+        has_friction=any(arm.coulomb_friction),
     )
     return Workspace(
         outcome=outcome,

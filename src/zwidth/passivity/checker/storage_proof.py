@@ -172,7 +172,7 @@ def _exists(low: int, high: int, reach: int, memory: int) -> Any:
 
 
 def _columns(reach: int, memory: int) -> Any:
-    """The same histories, one in each row of an array."""
+    """The histories of `histories_of`, one in each row of an array."""
     import numpy as np
 
     width = 2 * reach + 1

@@ -57,6 +57,4 @@ def _unread(value: Any) -> Iterator[str]:
         yield from value.unread()
     elif isinstance(value, list):
         for entry in value:
-            if not isinstance(entry, (Watched, list)):
-                return
             yield from _unread(entry)
