@@ -29,7 +29,7 @@ _PACKAGE = Path(__file__).parent
 _TOGETHER = (
     ("rendering", "loop"),
     ("passivity/worst_hand",),
-    ("passivity/checker",),
+    ("checker/storage",),
     ("identification/tissue",),
     ("maps",),
 )

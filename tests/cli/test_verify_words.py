@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 import zwidth as zw
+from zwidth import checker
 from zwidth.cli.main import main
 from zwidth.cli.verification import verifications
-from zwidth.passivity import checker
 from zwidth.passivity.document import to_json
 
 PADDLE = zw.Device(

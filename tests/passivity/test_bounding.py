@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.bounding import check_bounding
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.rendering import Damper, ForceBounding, Saturation

@@ -10,7 +10,7 @@ import pytest
 import scipy.signal
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.document import to_json
 from zwidth.passivity.motion import Motion

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import zwidth as zw
+from zwidth import checker
 from zwidth.cli.verification import verifications
-from zwidth.passivity import checker
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
 from zwidth.passivity.game import has_gap

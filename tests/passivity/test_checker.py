@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.document import to_json
 from zwidth.passivity.loop import linear_loop

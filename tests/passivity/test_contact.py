@@ -10,7 +10,7 @@ from random import Random
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity import closed_forms as forms
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.check import check_by_closed_forms

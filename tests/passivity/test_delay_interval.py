@@ -9,7 +9,7 @@ from random import Random
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.loop import linear_loop

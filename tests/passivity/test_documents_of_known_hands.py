@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from zwidth.passivity import checker
+from zwidth import checker
 
 LOOP = {
     "mass_kg": "0.05",

@@ -10,11 +10,12 @@ from typing import Any
 
 import pytest
 
-from zwidth.passivity import checker
-from zwidth.passivity.checker import effort, rest
-from zwidth.passivity.checker.effort import MOST, one_document, spend
-from zwidth.passivity.checker.proofs import _bernstein
-from zwidth.passivity.checker.reading import Invalid, common_scale
+from zwidth import checker
+from zwidth.checker.document import effort
+from zwidth.checker.document.effort import MOST, one_document, spend
+from zwidth.checker.document.reading import Invalid, common_scale
+from zwidth.checker.known_hand import rest
+from zwidth.checker.loop.proofs import _bernstein
 
 HAND = {
     "mass_kg": "0.05",

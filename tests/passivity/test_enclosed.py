@@ -8,8 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from zwidth.passivity.checker.enclosed import Enclosed, between, in_z, known
-from zwidth.passivity.checker.held_motion import read_motion, sampled, sampled_free
+from zwidth.checker.exact.enclosed import Enclosed, between, in_z, known
+from zwidth.checker.known_hand.held_motion import read_motion, sampled, sampled_free
 
 BITS = 200
 EPS = Fraction(1, 1 << 180)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 
 K, T, STEP = Fraction(100), Fraction(1, 1000), Fraction(1, 10**4)
 TINY = Fraction(1, 10**9)

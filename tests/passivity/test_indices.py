@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tampered import tampered
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 
 s = control.tf("s")
 

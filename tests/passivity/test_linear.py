@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from polynomials import product
 
+from zwidth import checker
 from zwidth.environment.environment import RationalFunction
-from zwidth.passivity import checker
 from zwidth.passivity.boundary import smallest_holding
 from zwidth.passivity.certificate import certify
 from zwidth.passivity.decision import Decision

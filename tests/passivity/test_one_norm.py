@@ -9,10 +9,10 @@ import mpmath
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
+from zwidth.checker.document.reading import Invalid, read_loop
+from zwidth.checker.loop.proofs import _one_norm_bound
 from zwidth.passivity.certificate import certify
-from zwidth.passivity.checker.proofs import _one_norm_bound
-from zwidth.passivity.checker.reading import Invalid, read_loop
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.loop import linear_loop
 from zwidth.passivity.one_norm import bound_one_norm

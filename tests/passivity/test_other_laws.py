@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import zwidth as zw
+from zwidth import checker
 from zwidth.cli.verification import verifications
-from zwidth.passivity import checker
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.nonlinear_spring import spring_need
 from zwidth.rendering import ForceBounding, PassivityController, SlewLimit

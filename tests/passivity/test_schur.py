@@ -9,7 +9,7 @@ from random import Random
 import pytest
 from polynomials import product
 
-from zwidth.passivity.checker.proofs import _inside_unit_circle
+from zwidth.checker.loop.proofs import _inside_unit_circle
 from zwidth.passivity.schur import is_schur
 
 

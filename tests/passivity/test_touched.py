@@ -11,7 +11,7 @@ from random import Random
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
 from zwidth.passivity.rhythm import Surface, rhythms

@@ -14,13 +14,13 @@ import pytest
 from tampered import tampered
 
 import zwidth as zw
+from zwidth import checker
+from zwidth.checker.document.reading import read_loop
+from zwidth.checker.loop.proofs import _criterion
+from zwidth.checker.loop.violation import criterion_at
 from zwidth.cli.verification import verifications
-from zwidth.passivity import checker
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.checker.proofs import _criterion
-from zwidth.passivity.checker.reading import read_loop
-from zwidth.passivity.checker.violation import criterion_at
 
 T = Fraction(1, 1000)
 BILLIONTH = Fraction(1, 10**9)

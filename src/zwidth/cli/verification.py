@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 from rich.table import Table
 from rich.text import Text
 
+from zwidth.checker import Scope, Verification
 from zwidth.cli.arm_rows import arm_rows
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.report import page
 from zwidth.cli.table import plain
 from zwidth.passivity.certificate import evidence, verify_document
-from zwidth.passivity.checker import Scope, Verification
 from zwidth.passivity.document import unit_key, unit_suffix
 from zwidth.quantity.glossary import GLOSSARY
 

@@ -13,12 +13,12 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, Literal
 
+from zwidth import checker
 from zwidth.device import Device
 from zwidth.device.actuator import current_rise
 from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
-from zwidth.passivity import checker
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import exact_text, save_json, unit_key, unit_suffix
 from zwidth.passivity.scope import Scope, scope_of

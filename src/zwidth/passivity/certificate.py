@@ -14,9 +14,9 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from zwidth import checker
+from zwidth.checker.scope import weakest
 from zwidth.errors import InputError
-from zwidth.passivity import checker
-from zwidth.passivity.checker.scope import weakest
 from zwidth.passivity.contact import DampedWall, Decay
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.delay_interval import Piece

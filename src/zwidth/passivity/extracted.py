@@ -9,7 +9,7 @@ from math import pi
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.document import save_json
 from zwidth.passivity.port import Time
 

@@ -14,9 +14,9 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
+from zwidth import checker
 from zwidth.device import Device
 from zwidth.environment.nonlinear_spring import NonlinearSpring
-from zwidth.passivity import checker
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import exact_text, unit_key
 from zwidth.passivity.scope import Contact

@@ -14,7 +14,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.document import exact_text, loop_document, save_json
 from zwidth.passivity.linear import LinearRefutation, offset_of
 from zwidth.passivity.refutation import refute_linear

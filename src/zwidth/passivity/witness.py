@@ -12,7 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.document import loop_document, save_json, unit_key
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from zwidth.passivity import checker
-from zwidth.passivity.checker.absolute_plant import read_plant
+from zwidth import checker
+from zwidth.checker.known_hand.plant import read_plant
 
 LOOP = {
     "mass_kg": "0.05",

@@ -9,9 +9,9 @@ from fractions import Fraction
 import pytest
 
 import zwidth as zw
+from zwidth import checker
 from zwidth.cli.main import main
 from zwidth.operator.operator import LinearHand
-from zwidth.passivity import checker
 from zwidth.passivity.absolute import given_plant, periodic_motion, touched_plant
 from zwidth.passivity.certificate import read_document, verify_document
 

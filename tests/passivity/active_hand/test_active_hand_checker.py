@@ -11,9 +11,9 @@ import pytest
 from tampered import tampered
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
+from zwidth.checker.loop.active_hand import _least_cosine
 from zwidth.passivity.active_hand.band import band_of
-from zwidth.passivity.checker.active_hand import _least_cosine
 
 PADDLE = zw.Device(mass=0.036, damping=0.15, rate=1000, coulomb_friction=0.12, resolution=22.4e-6)
 

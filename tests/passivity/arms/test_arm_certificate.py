@@ -12,11 +12,11 @@ import numpy.typing as npt
 import pytest
 
 import zwidth as zw
+from zwidth import checker
+from zwidth.checker.arm import cells as arm_cells
+from zwidth.checker.arm.region import matrix_at
 from zwidth.device.arm import Arm, PlanarChain, Sites, built_in
-from zwidth.passivity import checker
 from zwidth.passivity.certificate import read_document, verify_document
-from zwidth.passivity.checker import arm_cells
-from zwidth.passivity.checker.arm import matrix_at
 
 ARM = built_in("two-link", damping=(0.02, 0.012))
 

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from zwidth import checker
+from zwidth.checker.arm import cells as arm_cells
+from zwidth.checker.arm.region import _claim, matrix_at
+from zwidth.checker.exact.enclosure import ONE, Jet, enclosed
 from zwidth.device.arm import Leg, LeggedArm
-from zwidth.passivity import checker
-from zwidth.passivity.checker import arm_cells
-from zwidth.passivity.checker.arm import _claim, matrix_at
-from zwidth.passivity.checker.enclosure import ONE, Jet, enclosed
 
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 

@@ -14,11 +14,11 @@ from described_arms import random_arm
 from scipy.spatial.transform import Rotation
 
 import zwidth as zw
+from zwidth import checker
+from zwidth.checker.arm.pose import _quaternion, _rotation
+from zwidth.checker.arm.region import _claim, matrix_at
+from zwidth.checker.exact.enclosure import ONE, Jet, enclosed
 from zwidth.device.arm import PlanarChain, read_arm
-from zwidth.passivity import checker
-from zwidth.passivity.checker.arm import _claim, matrix_at
-from zwidth.passivity.checker.arm_pose import _quaternion, _rotation
-from zwidth.passivity.checker.enclosure import ONE, Jet, enclosed
 
 Array = npt.NDArray[np.float64]
 

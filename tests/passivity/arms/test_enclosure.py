@@ -8,9 +8,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from zwidth.passivity.checker import enclosure
-from zwidth.passivity.checker.enclosure import ONE, Jet
-from zwidth.passivity.checker.reading import Invalid
+from zwidth.checker.document.reading import Invalid
+from zwidth.checker.exact import enclosure
+from zwidth.checker.exact.enclosure import ONE, Jet
 
 mpmath.mp.dps = 60
 RNG = np.random.default_rng(20)

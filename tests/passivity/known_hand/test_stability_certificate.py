@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import zwidth as zw
+from zwidth import checker
 from zwidth.cli.main import main
 from zwidth.operator import Finger
-from zwidth.passivity import checker
 from zwidth.passivity.known_hand.characteristic import of_law
 from zwidth.passivity.known_hand.decide import decided
 from zwidth.passivity.known_hand.proof import evidence

@@ -14,8 +14,8 @@ from matrix_systems import matrix, random_system
 from tampered import tampered
 
 import zwidth as zw
-from zwidth.passivity import checker
-from zwidth.passivity.checker.multiport import _principal_sums
+from zwidth import checker
+from zwidth.checker.port.matrix import _principal_sums
 from zwidth.passivity.multiport.circle import product
 from zwidth.passivity.multiport.leverrier import leverrier, multiplied
 

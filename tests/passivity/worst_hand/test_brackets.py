@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.worst_hand import passive_limit, worst_hand
 
 BOUNDS = {"penetration": "0.001", "speed": "0.5"}

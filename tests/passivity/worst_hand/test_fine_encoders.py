@@ -11,7 +11,7 @@ from random import Random
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.slow_hands import slow_hands
 from zwidth.passivity.worst_hand import two_sides
 from zwidth.passivity.worst_hand.hand import game_of

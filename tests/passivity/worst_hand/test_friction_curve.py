@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.worst_hand import passive_limit, worst_hand
 from zwidth.passivity.worst_hand.losses import Losses, generous, strict
 

@@ -14,11 +14,10 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth import rendering
+from zwidth import checker, rendering
+from zwidth.checker.contact.row_motion import row_motion_energy
 from zwidth.loop.every_reading import after_every_reading, scratch
-from zwidth.passivity import checker
 from zwidth.passivity.certificate import read_document, verify_document
-from zwidth.passivity.checker.row_motion import row_motion_energy
 from zwidth.passivity.saved import saved_motion
 from zwidth.passivity.worst_hand import same_law
 from zwidth.passivity.worst_hand.hand import game_of

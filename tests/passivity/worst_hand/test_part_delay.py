@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.worst_hand import passive_limit, worst_hand
 
 BOUNDS = {"penetration": "0.0008", "speed": "0.8"}
@@ -76,7 +76,7 @@ def test_where_the_hand_is_between_samples_matters():
     straight = {**document, "switch_positions_m": [(a + b) / 2 for a, b in pairwise(x)]}
     best = checker.verify(document)
     assert best.valid
-    other = checker.contact_motion.contact_motion_energy(straight)
+    other = checker.contact.motion.contact_motion_energy(straight)
     assert other[1] < found.exact_gain
 
 

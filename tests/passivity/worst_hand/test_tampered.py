@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import checker
-from zwidth.passivity.checker.contact_motion import contact_motion_energy
+from zwidth import checker
+from zwidth.checker.contact.motion import contact_motion_energy
 from zwidth.passivity.worst_hand.board import Board
 from zwidth.passivity.worst_hand.hand import game_of
 from zwidth.passivity.worst_hand.solve import play

@@ -14,8 +14,8 @@ from flint import arb, arb_mat, ctx, fmpq
 from numpy.typing import NDArray
 from scipy.signal import tf2ss
 
+from zwidth.checker.known_hand.plant import read_plant
 from zwidth.passivity.absolute.plant import Plant
-from zwidth.passivity.checker.absolute_plant import read_plant
 
 _STARTS = 36
 _SETTLING = 6000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from zwidth.passivity import checker
+from zwidth import checker
 from zwidth.passivity.absolute.plant import Plant
 from zwidth.passivity.absolute.search import Found
 from zwidth.passivity.absolute.terms import Criterion, Term

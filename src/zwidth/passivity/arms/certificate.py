@@ -16,17 +16,17 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
+from zwidth import checker
+from zwidth.checker.arm.region import KEYS, POSE_KEYS, matrix_at
 from zwidth.device.arm import Arm, DescribedArm, LeggedArm, PlanarChain, PosedArm
 from zwidth.environment.environment import certain
 from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
-from zwidth.passivity import checker
 from zwidth.passivity.arms.counting import Counting
 from zwidth.passivity.arms.encoders import Chain, EncoderSteps, moving_steps
 from zwidth.passivity.arms.joints import as_matrix, surplus
 from zwidth.passivity.arms.need import wall_matrices, wall_need
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.checker.arm import KEYS, POSE_KEYS, matrix_at
 from zwidth.passivity.document import exact_text
 
 Array = npt.NDArray[np.float64]

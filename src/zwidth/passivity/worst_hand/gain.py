@@ -9,10 +9,10 @@ from math import ceil
 from pathlib import Path
 from typing import Any
 
-from zwidth.passivity import checker
-from zwidth.passivity.checker.contact_law import read_losses
-from zwidth.passivity.checker.contact_motion import contact_motion_energy
-from zwidth.passivity.checker.reading import Invalid
+from zwidth import checker
+from zwidth.checker.contact.law import read_losses
+from zwidth.checker.contact.motion import contact_motion_energy
+from zwidth.checker.document.reading import Invalid
 from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.motion import Motion, Repeat
 from zwidth.passivity.witness import FORMAT, rounded_energy

@@ -6,7 +6,7 @@ from fractions import Fraction
 from itertools import accumulate, pairwise
 from typing import NamedTuple
 
-from zwidth.passivity.checker.contact_law import Law, Losses, read_law, read_losses
+from zwidth.checker.contact.law import Law, Losses, read_law, read_losses
 from zwidth.passivity.worst_hand.gain import Gain
 
 _SETTLING = 400

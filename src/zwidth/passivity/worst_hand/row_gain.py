@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
+from zwidth.checker.contact.row_motion import row_motion_energy
+from zwidth.checker.document.reading import Invalid
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.loop.kernel import R_HAND_WORK
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup
 from zwidth.operator import PrescribedMotion
-from zwidth.passivity.checker.reading import Invalid
-from zwidth.passivity.checker.row_motion import row_motion_energy
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.motion import Motion, Repeat
 from zwidth.passivity.witness import FORMAT

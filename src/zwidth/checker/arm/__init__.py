@@ -1,0 +1,1 @@
+"""An arm of several joints in its region."""

@@ -1,0 +1,135 @@
+"""Encoders of a chain whose steps Coulomb friction covers, for forces up to F and moments up to M.
+
+    f_c,i ≥ ½ [Σ_a r_a,i Σ_b (‖K_ab‖ + 2 ‖B_ab‖/T) Σ_j Δ_j r_b,j + F Σ_j N_ij Δ_j + M Σ_j N′_ij Δ_j]
+
+a and b stand for translation and rotation. r_i bounds |∂p/∂q_i| in the region and one step around it, and is
+proved there as r_i² − |∂p/∂q_i|² > 0; where a joint slides it is 1, and of the turn it is 1 for joints that
+turn. Every later column turns with an earlier joint: N_ij = r_max(i,j) for two that turn, 1 where one slides,
+else 0. N′ = ½ for two joints that turn the hand in space. What only nearly rotates makes lengths longer by a
+millionth. A joint whose range is one number stays at its reading, and has no steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from math import isqrt
+from typing import Any, NamedTuple
+
+from ..document.reading import Invalid, get, number
+from ..exact.enclosure import NOTHING, ONE, Jet, enclosed
+from .chain import LONGER, Chain, levers
+from .pose import UNIT, Pose
+
+Matrix = list[list[Fraction]]
+
+
+class Encoders(NamedTuple):
+    """Of each joint."""
+
+    steps: list[Fraction]
+    friction: list[Fraction]
+    columns: list[Fraction]
+
+
+def read_encoders(machine: Mapping[str, Any], chain: Chain) -> Encoders:
+    """`chain` is what `read_chain` found in `machine`."""
+    steps, friction, columns = [], [], []
+    for entry, joint in zip(machine["joints"], chain.joints, strict=True):
+        unit, per = ("m", "N") if joint.slides else ("rad", "N_m")
+        step = number(get(entry, f"resolution_{unit}"))
+        own = number(get(entry, f"coulomb_friction_{per}"))
+        column = Fraction(1) if joint.slides else number(get(entry, "largest_column_m_per_rad"))
+        if min(step, own, column) < 0:
+            raise Invalid("encoder steps, Coulomb friction and columns are ≥ 0")
+        steps.append(step if joint.low < joint.high else Fraction(0))
+        friction.append(own)
+        columns.append(column * (LONGER if joint.slides else 1))
+    return Encoders(steps, friction, columns)
+
+
+def with_steps(chain: Chain, encoders: Encoders) -> Chain:
+    """The chain, each joint free to be one step further to either side."""
+    joints = [
+        joint._replace(low=joint.low - step, high=joint.high + step)
+        for joint, step in zip(chain.joints, encoders.steps, strict=True)
+    ]
+    return Chain(joints, chain.end)
+
+
+def columns_below(chain: Chain, encoders: Encoders) -> Callable[[Sequence[Jet]], list[list[Jet]]]:
+    """diag(r_i² − |∂p/∂q_i|²), its rows from the diagonal on; 1 where the joint slides."""
+    squares, longer = levers(chain), enclosed(LONGER * LONGER)
+    most = [Jet(enclosed(r * r)) for r in encoders.columns]
+
+    def below(joints: Sequence[Jet]) -> list[list[Jet]]:
+        found = zip(chain.joints, most, squares(joints), strict=True)
+        left = [UNIT if joint.slides else r - lever.scaled(longer) for joint, r, lever in found]
+        return [[own] + [NOTHING] * (len(left) - i - 1) for i, own in enumerate(left)]
+
+    return below
+
+
+def friction_is_enough(
+    chain: Chain,
+    encoders: Encoders,
+    wall: tuple[Matrix, Matrix],
+    period: Fraction,
+    limits: tuple[Fraction, Fraction],
+    pose: Pose,
+) -> None:
+    """Refuse joints whose friction is below the right side, F and M being the limits."""
+    turning = [Fraction(not joint.slides) for joint in chain.joints]
+    blocks = [encoders.columns, turning] if pose.turns else [encoders.columns]
+    sizes = _sizes(*wall, period, pose)
+    misread = [_dot(encoders.steps, block) for block in blocks]
+    wrong = [_dot(row, misread) for row in sizes]
+    bend = Fraction(1, 2) if pose.turns == 3 else Fraction(0)
+    force, moment = limits
+    for i, own in enumerate(encoders.friction):
+        second = _dot(encoders.steps, [_bend(chain, encoders, i, j) for j in range(len(chain.joints))])
+        turned = bend * turning[i] * _dot(encoders.steps, turning)
+        least = _dot([block[i] for block in blocks], wrong) + force * second + moment * turned
+        if 2 * own < least:
+            raise Invalid(
+                f"Coulomb friction of joint {i + 1} must be at least {float(least / 2):g} for its encoders"
+            )
+
+
+def _bend(chain: Chain, encoders: Encoders, i: int, j: int) -> Fraction:
+    sliding = chain.joints[i].slides + chain.joints[j].slides
+    if sliding:
+        return LONGER * int(sliding == 1)
+    return LONGER * encoders.columns[max(i, j)]
+
+
+def _sizes(stiffness: Matrix, damping: Matrix, period: Fraction, pose: Pose) -> Matrix:
+    """Bounds on ‖K_ab‖ + 2 ‖B_ab‖/T."""
+    point = len(stiffness) - pose.turns
+    blocks = [slice(0, point), slice(point, None)] if pose.turns else [slice(0, None)]
+    return [
+        [
+            _size([row[c] for row in stiffness[r]]) + 2 * _size([row[c] for row in damping[r]]) / period
+            for c in blocks
+        ]
+        for r in blocks
+    ]
+
+
+def _size(matrix: Matrix) -> Fraction:
+    """No singular value is above √(‖A‖₁ ‖A‖∞), nor above ‖A‖_F."""
+    rows = max(sum(map(abs, row), Fraction(0)) for row in matrix)
+    columns = max(sum(map(abs, column), Fraction(0)) for column in zip(*matrix, strict=True))
+    return _root(min(rows * columns, sum((x * x for row in matrix for x in row), Fraction(0))))
+
+
+def _root(x: Fraction) -> Fraction:
+    """Not below √x; x itself where x is a square."""
+    top, bottom = isqrt(x.numerator), isqrt(x.denominator)
+    if (top * top, bottom * bottom) == (x.numerator, x.denominator):
+        return Fraction(top, bottom)
+    return Fraction(isqrt(int(x * ONE * ONE) + 1) + 1, ONE)
+
+
+def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
+    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))

@@ -1,0 +1,183 @@
+"""A hand in pose: beside where it is, how far it has turned from the wall's orientation of rest.
+
+    y = (p, e),    e = 2 v,    (w, v) = Q(q) ⊗ Q(q₀)⁻¹,    Q = Π c_i ⊗ (cos q_i/2, ẑ sin q_i/2)
+    ∂e/∂q_i = E a_i,    EᵀE = 1 − v vᵀ ⪯ 1
+
+c_i is the unit quaternion of the placement of joint i, a_i the axis of joint i in the base; a joint that
+slides has 0 here. Where the rest q₀ is given the columns of J are those of e. For every orientation of rest
+they are the axes alone: with no coupling of forces and turns in R and R_e ⪯ ρ·1,
+
+    JᵀRJ ⪯ J_pᵀ R_p J_p + ρ J_ωᵀ J_ω
+
+In the plane y = (x, y, Σ q_i): the derivative is constant, and the rest plays no part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from ..document.reading import Invalid, get, integer, number
+from ..exact.enclosure import NOTHING, ONE, Jet, Range, enclosed, inverse, root, sine_cosine, times, total
+from .chain import Chain
+
+Matrix = list[list[Fraction]]
+Columns = Callable[[Sequence[Jet]], list[list[Jet]]]
+
+UNIT = Jet((ONE, ONE))
+
+
+class Pose(NamedTuple):
+    turns: int  # coordinates of the wall, the last ones, that are rotations
+    anywhere: bool
+
+    @property
+    def sizes(self) -> range:
+        """How many coordinates the wall may have."""
+        return {0: range(1, 4), 1: range(3, 4), 3: range(6, 7)}[self.turns]
+
+
+def read_pose(wall: Mapping[str, Any]) -> Pose:
+    if not isinstance(wall, Mapping) or "turns" not in wall:
+        return Pose(0, False)
+    turns, rest = integer(wall["turns"]), get(wall, "rest")
+    if turns not in (1, 3):
+        raise Invalid("a wall in pose has three rotations, or one in the plane")
+    if rest not in ("every orientation", "given") or (turns == 1 and rest == "given"):
+        raise Invalid("a wall rests in every orientation; in space one may be given")
+    return Pose(turns, rest == "every orientation")
+
+
+def in_words(wall: Mapping[str, Any], pose: Pose) -> str:
+    """Of a matrix without negative eigenvalues no entry is above the largest of the diagonal."""
+    if not pose.turns:
+        return ""
+    diagonal = [number(row[i]) for i, row in enumerate(get(wall, "stiffness_N_m_rad"))]
+    along, about = (float(max(part)) for part in (diagonal[: -pose.turns], diagonal[-pose.turns :]))
+    where = "in every orientation of rest" if pose.anywhere else "from the orientation of rest that is given"
+    return f"; the wall is in pose, with up to {along:g} N/m and {about:g} N·m/rad, {where}"
+
+
+def for_every_rest(need: Matrix, pose: Pose) -> Matrix:
+    """R with ρ·1 in the place of its rotations: ρ is the largest sum of a row, no eigenvalue is larger."""
+    if pose.turns != 3 or not pose.anywhere:
+        return need
+    point = len(need) - 3
+    if any(any(row[point:]) for row in need[:point]):
+        raise Invalid("a wall that couples forces and turns has one orientation of rest")
+    most = max(sum(map(abs, row), Fraction(0)) for row in need[point:])
+    last = [[most if k == i else Fraction(0) for k in range(point + 3)] for i in range(point, point + 3)]
+    return [*need[:point], *last]
+
+
+def turning(machine: Mapping[str, Any], chain: Chain, pose: Pose) -> Columns:
+    """The rows of rotation of every column of J; `chain` is what `read_chain` found in `machine`."""
+    if pose.turns == 1:
+        if any(j.slides or j.rotation[2] != [0, 0, 1] for j in chain.joints):
+            raise Invalid("in the plane every joint turns about the same axis")
+        return lambda joints: [[UNIT] for _ in joints]
+    placed = [_quaternion(j.rotation) for j in chain.joints]
+    if pose.anywhere:
+        return _axes(chain, placed)
+    rest = [
+        Fraction(0) if joint.slides else number(get(entry, "rest_rad"))
+        for joint, entry in zip(chain.joints, machine["joints"], strict=True)
+    ]
+    return _from_rest(chain, placed, rest)
+
+
+def turning_bend(chain: Chain, pose: Pose) -> Fraction:
+    """h_e with |Σ ∂²e/∂q_i∂q_j w_i w_j| ≤ h_e |w|²: each second derivative is at most ½ long."""
+    return Fraction(sum(not j.slides for j in chain.joints), 2) if pose.turns == 3 else Fraction(0)
+
+
+def _axes(chain: Chain, placed: Sequence[list[Fraction]]) -> Columns:
+    """a_i, from the end to the base; 0 of a joint that slides."""
+    rotations = [[[enclosed(x) for x in row] for row in _rotation(c)] for c in placed]
+
+    def columns(joints: Sequence[Jet]) -> list[list[Jet]]:
+        found: list[list[Jet]] = []
+        for joint, q, rotation in reversed(list(zip(chain.joints, joints, rotations, strict=True))):
+            if joint.slides:
+                own = NOTHING
+            else:
+                own, (s, c) = UNIT, _sine_cosine(q)
+                found = [[v[0] * c - v[1] * s, v[0] * s + v[1] * c, v[2]] for v in found]
+            found = [_mapped(rotation, v) for v in ([NOTHING, NOTHING, own], *found)]
+        return found
+
+    return columns
+
+
+def _from_rest(chain: Chain, placed: Sequence[list[Fraction]], rest: Sequence[Fraction]) -> Columns:
+    """∂e/∂q_i = the vector of 2 ∂Q/∂q_i ⊗ Q(q₀)⁻¹, from the end to the base."""
+    matrices = [_times_quaternion(c) for c in placed]
+
+    def turned(joints: Sequence[Jet], end: list[Jet]) -> list[list[Jet]]:
+        """Q ⊗ end, and twice its derivatives."""
+        found = [end]
+        for joint, q, matrix in reversed(list(zip(chain.joints, joints, matrices, strict=True))):
+            if joint.slides:
+                own = [NOTHING] * 4
+            else:
+                s, c = _sine_cosine(q, 2)
+                found = [
+                    [v[0] * c - v[3] * s, v[1] * c - v[2] * s, v[2] * c + v[1] * s, v[3] * c + v[0] * s]
+                    for v in found
+                ]
+                w, x, y, z = found[0]
+                own = [-z, -y, x, w]
+            found = [_mapped(matrix, v) for v in (found[0], own, *found[1:])]
+        return found
+
+    w, *v = turned([Jet(enclosed(q)) for q in rest], [UNIT, NOTHING, NOTHING, NOTHING])[0]
+    resting = [w, *(-x for x in v)]
+    return lambda joints: [column[1:] for column in turned(joints, resting)[1:]]
+
+
+def _sine_cosine(q: Jet, part: int = 1) -> tuple[Jet, Jet]:
+    """Of q/part."""
+    sine, cosine = sine_cosine((q.value[0] // part, -(-q.value[1] // part)))
+    rate = enclosed(Fraction(1, part))
+    s = Jet(sine, {j: times(times(rate, cosine), slope) for j, slope in q.slopes.items()})
+    c = Jet(cosine, {j: times(times(rate, (-sine[1], -sine[0])), slope) for j, slope in q.slopes.items()})
+    return s, c
+
+
+def _mapped(matrix: Sequence[Sequence[Range]], vector: Sequence[Jet]) -> list[Jet]:
+    return [total([x.scaled(c) for x, c in zip(vector, row, strict=True)]) for row in matrix]
+
+
+def _quaternion(r: Matrix) -> list[Fraction]:
+    """Along the unit quaternion c of a rotation: the largest row of 4 c cᵀ, which is linear in it."""
+    (a, b, c), (d, e, f), (g, h, i) = r
+    if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
+        raise Invalid("a rotation mirrors")
+    rows = [
+        [1 + a + e + i, h - f, c - g, d - b],
+        [h - f, 1 + a - e - i, b + d, c + g],
+        [c - g, b + d, 1 - a + e - i, f + h],
+        [d - b, c + g, f + h, 1 - a - e + i],
+    ]
+    return rows[max(range(4), key=lambda k: rows[k][k])]
+
+
+def _rotation(quaternion: list[Fraction]) -> Matrix:
+    """The rotation of a quaternion of any length, without rounding."""
+    w, x, y, z = quaternion
+    size = w * w + x * x + y * y + z * z
+    rows = [
+        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+    ]
+    return [[entry / size for entry in row] for row in rows]
+
+
+def _times_quaternion(quaternion: list[Fraction]) -> list[list[Range]]:
+    """c ⊗ as a matrix, with c made a unit."""
+    shorter = inverse(root(enclosed(sum((x * x for x in quaternion), Fraction(0)))))
+    w, x, y, z = (times(enclosed(part), shorter) for part in quaternion)
+    nx, ny, nz = ((-high, -low) for low, high in (x, y, z))
+    return [[w, nx, ny, nz], [x, w, nz, y], [y, z, w, nx], [z, ny, x, w]]

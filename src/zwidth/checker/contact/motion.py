@@ -1,0 +1,115 @@
+"""A motion re-run through a law with contact made and broken: the energy it takes out, exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from ..document.effort import spend
+from ..document.reading import Invalid, get, integer, numbers
+from .bounds import require_within
+from .law import Law, Losses, read_law, read_losses
+
+MOST_POSITIONS = 100_000
+MOST_SAMPLES = 2_000_000
+FINEST = 2**80
+"""An average is kept to so many parts of a count; what that may cost in energy is taken off."""
+_SAMPLE = 300
+"""Steps of work."""
+
+
+def contact_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
+    """Energy the hand takes out over the motion, and by one more round of its cycle [J].
+
+    The motion begins at rest with the reading 0 or less, at which the law gives
+    no force, and ends wherever it ends.  `repeats` names the part that is done
+    `times` times; it must return to where it began.  It keeps to the bounds that are stated.
+    """
+    losses, law = read_losses(document), read_law(document)
+    key = next((k for k in ("positions_m", "positions_rad") if k in document), None)
+    if key is None:
+        raise Invalid("positions_m is missing")
+    x = numbers(document[key], MOST_POSITIONS)
+    switches = x[1:]
+    if losses.part < 1:
+        switches = numbers(get(document, f"switch_{key}"), MOST_POSITIONS)
+        if len(switches) != len(x) - 1:
+            raise Invalid("there must be one switch position in each interval")
+    require_within(document, losses, x, switches)
+    part = get(document, "repeats")
+    first, last, times = (integer(get(part, k)) for k in ("first", "last", "times"))
+    if not 0 <= first < last < len(x) or times < 1 or x[first] != x[last]:
+        raise Invalid("the repeated part must lie in the motion and return to where it began")
+    taps = law.memory + 1
+    start = losses.resolution * (x[0] // losses.resolution)
+    if start > 0 or law.force([start] * taps) != 0:
+        raise Invalid("the motion must begin at rest where the law gives no force")
+
+    rested = Fraction(0) if law.surface == "penetration" or law.relaxing is None else start
+    state = _State([start] * (taps + losses.delay + 1), [rested] * (losses.delay + 1))
+
+    def run(begin: int, end: int) -> Fraction:
+        out = Fraction(0)
+        for k in range(begin, end):
+            older, newer = state.read(losses.resolution * (x[k] // losses.resolution), law, losses, taps)
+            early, late = switches[k] - x[k], x[k + 1] - switches[k]
+            out -= older * early + losses.lost(early, losses.part)
+            if losses.part < 1:
+                out -= newer * late + losses.lost(late, 1 - losses.part)
+        return out
+
+    energy = run(0, first)
+    done, before, gain = 0, None, Fraction(0)
+    while done < times and before != state:
+        if (done + 1) * (last - first) > MOST_SAMPLES:
+            raise Invalid("the law takes too long to settle to the cycle")
+        spend(_SAMPLE * (last - first))
+        before = state.copy()
+        gain = run(first, last)
+        energy += gain
+        done += 1
+    energy += gain * (times - done)
+    if before != state:
+        raise Invalid("the law has not settled to the cycle: there are too few rounds to tell its gain")
+    energy += run(last, len(x) - 1)
+    return energy - times * _uncertainty(law, losses, x), gain - _uncertainty(law, losses, x)
+
+
+class _State:
+    """What the loop remembers: readings, and averages kept to FINEST parts of a count."""
+
+    def __init__(self, readings: list[Fraction], averages: list[Fraction]) -> None:
+        self.readings, self.averages = readings, averages
+
+    def copy(self) -> _State:
+        return _State(list(self.readings), list(self.averages))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _State) and (
+            (self.readings, self.averages) == (other.readings, other.averages)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def read(self, reading: Fraction, law: Law, losses: Losses, taps: int) -> tuple[Fraction, Fraction]:
+        """Take a reading; the two forces that act in the interval that follows."""
+        self.readings = [reading, *self.readings[:-1]]
+        older, newer = (
+            law.force(self.readings[age : age + taps], self.averages[age])
+            for age in (losses.delay, max(losses.delay - 1, 0))
+        )
+        fine = losses.resolution / FINEST
+        after = law.averaged(self.averages[0], reading)
+        self.averages = [round(after / fine) * fine, *self.averages[:-1]]
+        return older, newer
+
+
+def _uncertainty(law: Law, losses: Losses, x: list[Fraction]) -> Fraction:
+    """Energy that the rounding of averages may feign in one passage through the positions [J]."""
+    if law.relaxing is None:
+        return Fraction(0)
+    pole, stiffness = law.relaxing
+    path = sum((abs(b - a) for a, b in pairwise(x)), Fraction(0))
+    return abs(stiffness) * path * losses.resolution / FINEST / (1 - pole)

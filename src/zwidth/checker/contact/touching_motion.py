@@ -1,0 +1,107 @@
+"""A motion that touches and leaves a law with memory, re-run: the energy it takes out, exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import gcd, lcm
+from typing import Any
+
+from ..document.reading import Invalid, Loop, common_scale, get, number, numbers, read_loop, with_no_more_than
+from ..loop.proofs import _inside_unit_circle
+
+MOST_POSITIONS = 50_000
+MOST_EFFORT = 2e6
+"""Of the samples that the law is run for: products times a thousand bits of their factors, about."""
+
+
+def touching_motion_energy(document: Mapping[str, Any]) -> Fraction:
+    """Energy the hand takes out over one motion from rest outside, back to where it began [J].
+
+    The law is fed with the reading q, or with max(q, 0); it pushes where q > 0 only, and if it never
+    pulls a force below 0 is given as 0.  H is stable, so that it forgets while the hand rests outside,
+    and the motion may be made again and again.
+    """
+    p = read_loop(document)
+    penetration, never_pulls = _surface(get(document, "law"))
+    key = "positions_rad" if "positions_rad" in document else "positions_m"
+    x = numbers(get(document, key), MOST_POSITIONS)
+    switches = numbers(get(document, f"switch_{key}"), MOST_POSITIONS) if p.part else x[:-1]
+    with_no_more_than(document, 8 if p.part else 7)
+    if number(get(document, "sample_period_s")) != p.period:
+        raise Invalid("the sample period is not that of the loop")
+    _require_sound(p, x, switches)
+    unit = lcm(*(v.denominator for v in (*x, *switches)))
+    path, early_squares, late_squares = 0, 0, 0
+    ways = [0] * len(x)  # how far the hand moves under the force of each sample
+    for k, (here, at, there) in enumerate(zip(x, switches, x[1:], strict=False)):
+        early, late = int((at - here) * unit), int((there - at) * unit)
+        path += abs(early) + abs(late)
+        early_squares += early * early
+        late_squares += late * late
+        for move, sample in ((early, k - p.whole - 1), (late, k - p.whole)):
+            if sample >= 0:
+                ways[sample] += move
+    work = _work(p, x, ways, penetration, never_pulls)
+    squares = late_squares / (1 - p.part) + (early_squares / p.part if p.part else 0)
+    return -(work + p.coulomb_friction * path + p.damping / p.period * squares / unit) / unit
+
+
+def _surface(law: Any) -> tuple[bool, bool]:
+    """Whether it is fed with the penetration, and whether it never pulls."""
+    fed_with, never_pulls = get(law, "fed_with"), get(law, "never_pulls")
+    if fed_with not in ("penetration", "position") or not isinstance(never_pulls, bool):
+        raise Invalid("fed_with must be penetration or position, and never_pulls true or false")
+    with_no_more_than(law, 2)
+    return fed_with == "penetration", never_pulls
+
+
+def _require_sound(p: Loop, x: list[Fraction], switches: list[Fraction]) -> None:
+    if not p.unilateral:
+        raise Invalid("a law is touched and left if it acts inside only")
+    if len(x) < 2 or len(switches) != len(x) - 1:
+        raise Invalid("a motion has two positions or more, and one switch position in each interval")
+    if _read(p, x[0]) > 0 or x[0] != x[-1]:
+        raise Invalid("the motion must begin at rest outside and return to where it began")
+    if not _inside_unit_circle(p.denominator):
+        raise Invalid("H(z) has a pole outside or on the unit circle: it does not forget")
+
+
+def _read(p: Loop, x: Fraction) -> Fraction:
+    return p.resolution * (x // p.resolution) if p.resolution else x
+
+
+def _work(p: Loop, x: list[Fraction], ways: list[int], penetration: bool, never_pulls: bool) -> Fraction:
+    """Σ f times its way, f of the samples inside: the direct form D w = u in whole numbers, f = N w.
+
+    u is counted from the first reading, at which the law rests with the force H(1) q; w after k
+    samples is a whole number over the k-th power of the first coefficient of D.
+    """
+    q = [_read(p, position) for position in x]
+    last = max((k for k, reading in enumerate(q) if reading > 0), default=-1)
+    rest = Fraction(0) if penetration else q[0]
+    u = [max(reading, Fraction(0)) if penetration else reading - rest for reading in q[: last + 1]]
+    held = rest * sum(p.numerator, Fraction(0)) / sum(p.denominator, Fraction(0))
+    scale = common_scale((*p.numerator, *p.denominator))
+    top, bottom = ([int(c * scale) for c in part] for part in (p.numerator, p.denominator))
+    content = gcd(*bottom)
+    bottom = [c // content for c in bottom]
+    unit = lcm(held.denominator, *(v.denominator for v in u))
+    at_rest = int(held * unit) * content
+    lead, order = bottom[0], len(bottom) - 1
+    feed = [c * lead**i for i, c in enumerate(top)]
+    back = [c * lead ** max(i - 1, 0) for i, c in enumerate(bottom)]
+    past, power, effort, work = [0] * order, 1, 0.0, 0
+    for k, v in enumerate(u):
+        effort += (order + 2) * (1 + power.bit_length() / 1000)
+        if effort > MOST_EFFORT:
+            raise Invalid("the motion is too long, or its exact numbers grow too long, to be checked")
+        w = int(v * unit) * power - sum(a * old for a, old in zip(back[1:], past, strict=True))
+        power *= lead
+        work *= lead
+        if q[k] > 0:
+            f = at_rest * power + feed[0] * w + sum(b * old for b, old in zip(feed[1:], past, strict=True))
+            if f * power > 0 or not never_pulls:
+                work += f * ways[k]
+        past = [w, *past[:-1]] if order else past
+    return Fraction(work, power * unit * content)

@@ -1,0 +1,1 @@
+"""Arithmetic of the checker: numbers within bounds, and where the roots of a polynomial lie."""

@@ -1,0 +1,1 @@
+"""A hand that is known: what comes to rest, and what does not."""

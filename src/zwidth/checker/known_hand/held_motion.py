@@ -1,0 +1,146 @@
+"""Device and hand behind the hold, with error bounds: what a sampled force does to the position.
+
+    M ẍ + D ẋ + k x = −f,    f held from (n + d + α) T on for T
+
+In periods, with η = k T²/M, δ = D T/M and the unit of force M/T², a constant force moves (x, ẋT) from rest by
+
+    γ₂(τ) = Σ tₙ,  γ₁(τ) = τ Σ tₙ/(n + 1),    tₙ = qₙ τⁿ/n!,  q₁ = 1,  qₙ₊₂ = −δ qₙ₊₁ − η qₙ
+
+|qₙ| ≤ Nⁿ with N = max(1, η + δ): what is left out after n terms is at most Nⁿ/n!/(1 − N/n).  In ζ = z − 1,
+with s = η γ₁(1) + δ γ₂(1),
+
+    −x/f = z^−e (T²/M) (r(1) [+ ζ r(1 − α)]) / (ζ² + (s + η γ₁) ζ + η (s γ₁ + γ₂²)),
+    r(τ) = γ₁(τ) ζ + s γ₁(τ) + γ₂(1) γ₂(τ),    e = d, with the bracket where α > 0 and then e = d + 1
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from ..document.reading import Invalid, number, the_one
+from ..exact.enclosed import Enclosed, between, known
+
+MOST_LATE = 300
+LARGEST_NORM = 500
+
+Range = tuple[Fraction, Fraction]
+
+
+class Motion(NamedTuple):
+    """1/M, D and k, each from … to; T, and the delay in samples."""
+
+    inverse_mass: Range
+    damping: Range
+    stiffness: Range
+    period: Fraction
+    late: Fraction
+
+    @property
+    def is_free(self) -> bool:
+        """True without spring and damper: all is rational then."""
+        return self.damping[1] == self.stiffness[1] == 0
+
+    @property
+    def norm(self) -> Fraction:
+        """The largest η + δ."""
+        return (self.stiffness[1] * self.period + self.damping[1]) * self.period * self.inverse_mass[1]
+
+    @property
+    def middle(self) -> Motion:
+        """One of them, itself where it is certain."""
+        inverse, damping, stiffness = (((a + b) / 2,) * 2 for a, b in self[:3])
+        return self._replace(inverse_mass=inverse, damping=damping, stiffness=stiffness)
+
+    def halves(self, whole: Motion) -> list[Motion]:
+        """Cut in two across the side that is longest as a part of the whole."""
+        shares = [
+            (b - a) / (d - c) if c < d else 0 for (a, b), (c, d) in zip(self[:3], whole[:3], strict=True)
+        ]
+        name = self._fields[shares.index(max(shares))]
+        low, high = getattr(self, name)
+        cut = (low + high) / 2
+        ends: list[dict[str, Any]] = [{name: (low, cut)}, {name: (cut, high)}]
+        return [self._replace(**end) for end in ends]
+
+
+class Sampled(NamedTuple):
+    """−x/f = numerator/(z^late · denominator), descending powers of ζ, all Enclosed or all Fraction."""
+
+    numerator: list[Any]
+    denominator: list[Any]
+    late: int
+
+
+def read_motion(mass: Range, damping: Range, stiffness: Range, period: Range, delay: Range) -> Motion:
+    """The numbers of the loop, in bounds."""
+    if period[0] != period[1] or delay[0] != delay[1]:
+        raise Invalid("T and the delay must be certain")
+    if mass[0] <= 0 or period[0] <= 0 or min(damping[0], stiffness[0], delay[0]) < 0:
+        raise Invalid("M and T must be > 0, and D, k and the delay ≥ 0")
+    late = delay[0] / period[0]
+    if late > MOST_LATE:
+        raise Invalid(f"the delay is more than {MOST_LATE} samples")
+    return Motion((1 / mass[1], 1 / mass[0]), damping, stiffness, period[0], late)
+
+
+def quantity(loop: Any, name: str) -> Range:
+    """A number of the loop by its name and unit, or both ends of an interval."""
+    value = the_one(loop, name)
+    ends = [number(end) for end in value] if isinstance(value, list) else [number(value)] * 2
+    if len(ends) != 2 or ends[0] > ends[1]:
+        raise Invalid(f"{name} must be a number, or the smaller and the larger end of an interval")
+    return ends[0], ends[1]
+
+
+def sampled(motion: Motion, bits: int) -> Sampled:
+    """The exact hold of every motion in the bounds."""
+    inverse, damping, stiffness = (between(*ends, place, 3, bits) for place, ends in enumerate(motion[:3]))
+    period = known(motion.period, bits)
+    unit = inverse * period * period
+    spring, loss = unit * stiffness, inverse * period * damping
+    whole, part = int(motion.late), motion.late % 1
+    first, second = _pushed(spring, loss, Fraction(1), bits)
+    slow = spring * first + loss * second
+
+    def row(moved: tuple[Enclosed, Enclosed]) -> list[Enclosed]:
+        return [unit * moved[0], unit * (slow * moved[0] + second * moved[1])]
+
+    one = known(Fraction(1), bits)
+    denominator = [one, slow + spring * first, spring * (slow * first + second * second)]
+    now = row((first, second))
+    if part == 0:
+        return Sampled(now, denominator, whole)
+    rest = row(_pushed(spring, loss, 1 - part, bits))
+    return Sampled([rest[0], rest[1] + now[0], now[1]], denominator, whole + 1)
+
+
+def sampled_free(motion: Motion) -> Sampled:
+    """The same of a certain mass without spring and damper, exact."""
+    unit, rest = motion.inverse_mass[0] * motion.period**2, 1 - motion.late % 1
+    now, denominator = [unit / 2, unit], [Fraction(1), Fraction(0), Fraction(0)]
+    if rest == 1:
+        return Sampled(now, denominator, int(motion.late))
+    return Sampled([unit * rest**2 / 2, unit * rest + now[0], now[1]], denominator, int(motion.late) + 1)
+
+
+def _pushed(spring: Enclosed, loss: Enclosed, tau: Fraction, bits: int) -> tuple[Enclosed, Enclosed]:
+    """γ₁ and γ₂ after a part τ of a sample."""
+    largest = spring.middle + spring.reach + loss.middle + loss.reach
+    norm = max(1, -(-largest >> bits))
+    if norm > LARGEST_NORM:
+        raise Invalid("device and hand move too far within one sample for the series")
+    fine = bits + 3 * norm  # its terms are as large as e^norm
+    step = known(tau, fine)
+    damped = loss.in_bits(fine) * step
+    bent = spring.in_bits(fine) * step * step
+    before, term = Enclosed(fine, 0), step
+    speed, way = term, term.over(2)
+    count, left = 1, norm << fine  # Nⁿ/n!, rounded up
+    while count < 2 * norm or left > 1:
+        before, term = term, (damped * term + (bent * before).over(count)).over(count + 1).times(-1)
+        count += 1
+        left = left * norm // count + 1
+        speed, way = speed + term, way + term.over(count + 1)
+    rest = Fraction(left, 1 << fine)  # N < n/2: what follows is less than the last term
+    return (way * step).widened(rest).in_bits(bits), speed.widened(rest).in_bits(bits)

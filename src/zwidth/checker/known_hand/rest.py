@@ -1,0 +1,142 @@
+"""Does every motion of device, known hand and wall die out, for all values within intervals?
+
+    P(z) = z^e p(z) H_D(z) + N(z) H_N(z),    −x/f = N/(z^e p) of the motion, f = H x of the law
+
+One value is decided by the recursion of Schur and Cohn.  An interval: its middle, and that from there to
+every other value no root meets the unit circle; a box that does not show it is halved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from math import ceil, lcm
+from typing import Any, NamedTuple
+
+from ..document.reading import Invalid, common_scale, get, numbers, with_no_more_than
+from ..exact.crossing import never_crosses
+from ..exact.enclosed import Enclosed, quotient
+from ..exact.schur_cohn import decays
+from .held_motion import Motion, Sampled, quantity, read_motion, sampled, sampled_free
+
+MOST_ORDER = 300
+MOST_BOXES = 4000
+MOST_HALVINGS = 45
+MOST_EFFORT = 5_000_000
+SERIES = 150
+"""What the series of the motion costs in each box, beside its order³, times η + δ."""
+MOST_EXACT = 8_000_000
+BOX_BITS = 128
+PRECISIONS = (128, 512, 2048)
+
+
+_NAMES = ("mass", "damping", "stiffness", "sample_period", "delay")
+
+_Numbers = list[Any]
+"""All Enclosed or all Fraction."""
+
+
+class _Loop(NamedTuple):
+    motion: Motion
+    above: list[int]  # H(z), in descending powers of ζ, both in whole numbers
+    below: list[int]
+
+
+def stability(document: Mapping[str, Any]) -> str:
+    loop = _read(document)
+    middle = loop.motion.middle
+    if not _decays(loop._replace(motion=middle)):
+        raise Invalid("that all roots lie inside the unit circle could not be confirmed")
+    if middle == loop.motion:
+        return "device, hand and wall come to rest after every disturbance, contact kept"
+    boxes = _covered(loop)
+    return f"device, hand and wall come to rest for every value in the intervals, contact kept, {boxes} boxes"
+
+
+def instability(document: Mapping[str, Any]) -> str:
+    loop = _read(document)
+    if loop.motion.middle != loop.motion:
+        raise Invalid("what does not come to rest must be certain")
+    if _decays(loop) is not False:
+        raise Invalid("that a root lies on or outside the unit circle could not be confirmed")
+    return "device, hand and wall do not come to rest, contact kept: a disturbance does not die out"
+
+
+def _read(document: Mapping[str, Any]) -> _Loop:
+    loop = get(document, "loop")
+    motion = read_motion(*(quantity(loop, name) for name in _NAMES))
+    above, below = (numbers(get(loop, name), MOST_ORDER) for name in ("numerator", "denominator"))
+    with_no_more_than(loop, len(_NAMES) + 2)
+    if not below or below[0] == 0 or not 0 < len(above) <= len(below):
+        raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
+    scale = common_scale((*above, *below))
+    return _Loop(motion, *(_in_zeta([int(c * scale) for c in part]) for part in (above, below)))
+
+
+def _in_zeta(descending: Sequence[int]) -> list[int]:
+    """A polynomial in z, in powers of ζ = z − 1."""
+    out: list[int] = []
+    for c in descending:
+        out = [x + y for x, y in zip([*out, 0], [0, *out], strict=True)]
+        out[-1] += c
+    return out
+
+
+def _decays(loop: _Loop) -> bool | None:
+    """Of a certain loop, with more and more bits; without spring and damper exactly."""
+    for bits in PRECISIONS:
+        answer = decays(_characteristic(loop, bits))
+        if answer is not None:
+            return answer
+    if not loop.motion.is_free:
+        return None
+    whole = _exactly(loop)
+    cost = len(whole) ** 2 * max(c.middle.bit_length() for c in whole)
+    return decays(whole) if cost <= MOST_EXACT else None
+
+
+def _characteristic(loop: _Loop, bits: int) -> list[Enclosed]:
+    """P, monic, in descending powers of ζ."""
+    above, below = ([quotient(c, loop.below[0], bits) for c in part] for part in (loop.above, loop.below))
+    return _closed(sampled(loop.motion, bits), above, below, Enclosed(bits, 0))
+
+
+def _exactly(loop: _Loop) -> list[Enclosed]:
+    """A whole multiple of P, its first coefficient > 0, of a motion without spring and damper."""
+    found = _closed(sampled_free(loop.motion), loop.above, loop.below, Fraction(0))
+    scale = lcm(*(c.denominator for c in found)) * (1 if loop.below[0] > 0 else -1)
+    return [Enclosed(0, int(c * scale)) for c in found]
+
+
+def _closed(plant: Sampled, above: _Numbers, below: _Numbers, zero: Any) -> _Numbers:
+    free = _product(plant.denominator, below, zero)
+    for _ in range(plant.late):  # times z = ζ + 1
+        free = [x + y for x, y in zip([*free, zero], [zero, *free], strict=True)]
+    force = _product(plant.numerator, above, zero)
+    ahead = len(free) - len(force)
+    return [*free[:ahead], *(x + y for x, y in zip(free[ahead:], force, strict=True))]
+
+
+def _product(a: _Numbers, b: _Numbers, zero: Any) -> _Numbers:
+    out = [zero] * (len(a) + len(b) - 1)
+    for i, x in enumerate(a):
+        for j, y in enumerate(b):
+            out[i + j] = out[i + j] + x * y
+    return out
+
+
+def _covered(loop: _Loop) -> int:
+    """In how many boxes no root was found to meet the circle."""
+    order = len(loop.below) + 1 + int(loop.motion.late) + (loop.motion.late % 1 > 0)
+    most = min(MOST_BOXES, MOST_EFFORT // (order**3 + ceil(SERIES * loop.motion.norm)))
+    left, tried, shown = [(loop.motion, 0)], 0, 0
+    while left:
+        box, halved = left.pop()
+        tried += 1
+        if tried > most or halved > MOST_HALVINGS:
+            raise Invalid(f"that every value comes to rest was not confirmed in {tried} boxes")
+        if never_crosses(_characteristic(loop._replace(motion=box), BOX_BITS)):
+            shown += 1
+        else:
+            left += [(half, halved + 1) for half in box.halves(loop.motion)]
+    return shown

@@ -1,0 +1,1 @@
+"""One loop: its criterion, its closed forms, and motions that stay inside."""

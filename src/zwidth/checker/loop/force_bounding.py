@@ -1,0 +1,135 @@
+"""Force bounding: what the law credits is what the device loses, in whole counts and in rounded numbers.
+
+    w(d) = (b/T) d² + f_c |d|            lost at least, in a move d of one sample, beside f d
+    V(x) ≥ E + g (x − c), |x − c| ≤ Δ/2  what the hand has put in when it is at x, in the count around c
+
+    E' = E + g' D − κ (|g' − f| − φ)₊² − |g' − g| δ/2,  κ = 1/(4β)
+    |f'| ≤ φ + 2 √(β S) − h,             S = E' − |g'| δ/2; E' = g' = 0 where S would be < 0
+
+The law computes the last two lines with its own β, φ, δ and h, any g', and readings D apart.
+Its line is below V for ever, and V ≥ 0, if for all d, ψ and x, each of which is checked here,
+
+    w(d) ≥ ψ d − κ (|ψ| − φ)₊²           a move gives back no more than the line says
+    (g − g') (x − c) ≥ −|g' − g| δ/2     wherever in its count the hand was
+    f² ≤ (φ + 2 √(β S))²  ⇒  f d + w(d) + S ≥ 0,  the converter's half step within h
+
+Rounding, relative errors of at most u in each operation: E' is lowered by ε times the size of all that is
+summed, S and the bound by ε of theirs.  Forces, energies and readings may be any numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from ..document.reading import Invalid, get, quantity, with_no_more_than
+
+
+class _Device(NamedTuple):
+    rate: Fraction  # b/T
+    friction: Fraction  # f_c
+    resolution: Fraction  # Δ
+    step: Fraction  # ΔF
+
+
+class _Law(NamedTuple):
+    credit: Fraction  # β
+    friction: Fraction  # φ
+    size: Fraction  # δ
+    half_step: Fraction  # h
+    hair: Fraction  # ε
+    roundoff: Fraction  # u
+
+
+def force_bounding(document: Mapping[str, Any]) -> str:
+    device, law = _device(document), _law(document)
+    _moves_are_paid(device, law)
+    _counts_are_covered(device, law)
+    _bound_is_paid(device, law)
+    _lines_are_rounded_down(law)
+    _bounds_are_rounded_down(law)
+    return (
+        "friction takes at least what force bounding credits, at any position within a count and for moves "
+        f"of any length, rounding by {float(law.roundoff):.3g} of a number paid, contact made and broken"
+    )
+
+
+def _device(document: Mapping[str, Any]) -> _Device:
+    loop = get(document, "loop")
+    names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay", "force_resolution")
+    b, friction, resolution, period, delay, step = (quantity(loop, name) for name in names)
+    with_no_more_than(loop, len(names))
+    if period <= 0 or min(b, friction, resolution, step) < 0:
+        raise Invalid("T must be > 0 and b, f_c, Δ and ΔF ≥ 0")
+    if delay != 0:
+        raise Invalid("the force is applied late: the credit of a move would come before its cost")
+    return _Device(b / period, friction, resolution, step)
+
+
+def _law(document: Mapping[str, Any]) -> _Law:
+    names = ("credit", "friction", "count", "half_step", "hair", "roundoff")
+    law = _Law(*(quantity(get(document, "law"), name) for name in names))
+    with_no_more_than(get(document, "law"), len(names))
+    if law.credit <= 0 or min(law) < 0:
+        raise Invalid("the credit must be > 0, and no other number of the law below 0")
+    if law.hair >= 1 or law.roundoff >= 1:
+        raise Invalid("hair and roundoff must be below 1")
+    return law
+
+
+def _moves_are_paid(device: _Device, law: _Law) -> None:
+    """w(d) − ψ d + κ (|ψ| − φ)₊² ≥ 0 for all d and ψ.
+
+    Both signs alike, so ψ ≥ 0, and d ≥ 0 is the worse.  Up to ψ = φ (1 + u), which rounding may take for φ,
+    the friction pays; beyond, with y = ψ − φ ≥ 0, it is (f_c − φ) d + [(b/T) d² − y d + κ y²], and the
+    bracket is a quadratic form that is ≥ 0 exactly if its determinant is.
+    """
+    if law.friction * (1 + law.roundoff) > device.friction:
+        raise Invalid("the law credits more Coulomb friction than the device has, or not a rounding less")
+    kappa = 1 / (4 * law.credit)
+    if device.rate * kappa - Fraction(1, 4) < 0:
+        raise Invalid("the law credits more than b/T for a move")
+
+
+def _counts_are_covered(device: _Device, law: _Law) -> None:
+    """(g − g') (x − c) + |g' − g| δ/2 ≥ 0: a line in x, so at both ends of the count; of either sign."""
+    for end in (-device.resolution / 2, device.resolution / 2):
+        for turned in (-1, 1):
+            if turned * end + law.size / 2 < 0:
+                raise Invalid("the count that the law reckons with is smaller than the encoder's")
+
+
+def _bound_is_paid(device: _Device, law: _Law) -> None:
+    """f d + w(d) + S ≥ 0 for |f| ≤ φ + y, y² = 4 β S: S = κ y², and so the first inequality with ψ = −f.
+
+    What is left is the converter: a command of 0 stays 0, and any other is rounded by ΔF/2 at most.
+    """
+    if law.half_step < device.step / 2:
+        raise Invalid("the converter adds half a step, and the bound leaves less")
+
+
+def _lines_are_rounded_down(law: _Law) -> None:
+    """The line that is kept is not above the one that was proved.
+
+    Relative errors of the terms, (1 + u)ⁿ − 1: E, added to three times: n = 3.  g' D, of two readings that
+    are counts times Δ, both rounded, their difference, the product, the sums: 2 + 1 + 1 + 3 = 7.  κ (…)₊²,
+    with two roundings before it is squared, a product and a quotient, against |g' − f| + φ: 4 + 2 + 2 = 8.
+    |g' − g| δ/2: 2 + 1 = 3.  One more as ε M is taken off: all together at most 9, of M, the sum of their
+    sizes.  M itself is computed too small by 9 roundings at most, its readings by 2, ε M by 2 more.
+    """
+    u = law.roundoff
+    if (1 + u) ** 9 - 1 > law.hair * (1 - u) ** 13:
+        raise Invalid("what is taken off the energy does not pay for its rounding")
+
+
+def _bounds_are_rounded_down(law: _Law) -> None:
+    """(1 − ε) E − (1 + ε) |g| δ/2 and (1 − ε) (φ + 2 √(β S)) − h, computed, are not above the same without ε.
+
+    E is rounded twice, |g| δ/2 at least twice.  In the bound the product below the root, the root, the sum,
+    the product with 1 − ε and the difference are rounded; then the converter's step, its quotient, the sum
+    with ½ and the product with the step: 9 in all, the first halved by the root.
+    """
+    u = law.roundoff
+    if (1 - law.hair) * (1 + u) ** 9 > 1 or (1 + law.hair) * (1 - u) ** 2 < 1:
+        raise Invalid("what is taken off the bound does not pay for its rounding")

@@ -1,0 +1,1 @@
+"""Indices of a linear system, of one axis or several."""

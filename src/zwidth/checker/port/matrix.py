@@ -1,0 +1,262 @@
+"""A port of several axes with Herm F ≥ σ in the right half plane or outside the circle: proved.
+
+F = N D⁻¹, and Π = ½(Dᴴ N + Nᴴ D) − σ Dᴴ D.  Proved is
+
+    e_k(Π) ≥ 0 on the boundary for every k: the sums of principal minors, as polynomials in c
+    D = (R/π) (N + (g − σ) D) with R/π proper and every root of π inside, g > 0
+
+The sums are computed at more points than the degree, in whole numbers, by Berkowitz's recursion;
+the product is multiplied out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from itertools import count
+from math import lcm
+from typing import Any, NamedTuple
+
+from ..document.reading import Invalid, common_scale, get, integer, number, numbers
+from ..loop.proofs import _multiply, _strictly_positive, _sum
+from .index import MOST_WORK, _horner, _in_left_half_plane, _inside, _trimmed, system_of
+
+MOST_AXES = 12
+MOST_ORDER = 200
+MOST_POINTS = 4000
+
+Polynomial = list[Fraction]
+Gaussian = tuple[int, int]
+
+
+class _Ports(NamedTuple):
+    outputs: list[list[Polynomial]]  # N, ascending in s or z
+    inputs: list[list[Polynomial]]  # D
+    denominator: Polynomial
+    continuous: bool
+    level: Fraction
+    order: int
+    axes: int
+
+
+def read_ports(document: Mapping[str, Any]) -> _Ports:
+    """D = d and N = G d for the input index; exchanged for the output index."""
+    system, time, which = system_of(document)
+    d = _trimmed(numbers(get(system, "denominator")))
+    n = [[_trimmed(p) for p in row] for row in _square(get(system, "numerators"))]
+    if not d:
+        raise Invalid("the denominator is zero")
+    longest = max(len(p) for row in n for p in row)
+    if time == "discrete" and longest > len(d):
+        raise Invalid("G(z) has more zeros than poles")
+    order = max(longest, len(d)) - 1
+    if order > MOST_ORDER:
+        raise Invalid(f"the order is {order}, more than {MOST_ORDER}")
+    common_scale((*d, *(c for row in n for p in row for c in p)))
+    diagonal: list[list[Polynomial]] = [[d if i == j else [] for j in range(len(n))] for i in range(len(n))]
+    sides = (n, diagonal) if which == "input" else (diagonal, n)
+    return _Ports(*sides, d, time == "continuous", number(get(document, "level")), order, len(n))
+
+
+def _square(rows: Any) -> list[list[Polynomial]]:
+    if not isinstance(rows, Sequence) or not 0 < len(rows) <= MOST_AXES:
+        raise Invalid(f"a matrix must have 1 to {MOST_AXES} rows")
+    if any(not isinstance(row, Sequence) or len(row) != len(rows) for row in rows):
+        raise Invalid("a matrix must have as many columns as rows")
+    return [[numbers(entry) for entry in row] for row in rows]
+
+
+def positive_real_matrix(document: Mapping[str, Any]) -> str:
+    """Every e_k(Π) is nonnegative on the boundary, and the resolvent is stable."""
+    p, proof = read_ports(document), get(document, "proof")
+    offset = number(get(proof, "offset"))
+    if offset <= 0:
+        raise Invalid("the offset must be positive")
+    _nonnegative(p, get(proof, "minors"))
+    _stable(p, offset, get(proof, "resolvent"))
+    return f"the {get(document, 'index')} index is at least {float(p.level):g}"
+
+
+def _nonnegative(p: _Ports, minors: Any) -> None:
+    """e_k = κ |d|^{2·power} (1 − c)ⁱ (1 + c)ʲ s² g with κ > 0, and g > 0 on [−1, 1]."""
+    if not isinstance(minors, Sequence) or len(minors) != p.axes:
+        raise Invalid("every size of principal minors needs its proof")
+    powers = [integer(get(minor, "power")) for minor in minors]
+    claimed = [_product(get(minor, "positivity")) for minor in minors]
+    degree = max(
+        p.axes * p.order, *(len(q) + power * p.order for q, power in zip(claimed, powers, strict=True))
+    )
+    whole = _whole(p)
+    if degree > MOST_POINTS or degree * p.axes**3 * p.order * (1 + whole.bits / 1000) > MOST_WORK:
+        raise Invalid("the minors have too high a degree")
+    ratios: list[Fraction | None] = [None] * p.axes
+    for step in range(degree + 1):
+        c, weight, found = _minors_at(p, whole, Fraction(step + 1, degree // 2 + 2))
+        for k, (minor, power, q) in enumerate(zip(found, powers, claimed, strict=True)):
+            said = weight**power * _horner(q, c)
+            if ratios[k] is None and said and minor:
+                ratios[k] = minor / said
+            if minor != (ratios[k] or 0) * said or (ratios[k] or 0) < 0 or (said != 0) != (minor != 0):
+                raise Invalid("the factors do not multiply to the sum of the principal minors")
+
+
+def _product(proof: Mapping[str, Any]) -> list[int]:
+    """(1 − c)ⁱ (1 + c)ʲ s² g times a positive number, with the sign of g confirmed."""
+    at_one, at_minus_one = integer(get(proof, "at_one")), integer(get(proof, "at_minus_one"))
+    square, g = numbers(get(proof, "square")), numbers(get(proof, "factor"))
+    if not g or at_one + at_minus_one + 2 * len(square) + len(g) > MOST_POINTS:
+        raise Invalid("the factors of a sum of minors are missing, or too long")
+    _strictly_positive(g)
+    side, rest = (_in_whole_numbers(q) for q in (square, g))
+    product = _multiply(_multiply(side, side), rest) if side else []
+    for times, root in ((at_one, -1), (at_minus_one, 1)):
+        for _ in range(times):
+            product = _multiply(product, [1, root]) if product else product
+    return product
+
+
+def _in_whole_numbers(q: Polynomial) -> list[int]:
+    scale = common_scale(q)
+    return [int(c * scale) for c in q]
+
+
+class _Whole(NamedTuple):
+    """The polynomials of a port times `scale`, in whole numbers."""
+
+    scale: int
+    inputs: list[list[list[int]]]
+    outputs: list[list[list[int]]]
+    denominator: list[int]
+
+    @property
+    def bits(self) -> int:
+        """Of its largest coefficient."""
+        sides = (self.inputs, self.outputs)
+        return max(c.bit_length() for side in sides for row in side for q in row for c in q)
+
+
+def _whole(p: _Ports) -> _Whole:
+    sides = (p.inputs, p.outputs)
+    scale = lcm(*(x.denominator for side in sides for row in side for q in row for x in q))
+    inputs, outputs = ([[[int(c * scale) for c in q] for q in row] for row in side] for side in sides)
+    return _Whole(scale, inputs, outputs, [int(c * scale) for c in p.denominator])
+
+
+def _minors_at(p: _Ports, whole: _Whole, tangent: Fraction) -> tuple[Fraction, Fraction, list[Fraction]]:
+    """(c, |d|², e_1 … e_m) at tan θ/2 = tangent: s = j tan θ/2, all times (1 + c)^order; or z = e^{jθ}."""
+    t, b = tangent.numerator, tangent.denominator
+    c = Fraction(b * b - t * t, b * b + t * t)
+    point, unit = ((0, t), b) if p.continuous else ((b * b - t * t, 2 * t * b), b * b + t * t)
+    scale, inputs, outputs, denominator = whole
+    u, y = ([[_at(q, point, unit, p.order) for q in row] for row in side] for side in (inputs, outputs))
+    top, bottom = p.level.numerator, p.level.denominator
+    size = range(p.axes)
+
+    def entry(i: int, j: int) -> Gaussian:
+        """2·bottom·Π_ij."""
+        real = imaginary = 0
+        for k in size:
+            for a, z in ((u[k][i], y[k][j]), (y[k][i], u[k][j])):
+                real += bottom * (a[0] * z[0] + a[1] * z[1])
+                imaginary += bottom * (a[0] * z[1] - a[1] * z[0])
+            a, z = u[k][i], u[k][j]
+            real -= 2 * top * (a[0] * z[0] + a[1] * z[1])
+            imaginary -= 2 * top * (a[0] * z[1] - a[1] * z[0])
+        return real, imaginary
+
+    # u, y and d are unit^order · scale too large; (1 + c)^order makes polynomials in c of those in ω²
+    d = _at(denominator, point, unit, p.order)
+    factor = ((1 + c) if p.continuous else Fraction(1)) ** p.order / Fraction(unit**p.order * scale) ** 2
+    sums = _principal_sums([[entry(i, j) for j in size] for i in size])
+    share = factor / (2 * bottom)
+    return c, factor * (d[0] ** 2 + d[1] ** 2), [s * share ** (k + 1) for k, s in enumerate(sums)]
+
+
+def _at(ascending: Sequence[int], point: Gaussian, unit: int, order: int) -> Gaussian:
+    """unit^order · p(point/unit), a Gaussian integer."""
+    real, imaginary, power = 0, 0, unit ** (order + 1 - len(ascending))
+    for c in reversed(ascending):
+        real, imaginary = real * point[0] - imaginary * point[1], real * point[1] + imaginary * point[0]
+        real += c * power
+        power *= unit
+    return (real, imaginary) if ascending else (0, 0)
+
+
+def _principal_sums(a: list[list[Gaussian]]) -> list[int]:
+    """e_1 … e_m of a Hermitian matrix: det(λ + A) grown row by row (Berkowitz 1984), without division."""
+    poly: list[Gaussian] = [(1, 0)]
+    for n in range(len(a)):
+        row = [a[n][k] for k in range(n)]
+        column = [_negative(a[k][n]) for k in range(n)]
+        toeplitz = [(1, 0), a[n][n]]
+        for _ in range(n):
+            toeplitz.append(_dot(row, column))
+            column = [_negative(_dot(a[k][:n], column)) for k in range(n)]
+        poly = [_dot(toeplitz[i::-1], poly[: i + 1]) for i in range(n + 2)]
+    return [real for real, _ in poly[1:]]
+
+
+def _dot(a: Sequence[Gaussian], b: Sequence[Gaussian]) -> Gaussian:
+    real = imaginary = 0
+    for x, y in zip(a, b, strict=False):
+        real += x[0] * y[0] - x[1] * y[1]
+        imaginary += x[0] * y[1] + x[1] * y[0]
+    return real, imaginary
+
+
+def _negative(x: Gaussian) -> Gaussian:
+    return -x[0], -x[1]
+
+
+def _stable(p: _Ports, offset: Fraction, resolvent: Mapping[str, Any]) -> None:
+    """R M = π D with M = N + (g − σ) D invertible, R/π proper, and every root of π inside."""
+    pi = _trimmed(numbers(get(resolvent, "denominator")))
+    rows = [[_trimmed(q) for q in row] for row in _square(get(resolvent, "numerators"))]
+    if not pi or len(rows) != p.axes or max(len(q) for row in rows for q in row) > len(pi):
+        raise Invalid("the resolvent must be a proper matrix of the port's size")
+    common_scale((*pi, *(c for row in rows for q in row for c in q)))
+    share = offset - p.level
+    m = [
+        [_sum(n, [share * c for c in d]) for n, d in zip(*pair, strict=True)]
+        for pair in zip(p.outputs, p.inputs, strict=True)
+    ]
+    _same_products(rows, m, pi, p.inputs)
+    _invertible(m, p)
+    if not (_in_left_half_plane(pi[::-1]) if p.continuous else _inside(pi[::-1])):
+        raise Invalid("the port is not positive real: a root lies outside")
+
+
+def _same_products(
+    rows: list[list[Polynomial]], m: list[list[Polynomial]], pi: Polynomial, d: list[list[Polynomial]]
+) -> None:
+    size = range(len(m))
+    for i in size:
+        for j in size:
+            total = [-x for x in _multiply(pi, d[i][j])] if d[i][j] else []
+            for k in size:
+                if rows[i][k] and m[k][j]:
+                    total = _sum(total, _multiply(rows[i][k], m[k][j]))
+            if any(total):
+                raise Invalid("the resolvent is not that of the port")
+
+
+def _invertible(m: list[list[Polynomial]], p: _Ports) -> None:
+    """det M is not zero at some whole number; a polynomial of its degree has no more zeros than that."""
+    for at in count():
+        if at > p.axes * p.order:
+            raise Invalid("the port has no resolvent")
+        if _has_full_rank([[_horner(q, Fraction(at)) for q in row] for row in m]):
+            return
+
+
+def _has_full_rank(a: list[list[Fraction]]) -> bool:
+    rows = [list(row) for row in a]
+    for i in range(len(rows)):
+        pivot = next((k for k in range(i, len(rows)) if rows[k][i]), None)
+        if pivot is None:
+            return False
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        for k in range(i + 1, len(rows)):
+            ratio = rows[k][i] / rows[i][i]
+            rows[k] = [x - ratio * y for x, y in zip(rows[k], rows[i], strict=True)]
+    return True

@@ -1,0 +1,1 @@
+"""Storage functions on a board of readings, every move one by one."""

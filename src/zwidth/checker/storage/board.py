@@ -1,0 +1,239 @@
+"""A storage function re-checked: no move of the hand takes out more energy than V falls.
+
+The document gives V on a board: cells of one encoder count, M steps in each,
+and every remembered reading.  Whole numbers throughout: forces in multiples of
+a unit, energies in multiples of unit × step.  Between two neighbouring knots V is
+meant to be linear.  If for all knots x, x' that are D steps apart
+
+    V(s, x) ≥ −f (x' − x) − φ D − β (D² − ¼) [D ≥ 2] + V(s', x')
+
+then the same holds for all positions between, with φ |d| + β d²: on both triangles of the
+square of two steps, cut where d is constant, V(s, x) − V(s', x') and f d and φ |d| are
+linear, and the linear interpolation of D² − ¼ (0 for D ≤ 1) between two neighbouring D
+is at most d².
+
+Where a delay changes the force within a sample, the interval is two such moves, the
+function between them being the most that the second can lead to.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from collections.abc import Mapping
+from fractions import Fraction
+from itertools import product
+from math import ceil, lcm, prod
+from typing import Any
+
+from ..contact.law import Law, Losses, read_law, read_losses
+from ..document.effort import reserve, spend
+from ..document.reading import Invalid, get, integer, number
+
+MOST_VALUES = 60_000_000
+MOST_MOVES = 10_000_000
+_EXACT = 2**53
+AT_ONCE = 10**6
+"""Forces computed at once in whole numbers of any size, which take room."""
+
+
+def storage(document: Mapping[str, Any]) -> str:
+    import numpy as np  # loaded only where a storage function is to be checked
+
+    losses, law = read_losses(document), read_law(document)
+    if law.relaxing is not None:
+        from .relaxing import storage_of_relaxing
+
+        if losses.part < 1 or losses.curve:
+            raise Invalid("laws that relax are checked for delays of whole samples and one friction model")
+        return storage_of_relaxing(document, losses, law)
+    domain = get(document, "domain")
+    low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
+    fastest, steps = longest_move(domain), integer(get(domain, "steps_per_count"), 1)
+    reach = ceil(fastest)
+    unit = number(get(document, "force_unit"))
+    memory = law.memory + losses.delay
+    width, cells = 2 * reach + 1, high - low + 1
+    if cells < 1 or unit <= 0 or reach * steps > MOST_MOVES:
+        raise Invalid("the board is empty, or its moves are longer than can be checked")
+    states = cells * width**memory
+    if states * (steps + 1) > MOST_VALUES:
+        raise Invalid("the board is larger than can be checked")
+    reserve(16 * states * (steps + 1) + 8 * (states + width**memory) * (memory + 3))
+    spend(0.05 * states * (memory + 2))
+    _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
+    if law.surface != "none" and low > 1 - (memory + 1) * reach:
+        raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
+    shape = (cells, width**memory, steps + 1)
+    value = values_of(get(document, "storage"), shape)
+    if value.min() < 0:
+        raise Invalid("a storage function must be bounded below by 0")
+    moves = []  # of one interval: the forces, and what a move costs
+    for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):
+        if part > 0:
+            forces, off = _forces(law, losses, unit, low, high, reach, memory, age)
+            moves.append((forces, costs_of(losses, unit, off, part, fastest, steps)))
+    largest = int(value.max())
+    for forces, costs in moves:
+        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
+    if largest >= _EXACT:
+        raise Invalid("the numbers are too large to be compared exactly")
+    exists = _exists(low, high, reach, memory)
+    from .moves import first_violation, first_violation_in_parts
+
+    look: Any = first_violation if len(moves) == 1 else first_violation_in_parts
+    tables = [table.astype(np.float64) for move in moves for table in move]
+    at = look(value.astype(np.float64), exists, *tables, reach, steps)
+    if at >= 0:
+        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    side = f"up to {high + 1} counts inside" if law.surface != "none" else f"from {low} to {high + 1} counts"
+    return (
+        "no move takes out more than the storage function falls, "
+        f"at any position {side} and with any memory, for moves of up to {float(fastest):.6g} counts a sample"
+        + ("" if losses.part == 1 else ", as fast in each part of a sample with one force")
+    )
+
+
+def longest_move(domain: Any) -> Fraction:
+    """In one sample, in counts; between two knots it reaches no farther than the next one."""
+    fastest = number(get(domain, "largest_move_counts"))
+    if not 0 < fastest <= MOST_MOVES:
+        raise Invalid("the longest move must be > 0, and no longer than can be checked")
+    return fastest
+
+
+def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, fastest: Fraction, steps: int) -> Any:
+    """What a move over 0, 1, … steps in a part of the interval costs."""
+    import numpy as np
+
+    far = np.arange(ceil(fastest * steps * part) + 1, dtype=object)
+    costs = []
+    for friction, damping in losses.models:
+        drag = damping / (part * losses.period) * (losses.resolution / steps) // unit
+        lost = np.where(far > 1, drag * far * far - -(-drag // 4), 0)
+        costs.append((friction // unit - off) * far + lost)
+    if len(costs) == 1:
+        return costs[0]
+    # between two steps only one model counts, and at a step the lesser of the two beside it
+    least = [None] * len(far)
+    for d in range(len(far) - 1):
+        used = max(costs, key=lambda c: c[d] + c[d + 1])
+        for end in (d, d + 1):
+            least[end] = used[end] if least[end] is None else min(least[end], used[end])
+    return np.array(least, dtype=object)
+
+
+def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int, reach: int) -> None:
+    """Forces must fit their numbers before they are multiplied."""
+    most = sum((abs(c) for c in law.taps), Fraction(0)) * losses.resolution * farthest
+    highest = max((abs(f) for _, f in law.points), default=Fraction(0))
+    most += highest * (1 + abs(law.rate) * losses.resolution * reach) + (law.limit or 0) + (law.step or 0)
+    if most / unit >= _EXACT:
+        raise Invalid("the forces are too large to be compared exactly")
+
+
+def signed(value: Any) -> int:
+    found = number(value)
+    if found.denominator != 1 or abs(found) > 10**7:
+        raise Invalid("a cell is a whole number of ordinary size")
+    return int(found)
+
+
+def values_of(text: Any, shape: tuple[int, ...], kind: str = "<i8") -> Any:
+    import numpy as np
+
+    if not isinstance(text, str):
+        raise Invalid("storage functions and tables must be text")
+    size = 8 * prod(shape)
+    try:
+        packed = base64.b64decode(text, validate=True)
+        raw = zlib.decompressobj().decompress(packed, size + 1)
+    except (ValueError, zlib.error) as error:
+        raise Invalid(f"a storage function or table cannot be unpacked: {error}") from None
+    if len(raw) != size:
+        raise Invalid("the storage function has not one value for each state")
+    return np.frombuffer(raw, dtype=kind).reshape(shape)
+
+
+def histories_of(reach: int, memory: int) -> list[tuple[int, ...]]:
+    return list(product(range(-reach, reach + 1), repeat=memory))
+
+
+def _exists(low: int, high: int, reach: int, memory: int) -> Any:
+    """Which states there are: all remembered readings on the board."""
+    import numpy as np
+
+    out = np.ones((high - low + 1, (2 * reach + 1) ** memory), dtype=np.bool_)
+    cells = np.arange(low, high + 1)
+    for back in np.cumsum(_columns(reach, memory), axis=1).T:
+        reading = cells[:, None] + back[None, :]
+        out &= (reading >= low) & (reading <= high)
+    return out
+
+
+def _columns(reach: int, memory: int) -> Any:
+    """The histories of `histories_of`, one in each row of an array."""
+    import numpy as np
+
+    width = 2 * reach + 1
+    places, out = np.arange(width**memory), np.empty((width**memory, memory), dtype=np.int64)
+    for k in range(memory):
+        out[:, k] = places // width ** (memory - 1 - k) % width - reach
+    return out
+
+
+def _forces(
+    law: Law, losses: Losses, unit: Fraction, low: int, high: int, reach: int, memory: int, age: int
+) -> tuple[Any, int]:
+    """Every state's force of a reading's age in units, and by how many units one may be off."""
+    import numpy as np
+
+    cells = np.arange(low, high + 1, dtype=np.int64)
+    columns = _columns(reach, memory)
+    ages = [cells[:, None] + columns[:, :a].sum(axis=1)[None, :] for a in range(memory + 1)]
+    ages = [np.broadcast_to(a, (len(cells), len(columns))) for a in ages]
+    ages = ages[age : age + law.memory + 1]
+    if law.step is not None or law.rate:
+        rows = max(1, AT_ONCE // len(columns))
+        parts = [slice(first, first + rows) for first in range(0, len(cells), rows)]
+        total = np.concatenate([_unrounded(law, losses, unit, [a[part] for a in ages]) for part in parts])
+    elif law.points:
+        table = [int(law._spring(n * losses.resolution) // unit) for n in range(low, high + 1)]
+        total = np.array(table, dtype=np.int64)[np.clip(ages[0], low, high) - low]
+    else:
+        total = np.zeros((len(cells), len(columns)), dtype=np.int64)
+        for c, reading in zip(law.taps, ages, strict=True):
+            u = np.where(reading > 0, reading, 0) if law.surface == "penetration" else reading
+            total = total + int(c * losses.resolution // unit) * u
+    if law.clamped:
+        total = np.where(total < 0, 0, total)
+    if law.limit is not None:
+        most = int(law.limit // unit)
+        total = np.minimum(np.maximum(total, -most), most)
+    if law.surface != "none":
+        total = np.where(ages[0] <= 0, 0, total)
+    off = len(law.taps) * max(abs(low), abs(high)) + 2  # each tap is rounded down, times a reading
+    return total, off
+
+
+def _unrounded(law: Law, losses: Losses, unit: Fraction, ages: list[Any]) -> Any:
+    """The forces of some states before clamp and limit, in units: the only rounding comes last."""
+    import numpy as np
+
+    if law.points:
+        moved = ages[0] - ages[1] if law.rate else 0 * ages[0]
+        several, place = np.unique(np.stack([ages[0].ravel(), moved.ravel()]), axis=1, return_inverse=True)
+        springs = {n: law._spring(int(n) * losses.resolution) for n in np.unique(several[0])}
+        rise = law.rate * losses.resolution
+        wished = [springs[n] * (1 + rise * int(e)) for n, e in several.T]
+    else:
+        fed = [np.where(a > 0, a, 0) if law.surface == "penetration" else a for a in ages]
+        per_count = [c * losses.resolution for c in law.taps]
+        whole = lcm(*(c.denominator for c in per_count))
+        parts = sum(int(c * whole) * a.astype(object) for c, a in zip(per_count, fed, strict=True))
+        several, place = np.unique(parts, return_inverse=True)
+        wished = [Fraction(n, whole) for n in several]
+    if law.step is not None:
+        wished = [(w / law.step + Fraction(1, 2)) // 1 * law.step for w in wished]
+    units = np.array([int(w // unit) for w in wished], dtype=np.int64)
+    return units[place].reshape(ages[0].shape)

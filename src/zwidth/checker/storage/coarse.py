@@ -1,0 +1,157 @@
+"""A storage function on cells of any length re-checked: the encoder is finer than what is looked at.
+
+y = x − Δ: the law acts inside where the reading is above 0, exactly where y ≥ 0, and every reading q is
+y + Δ/2 but for Δ/2.  So a law of readings, f = Σ c_j q_{k−j}, is F = Σ c_j (y_{k−j} + Δ/2), but for ‖c‖₁ Δ/2,
+which Coulomb friction pays for.  F is linear between the cells' ends in all coordinates y_k, y_{k−1}, …
+
+V is given at these ends and linear on the simplices between them that are cut where y_i − y_j is whole.
+There y' − y is D or D + 1, and F at the corners differs by κ h at most, κ = max(Σ c⁺, Σ c⁻).  So for a
+cost of φ |d| + β d²
+
+    V(s) ≥ −F (y' − y) − φ D − L(D) + V(s'),   L(0) = 0,  L(1) = −κ h²,  L(D) = β D² h² − (β + κ) h²/4
+
+at the corners is enough for all positions between.  At y = 0 all has two values, from outside and inside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import ceil
+from typing import Any, NamedTuple
+
+from ..contact.law import Law, Losses, read_law, read_losses
+from ..document.reading import Invalid, get, integer, number
+from .board import histories_of, signed, values_of
+
+MOST_VALUES = 4_000_000
+MOST_CELLS = 100_000
+_EXACT = 2**53
+
+
+class _Line(NamedTuple):
+    """Cells of length h from low to high; moves of so many cells; the corners' places, whether inside."""
+
+    length: Fraction
+    fastest: Fraction
+    reach: int
+    memory: int
+    places: list[int]
+    inside: list[bool]
+
+
+def coarse_storage(document: Mapping[str, Any]) -> str:
+    import numpy as np  # loaded only where a storage function is to be checked
+
+    losses, law = read_losses(document), read_law(document)
+    if law.points or law.clamped or law.relaxing or law.limit is not None or law.step is not None:
+        raise Invalid("cells of any length are for laws that are linear inside")
+    if losses.curve:
+        raise Invalid("cells of any length are for one friction model")
+    line = _line(document, losses, law)
+    unit = number(get(document, "force_unit"))
+    if unit <= 0:
+        raise Invalid("the force unit must be > 0")
+    width = 2 * line.reach + 1
+    shape = (len(line.places), width**line.memory)
+    if shape[0] * shape[1] > MOST_VALUES:
+        raise Invalid("the board is larger than can be checked")
+    value = values_of(get(document, "storage"), shape)
+    if value.min() < 0:
+        raise Invalid("a storage function must be bounded below by 0")
+    moves = []
+    for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):
+        if part > 0:
+            forces, off = _forces(law, losses, line, unit, age)
+            moves.append((forces, _costs(law, losses, line, unit, off, part)))
+    largest = int(value.max())
+    for forces, costs in moves:
+        largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
+    if largest >= _EXACT:
+        raise Invalid("the numbers are too large to be compared exactly")
+    from .moves import first_violation_in_parts_on_line, first_violation_on_line
+
+    look: Any = first_violation_on_line if len(moves) == 1 else first_violation_in_parts_on_line
+    tables = [table.astype(np.float64) for move in moves for table in move]
+    at = look(value.astype(np.float64), _exists(line), *tables, np.array(line.places), line.reach)
+    if at >= 0:
+        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    speed = line.fastest * line.length / losses.period
+    length = "rad" if any(str(key).endswith("_rad") for key in get(document, "loop")) else "m"
+    return (
+        "no move takes out more than the storage function falls, at any position up to "
+        f"{float(line.places[-1] * line.length):.6g} {length} and at any count, for hands of up to "
+        f"{float(speed):.6g} {length}/s over each time in which one force is held"
+    )
+
+
+def _line(document: Mapping[str, Any], losses: Losses, law: Law) -> _Line:
+    domain = get(document, "domain")
+    low, high = (signed(get(domain, k)) for k in ("lowest_cell", "highest_cell"))
+    length = number(get(domain, "counts_per_cell")) * losses.resolution
+    fastest = number(get(domain, "largest_move_cells"))
+    if not (low < 0 < high and high - low <= MOST_CELLS and length > 0 and 0 < fastest <= MOST_CELLS):
+        raise Invalid("the board is empty, or has more cells than can be checked")
+    memory = law.memory + losses.delay
+    if law.surface != "none" and low > -(memory + 1) * fastest:
+        raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
+    if law.surface == "none" and low * length + losses.resolution > -high * length:
+        raise Invalid("the board must reach as far on the one side as on the other")
+    if integer(get(domain, "remembered")) != memory:
+        raise Invalid("the law remembers another number of readings")
+    sheets = law.surface != "none"
+    places = [*range(low, 1), *range(0 if sheets else 1, high + 1)]
+    inside = [not sheets or k >= 1 - low for k in range(len(places))]
+    return _Line(length, fastest, ceil(fastest) + sheets, memory, places, inside)
+
+
+def _columns(line: _Line) -> Any:
+    """The corners that are remembered, by the present one and by history; beyond the board at its ends."""
+    import numpy as np
+
+    histories = histories_of(line.reach, line.memory)
+    differences = np.array(histories, dtype=np.int64).reshape(len(histories), line.memory)
+    now = np.arange(len(line.places), dtype=np.int64)
+    return [now[:, None] + differences[:, :a].sum(axis=1)[None, :] for a in range(line.memory + 1)]
+
+
+def _exists(line: _Line) -> Any:
+    import numpy as np
+
+    out = np.ones((len(line.places), (2 * line.reach + 1) ** line.memory), dtype=np.bool_)
+    for corner in _columns(line):
+        out &= (corner >= 0) & (corner < len(line.places))
+    return out
+
+
+def _forces(law: Law, losses: Losses, line: _Line, unit: Fraction, age: int) -> tuple[Any, int]:
+    """F at every corner in units, and by how many units it may be off."""
+    import numpy as np
+
+    farthest = max(abs(place) for place in line.places)
+    size = sum((abs(c) for c in law.taps), Fraction(0))
+    if size * (line.length * farthest + losses.resolution) / unit >= _EXACT:
+        raise Invalid("the forces are too large to be compared exactly")
+    places, inside = np.array(line.places, dtype=np.int64), np.array(line.inside)
+    corners = [np.clip(corner, 0, len(places) - 1) for corner in _columns(line)][age : age + law.memory + 1]
+    total = np.zeros(corners[0].shape, dtype=np.int64)
+    for c, corner in zip(law.taps, corners, strict=True):
+        per_cell, middle = int(c * line.length // unit), int(c * losses.resolution / 2 // unit)
+        fed = per_cell * places[corner] + middle
+        total = total + (np.where(inside[corner], fed, 0) if law.surface == "penetration" else fed)
+    return np.where(inside[corners[0]], total, 0), len(law.taps) * (farthest + 1)
+
+
+def _costs(law: Law, losses: Losses, line: _Line, unit: Fraction, off: int, part: Fraction) -> Any:
+    """What a move over 0, 1, … cells in a part of the interval costs."""
+    import numpy as np
+
+    friction, damping = losses.models[0]
+    friction -= sum((abs(c) for c in law.taps), Fraction(0)) * losses.resolution / 2
+    rising, falling = (sum((max(sign * c, Fraction(0)) for c in law.taps), Fraction(0)) for sign in (1, -1))
+    bend = max(rising, falling)
+    drag = damping / (part * losses.period) * line.length // unit
+    lost = -(-bend * line.length // unit)
+    far = np.arange(ceil(line.fastest * part) + 1, dtype=object)
+    curved = np.where(far > 1, drag * far * far - -(-(drag + lost) // 4), np.where(far > 0, -lost, 0))
+    return (friction // unit - off) * far + curved

@@ -1,0 +1,121 @@
+"""A storage function of a law that relaxes: re-checked at every level, and where a move passes one.
+
+The law adds y = g (u − a) with a' = p a + (1 − p) u.  V is given at levels of a and
+is meant to be linear between them, as it is between knots.  Along a between two
+levels, V(s, a) + f(a) d is linear and V(s', a') has one kink at most, where a' passes
+a level.  So what holds at both levels and there holds between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from math import ceil
+from typing import Any
+
+from ..contact.law import Law, Losses
+from ..document.reading import Invalid, get, integer, number
+from .board import MOST_MOVES, MOST_VALUES, costs_of, histories_of, longest_move, signed, values_of
+
+PART = 2**16
+_MOST = 2**61
+
+
+def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -> str:
+    """Check every move; says what was proved."""
+    import numpy as np
+
+    from .moves import first_relaxing_violation
+
+    assert law.relaxing is not None
+    if law.limit is not None:
+        raise Invalid("a force limit together with a law that relaxes is not covered")
+    domain = get(document, "domain")
+    low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
+    fastest, steps = longest_move(domain), integer(get(domain, "steps_per_count"), 1)
+    reach = ceil(fastest)
+    per_count = integer(get(domain, "levels_per_count"), 1)
+    unit = number(get(document, "force_unit"))
+    least = 0 if law.surface == "penetration" else low
+    levels = (max(high, least + 1) - least) * per_count + 1
+    columns = (2 * reach + 1) ** losses.delay
+    if reach * steps > MOST_MOVES:
+        raise Invalid("the moves are longer than can be checked")
+    if high < low or unit <= 0 or (high - low + 1) * columns * levels * (steps + 1) > MOST_VALUES:
+        raise Invalid("the board is empty, or larger than can be checked")
+    if law.surface == "penetration" and low > 1 - (losses.delay + 1) * reach:
+        raise Invalid("the board must reach so far out that a hand beyond it feels no force")
+    value = values_of(get(document, "storage"), (high - low + 1, columns, levels, steps + 1))
+    if value.min() < 0:
+        raise Invalid("a storage function must be bounded below by 0")
+    spring = int(law.taps[0] * losses.resolution // unit)
+    branch = int(law.relaxing[1] * losses.resolution / per_count // unit)
+    off = max(abs(low), abs(high)) + 2 + 2 * levels + 2
+    costs = costs_of(losses, unit, off, Fraction(1), fastest, steps)
+    forces = _forces(law, spring, branch, low, high, least, per_count, levels)
+    images = _images(law, low, high, least, per_count, levels)
+    rows = _rows(low, high, reach, losses.delay)
+    span = int(value.max()) + 2 * int(np.abs(forces).max()) * len(costs) + int(abs(costs).max())
+    rise = int(np.abs(np.diff(value, axis=2)).max()) + 2 * abs(branch) * len(costs) if levels > 1 else 0
+    if span >= _MOST or max(rise, int(np.abs(forces).max()) * len(costs)) * PART >= 2**62:
+        raise Invalid("the numbers are too large to be compared exactly")
+    tables = (rows, forces[0], forces[1], images[0], images[1], costs.astype(np.int64))
+    at = first_relaxing_violation(value, *tables, reach, steps)
+    if at >= 0:
+        raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    return (
+        f"no move takes out more than the storage function falls, at any position from {low} to {high + 1} "
+        f"counts and with any memory, for moves of up to {float(fastest):.6g} counts a sample"
+    )
+
+
+def _forces(
+    law: Law, spring: int, branch: int, low: int, high: int, least: int, per_count: int, levels: int
+) -> Any:
+    """Force by reading and level, for a move inwards and for one outwards."""
+    import numpy as np
+
+    both = np.zeros((2, high - low + 1, levels), dtype=np.int64)
+    for n in range(low, high + 1):
+        u = max(n, 0) if law.surface == "penetration" else n
+        line = [spring * u + branch * ((u - least) * per_count - i) for i in range(levels)]
+        if law.surface != "none" and n <= 0:
+            continue
+        for i, f in enumerate(line):
+            near = line[max(i - 1, 0) : i + 2]
+            both[1, n - low, i] = max(f, 0) if law.clamped else f
+            # max(0, f) is no line where f changes its sign: inwards, 0 is below it and costs the hand less
+            both[0, n - low, i] = 0 if law.clamped and min(near) <= 0 else f
+    return both
+
+
+def _images(law: Law, low: int, high: int, least: int, per_count: int, levels: int) -> Any:
+    """Where a level goes under each reading, rounded down and up to PART of a level."""
+    import numpy as np
+
+    assert law.relaxing is not None
+    pole: Fraction = law.relaxing[0]
+    both = np.zeros((2, high - low + 1, levels), dtype=np.int64)
+    for n in range(low, high + 1):
+        u = max(n, 0) if law.surface == "penetration" else n
+        for i in range(levels):
+            image = (pole * i + (1 - pole) * (u - least) * per_count) * PART
+            if law.resets and u <= 0:
+                image = Fraction(-least * per_count * PART)
+            both[0, n - low, i] = image // 1
+            both[1, n - low, i] = -(-image // 1)
+    return both
+
+
+def _rows(low: int, high: int, reach: int, delay: int) -> Any:
+    """The row of the reading from which the acting force was computed; −1 if a reading is off the board."""
+    import numpy as np
+
+    columns = histories_of(reach, delay)
+    out = np.full((high - low + 1, len(columns)), -1, dtype=np.int64)
+    for n in range(low, high + 1):
+        for c, differences in enumerate(columns):
+            readings = [n + sum(differences[:k]) for k in range(delay + 1)]
+            if all(low <= r <= high for r in readings):
+                out[n - low, c] = readings[-1] - low
+    return out
