@@ -7,9 +7,10 @@ verdict shows this, and takes it from nowhere else.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from fractions import Fraction
-from typing import Any, Literal, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Literal, NamedTuple
+
+from .document.fields import Read
 
 Contact = Literal["made and broken", "kept", "both sides"]
 FedWith = Literal["position", "penetration", ""]
@@ -53,11 +54,6 @@ class Scope(NamedTuple):
     fed_with: FedWith = ""
 
 
-def scope_of(document: Mapping[str, Any]) -> Scope:
-    """The scope of one certificate or witness that the checker has accepted."""
-    return _SCOPES[document["kind"]](document)
-
-
 def weakest(scopes: Sequence[Scope]) -> Scope | None:
     """What proofs claim that cover something only together; None where they show different things."""
     contacts = {scope.contact for scope in scopes}
@@ -73,103 +69,75 @@ def weakest(scopes: Sequence[Scope]) -> Scope | None:
     )
 
 
-def _encoder(loop: Mapping[str, Any]) -> str:
-    steps = [value for key, value in loop.items() if key.startswith("resolution")]
-    return COUNTED if any(Fraction(str(step)) for step in steps) else IDEAL
+def _encoder(told: Read) -> str:
+    return COUNTED if told.loop.resolution else IDEAL
 
 
-def _of_every_hand(touched: Contact, shows: str = PASSIVE) -> Callable[[Mapping[str, Any]], Scope]:
-    def scope(document: Mapping[str, Any]) -> Scope:
-        loop = document["loop"]
-        contact = touched if loop["unilateral"] else BOTH_SIDES
-        return Scope(shows, "every", contact, _encoder(loop))
-
-    return scope
+def of_every_hand(touched: Contact, shows: str = PASSIVE) -> Callable[[Read], Scope]:
+    """Every hand; with contact as said where the law has a surface."""
+    return lambda told: Scope(
+        shows, contact=touched if told.loop.unilateral else BOTH_SIDES, encoder=_encoder(told)
+    )
 
 
-def _of_a_fed_law(document: Mapping[str, Any]) -> Scope:
+def of_a_fed_law(told: Read) -> Scope:
     """The proof holds for what its memory is fed with, and may fail for the other."""
-    return _of_every_hand(BROKEN)(document)._replace(fed_with=document["law"]["fed_with"])
+    return of_every_hand(BROKEN)(told)._replace(fed_with=told.law.fed_with)
 
 
-def _force_bounding(document: Mapping[str, Any]) -> Scope:
+def of_slow_hands(told: Read) -> Scope:
+    """Hands within a bound on their speed."""
+    return of_every_hand(BROKEN)(told)._replace(hands="bounded")
+
+
+def of_points(shows: str) -> Callable[[Read], Scope]:
+    """A spring that acts everywhere."""
+    return lambda told: Scope(shows, encoder=_encoder(told))
+
+
+def of_force_bounding(told: Read) -> Scope:
     """Whatever is commanded, contact or none; it reckons with its own limit and with half a step."""
-    loop = document["loop"]
-    stepped = any(Fraction(str(v)) for k, v in loop.items() if k.startswith("force_resolution"))
-    return Scope(PASSIVE, "every", BROKEN, _encoder(loop), True, stepped)
+    stepped = told.loop.force_resolution > 0
+    return Scope(PASSIVE, "every", BROKEN, _encoder(told), True, stepped)
 
 
-def _on_a_grid(shows: str) -> Callable[[Mapping[str, Any]], Scope]:
-    def scope(document: Mapping[str, Any]) -> Scope:
-        law = document["law"]
-        contact = BOTH_SIDES if law.get("surface") == "none" else BROKEN
-        limited, stepped = (any(k.startswith(n) for k in law) for n in ("force_limit", "force_step"))
-        hands = "bounded" if shows == PASSIVE else "every"
-        return Scope(shows, hands, contact, _encoder(document["loop"]), limited, stepped)
+def on_a_board(shows: str) -> Callable[[Read], Scope]:
+    """Hands within the board; a motion is one whatever they are."""
+
+    def scope(told: Read) -> Scope:
+        law = told.law
+        contact = BOTH_SIDES if law.surface == "none" else BROKEN
+        limited, stepped = law.force_limit is not None, law.force_step is not None
+        return Scope(shows, _hands(shows), contact, _encoder(told), limited, stepped)
 
     return scope
 
 
-def _of_a_table(shows: str) -> Callable[[Mapping[str, Any]], Scope]:
+def of_a_row(shows: str) -> Callable[[Read], Scope]:
     """Laws in a row: the table lists the forces as they come out, whatever made them."""
-
-    def scope(document: Mapping[str, Any]) -> Scope:
-        hands = "bounded" if shows == PASSIVE else "every"
-        return Scope(shows, hands, BROKEN, _encoder(document["loop"]))
-
-    return scope
+    return lambda told: Scope(shows, _hands(shows), BROKEN, _encoder(told))
 
 
-def _activity(document: Mapping[str, Any]) -> Scope:
-    reduced = document["proof"].get("reduced")
-    inner = _SCOPES["linear"](document) if reduced is None else scope_of(reduced)
-    return inner._replace(hands="activity")
+def _hands(shows: str) -> str:
+    return "bounded" if shows == PASSIVE else "every"
 
 
-def _motion(document: Mapping[str, Any]) -> Scope:
+def of_a_motion(told: Read) -> Scope:
     """A motion that stays inside refutes a loop with contact kept; one that leaves does not."""
-    loop = document["loop"]
-    x = [Fraction(str(v)) for key in document if key.startswith("positions_") for v in document[key]]
-    contact = (KEPT if min(x[1:-1], default=1) > 0 else BROKEN) if loop["unilateral"] else BOTH_SIDES
-    return Scope(ACTIVE, "every", contact, _encoder(loop))
+    stays = min(told.positions[1:-1], default=1) > 0
+    return of_every_hand(KEPT if stays else BROKEN, ACTIVE)(told)
 
 
-def _known_hand(shows: str) -> Callable[[Mapping[str, Any]], Scope]:
-    return lambda document: Scope(shows, "known", KEPT)
+def of_a_known_hand(shows: str, contact: Contact = KEPT) -> Callable[[Read], Scope]:
+    """One hand, of which everything is known."""
+    return lambda told: Scope(shows, "known", contact)
 
 
-def _port(shows: str) -> Callable[[Mapping[str, Any]], Scope]:
-    return lambda document: Scope(shows)
+def of_an_arm(told: Read) -> Scope:
+    """The document says whether steps are counted."""
+    return Scope(PASSIVE, encoder=told.loop.encoder)
 
 
-_SCOPES: dict[str, Callable[[Mapping[str, Any]], Scope]] = {
-    "spring": _of_every_hand(BROKEN),
-    "contact": _of_every_hand(BROKEN),
-    "relaxing contact": _of_a_fed_law,
-    "multiplier contact": _of_a_fed_law,
-    "touching motion": _of_every_hand(BROKEN, ACTIVE),
-    "nonlinear spring": lambda document: Scope(PASSIVE, encoder=_encoder(document["loop"])),
-    "linear": _of_every_hand(KEPT),
-    "quantized": _of_every_hand(KEPT),
-    "delays": _of_every_hand(KEPT),
-    "force bounding": _force_bounding,
-    "slow hands": lambda document: _of_every_hand(BROKEN)(document)._replace(hands="bounded"),
-    "storage": _on_a_grid(PASSIVE),
-    "coarse storage": _on_a_grid(PASSIVE),
-    "row storage": _of_a_table(PASSIVE),
-    "active hand": _activity,
-    "arm": lambda document: Scope(PASSIVE, encoder=document["loop"]["encoder"]),
-    "endless pull": lambda document: Scope(ACTIVE, encoder=_encoder(document["loop"])),
-    "violation": _of_every_hand(KEPT, ACTIVE),
-    "motion": _motion,
-    "contact motion": _on_a_grid(ACTIVE),
-    "row motion": _of_a_table(ACTIVE),
-    "stability": _known_hand(STABLE),
-    "absolute stability": lambda document: Scope(STABLE, "known", BROKEN),
-    "instability": _known_hand(UNSTABLE),
-    "vibration": _known_hand(UNSTABLE),
-    "positive real": _port(INDEX),
-    "positive real matrix": _port(INDEX),
-    "extraction": _port(NO_INDEX),
-    "matrix extraction": _port(NO_INDEX),
-}
+def of_a_port(shows: str) -> Callable[[Read], Scope]:
+    """A system, and no loop."""
+    return lambda told: Scope(shows)

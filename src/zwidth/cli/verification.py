@@ -10,28 +10,11 @@ from typing import Any, NamedTuple
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.checker import Scope, Verification
-from zwidth.cli.arm_rows import arm_rows
-from zwidth.cli.numerals import shown, unit_text
+from zwidth.checker import Scope, Verified
+from zwidth.cli.numerals import shown
 from zwidth.cli.report import page
 from zwidth.cli.table import plain
 from zwidth.passivity.certificate import evidence, verify_document
-from zwidth.passivity.document import unit_key, unit_suffix
-from zwidth.quantity.glossary import GLOSSARY
-
-_TABLES = {
-    **dict.fromkeys(
-        ("positive real", "positive real matrix", "extraction", "matrix extraction"), ("system", "motion")
-    ),
-    **dict.fromkeys(("contact", "relaxing contact", "multiplier contact", "force bounding"), ("loop", "law")),
-    "nonlinear spring": ("loop",),
-    "touching motion": ("loop", "law"),
-    **dict.fromkeys(
-        ("storage", "coarse storage", "row storage", "slow hands", "contact motion", "row motion"),
-        ("loop", "law", "domain", "bounds"),
-    ),
-}
-"""What a document of each kind is of, besides its loop: only what is checked is shown."""
 
 _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 """A document that claims nothing of hands beyond its bounds."""
@@ -41,7 +24,7 @@ class Part(NamedTuple):
     """One certificate or witness of a document, and what the checker says of it."""
 
     evidence: Mapping[str, Any]
-    verification: Verification
+    verification: Verified
 
 
 def verifications(document: object) -> list[Part]:
@@ -69,7 +52,7 @@ def _refused(part: Part, outcome: str, misfit: str | None) -> Part:
     if misfit is None or not part.verification.valid:
         return part
     return part._replace(
-        verification=Verification(False, f"the verdict says {outcome}, and its evidence {misfit}")
+        verification=Verified(False, f"the verdict says {outcome}, and its evidence {misfit}")
     )
 
 
@@ -140,71 +123,17 @@ def _head(covered: Scope, kind: str) -> str:
     return f"The {'arm' if kind == 'arm' else 'loop'} below is passive{kept}, proved"
 
 
-def _singles(evidence: Mapping[str, object]) -> list[Mapping[str, object]]:
-    """A proof, or those of its corners."""
-    corners = evidence.get("corners") if evidence.get("kind") == "corners" else None
-    parts = corners if isinstance(corners, list) else [evidence]
-    return [part for part in parts if isinstance(part, Mapping)]
-
-
 def _rows(part: Part) -> Iterator[tuple[str, str]]:
-    if part.verification.energy is not None and part.evidence.get("kind") not in (
-        "extraction",
-        "matrix extraction",
-    ):
-        yield "energy extracted", _joules(part.verification.energy)
-    singles = _singles(part.evidence)
-    if part.evidence.get("kind") == "corners":
-        yield "corner", f"1 of {len(singles)}, each with a proof of its own"
-    if not singles:
+    """What the checker read, and no other entry of the document."""
+    found = part.verification
+    if found.energy is not None and (found.scope is None or found.scope.shows != "index below"):
+        yield "energy extracted", _joules(found.energy)
+    if not found.valid:
         return
-    shown_part = singles[0]
-    if "kind" in shown_part:
-        yield "kind", plain(str(shown_part["kind"]))
-    known = _known_keys()
-    for key, value in shown_part.items():
-        if key in known and not isinstance(value, (Mapping, list)):
-            name, unit = known[key]
-            yield name, f"{plain(_text(value))} {unit}"
-    for table in _TABLES.get(str(shown_part.get("kind")), ("loop",)):
-        content = shown_part.get(table)
-        if table == "law" and str(shown_part.get("kind")) in ("row storage", "row motion"):
-            told = content.get("description") if isinstance(content, Mapping) else None
-            yield "told, not checked", plain(str(told))
-            continue
-        for key, value in content.items() if isinstance(content, Mapping) else ():
-            name, unit = known.get(str(key), (str(key).replace("_", " "), ""))
-            yield plain(name), f"{plain(_text(value))} {unit}".rstrip()
-    if shown_part.get("kind") == "arm":
-        yield from arm_rows(shown_part)
-
-
-def _known_keys() -> dict[str, tuple[str, str]]:
-    """The keys of quantities in a document, as words and unit."""
-    keys = {
-        unit_key(name, motion): (name.replace("_", " "), unit_text(entry.unit_for(motion)))
-        for name, entry in GLOSSARY.items()
-        for motion in ("linear", "rotary")
-    }
-    powers = "in descending powers of z"
-    taps = {f"taps_{unit_suffix(u)}": ("taps", unit_text(u)) for u in ("N/m", "N*m/rad")}
-    damping = [
-        (unit_suffix(u), unit_text(u)) for u in map(GLOSSARY["damping"].unit_for, ("linear", "rotary"))
-    ]
-    hand = {"below_Hz": ("below", "Hz"), **{f"activity_{key}": ("activity", unit) for key, unit in damping}}
-    return {
-        **keys,
-        **taps,
-        **hand,
-        "numerator": ("numerator", powers),
-        "denominator": ("denominator", powers),
-    }
-
-
-def _text(value: object) -> str:
-    if isinstance(value, list):
-        return f"[{', '.join(str(v) for v in value[:12])}{', …' if len(value) > 12 else ''}]"
-    return str(value)
+    yield "kind", plain(str(part.evidence.get("kind")))
+    for row in found.rows:
+        name = "told, not checked" if row.told else plain(row.name)
+        yield name, plain(f"{row.text} {row.unit}".rstrip(), 300)
 
 
 def _joules(energy: Fraction) -> str:

@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, Literal
 
-from zwidth import checker
+from zwidth.checker import verify
 from zwidth.device import Device
 from zwidth.device.actuator import current_rise
 from zwidth.environment.environment import Environment
@@ -101,7 +101,7 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
             f"a row of laws is proved here if ForceBounding() is the last of them, got {law.describe()}"
         )
     document = _document(device, numbers)
-    found = checker.verify(document)
+    found = verify(document)
     scope = _scope(device, law)
     if found.scope is None:
         return Bounding("undecided", f"Not proved: {found.reason}.", scope, None)

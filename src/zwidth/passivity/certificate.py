@@ -14,8 +14,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from zwidth import checker
-from zwidth.checker.scope import weakest
+from zwidth.checker import Scope, Verified, verify
 from zwidth.errors import InputError
 from zwidth.passivity.contact import DampedWall, Decay
 from zwidth.passivity.decision import Decision
@@ -48,11 +47,9 @@ class Certificate:
         """True when the independent checker accepts every proof."""
         return self.covered() is not None
 
-    def covered(self) -> checker.Scope | None:
+    def covered(self) -> Scope | None:
         """What the proofs cover together, as the independent checker finds it; None where it rejects one."""
-        found = [checker.verify(document).scope for document in self.documents]
-        accepted = [scope for scope in found if scope is not None]
-        return weakest(accepted) if found and len(accepted) == len(found) else None
+        return verify(self.to_dict()).scope if self.documents else None
 
     @property
     def kind(self) -> str:
@@ -191,7 +188,7 @@ def positivity_document(sign: Positivity) -> dict[str, Any]:
     }
 
 
-def verify_document(document: object) -> checker.Verification:
+def verify_document(document: object) -> Verified:
     """Check a saved certificate, violation or witness, or a report that holds some of these, read as JSON.
 
     Raises
@@ -199,13 +196,15 @@ def verify_document(document: object) -> checker.Verification:
     InputError
         If it contains neither.
     """
-    results = [_verify_one(part) for part in evidence(document)]
+    results = [verify(part) for part in evidence(document)]
     failed = next((r for r in results if not r.valid), None)
     if failed is not None:
         return failed
     energy = next((r.energy for r in results if r.energy is not None), None)
     scope = results[0].scope if len(results) == 1 else None  # of several, each has its own
-    return checker.Verification(True, "; and ".join(r.reason for r in results), energy, scope)
+    rows = results[0].rows if len(results) == 1 else ()
+    reason = "; and ".join(r.reason for r in results)
+    return Verified(True, reason, energy, scope=scope, rows=rows)
 
 
 def evidence(document: object) -> list[Mapping[str, Any]]:
@@ -233,24 +232,6 @@ def _holders(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """The document and the reports inside it."""
     inner = (document.get(key) for key in ("worst_hand", "active_hand", "contact_kept", "contact_broken"))
     return [document, *(h for report in inner if isinstance(report, Mapping) for h in _holders(report))]
-
-
-def _verify_one(part: Mapping[str, Any]) -> checker.Verification:
-    return _verify_corners(part.get("corners")) if part["kind"] == "corners" else checker.verify(part)
-
-
-def _verify_corners(corners: object) -> checker.Verification:
-    if not isinstance(corners, list) or not corners:
-        raise InputError("corners must be a list of certificates")
-    if any(isinstance(corner, Mapping) and corner.get("kind") == "violation" for corner in corners):
-        return checker.Verification(False, "a corner is a violation, and no proof of passivity")
-    results = [checker.verify(corner) for corner in corners]
-    failed = next((r for r in results if not r.valid or r.energy is not None), None)
-    if failed is not None:
-        return failed
-    reasons = "; or ".join(dict.fromkeys(r.reason for r in results))
-    scope = weakest([r.scope for r in results if r.scope is not None])
-    return checker.Verification(True, f"all {len(results)} corners: {reasons}", scope=scope)
 
 
 def read_document(path: str | Path) -> object:

@@ -9,7 +9,7 @@ from math import pi
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
-from zwidth import checker
+from zwidth.checker import verify
 from zwidth.passivity.document import save_json
 from zwidth.passivity.port import Time
 
@@ -86,7 +86,7 @@ class Extraction(ABC):
 
     def verify(self) -> bool:
         """True when the independent checker sums the same sign."""
-        return checker.verify(self.document).valid
+        return verify(self.document).valid
 
     def to_dict(self) -> dict[str, Any]:
         """The motion as plain data."""

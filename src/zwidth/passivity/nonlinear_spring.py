@@ -14,7 +14,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from zwidth import checker
+from zwidth.checker import verify
 from zwidth.device import Device
 from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.passivity.certificate import FORMAT, Certificate
@@ -102,7 +102,7 @@ class EndlessPull:
 
     def verify(self) -> bool:
         """True when the independent checker accepts it."""
-        return checker.verify(self.document).valid
+        return verify(self.document).valid
 
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data."""

@@ -14,7 +14,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from zwidth import checker
+from zwidth.checker import verify
 from zwidth.passivity.document import exact_text, loop_document, save_json
 from zwidth.passivity.linear import LinearRefutation, offset_of
 from zwidth.passivity.refutation import refute_linear
@@ -58,7 +58,7 @@ class Violation:
 
     def verify(self) -> bool:
         """True when the independent checker accepts it."""
-        return checker.verify(self.to_dict()).valid
+        return verify(self.to_dict()).valid
 
     def to_dict(self) -> dict[str, Any]:
         """The violation as plain data."""

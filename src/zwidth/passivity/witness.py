@@ -12,7 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from zwidth import checker
+from zwidth.checker import verify
 from zwidth.passivity.document import loop_document, save_json, unit_key
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion
@@ -40,7 +40,7 @@ class Setting:
 
     def energy(self, motion: Motion) -> Fraction | None:
         """Energy the hand takes out [J], by the checker; None if the motion is not admitted."""
-        return checker.verify(self.document(motion, Fraction(0))).energy
+        return verify(self.document(motion, Fraction(0))).energy
 
     @property
     def stored(self) -> Fraction:
@@ -157,7 +157,7 @@ class Witness:
 
     def verify(self) -> bool:
         """True when the independent checker finds the same energy, > 0."""
-        return checker.verify(self.to_dict()).valid
+        return verify(self.to_dict()).valid
 
     def to_dict(self) -> dict[str, Any]:
         """The witness as plain data; positions are exact rationals."""

@@ -1,37 +1,43 @@
 """A symmetric matrix S(x) that depends smoothly on some coordinates is ≻ 0 in a whole box.
 
-With m the middle of a cell and t what x may be off it, |t_j| ≤ h_j, the mean value theorem gives
+With m the middle of a cell and t what x may be off it, |t_j| ≤ h_j, arithmetic with bounds gives
 
-    S(m + t) = S(m) + Σ_j t_j D_j,    every entry of D_j among the slopes ∂S/∂x_j in the cell
+    S(m + t) = M + Σ_j (t_j/h_j) L_j + E,    every entry of |E| within what the second order can make of it
 
-D_j is a middle and a rest |E_j|. Without the rest S is linear in t, and ≻ 0 in the cell if it is at the
-corners. The rest takes at most Σ_l E_il w_i/w_l from S_ii, with any w > 0, since
-2 |y_i y_l| ≤ y_i² w_i/w_l + y_l² w_l/w_i. A cell where that is not enough is halved. Positive means that all
-leading minors are, by fraction-free elimination in whole numbers.
+Without E it is linear in t, and ≻ 0 in the cell if it is at the corners. E takes at most Σ_l E_il w_i/w_l
+from S_ii, with any w > 0, since 2 |y_i y_l| ≤ y_i² w_i/w_l + y_l² w_l/w_i. A cell where that is not enough is
+halved. Positive means that all leading minors are, by fraction-free elimination in whole numbers.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from itertools import product
 from math import isqrt
 
-from ..document.reading import Invalid
-from ..exact.enclosure import BITS, ONE, ZERO, Jet, NotPositive, Range
+from ..document.refusal import Invalid
+from ..exact.enclosed import Enclosed
+from ..exact.functions import NotPositive
 
+BITS = 80
 MOST_WORK = 200_000
-"""Cells, times entries of S, times a value and the slopes of each: some ten seconds, in pose twenty."""
+"""Cells, times entries of S, times a value and the slopes of each: some ten seconds."""
 MOST_MOVING = 8
 
+Range = tuple[int, int]
+"""Both ends of a coordinate, in units of 2^−BITS."""
 Cell = tuple[Range, ...]
 Whole = list[list[int]]
-Function = Callable[[Sequence[Jet]], list[list[Jet]]]
+Function = Callable[[Sequence[Enclosed]], list[list[Enclosed]]]
 
 
 def positive_in(box: Cell, matrix: Function, fails: str = "the damping is not enough") -> int:
-    """The number of cells that show it, halved where needed; `matrix` takes the coordinates as jets and gives
-    the rows of S from the diagonal on; S has as many as there are coordinates. `fails`: what it is else."""
+    """The number of cells that show it, halved where needed.
+
+    `matrix` takes the coordinates and gives the rows of S from the diagonal on; S has as many as there are
+    coordinates. `fails`: what it is else.
+    """
     moving = sum(map(_moves, box))
     if moving > MOST_MOVING:
         raise Invalid(f"more than {MOST_MOVING} coordinates move")
@@ -53,56 +59,53 @@ def positive_in(box: Cell, matrix: Function, fails: str = "the damping is not en
 
 def _part_to_halve(cell: Cell, matrix: Function, fails: str) -> int | None:
     """None where S is ≻ 0 in the cell, else the coordinate along which to halve it."""
-    halves = {j: -(-(high - low) // 2) for j, (low, high) in enumerate(cell) if _moves((low, high))}
-    start, rest = _at_middle(cell, matrix, fails)
+    moving = [j for j, ends in enumerate(cell) if _moves(ends)]
+    _require_at_middle(cell, matrix, fails)
     try:
-        jets = matrix([Jet(r, {j: (ONE, ONE)} if j in halves else None) for j, r in enumerate(cell)])
+        rows = matrix([_coordinate(ends, j, moving) for j, ends in enumerate(cell)])
     except NotPositive:
-        return _narrowed(halves, fails)
-    lines, sizes = [], {}
-    for j, half in halves.items():
-        line, spread = _parted([[_times_half(s.slopes.get(j, ZERO), half) for s in row] for row in jets])
-        rest = [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(rest, spread, strict=True)]
-        sizes[j] = sum(abs(x) for row in (*line, *spread) for x in row)
-        lines.append(line)
-    return None if _at_corners(start, rest, lines) else _narrowed(sizes, fails)
+        return max(moving, key=lambda j: cell[j][1] - cell[j][0])
+    start, rest, lines = _parted(rows, len(moving))
+    if _at_corners(start, rest, lines):
+        return None
+    if not moving:
+        raise Invalid(f"{fails} by so little that rounding hides it")
+    sizes = [sum(abs(x) for row in line for x in row) for line in lines]
+    return moving[sizes.index(max(sizes))]
 
 
-def _moves(coordinate: Range) -> bool:
+def _moves(ends: Range) -> bool:
     """False for one number, rounded outward."""
-    return coordinate[1] - coordinate[0] > 1
+    return ends[1] - ends[0] > 1
 
 
-def _at_middle(cell: Cell, matrix: Function, fails: str) -> tuple[Whole, Whole]:
-    """S(m), refused at once where it is not ≻ 0."""
-    middle = [((low + high) // 2,) * 2 if _moves((low, high)) else (low, high) for low, high in cell]
-    place = ", ".join(f"{low / ONE:.6g}" for low, _ in middle)
+def _coordinate(ends: Range, place: int, moving: Sequence[int]) -> Enclosed:
+    """All that it may be in a cell, as a number of its own."""
+    low, high = ends
+    middle = (low + high) // 2
+    if place not in moving:
+        return Enclosed(BITS, middle, (), high - middle)
+    return Enclosed(BITS, middle, tuple(high - middle if j == place else 0 for j in moving))
+
+
+def _require_at_middle(cell: Cell, matrix: Function, fails: str) -> None:
+    """Refuse at once where S is not ≻ 0 at the middle."""
+    middle = [Enclosed(BITS, (low + high) // 2, (), 0 if _moves((low, high)) else 1) for low, high in cell]
+    place = ", ".join(f"{x.middle / (1 << BITS):.6g}" for x in middle)
     try:
-        found = _parted([[s.value for s in row] for row in matrix([Jet(x) for x in middle])])
+        start, rest, _ = _parted(matrix(middle), 0)
     except NotPositive:
         raise Invalid(f"the arm does not reach {place}") from None
-    if not _positive(_less(*found)):
+    if not _positive(_less(start, rest)):
         raise Invalid(f"{fails} at {place}")
-    return found
 
 
-def _narrowed(sizes: Mapping[int, int], fails: str) -> int:
-    """The coordinate that moves S most."""
-    if not sizes:
-        raise Invalid(f"{fails} by so little that rounding hides it")
-    return max(sizes, key=lambda j: sizes[j])
-
-
-def _times_half(slope: Range, half: int) -> Range:
-    return slope[0] * half >> BITS, -(-slope[1] * half >> BITS)
-
-
-def _parted(upper: Sequence[Sequence[Range]]) -> tuple[Whole, Whole]:
-    """The middles of a symmetric matrix, given from the diagonal on, and how far its ranges go beyond."""
+def _parted(upper: Sequence[Sequence[Enclosed]], moving: int) -> tuple[Whole, Whole, list[Whole]]:
+    """M, E and the L_j of a symmetric matrix that is given from the diagonal on."""
     size = range(len(upper))
     full = [[upper[min(i, k)][abs(i - k)] for k in size] for i in size]
-    middle = [[(low + high) // 2 for low, high in row] for row in full]
-    return middle, [[high - (low + high) // 2 for low, high in row] for row in full]
+    lines = [[[x.slopes[j] if x.slopes else 0 for x in row] for row in full] for j in range(moving)]
+    return [[x.middle for x in row] for row in full], [[x.radius for x in row] for row in full], lines
 
 
 def _at_corners(start: Whole, rest: Whole, lines: list[Whole]) -> bool:

@@ -11,15 +11,59 @@ derivatives by lengths, |∂²p/∂q_i∂q_j| ≤ what lies beyond both joints, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import isqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ..document.reading import Invalid, get, number, numbers
-from ..exact.enclosure import NOTHING, ONE, Jet, Range, enclosed, sine_cosine, total
+from ..document.fields import Field, List, Number, OneOf, Read, Record, numbers
+from ..document.refusal import Invalid
+from ..document.unit import always
+from ..exact.enclosed import Enclosed, dot, known
+from ..exact.functions import sine_cosine
+from .cells import BITS
 
 MOST_JOINTS = 16
+_METRES, _RADIANS = always("m"), always("rad")
+
+
+def vector(size: int, unit: str = "") -> List:
+    """So many coordinates."""
+    return numbers(always(unit), least=size, most=size)
+
+
+def _joint(length: str, force: str, damping: str, **more: Field) -> Record:
+    return Record(
+        {
+            "rotation": List(vector(3), least=3, most=3),
+            "translation": vector(3, "m"),
+            "low": Number(always(length)),
+            "high": Number(always(length)),
+            "damping": Number(always(damping), least=0),
+            "resolution": Number(always(length), least=0, default=None),
+            "coulomb_friction": Number(always(force), least=0, default=None),
+            **more,
+        }
+    )
+
+
+_JOINT = OneOf(
+    "kind",
+    {
+        "revolute": _joint(
+            "rad",
+            "N_m",
+            "N_m_s_per_rad",
+            largest_column=Number(always("m_per_rad"), least=0, default=None),
+            rest=Number(_RADIANS, default=None),
+        ),
+        "prismatic": _joint("m", "N", "N_s_per_m"),
+    },
+)
+CHAIN = Record({"joints": List(_JOINT, least=1, most=MOST_JOINTS), "end": vector(3, "m")})
+"""From the base: the placement of each joint, its range and damping; the hand in the frame of the last."""
+
+LARGEST = 1 << 64
 NEARLY = Fraction(1, 10**9)
 LONGER = 1 + Fraction(1, 10**6)
 """What 16 matrices that are nearly rotations can lengthen, and more."""
@@ -39,113 +83,105 @@ class Chain(NamedTuple):
     end: list[Fraction]
 
 
-def read_chain(arm: Mapping[str, Any]) -> Chain:
-    listed = get(arm, "joints")
-    if not isinstance(listed, list) or not 1 <= len(listed) <= MOST_JOINTS:
-        raise Invalid(f"a chain has from 1 to {MOST_JOINTS} joints")
-    return Chain([_joint(entry) for entry in listed], vector(get(arm, "end_m"), 3))
+def chain_of(told: Read) -> Chain:
+    """The chain of a document."""
+    return Chain([_joint_of(joint) for joint in told.joints], told.end)
 
 
-def _joint(entry: Mapping[str, Any]) -> Joint:
-    kind = get(entry, "kind")
-    if kind not in ("revolute", "prismatic"):
-        raise Invalid("a joint is revolute or prismatic")
-    slides = kind == "prismatic"
-    rows = get(entry, "rotation")
-    if not isinstance(rows, list) or len(rows) != 3:
-        raise Invalid("a rotation has three rows")
-    rotation = [vector(row, 3) for row in rows]
+def _joint_of(told: Read) -> Joint:
+    rotation = told.rotation
     for i, a in enumerate(rotation):
         for j, b in enumerate(rotation):
             if abs(sum((x * y for x, y in zip(a, b, strict=True)), Fraction(-(i == j)))) > NEARLY:
                 raise Invalid("a rotation is not one")
-    unit, per = ("m", "N_s_per_m") if slides else ("rad", "N_m_s_per_rad")
-    low, high = number(get(entry, f"low_{unit}")), number(get(entry, f"high_{unit}"))
-    damping = number(get(entry, f"damping_{per}"))
-    if low > high or damping < 0:
-        raise Invalid("a joint needs low ≤ high and damping ≥ 0")
-    return Joint(slides, rotation, vector(get(entry, "translation_m"), 3), damping, low, high)
+    if told.low > told.high:
+        raise Invalid("a joint needs low ≤ high")
+    return Joint(told.kind == "prismatic", rotation, told.translation, told.damping, told.low, told.high)
 
 
-def vector(values: Any, size: int) -> list[Fraction]:
-    found = numbers(values, size)
-    if len(found) != size:
-        raise Invalid(f"expected {size} coordinates")
-    return found
+NOTHING = Enclosed(BITS, 0)
+UNIT = known(Fraction(1), BITS)
+
+
+def constant(x: Fraction) -> Enclosed:
+    """A number of the document."""
+    if abs(x) > LARGEST:
+        raise Invalid("a number is too large")
+    return known(x, BITS)
 
 
 def chain_surplus(
     chain: Chain,
-    need: list[list[Range]],
+    need: list[list[Enclosed]],
     price: Fraction,
-    turning: Callable[[Sequence[Jet]], list[list[Jet]]] | None = None,
-) -> Callable[[Sequence[Jet]], list[list[Jet]]]:
+    turning: Callable[[Sequence[Enclosed]], list[list[Enclosed]]] | None = None,
+) -> Callable[[Sequence[Enclosed]], list[list[Enclosed]]]:
     """δ_m − c − JᵀRJ, its rows from the diagonal on; R of the hand's first coordinates, c of every joint.
     `turning` gives what comes after the point in each column of J."""
-    fixed = [
-        ([[enclosed(x) for x in row] for row in j.rotation], [Jet(enclosed(x)) for x in j.translation])
-        for j in chain.joints
-    ]
-    own = [Jet(enclosed(joint.damping - price)) for joint in chain.joints]
-    end = [Jet(enclosed(x)) for x in chain.end]
+    fixed = _placements(chain)
+    own = [constant(joint.damping - price) for joint in chain.joints]
+    end = [constant(x) for x in chain.end]
 
-    def surplus(joints: Sequence[Jet]) -> list[list[Jet]]:
-        point, columns = end, list[list[Jet]]()
+    def surplus(joints: Sequence[Enclosed]) -> list[list[Enclosed]]:
+        point, columns = end, list[list[Enclosed]]()
         for joint, q, (rotation, translation) in reversed(
             list(zip(chain.joints, joints, fixed, strict=True))
         ):
             vectors = _moved(joint.slides, q, point, columns)
-            point, *columns = [
-                [total([x.scaled(c) for x, c in zip(v, row, strict=True)]) for row in rotation]
-                for v in vectors
-            ]
+            point, *columns = [[dot(v, row) for row in rotation] for v in vectors]
             point = [x + t for x, t in zip(point, translation, strict=True)]
         turned = turning(joints) if turning else [[] for _ in joints]
         columns = [
             [*column[: len(need) - len(more)], *more] for column, more in zip(columns, turned, strict=True)
         ]
-        loads = [[total([x.scaled(r) for x, r in zip(v, row, strict=True)]) for row in need] for v in columns]
+        loads = [[dot(v, row) for row in need] for v in columns]
         return [
-            [
-                (own[i] if k == 0 else NOTHING) - total([x * y for x, y in zip(v, load, strict=True)])
-                for k, load in enumerate(loads[i:])
-            ]
+            [(own[i] if k == 0 else NOTHING) - dot(v, load) for k, load in enumerate(loads[i:])]
             for i, v in enumerate(columns)
         ]
 
     return surplus
 
 
-def _moved(slides: bool, q: Jet, point: list[Jet], columns: list[list[Jet]]) -> list[list[Jet]]:
+def _placements(chain: Chain) -> list[tuple[list[list[Enclosed]], list[Enclosed]]]:
+    return [
+        ([[constant(x) for x in row] for row in j.rotation], [constant(x) for x in j.translation])
+        for j in chain.joints
+    ]
+
+
+def _moved(
+    slides: bool, q: Enclosed, point: list[Enclosed], columns: list[list[Enclosed]]
+) -> list[list[Enclosed]]:
     """The point, the column of this joint and those beyond it, before the joint's own placement."""
     if slides:
-        return [[point[0], point[1], point[2] + q], [NOTHING, NOTHING, Jet((ONE, ONE))], *columns]
-    sine, cosine = sine_cosine(q.value)
-    s = Jet(sine, dict.fromkeys(q.slopes, cosine))
-    c = Jet(cosine, dict.fromkeys(q.slopes, (-sine[1], -sine[0])))
-    turned = [[v[0] * c - v[1] * s, v[0] * s + v[1] * c, v[2]] for v in (point, *columns)]
+        return [[point[0], point[1], point[2] + q], [NOTHING, NOTHING, UNIT], *columns]
+    turned = about_z(q, (point, *columns))
     x, y, _ = turned[0]
     return [turned[0], [-y, x, NOTHING], *turned[1:]]
 
 
-def levers(chain: Chain) -> Callable[[Sequence[Jet]], list[Jet]]:
+def about_z(q: Enclosed, vectors: Sequence[Sequence[Enclosed]]) -> list[list[Enclosed]]:
+    """Vectors turned by an angle about the third axis."""
+    s, c = sine_cosine(q)
+    across, along = (c, -s), (s, c)
+    return [[dot(v[:2], across), dot(v[:2], along), v[2]] for v in vectors]
+
+
+def levers(chain: Chain) -> Callable[[Sequence[Enclosed]], list[Enclosed]]:
     """The square of the hand's distance from the axis of each joint, which only the joints beyond it change:
     |∂p/∂q_i|² of one that turns, but for the lengths of what only nearly rotates."""
-    fixed = [
-        ([[enclosed(x) for x in row] for row in j.rotation], [Jet(enclosed(x)) for x in j.translation])
-        for j in chain.joints
-    ]
-    end = [Jet(enclosed(x)) for x in chain.end]
+    fixed = _placements(chain)
+    end = [constant(x) for x in chain.end]
 
-    def squares(joints: Sequence[Jet]) -> list[Jet]:
-        point, found = end, list[Jet]()
+    def squares(joints: Sequence[Enclosed]) -> list[Enclosed]:
+        point, found = end, list[Enclosed]()
         for joint, q, (rotation, translation) in reversed(
             list(zip(chain.joints, joints, fixed, strict=True))
         ):
-            found.insert(0, point[0].squared() + point[1].squared())
+            found.insert(0, dot(point[:2], point[:2]))
             moved = _moved(joint.slides, q, point, [])[0]
-            placed = [total([x.scaled(c) for x, c in zip(moved, row, strict=True)]) for row in rotation]
-            point = [x + t for x, t in zip(placed, translation, strict=True)]
+            point = [dot(moved, row) + t for row, t in zip(rotation, translation, strict=True)]
         return found
 
     return squares
@@ -169,4 +205,12 @@ def bends(chain: Chain) -> list[list[Fraction]]:
 
 
 def _length(v: Sequence[Fraction]) -> Fraction:
-    return Fraction(isqrt(int(sum(x * x for x in v) * ONE * ONE) + 1) + 1, ONE)
+    return root_above(sum((x * x for x in v), Fraction(0)))
+
+
+def root_above(x: Fraction) -> Fraction:
+    """Not below √x; x itself where x is a square."""
+    top, bottom = isqrt(x.numerator), isqrt(x.denominator)
+    if (top * top, bottom * bottom) == (x.numerator, x.denominator):
+        return Fraction(top, bottom)
+    return Fraction(isqrt(int(x * 4**BITS) + 1) + 1, 2**BITS)

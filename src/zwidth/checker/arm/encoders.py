@@ -11,15 +11,16 @@ millionth. A joint whose range is one number stays at its reading, and has no st
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from math import isqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ..document.reading import Invalid, get, number
-from ..exact.enclosure import NOTHING, ONE, Jet, enclosed
-from .chain import LONGER, Chain, levers
-from .pose import UNIT, Pose
+from ..document.fields import Read, only_if
+from ..document.number import up
+from ..document.refusal import Invalid
+from ..exact.enclosed import Enclosed
+from .chain import LONGER, NOTHING, UNIT, Chain, constant, levers, root_above
+from .pose import Pose
 
 Matrix = list[list[Fraction]]
 
@@ -32,20 +33,23 @@ class Encoders(NamedTuple):
     columns: list[Fraction]
 
 
-def read_encoders(machine: Mapping[str, Any], chain: Chain) -> Encoders:
-    """`chain` is what `read_chain` found in `machine`."""
+def encoders_of(told: Read, chain: Chain) -> Encoders:
+    """`chain` is what `chain_of` found in `told`."""
     steps, friction, columns = [], [], []
-    for entry, joint in zip(machine["joints"], chain.joints, strict=True):
-        unit, per = ("m", "N") if joint.slides else ("rad", "N_m")
-        step = number(get(entry, f"resolution_{unit}"))
-        own = number(get(entry, f"coulomb_friction_{per}"))
-        column = Fraction(1) if joint.slides else number(get(entry, "largest_column_m_per_rad"))
-        if min(step, own, column) < 0:
-            raise Invalid("encoder steps, Coulomb friction and columns are ≥ 0")
+    for entry, joint in zip(told.joints, chain.joints, strict=True):
+        step, own = (only_if(True, getattr(entry, name), name) for name in ("resolution", "coulomb_friction"))
+        column = Fraction(1) if joint.slides else only_if(True, entry.largest_column, "largest_column")
         steps.append(step if joint.low < joint.high else Fraction(0))
         friction.append(own)
         columns.append(column * (LONGER if joint.slides else 1))
     return Encoders(steps, friction, columns)
+
+
+def require_no_encoders(told: Read) -> None:
+    """Refuse what only counts where steps are counted."""
+    for joint in told.joints:
+        for name in ("resolution", "coulomb_friction", "largest_column"):
+            only_if(False, getattr(joint, name, None), name)
 
 
 def with_steps(chain: Chain, encoders: Encoders) -> Chain:
@@ -57,20 +61,20 @@ def with_steps(chain: Chain, encoders: Encoders) -> Chain:
     return Chain(joints, chain.end)
 
 
-def columns_below(chain: Chain, encoders: Encoders) -> Callable[[Sequence[Jet]], list[list[Jet]]]:
+def columns_below(chain: Chain, encoders: Encoders) -> Callable[[Sequence[Enclosed]], list[list[Enclosed]]]:
     """diag(r_i² − |∂p/∂q_i|²), its rows from the diagonal on; 1 where the joint slides."""
-    squares, longer = levers(chain), enclosed(LONGER * LONGER)
-    most = [Jet(enclosed(r * r)) for r in encoders.columns]
+    squares, longer = levers(chain), constant(LONGER * LONGER)
+    most = [constant(r * r) for r in encoders.columns]
 
-    def below(joints: Sequence[Jet]) -> list[list[Jet]]:
+    def below(joints: Sequence[Enclosed]) -> list[list[Enclosed]]:
         found = zip(chain.joints, most, squares(joints), strict=True)
-        left = [UNIT if joint.slides else r - lever.scaled(longer) for joint, r, lever in found]
+        left = [UNIT if joint.slides else r - lever * longer for joint, r, lever in found]
         return [[own] + [NOTHING] * (len(left) - i - 1) for i, own in enumerate(left)]
 
     return below
 
 
-def friction_is_enough(
+def require_friction(
     chain: Chain,
     encoders: Encoders,
     wall: tuple[Matrix, Matrix],
@@ -92,7 +96,7 @@ def friction_is_enough(
         least = _dot([block[i] for block in blocks], wrong) + force * second + moment * turned
         if 2 * own < least:
             raise Invalid(
-                f"Coulomb friction of joint {i + 1} must be at least {float(least / 2):g} for its encoders"
+                f"Coulomb friction of joint {i + 1} must be at least {up(least / 2)} for its encoders"
             )
 
 
@@ -120,15 +124,7 @@ def _size(matrix: Matrix) -> Fraction:
     """No singular value is above √(‖A‖₁ ‖A‖∞), nor above ‖A‖_F."""
     rows = max(sum(map(abs, row), Fraction(0)) for row in matrix)
     columns = max(sum(map(abs, column), Fraction(0)) for column in zip(*matrix, strict=True))
-    return _root(min(rows * columns, sum((x * x for row in matrix for x in row), Fraction(0))))
-
-
-def _root(x: Fraction) -> Fraction:
-    """Not below √x; x itself where x is a square."""
-    top, bottom = isqrt(x.numerator), isqrt(x.denominator)
-    if (top * top, bottom * bottom) == (x.numerator, x.denominator):
-        return Fraction(top, bottom)
-    return Fraction(isqrt(int(x * ONE * ONE) + 1) + 1, ONE)
+    return root_above(min(rows * columns, sum((x * x for row in matrix for x in row), Fraction(0))))
 
 
 def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:

@@ -14,13 +14,38 @@ of the link as a function of the hand, with the gradient
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ..document.reading import Invalid, get, number
-from ..exact.enclosure import NOTHING, Jet, Range, enclosed, total
-from .chain import vector
+from ..document.fields import Choice, List, Number, Read, Record, numbers
+from ..document.refusal import Invalid
+from ..document.unit import always
+from ..exact.enclosed import Enclosed, dot
+from ..exact.functions import inverse, root
+from .chain import NOTHING, constant
+
+_METRES = always("m")
+
+
+def _place() -> List:
+    return numbers(_METRES, least=2, most=3)
+
+
+_LEG = Record(
+    {
+        "base": _place(),
+        "out": numbers(least=2, most=3),
+        "up": numbers(least=2, most=3),
+        "link": Number(_METRES, above=0),
+        "rod": Number(_METRES, above=0),
+        "offset": Number(_METRES, least=0),
+        "bend": Choice(-1, 1),
+        "damping": Number(always("N_m_s_per_rad"), least=0),
+    }
+)
+LEGS = Record({"legs": List(_LEG, least=2, most=3), "low": _place(), "high": _place()})
+"""Two legs in the plane or three in space; opposite corners of the region."""
 
 
 class Leg(NamedTuple):
@@ -39,69 +64,58 @@ class Legs(NamedTuple):
     high: list[Fraction]
 
 
-def read_legs(arm: Mapping[str, Any]) -> Legs:
-    listed = get(arm, "legs")
-    if not isinstance(listed, list) or len(listed) not in (2, 3):
-        raise Invalid("a parallel arm has two legs in the plane or three in space")
-    size = len(listed)
-    low, high = vector(get(arm, "low_m"), size), vector(get(arm, "high_m"), size)
-    if any(a > b for a, b in zip(low, high, strict=True)):
+def legs_of(told: Read) -> Legs:
+    """The arm of a document."""
+    size = len(told.legs)
+    places = [told.low, told.high, *(v for leg in told.legs for v in (leg.base, leg.out, leg.up))]
+    if any(len(place) != size for place in places):
+        raise Invalid("an arm has as many legs as its places have coordinates")
+    if any(a > b for a, b in zip(told.low, told.high, strict=True)):
         raise Invalid("the region needs low ≤ high")
-    return Legs([_leg(entry, size) for entry in listed], low, high)
+    return Legs([_leg(leg, size) for leg in told.legs], told.low, told.high)
 
 
-def _leg(entry: Mapping[str, Any], size: int) -> Leg:
-    out, up = vector(get(entry, "out"), size), vector(get(entry, "up"), size)
+def _leg(told: Read, size: int) -> Leg:
+    out, up = told.out, told.up
     across = [up[i - 2] * out[i - 1] - up[i - 1] * out[i - 2] for i in range(3)] if size == 3 else []
-    link, rod, offset, damping = (
-        number(get(entry, key)) for key in ("link_m", "rod_m", "offset_m", "damping_N_m_s_per_rad")
-    )
-    bend = get(entry, "bend")
-    if min(link, rod) <= 0 or min(offset, damping) < 0 or isinstance(bend, bool) or bend not in (-1, 1):
-        raise Invalid("a leg needs link and rod > 0, offset and damping ≥ 0, and bend −1 or 1")
     axes = [out, up, across] if size == 3 else [out, up]
-    return Leg(vector(get(entry, "base_m"), size), axes, link, rod, offset, int(bend), damping)
+    return Leg(told.base, axes, told.link, told.rod, told.offset, told.bend, told.damping)
 
 
-def legs_surplus(arm: Legs, need: list[list[Range]]) -> Callable[[Sequence[Jet]], list[list[Jet]]]:
+def legs_surplus(
+    arm: Legs, need: list[list[Enclosed]]
+) -> Callable[[Sequence[Enclosed]], list[list[Enclosed]]]:
     """δ − R at the hand, the rows from the diagonal on."""
 
-    def surplus(position: Sequence[Jet]) -> list[list[Jet]]:
-        found = [[-Jet(r) for r in row[i:]] for i, row in enumerate(need)]
+    def surplus(position: Sequence[Enclosed]) -> list[list[Enclosed]]:
+        found = [[-r for r in row[i:]] for i, row in enumerate(need)]
         for leg in arm.legs:
             normal, lever = _normal(leg, position)
-            weight = lever.inverse().scaled(enclosed(leg.damping))
+            weight = inverse(lever) * constant(leg.damping)
             for i, x in enumerate(normal):
                 for k, y in enumerate(normal[i:]):
-                    found[i][k] = found[i][k] + (x * y if k else x.squared()) * weight
+                    found[i][k] = found[i][k] + x * y * weight
         return found
 
     return surplus
 
 
-def _normal(leg: Leg, position: Sequence[Jet]) -> tuple[list[Jet], Jet]:
+def _normal(leg: Leg, position: Sequence[Enclosed]) -> tuple[list[Enclosed], Enclosed]:
     """n, and H²."""
-    seen = [p - Jet(enclosed(a)) for p, a in zip(position, leg.base, strict=True)]
-    u, w, *aside = (
-        total([x.scaled(enclosed(c)) for x, c in zip(seen, axis, strict=True)]) for axis in leg.axes
-    )
-    length, across = _constant(leg.rod + leg.offset), NOTHING
+    seen = [p - constant(a) for p, a in zip(position, leg.base, strict=True)]
+    axes = [[constant(c) for c in axis] for axis in leg.axes]
+    u, w, *aside = (dot(seen, axis) for axis in axes)
+    length, across = constant(leg.rod + leg.offset), NOTHING
     if aside:
-        straight = (_constant(leg.rod**2) - aside[0].squared()).root()
-        length = straight + _constant(leg.offset)
-        across = length * aside[0] * straight.inverse()
-    distance = u.squared() + w.squared()
-    a = (distance + _constant(leg.link**2) - length.squared()).scaled(enclosed(Fraction(1, 2)))
-    lever = distance.scaled(enclosed(leg.link**2)) - a.squared()
-    near, turned = a * distance.inverse(), lever.root() * distance.inverse()
+        straight = root(constant(leg.rod**2) - aside[0] * aside[0])
+        length = straight + constant(leg.offset)
+        across = length * aside[0] * inverse(straight)
+    distance = u * u + w * w
+    a = (distance + constant(leg.link**2) - length * length).over(2)
+    lever = distance * constant(leg.link**2) - a * a
+    closer = inverse(distance)
+    near, turned = a * closer, root(lever) * closer
     side = turned if leg.bend > 0 else -turned
     in_plane = [u - near * u + side * w, w - near * w - side * u]
-    parts = [*in_plane, across]
-    return [
-        total([part.scaled(enclosed(axis[k])) for part, axis in zip(parts, leg.axes, strict=False)])
-        for k in range(len(position))
-    ], lever
-
-
-def _constant(x: Fraction) -> Jet:
-    return Jet(enclosed(x))
+    parts = [*in_plane, across][: len(axes)]
+    return [dot(parts, [axis[k] for axis in axes]) for k in range(len(position))], lever

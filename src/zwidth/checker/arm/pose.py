@@ -14,18 +14,19 @@ In the plane y = (x, y, Σ q_i): the derivative is constant, and the rest plays 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ..document.reading import Invalid, get, integer, number
-from ..exact.enclosure import NOTHING, ONE, Jet, Range, enclosed, inverse, root, sine_cosine, times, total
-from .chain import Chain
+from ..document.fields import Read, only_if
+from ..document.number import about
+from ..document.refusal import Invalid
+from ..exact.enclosed import Enclosed, dot
+from ..exact.functions import inverse, root, sine_cosine
+from .chain import NOTHING, UNIT, Chain, about_z, constant
 
 Matrix = list[list[Fraction]]
-Columns = Callable[[Sequence[Jet]], list[list[Jet]]]
-
-UNIT = Jet((ONE, ONE))
+Columns = Callable[[Sequence[Enclosed]], list[list[Enclosed]]]
 
 
 class Pose(NamedTuple):
@@ -38,25 +39,23 @@ class Pose(NamedTuple):
         return {0: range(1, 4), 1: range(3, 4), 3: range(6, 7)}[self.turns]
 
 
-def read_pose(wall: Mapping[str, Any]) -> Pose:
-    if not isinstance(wall, Mapping) or "turns" not in wall:
+def pose_of(wall: Read) -> Pose:
+    """What of the wall of a document is rotation."""
+    if not hasattr(wall, "turns"):
         return Pose(0, False)
-    turns, rest = integer(wall["turns"]), get(wall, "rest")
-    if turns not in (1, 3):
-        raise Invalid("a wall in pose has three rotations, or one in the plane")
-    if rest not in ("every orientation", "given") or (turns == 1 and rest == "given"):
+    if wall.turns == 1 and wall.rest == "given":
         raise Invalid("a wall rests in every orientation; in space one may be given")
-    return Pose(turns, rest == "every orientation")
+    return Pose(wall.turns, wall.rest == "every orientation")
 
 
-def in_words(wall: Mapping[str, Any], pose: Pose) -> str:
+def in_words(stiffness: Matrix, pose: Pose) -> str:
     """Of a matrix without negative eigenvalues no entry is above the largest of the diagonal."""
     if not pose.turns:
         return ""
-    diagonal = [number(row[i]) for i, row in enumerate(get(wall, "stiffness_N_m_rad"))]
-    along, about = (float(max(part)) for part in (diagonal[: -pose.turns], diagonal[-pose.turns :]))
+    diagonal = [row[i] for i, row in enumerate(stiffness)]
+    along, around = (about(max(part)) for part in (diagonal[: -pose.turns], diagonal[-pose.turns :]))
     where = "in every orientation of rest" if pose.anywhere else "from the orientation of rest that is given"
-    return f"; the wall is in pose, with up to {along:g} N/m and {about:g} N·m/rad, {where}"
+    return f"; the wall is in pose, with up to {along} N/m and {around} N·m/rad, {where}"
 
 
 def for_every_rest(need: Matrix, pose: Pose) -> Matrix:
@@ -71,8 +70,8 @@ def for_every_rest(need: Matrix, pose: Pose) -> Matrix:
     return [*need[:point], *last]
 
 
-def turning(machine: Mapping[str, Any], chain: Chain, pose: Pose) -> Columns:
-    """The rows of rotation of every column of J; `chain` is what `read_chain` found in `machine`."""
+def turning(machine: Read, chain: Chain, pose: Pose) -> Columns:
+    """The rows of rotation of every column of J; `chain` is what `chain_of` found in `machine`."""
     if pose.turns == 1:
         if any(j.slides or j.rotation[2] != [0, 0, 1] for j in chain.joints):
             raise Invalid("in the plane every joint turns about the same axis")
@@ -81,8 +80,8 @@ def turning(machine: Mapping[str, Any], chain: Chain, pose: Pose) -> Columns:
     if pose.anywhere:
         return _axes(chain, placed)
     rest = [
-        Fraction(0) if joint.slides else number(get(entry, "rest_rad"))
-        for joint, entry in zip(chain.joints, machine["joints"], strict=True)
+        Fraction(0) if joint.slides else only_if(True, entry.rest, "rest_rad")
+        for joint, entry in zip(chain.joints, machine.joints, strict=True)
     ]
     return _from_rest(chain, placed, rest)
 
@@ -94,16 +93,15 @@ def turning_bend(chain: Chain, pose: Pose) -> Fraction:
 
 def _axes(chain: Chain, placed: Sequence[list[Fraction]]) -> Columns:
     """a_i, from the end to the base; 0 of a joint that slides."""
-    rotations = [[[enclosed(x) for x in row] for row in _rotation(c)] for c in placed]
+    rotations = [[[constant(x) for x in row] for row in _rotation(c)] for c in placed]
 
-    def columns(joints: Sequence[Jet]) -> list[list[Jet]]:
-        found: list[list[Jet]] = []
+    def columns(joints: Sequence[Enclosed]) -> list[list[Enclosed]]:
+        found: list[list[Enclosed]] = []
         for joint, q, rotation in reversed(list(zip(chain.joints, joints, rotations, strict=True))):
             if joint.slides:
                 own = NOTHING
             else:
-                own, (s, c) = UNIT, _sine_cosine(q)
-                found = [[v[0] * c - v[1] * s, v[0] * s + v[1] * c, v[2]] for v in found]
+                own, found = UNIT, about_z(q, found)
             found = [_mapped(rotation, v) for v in ([NOTHING, NOTHING, own], *found)]
         return found
 
@@ -114,39 +112,33 @@ def _from_rest(chain: Chain, placed: Sequence[list[Fraction]], rest: Sequence[Fr
     """∂e/∂q_i = the vector of 2 ∂Q/∂q_i ⊗ Q(q₀)⁻¹, from the end to the base."""
     matrices = [_times_quaternion(c) for c in placed]
 
-    def turned(joints: Sequence[Jet], end: list[Jet]) -> list[list[Jet]]:
+    def turned(joints: Sequence[Enclosed], end: list[Enclosed]) -> list[list[Enclosed]]:
         """Q ⊗ end, and twice its derivatives."""
         found = [end]
         for joint, q, matrix in reversed(list(zip(chain.joints, joints, matrices, strict=True))):
             if joint.slides:
                 own = [NOTHING] * 4
             else:
-                s, c = _sine_cosine(q, 2)
-                found = [
-                    [v[0] * c - v[3] * s, v[1] * c - v[2] * s, v[2] * c + v[1] * s, v[3] * c + v[0] * s]
-                    for v in found
-                ]
+                s, c = sine_cosine(q.over(2))
+                found = [_about_third(v, s, c) for v in found]
                 w, x, y, z = found[0]
                 own = [-z, -y, x, w]
             found = [_mapped(matrix, v) for v in (found[0], own, *found[1:])]
         return found
 
-    w, *v = turned([Jet(enclosed(q)) for q in rest], [UNIT, NOTHING, NOTHING, NOTHING])[0]
+    w, *v = turned([constant(q) for q in rest], [UNIT, NOTHING, NOTHING, NOTHING])[0]
     resting = [w, *(-x for x in v)]
     return lambda joints: [column[1:] for column in turned(joints, resting)[1:]]
 
 
-def _sine_cosine(q: Jet, part: int = 1) -> tuple[Jet, Jet]:
-    """Of q/part."""
-    sine, cosine = sine_cosine((q.value[0] // part, -(-q.value[1] // part)))
-    rate = enclosed(Fraction(1, part))
-    s = Jet(sine, {j: times(times(rate, cosine), slope) for j, slope in q.slopes.items()})
-    c = Jet(cosine, {j: times(times(rate, (-sine[1], -sine[0])), slope) for j, slope in q.slopes.items()})
-    return s, c
+def _about_third(v: Sequence[Enclosed], s: Enclosed, c: Enclosed) -> list[Enclosed]:
+    """(c + ẑ s) ⊗ v."""
+    back, on = (c, -s), (c, s)
+    return [dot((v[0], v[3]), back), dot((v[1], v[2]), back), dot((v[2], v[1]), on), dot((v[3], v[0]), on)]
 
 
-def _mapped(matrix: Sequence[Sequence[Range]], vector: Sequence[Jet]) -> list[Jet]:
-    return [total([x.scaled(c) for x, c in zip(vector, row, strict=True)]) for row in matrix]
+def _mapped(matrix: Sequence[Sequence[Enclosed]], vector: Sequence[Enclosed]) -> list[Enclosed]:
+    return [dot(vector, row) for row in matrix]
 
 
 def _quaternion(r: Matrix) -> list[Fraction]:
@@ -175,9 +167,8 @@ def _rotation(quaternion: list[Fraction]) -> Matrix:
     return [[entry / size for entry in row] for row in rows]
 
 
-def _times_quaternion(quaternion: list[Fraction]) -> list[list[Range]]:
+def _times_quaternion(quaternion: list[Fraction]) -> list[list[Enclosed]]:
     """c ⊗ as a matrix, with c made a unit."""
-    shorter = inverse(root(enclosed(sum((x * x for x in quaternion), Fraction(0)))))
-    w, x, y, z = (times(enclosed(part), shorter) for part in quaternion)
-    nx, ny, nz = ((-high, -low) for low, high in (x, y, z))
-    return [[w, nx, ny, nz], [x, w, nz, y], [y, z, w, nx], [z, ny, x, w]]
+    shorter = inverse(root(constant(sum((x * x for x in quaternion), Fraction(0)))))
+    w, x, y, z = (constant(part) * shorter for part in quaternion)
+    return [[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]]

@@ -13,24 +13,63 @@ gives for them, no less than its moment.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from decimal import ROUND_FLOOR, Context, Decimal
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from math import ceil, floor
+from typing import NamedTuple
 
-from ..document.reading import Invalid, get, integer, number
-from ..exact.enclosure import ONE, Jet, enclosed
-from .cells import Function, positive_in
-from .chain import Chain, bends, chain_surplus, read_chain, vector
-from .encoders import columns_below, friction_is_enough, read_encoders, with_steps
-from .legs import legs_surplus, read_legs
-from .pose import Pose, for_every_rest, in_words, read_pose, turning, turning_bend
+from ..document.fields import Choice, Either, List, Number, OneOf, Read, Record, Whole, document, only_if
+from ..document.number import down
+from ..document.refusal import Invalid
+from ..document.unit import SECONDS, always
+from ..exact.enclosed import Enclosed
+from .cells import BITS, Function, Range, positive_in
+from .chain import CHAIN, LARGEST, Chain, bends, chain_of, chain_surplus, constant
+from .encoders import columns_below, encoders_of, require_friction, require_no_encoders, with_steps
+from .legs import LEGS, legs_of, legs_surplus
+from .pose import Pose, for_every_rest, in_words, pose_of, turning, turning_bend
 
 MOST_DELAY = 10**6
-KEYS = ("stiffness_N_per_m", "virtual_damping_N_s_per_m", "damping_bound_N_s_per_m")
-POSE_KEYS = ("stiffness_N_m_rad", "virtual_damping_N_m_s_rad", "damping_bound_N_m_s_rad")
 
 Matrix = list[list[Fraction]]
+
+
+def _matrix(unit: str, most: int) -> List:
+    return List(List(Number(), least=1, most=most), unit=always(unit), least=1, most=most)
+
+
+def _wall(stiffness: str, damping: str, most: int) -> Record:
+    return Record(
+        {
+            "stiffness": _matrix(stiffness, most),
+            "virtual_damping": _matrix(damping, most),
+            "damping_bound": _matrix(damping, most),
+        }
+    )
+
+
+_POINT = _wall("N_per_m", "N_s_per_m", 3)
+_POSE = _wall("N_m_rad", "N_m_s_rad", 6).extended(
+    turns=Choice(1, 3), rest=Choice("every orientation", "given")
+)
+
+ARM = document(
+    {
+        "arm": OneOf("geometry", {"chain": CHAIN, "legs": LEGS}),
+        "wall": Either(_POSE, _POINT, lambda value: "turns" in value),
+        "loop": Record(
+            {
+                "sample_period": Number(SECONDS, above=0),
+                "delay_samples": Whole(least=0, most=MOST_DELAY),
+                "encoder": Choice("ideal", "counted"),
+                "torque": Choice("follows the arm", "follows the readings", "held"),
+                "curvature": Number(always("m_per_rad2"), default=None),
+                "largest_force": Number(always("N"), least=0, default=None),
+                "largest_moment": Number(always("N_m"), least=0, default=None),
+            }
+        ),
+    }
+)
 
 
 class Claim(NamedTuple):
@@ -42,58 +81,73 @@ class Claim(NamedTuple):
     columns: Function | None = None  # that has to be ≻ 0 there, too
 
 
-def arm(document: Mapping[str, Any]) -> str:
-    claim = _claim(document)
-    box = tuple((enclosed(low)[0], enclosed(high)[1]) for low, high in claim.box)
+def arm(told: Read) -> tuple[str, tuple[tuple[float, ...], ...]]:
+    """What was proved; and S at the middle of the region, to look at, its rows from the diagonal on."""
+    claim = claim_of(told)
+    box = tuple(_outward(low, high) for low, high in claim.box)
     cells = positive_in(box, claim.matrix)
     if claim.columns is not None:
         cells += positive_in(box, claim.columns, "a column of the Jacobian is longer than it is said to be")
-    return f"{claim.words}; {cells} cells"
+    middle = claim.matrix([Enclosed(BITS, (low + high) // 2) for low, high in box])
+    surplus = tuple(tuple(x.middle / 2**BITS for x in row) for row in middle)
+    return f"{claim.words}; {cells} cells", surplus
 
 
-def matrix_at(document: Mapping[str, Any], place: Sequence[Fraction]) -> list[list[float]]:
-    """S at one place, its rows from the diagonal on: to see that a document is of the arm that was meant."""
-    found = _claim(document).matrix([Jet(enclosed(x)) for x in place])
-    return [[sum(s.value) / (2 * ONE) for s in row] for row in found]
+def _outward(low: Fraction, high: Fraction) -> Range:
+    if max(abs(low), abs(high)) > LARGEST:
+        raise Invalid("a number is too large")
+    return floor(low * 2**BITS), ceil(high * 2**BITS)
 
 
-def _claim(document: Mapping[str, Any]) -> Claim:
-    machine, wall, loop = (get(document, key) for key in ("arm", "wall", "loop"))
-    pose, geometry = read_pose(wall), get(machine, "geometry")
-    held, counted = _torque(loop), get(loop, "encoder") == "counted"
+def claim_of(told: Read) -> Claim:
+    """What is to be shown, and the words for it."""
+    machine, wall, loop = told.arm, told.wall, told.loop
+    pose, held, counted = pose_of(wall), _is_held(loop), loop.encoder == "counted"
     given = _matrices(wall, pose)
-    need = [[enclosed(x) for x in row] for row in for_every_rest(_need(*given, loop), pose)]
-    limits = _limits(loop, pose) if held or counted else (Fraction(0), Fraction(0))
+    need = [[constant(x) for x in row] for row in for_every_rest(_need(*given, loop), pose)]
+    limits = _limits(loop, pose, held or counted)
+    only_if(held, loop.curvature, "curvature_m_per_rad2")
     words = "no motion of the hand with {} takes energy out, " + _how(held, counted, limits, pose)
-    if geometry == "chain":
-        chain, columns = read_chain(machine), None
-        if counted:
-            encoders = read_encoders(machine, chain)
-            chain = with_steps(chain, encoders)
-            friction_is_enough(chain, encoders, given[:2], _period(loop), limits, pose)
-            columns = columns_below(chain, encoders)
-        price = _price(chain, loop, limits, pose) if held else Fraction(0)
-        box = [(joint.low, joint.high) for joint in chain.joints]
-        matrix = chain_surplus(chain, need, price, turning(machine, chain, pose) if pose.turns else None)
-        words = words.format("every joint in its range") + in_words(wall, pose)
-        return Claim(box, matrix, words, columns)
-    if geometry != "legs":
-        raise Invalid("the geometry is chain or legs")
+    if machine.geometry == "legs":
+        return _of_legs(machine, need, words, pose, held or counted)
+    chain, columns = chain_of(machine), None
+    if counted:
+        encoders = encoders_of(machine, chain)
+        chain = with_steps(chain, encoders)
+        require_friction(chain, encoders, given[:2], loop.sample_period, limits, pose)
+        columns = columns_below(chain, encoders)
+    else:
+        require_no_encoders(machine)
+    if pose.turns != 3 or pose.anywhere:
+        _require_no_rest(machine)
+    price = _price(chain, loop, limits, pose) if held else Fraction(0)
+    box = [(joint.low, joint.high) for joint in chain.joints]
+    matrix = chain_surplus(chain, need, price, turning(machine, chain, pose) if pose.turns else None)
+    words = words.format("every joint in its range") + in_words(given[0], pose)
+    return Claim(box, matrix, words, columns)
+
+
+def _of_legs(machine: Read, need: list[list[Enclosed]], words: str, pose: Pose, bounded: bool) -> Claim:
     if pose.turns:
         raise Invalid("a parallel arm holds a point, and no pose")
-    legs = read_legs(machine)
+    legs = legs_of(machine)
     if len(need) != len(legs.legs):
         raise Invalid("the wall has as many coordinates as the arm has legs")
-    if held or counted:
+    if bounded:
         raise Invalid("the second derivatives of a parallel arm are not bounded here")
     box = list(zip(legs.low, legs.high, strict=True))
     return Claim(box, legs_surplus(legs, need), words.format("its position in the box"))
 
 
+def _require_no_rest(machine: Read) -> None:
+    for joint in machine.joints:
+        only_if(False, getattr(joint, "rest", None), "rest_rad")
+
+
 def _how(held: bool, counted: bool, limits: tuple[Fraction, Fraction], pose: Pose) -> str:
     """How the arm is read, and what becomes of the torque within a period."""
-    moment = f" and moments up to {_down(limits[1])} N·m" if pose.turns else ""
-    forces = f", for forces up to {_down(limits[0])} N{moment}"
+    moment = f" and moments up to {down(limits[1])} N·m" if pose.turns else ""
+    forces = f", for forces up to {down(limits[0])} N{moment}"
     if counted:
         torque = "is held over a period" if held else "follows the readings"
         steps = "its encoder steps counted: force and Jacobian are those of the readings, and the torque "
@@ -101,51 +155,29 @@ def _how(held: bool, counted: bool, limits: tuple[Fraction, Fraction], pose: Pos
     return f"read without encoder steps; the torque {f'is held{forces}' if held else 'follows the arm'}"
 
 
-def _down(x: Fraction) -> str:
-    """Six digits, rounded down: words say no more than is proved."""
-    down = Context(prec=6, rounding=ROUND_FLOOR)
-    return f"{float(down.divide(Decimal(x.numerator), Decimal(x.denominator))):g}"
-
-
-def _torque(loop: Mapping[str, Any]) -> bool:
-    """Whether it is held."""
-    encoder, torque = get(loop, "encoder"), get(loop, "torque")
-    if encoder not in ("ideal", "counted"):
-        raise Invalid("the encoder is ideal, or counted")
-    follows = "follows the arm" if encoder == "ideal" else "follows the readings"
-    if torque not in ("held", follows):
+def _is_held(loop: Read) -> bool:
+    follows = "follows the arm" if loop.encoder == "ideal" else "follows the readings"
+    if loop.torque not in ("held", follows):
         raise Invalid(f"the torque {follows}, or is held")
-    return bool(torque == "held")
+    return bool(loop.torque == "held")
 
 
-def _limits(loop: Mapping[str, Any], pose: Pose) -> tuple[Fraction, Fraction]:
+def _limits(loop: Read, pose: Pose, bounded: bool) -> tuple[Fraction, Fraction]:
     """F, and in pose M."""
-    force = number(get(loop, "largest_force_N"))
-    moment = number(get(loop, "largest_moment_N_m")) if pose.turns else Fraction(0)
-    if min(force, moment) < 0:
-        raise Invalid("forces are up to a largest force ≥ 0, and in pose to a largest moment ≥ 0")
-    return force, moment
+    force = only_if(bounded, loop.largest_force, "largest_force_N")
+    moment = only_if(bounded and pose.turns, loop.largest_moment, "largest_moment_N_m")
+    return force or Fraction(0), moment or Fraction(0)
 
 
-def _period(loop: Mapping[str, Any]) -> Fraction:
-    period = number(get(loop, "sample_period_s"))
-    if period <= 0:
-        raise Invalid("T must be > 0")
-    return period
-
-
-def _need(stiffness: Matrix, _damping: Matrix, bound: Matrix, loop: Mapping[str, Any]) -> Matrix:
+def _need(stiffness: Matrix, _damping: Matrix, bound: Matrix, loop: Read) -> Matrix:
     """R [N·s/m; in pose N·s/rad and N·m·s/rad, too]."""
-    delay = integer(get(loop, "delay_samples"))
-    if delay > MOST_DELAY:
-        raise Invalid("the delay is too many samples")
-    return _sum(bound, stiffness, (2 * delay + 1) * _period(loop) / 2)
+    return _sum(bound, stiffness, (2 * loop.delay_samples + 1) * loop.sample_period / 2)
 
 
-def _matrices(wall: Mapping[str, Any], pose: Pose) -> tuple[Matrix, Matrix, Matrix]:
+def _matrices(wall: Read, pose: Pose) -> tuple[Matrix, Matrix, Matrix]:
     """K ⪰ 0, B, and A with A ± B ⪰ 0."""
-    keys = POSE_KEYS if pose.turns else KEYS
-    stiffness, damping, bound = (_symmetric(get(wall, key), pose.sizes) for key in keys)
+    told = (wall.stiffness, wall.virtual_damping, wall.damping_bound)
+    stiffness, damping, bound = (_symmetric(rows, pose.sizes) for rows in told)
     if not len(stiffness) == len(damping) == len(bound):
         raise Invalid("the matrices of the wall differ in size")
     if not _semidefinite(stiffness):
@@ -155,24 +187,24 @@ def _matrices(wall: Mapping[str, Any], pose: Pose) -> tuple[Matrix, Matrix, Matr
     return stiffness, damping, bound
 
 
-def _price(chain: Chain, loop: Mapping[str, Any], limits: tuple[Fraction, Fraction], pose: Pose) -> Fraction:
+def _price(chain: Chain, loop: Read, limits: tuple[Fraction, Fraction], pose: Pose) -> Fraction:
     """(h F + h_e M) T/2, where h − N ⪰ 0 with N_ij ≥ |∂²p/∂q_i∂q_j|."""
-    if integer(get(loop, "delay_samples")):
+    if loop.delay_samples:
         raise Invalid("a held torque needs no delay")
-    curvature, most = number(get(loop, "curvature_m_per_rad2")), bends(chain)
+    curvature, most = loop.curvature, bends(chain)
     room = [[(curvature if i == k else 0) - x for k, x in enumerate(row)] for i, row in enumerate(most)]
     if not _semidefinite(room):
         raise Invalid("the hand's path can bend more than the curvature says")
-    return (curvature * limits[0] + turning_bend(chain, pose) * limits[1]) * _period(loop) / 2
+    bent: Fraction = curvature * limits[0] + turning_bend(chain, pose) * limits[1]
+    return bent * Fraction(loop.sample_period) / 2
 
 
-def _symmetric(rows: Any, sizes: range) -> Matrix:
-    if not isinstance(rows, list) or len(rows) not in sizes:
-        raise Invalid(f"a matrix of the wall has {' or '.join(map(str, sizes))} rows")
-    matrix = [vector(row, len(rows)) for row in rows]
-    if any(matrix[i][k] != matrix[k][i] for i in range(len(rows)) for k in range(i)):
+def _symmetric(rows: Sequence[Sequence[Fraction]], sizes: range) -> Matrix:
+    if len(rows) not in sizes or any(len(row) != len(rows) for row in rows):
+        raise Invalid(f"a matrix of the wall has {' or '.join(map(str, sizes))} rows, and as many columns")
+    if any(rows[i][k] != rows[k][i] for i in range(len(rows)) for k in range(i)):
         raise Invalid("a matrix of the wall is not symmetric")
-    return matrix
+    return [list(row) for row in rows]
 
 
 def _sum(a: Matrix, b: Matrix, factor: Fraction | int) -> Matrix:

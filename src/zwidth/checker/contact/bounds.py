@@ -5,35 +5,35 @@ x ≤ depth,    x ≥ −outside,    |Δx| ≤ speed · t    over each time t in
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
 
-from ..document.reading import Invalid, number
+from ..document.fields import Number, Read, Record
+from ..document.refusal import Invalid
+from ..document.unit import LENGTH, SPEED
 from .law import Losses
+
+BOUNDS = Record(
+    {
+        "speed": Number(SPEED, least=0, default=None),
+        "depth": Number(LENGTH, default=None),
+        "outside": Number(LENGTH, default=None),
+    },
+    default=None,
+)
 
 
 def require_within(
-    document: Mapping[str, Any], losses: Losses, x: Sequence[Fraction], switches: Sequence[Fraction]
+    bounds: Read | None, losses: Losses, x: Sequence[Fraction], switches: Sequence[Fraction]
 ) -> None:
-    """Where a document states bounds, every position and every move keeps to them."""
-    if "bounds" not in document:
+    """Where bounds are stated, every position and every move keeps to them."""
+    if bounds is None:
         return
-    bounds = document["bounds"]
-    if not isinstance(bounds, Mapping):
-        raise Invalid("the bounds of a motion must be an object")
-    for key, value in bounds.items():
-        name, _, unit = str(key).partition("_")
-        most = number(value)
-        if (name, unit) in (("speed", "m_per_s"), ("speed", "rad_per_s")):
-            kept = _slow(losses, x, switches, most)
-        elif name in ("depth", "outside") and unit in ("m", "rad"):
-            side = 1 if name == "depth" else -1
-            kept = all(side * place <= most for place in (*x, *switches))
-        else:
-            raise Invalid(f"a bound that is not understood: {str(key)[:40]}")
-        if not kept:
+    if bounds.speed is not None and not _slow(losses, x, switches, bounds.speed):
+        raise Invalid("the motion does not keep to its speed")
+    for name, most, side in (("depth", bounds.depth, 1), ("outside", bounds.outside, -1)):
+        if most is not None and any(side * place > most for place in (*x, *switches)):
             raise Invalid(f"the motion does not keep to its {name}")
 
 

@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..document.reading import Invalid, Loop, get, number, numbers, quantity, read_loop
+from ..document.fields import Either, Number, Read, Record, document, numbers
+from ..document.refusal import Invalid
+from ..document.unit import DAMPING, STIFFNESS
+from ..exact.polynomial import add, multiply, same
+from ..loop.loop import LOOP, Loop, loop_of, require_surface, require_whole_delay
+
+_POLE = Record({"pole": Number(least=0, below=1)})
+WALL = Record(
+    {
+        "stiffness": Number(STIFFNESS, least=0),
+        "virtual_damping": Number(DAMPING),
+        "weights": Either(_POLE, numbers(), lambda value: isinstance(value, Mapping)),
+    }
+)
+CONTACT = document({"loop": LOOP, "law": WALL})
 
 
 class _Estimate(NamedTuple):
@@ -18,23 +32,18 @@ class _Estimate(NamedTuple):
     variation: Fraction
 
 
-def contact(document: Mapping[str, Any]) -> str:
+def contact(told: Read) -> str:
     """b ≥ (2d+1) K T/2 + |B| Σ|w_j| and 2 f_c ≥ (K + |B| ‖h_v‖₁) Δ, with K ≥ 0.
 
     Storage: ½ K max(x − Δ/2, 0)², and of each past move its square times what
     the velocity estimate and the delay will still make of it.
     """
-    p = read_loop(document)
-    if not p.unilateral:
-        raise Invalid("contact is made and broken with a law that acts inside only")
-    if p.part:
-        raise Invalid("the delay is no whole number of samples")
-    law = get(document, "law")
-    k, b = quantity(law, "stiffness"), abs(quantity(law, "virtual_damping"))
-    if k < 0:
-        raise Invalid(f"the stiffness is negative: {float(k):g}")
-    estimate = _estimate(get(law, "weights"))
-    _same_law(p, k, quantity(law, "virtual_damping"), estimate)
+    p, law = loop_of(told.loop), told.law
+    require_surface(p)
+    require_whole_delay(p)
+    k, b = law.stiffness, abs(law.virtual_damping)
+    estimate = _estimate(law.weights)
+    _require_same_law(p, k, law.virtual_damping, estimate)
     if p.damping < (2 * p.whole + 1) * k * p.period / 2 + b * estimate.gain:
         raise Invalid("the damping is below (2d + 1) K T/2 + |B| Σ|w|")
     if 2 * p.coulomb_friction < (k + b * estimate.variation / p.period) * p.resolution:
@@ -44,34 +53,17 @@ def contact(document: Mapping[str, Any]) -> str:
 
 def _estimate(weights: Any) -> _Estimate:
     one = [Fraction(1)]
-    if isinstance(weights, Mapping):
-        pole = number(get(weights, "pole"))
-        if not 0 <= pole < 1:
-            raise Invalid("the pole of the velocity estimate must lie in [0, 1)")
+    if isinstance(weights, Read):
+        pole: Fraction = weights.pole
         return _Estimate([1 - pole], [Fraction(1), -pole], Fraction(1), 2 * (1 - pole))
-    w = numbers(weights)
-    response = _times(w, [Fraction(1), Fraction(-1)])
-    return _Estimate(w, one, sum(map(abs, w), Fraction(0)), sum(map(abs, response), Fraction(0)))
+    response = multiply(weights, [Fraction(1), Fraction(-1)])
+    gain, variation = (sum(map(abs, w), Fraction(0)) for w in (weights, response))
+    return _Estimate(weights, one, gain, variation)
 
 
-def _same_law(p: Loop, k: Fraction, b: Fraction, estimate: _Estimate) -> None:
+def _require_same_law(p: Loop, k: Fraction, b: Fraction, estimate: _Estimate) -> None:
     """K + B W(ζ) (1 − ζ)/T is N/D."""
-    moved = _times(estimate.top, [b / p.period, -b / p.period])
-    size = max(len(moved), len(estimate.bottom))
-    moved, held = ([*c, *[Fraction(0)] * (size - len(c))] for c in (moved, estimate.bottom))
-    top = [x + k * y for x, y in zip(moved, held, strict=True)]
-    left, right = _times(top, p.denominator), _times(p.numerator, estimate.bottom)
-    size = max(len(left), len(right))
-    left, right = ([*c, *[Fraction(0)] * (size - len(c))] for c in (left, right))
-    if left != right:
+    moved = multiply(estimate.top, [b / p.period, -b / p.period])
+    top = add(moved, [k * c for c in estimate.bottom])
+    if not same(multiply(top, p.denominator), multiply(p.numerator, estimate.bottom)):
         raise Invalid("H(z) is not the wall of the stiffness, virtual damping and weights given")
-
-
-def _times(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
-    out = [Fraction(0)] * (len(a) + len(b) - 1) if a and b else []
-    for i, x in enumerate(a):
-        if x:
-            for j, y in enumerate(b):
-                if y:
-                    out[i + j] += x * y
-    return out

@@ -9,14 +9,53 @@ f = the nearest whole step of a converter, the upper of two;  then |f| ≤ the f
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ..document.reading import Invalid, get, number, numbers, quantity, the_one, with_no_more_than
+from ..document.fields import Choice, Flag, Number, Read, Record, numbers, only_if, pairs
+from ..document.refusal import Invalid
+from ..document.unit import (
+    DAMPING,
+    FORCE,
+    FORCE_AT,
+    FORCE_AT_SPEED,
+    FRICTION_MODEL,
+    LENGTH,
+    PER_LENGTH,
+    SECONDS,
+    STIFFNESS,
+)
 
 MOST_TAPS = 50
 MOST_POINTS = 10_000
+
+LOSSES = Record(
+    {
+        "damping": Number(DAMPING, least=0, default=None),
+        "coulomb_friction": Number(FORCE, least=0, default=None),
+        "friction_curve": pairs(FORCE_AT_SPEED, least=2, most=MOST_POINTS, default=None),
+        "friction_models": pairs(FRICTION_MODEL, least=1, most=MOST_POINTS + 1, default=None),
+        "resolution": Number(LENGTH, above=0),
+        "sample_period": Number(SECONDS, above=0),
+        "delay": Number(SECONDS, least=0),
+    }
+)
+"""A device with damping and Coulomb friction, or with a friction curve and models below it."""
+
+LAW = Record(
+    {
+        "taps": numbers(STIFFNESS, most=MOST_TAPS),
+        "points": pairs(FORCE_AT, least=1, most=MOST_POINTS, default=None),
+        "rate_per": Number(PER_LENGTH, default=None),
+        "surface": Choice("none", "position", "penetration"),
+        "clamped": Flag(),
+        "force_step": Number(FORCE, above=0, default=None),
+        "force_limit": Number(FORCE, least=0, default=None),
+        "relaxing": Record({"pole": Number(least=0, below=1), "stiffness": Number(STIFFNESS)}, default=None),
+        "resets": Flag(default=None),
+    }
+)
 
 
 class Losses(NamedTuple):
@@ -108,94 +147,68 @@ class Law(NamedTuple):
         return f0 + (q - x0) / (x1 - x0) * (f1 - f0)
 
 
-def read_losses(document: Mapping[str, Any]) -> Losses:
-    loop = get(document, "loop")
-    resolution, period, delay = (quantity(loop, n) for n in ("resolution", "sample_period", "delay"))
-    curve = _curve(loop)
-    models = _models_below(loop, curve) if curve else [_friction(loop)]
-    with_no_more_than(loop, 5)
-    if period <= 0 or resolution <= 0 or delay < 0 or min(min(m) for m in models) < 0:
-        raise Invalid("T and Δ must be > 0, and b, f_c and the delay ≥ 0")
-    whole = -(-delay // period)
+def losses_of(loop: Read) -> Losses:
+    """What the device of a document takes out."""
+    curve = _curve(loop.friction_curve or [])
+    for name in ("damping", "coulomb_friction"):
+        only_if(not curve, getattr(loop, name), name)
+    only_if(curve, loop.friction_models, "friction_models")
+    models = _models_below(loop.friction_models, curve) if curve else [(loop.coulomb_friction, loop.damping)]
+    whole = -(-loop.delay // loop.sample_period)
     if whole > MOST_TAPS:
         raise Invalid("the delay is longer than can be checked")
-    if curve and delay % period:
+    if curve and loop.delay % loop.sample_period:
         raise Invalid("a friction curve is checked with delays of whole samples")
-    return Losses(models, curve, resolution, period, int(whole), delay / period - whole + 1)
+    part = loop.delay / loop.sample_period - whole + 1
+    return Losses(models, curve, loop.resolution, loop.sample_period, int(whole), part)
 
 
-def _friction(loop: Any) -> tuple[Fraction, Fraction]:
-    return quantity(loop, "coulomb_friction"), quantity(loop, "damping")
-
-
-def _curve(loop: Any) -> list[tuple[Fraction, Fraction]]:
-    pairs = the_one(loop, "friction_curve", [])
-    if not isinstance(pairs, list) or len(pairs) > MOST_POINTS:
-        raise Invalid("the friction curve must be a short list")
-    curve = [(number(v), number(f)) for v, f in pairs]
-    if len(curve) == 1 or any(a[0] >= b[0] for a, b in zip(curve, curve[1:], strict=False)):
-        raise Invalid("a friction curve has two points or more, of increasing speed")
+def _curve(told: Sequence[Sequence[Fraction]]) -> list[tuple[Fraction, Fraction]]:
+    curve = [(v, f) for v, f in told]
+    if any(a[0] >= b[0] for a, b in zip(curve, curve[1:], strict=False)):
+        raise Invalid("the speeds of a friction curve must increase")
     if any(v < 0 or f < 0 for v, f in curve):
         raise Invalid("speeds and forces of a friction curve are ≥ 0")
     return curve
 
 
-def _models_below(loop: Any, curve: list[tuple[Fraction, Fraction]]) -> list[tuple[Fraction, Fraction]]:
+def _models_below(
+    told: Sequence[Sequence[Fraction]], curve: list[tuple[Fraction, Fraction]]
+) -> list[tuple[Fraction, Fraction]]:
     """f_c + b v below all points, and not steeper than the last chord: below the curve everywhere."""
-    pairs = the_one(loop, "friction_models")
-    if not isinstance(pairs, list) or not 0 < len(pairs) <= len(curve) + 1:
-        raise Invalid("friction_models must be a short list")
-    models = [(number(f), number(b)) for f, b in pairs]
+    models = [(f, b) for f, b in told]
     (v0, f0), (v1, f1) = curve[-2:]
     steepest = max((f1 - f0) / (v1 - v0), Fraction(0))
     for friction, b in models:
+        if min(friction, b) < 0:
+            raise Invalid("friction and damping of a model are ≥ 0")
         if b > steepest or any(friction + b * v > force for v, force in curve):
             raise Invalid("a friction model is not below the friction curve")
     return models
 
 
-def read_law(document: Mapping[str, Any]) -> Law:
-    law = get(document, "law")
-    known = {"surface", "clamped", "relaxing", "resets"}
-    surface, clamped = get(law, "surface"), get(law, "clamped")
-    if surface not in ("none", "position", "penetration") or not isinstance(clamped, bool):
-        raise Invalid("surface must be none, position or penetration, and clamped true or false")
-    for key in law:
-        if key not in known and not key.startswith(
-            ("taps_", "points_", "force_limit_", "force_step_", "rate_per_")
-        ):
-            raise Invalid(f"the law has a key that is not understood: {str(key)[:40]}")
-    taps = numbers(the_one(law, "taps"), MOST_TAPS)
-    pairs = the_one(law, "points", [])
-    if not isinstance(pairs, list) or len(pairs) > MOST_POINTS:
-        raise Invalid("points must be a short list")
-    points = [(number(x), number(f)) for x, f in pairs]
+def law_of(told: Read) -> Law:
+    """The law of a document."""
+    points = [(x, f) for x, f in told.points or []]
     if any(a[0] >= b[0] for a, b in zip(points, points[1:], strict=False)):
         raise Invalid("the positions of the points must increase")
-    if bool(taps) == bool(points):
+    if bool(told.taps) == bool(points):
         raise Invalid("a law has either taps or points")
-    limit = the_one(law, "force_limit", None)
-    limit = None if limit is None else number(limit)
-    if limit is not None and limit < 0:
-        raise Invalid("the force limit must be ≥ 0")
-    step = the_one(law, "force_step", None)
-    step = None if step is None else number(step)
-    if step is not None and (step <= 0 or law.get("relaxing") is not None):
-        raise Invalid("the converter's step must be > 0, and the law none that relaxes")
-    rate = number(the_one(law, "rate_per", "0"))
-    if rate and not points:
+    if told.rate_per and not points:
         raise Invalid("only the force of points may grow with the way since the last reading")
-    resets = law.get("resets", False)
-    if not isinstance(resets, bool):
-        raise Invalid("resets must be true or false")
-    return Law(taps, points, surface, clamped, limit, _relaxing(law, taps), resets, step, rate)
-
-
-def _relaxing(law: Mapping[str, Any], taps: list[Fraction]) -> tuple[Fraction, Fraction] | None:
-    part = law.get("relaxing")
-    if part is None:
-        return None
-    pole, stiffness = number(get(part, "pole")), number(the_one(part, "stiffness"))
-    if not 0 <= pole < 1 or len(taps) != 1 or "points" in " ".join(law):
-        raise Invalid("a relaxing part has a pole from 0 to 1 and stands beside one spring")
-    return pole, stiffness
+    relaxing = told.relaxing and (told.relaxing.pole, told.relaxing.stiffness)
+    if relaxing and (len(told.taps) != 1 or told.force_step is not None):
+        raise Invalid("a relaxing part stands beside one spring, without the steps of a converter")
+    if told.resets is not None and not relaxing:
+        raise Invalid("only a law that relaxes begins anew")
+    return Law(
+        told.taps,
+        points,
+        told.surface,
+        told.clamped,
+        told.force_limit,
+        relaxing,
+        bool(told.resets),
+        told.force_step,
+        told.rate_per or Fraction(0),
+    )

@@ -2,46 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
 
 from ..document.effort import spend
-from ..document.reading import Invalid, get, integer, numbers
-from .bounds import require_within
-from .law import Law, Losses, read_law, read_losses
+from ..document.fields import Read, document, numbers, only_if
+from ..document.refusal import Invalid
+from ..document.unit import LENGTH
+from ..loop.motion import REPEAT, TOLD, switch_positions
+from .bounds import BOUNDS, require_within
+from .law import LAW, LOSSES, Law, Losses, law_of, losses_of
+from .row_motion import MOST_POSITIONS, closed_cycle
 
-MOST_POSITIONS = 100_000
 MOST_SAMPLES = 2_000_000
 FINEST = 2**80
 """An average is kept to so many parts of a count; what that may cost in energy is taken off."""
 _SAMPLE = 300
 """Steps of work."""
 
+CONTACT_MOTION = document(
+    {
+        "loop": LOSSES,
+        "law": LAW,
+        "bounds": BOUNDS,
+        **TOLD,
+        "repeats": REPEAT,
+        "positions": numbers(LENGTH, least=2, most=MOST_POSITIONS, shown=False),
+        "switch_positions": numbers(LENGTH, most=MOST_POSITIONS, default=None, shown=False),
+    }
+)
 
-def contact_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
+
+def contact_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
     """Energy the hand takes out over the motion, and by one more round of its cycle [J].
 
     The motion begins at rest with the reading 0 or less, at which the law gives
     no force, and ends wherever it ends.  `repeats` names the part that is done
     `times` times; it must return to where it began.  It keeps to the bounds that are stated.
     """
-    losses, law = read_losses(document), read_law(document)
-    key = next((k for k in ("positions_m", "positions_rad") if k in document), None)
-    if key is None:
-        raise Invalid("positions_m is missing")
-    x = numbers(document[key], MOST_POSITIONS)
-    switches = x[1:]
-    if losses.part < 1:
-        switches = numbers(get(document, f"switch_{key}"), MOST_POSITIONS)
-        if len(switches) != len(x) - 1:
-            raise Invalid("there must be one switch position in each interval")
-    require_within(document, losses, x, switches)
-    part = get(document, "repeats")
-    first, last, times = (integer(get(part, k)) for k in ("first", "last", "times"))
-    if not 0 <= first < last < len(x) or times < 1 or x[first] != x[last]:
-        raise Invalid("the repeated part must lie in the motion and return to where it began")
+    losses, law, x = losses_of(told.loop), law_of(told.law), told.positions
+    switches = switch_positions(told, losses.part < 1) if losses.part < 1 else x[1:]
+    only_if(losses.part < 1, told.switch_positions, "switch_positions")
+    require_within(told.bounds, losses, x, switches)
+    first, last, times = closed_cycle(told.repeats, x)
     taps = law.memory + 1
     start = losses.resolution * (x[0] // losses.resolution)
     if start > 0 or law.force([start] * taps) != 0:

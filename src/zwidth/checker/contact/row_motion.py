@@ -8,34 +8,53 @@ this needs the law.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
 
-from ..document.reading import Invalid, get, integer, numbers
-from .bounds import require_within
-from .law import read_losses
+from ..document.fields import Flag, Read, Record, Words, document, numbers
+from ..document.refusal import Invalid
+from ..document.unit import FORCE, LENGTH
+from ..loop.motion import REPEAT, TOLD
+from .bounds import BOUNDS, require_within
+from .law import LOSSES, losses_of
 
 MOST_POSITIONS = 100_000
+MOST_WORDS = 10_000
+
+TOLD_LAW = Record(
+    {
+        "description": Words(MOST_WORDS),
+        "counts_force_limit": Flag(shown=False),
+        "counts_force_resolution": Flag(shown=False),
+    }
+)
+"""What is said of laws in a row: the proof is of the table, or of the forces, and not of these words."""
+
+ROW_MOTION = document(
+    {
+        "loop": LOSSES,
+        "law": TOLD_LAW,
+        "bounds": BOUNDS,
+        **TOLD,
+        "repeats": REPEAT,
+        "positions": numbers(LENGTH, least=2, most=MOST_POSITIONS, shown=False),
+        "forces": numbers(FORCE, least=1, most=MOST_POSITIONS, shown=False),
+    }
+)
 
 
-def row_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
+def row_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
     """Energy the hand takes out over the motion, and by one more round of its cycle [J].
 
     `repeats` names the part that is done `times` times; it must return to where it began.
     """
-    losses = read_losses(document)
+    losses = losses_of(told.loop)
     if losses.part < 1:
         raise Invalid("laws in a row are checked for delays of whole samples")
-    read_words(document)
-    x, forces = (_column(document, name) for name in ("positions", "forces"))
+    x, forces = told.positions, told.forces
     if len(forces) != len(x) - 1:
         raise Invalid("there must be one force for each move")
-    require_within(document, losses, x, ())
-    part = get(document, "repeats")
-    first, last, times = (integer(get(part, k)) for k in ("first", "last", "times"))
-    if not 0 <= first < last < len(x) or times < 1 or x[first] != x[last]:
-        raise Invalid("the repeated part must lie in the motion and return to where it began")
+    require_within(told.bounds, losses, x, ())
+    first, last, times = closed_cycle(told.repeats, x)
 
     def taken(begin: int, end: int) -> Fraction:
         moves = ((forces[k], x[k + 1] - x[k]) for k in range(begin, end))
@@ -45,17 +64,9 @@ def row_motion_energy(document: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
     return taken(0, first) + times * gain + taken(last, len(x) - 1), gain
 
 
-def read_words(document: Mapping[str, Any]) -> None:
-    """What is said of laws in a row: the proof is of the table, or of the forces, and not of these words."""
-    words = get(document, "law")
-    if not isinstance(get(words, "description"), str):
-        raise Invalid("laws in a row are described in words")
-    if not all(isinstance(get(words, f"counts_force_{k}"), bool) for k in ("limit", "resolution")):
-        raise Invalid("counts_force_limit and counts_force_resolution must be true or false")
-
-
-def _column(document: Mapping[str, Any], name: str) -> list[Fraction]:
-    keys = [k for k in document if k.startswith(f"{name}_")]
-    if len(keys) != 1:
-        raise Invalid(f"{name} must be given once")
-    return numbers(document[keys[0]], MOST_POSITIONS)
+def closed_cycle(part: Read, x: list[Fraction]) -> tuple[int, int, int]:
+    """First and last sample of the part that is repeated, and how often; it returns to where it began."""
+    first, last, times = part.first, part.last, part.times
+    if not first < last < len(x) or x[first] != x[last]:
+        raise Invalid("the repeated part must lie in the motion and return to where it began")
+    return first, last, times

@@ -2,35 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from math import gcd, lcm
-from typing import Any
 
-from ..document.reading import Invalid, Loop, common_scale, get, number, numbers, read_loop, with_no_more_than
-from ..loop.proofs import _inside_unit_circle
+from ..document.fields import Choice, Flag, Read, Record, document, numbers
+from ..document.number import common_scale
+from ..document.refusal import Invalid
+from ..document.unit import LENGTH
+from ..exact.roots import inside_unit_circle
+from ..loop.loop import LOOP, Loop, loop_of, require_surface
+from ..loop.motion import TOLD, switch_positions
 
 MOST_POSITIONS = 50_000
 MOST_EFFORT = 2e6
 """Of the samples that the law is run for: products times a thousand bits of their factors, about."""
 
+TOUCHING_MOTION = document(
+    {
+        "loop": LOOP,
+        "law": Record({"fed_with": Choice("penetration", "position"), "never_pulls": Flag()}),
+        **TOLD,
+        "positions": numbers(LENGTH, least=2, most=MOST_POSITIONS, shown=False),
+        "switch_positions": numbers(LENGTH, most=MOST_POSITIONS, default=None, shown=False),
+    }
+)
 
-def touching_motion_energy(document: Mapping[str, Any]) -> Fraction:
+
+def touching_motion_energy(told: Read) -> Fraction:
     """Energy the hand takes out over one motion from rest outside, back to where it began [J].
 
     The law is fed with the reading q, or with max(q, 0); it pushes where q > 0 only, and if it never
     pulls a force below 0 is given as 0.  H is stable, so that it forgets while the hand rests outside,
     and the motion may be made again and again.
     """
-    p = read_loop(document)
-    penetration, never_pulls = _surface(get(document, "law"))
-    key = "positions_rad" if "positions_rad" in document else "positions_m"
-    x = numbers(get(document, key), MOST_POSITIONS)
-    switches = numbers(get(document, f"switch_{key}"), MOST_POSITIONS) if p.part else x[:-1]
-    with_no_more_than(document, 8 if p.part else 7)
-    if number(get(document, "sample_period_s")) != p.period:
-        raise Invalid("the sample period is not that of the loop")
-    _require_sound(p, x, switches)
+    p, x = loop_of(told.loop), told.positions
+    switches = switch_positions(told, bool(p.part))
+    _require_sound(p, x)
     unit = lcm(*(v.denominator for v in (*x, *switches)))
     path, early_squares, late_squares = 0, 0, 0
     ways = [0] * len(x)  # how far the hand moves under the force of each sample
@@ -42,28 +49,16 @@ def touching_motion_energy(document: Mapping[str, Any]) -> Fraction:
         for move, sample in ((early, k - p.whole - 1), (late, k - p.whole)):
             if sample >= 0:
                 ways[sample] += move
-    work = _work(p, x, ways, penetration, never_pulls)
+    work = _work(p, x, ways, told.law.fed_with == "penetration", told.law.never_pulls)
     squares = late_squares / (1 - p.part) + (early_squares / p.part if p.part else 0)
     return -(work + p.coulomb_friction * path + p.damping / p.period * squares / unit) / unit
 
 
-def _surface(law: Any) -> tuple[bool, bool]:
-    """Whether it is fed with the penetration, and whether it never pulls."""
-    fed_with, never_pulls = get(law, "fed_with"), get(law, "never_pulls")
-    if fed_with not in ("penetration", "position") or not isinstance(never_pulls, bool):
-        raise Invalid("fed_with must be penetration or position, and never_pulls true or false")
-    with_no_more_than(law, 2)
-    return fed_with == "penetration", never_pulls
-
-
-def _require_sound(p: Loop, x: list[Fraction], switches: list[Fraction]) -> None:
-    if not p.unilateral:
-        raise Invalid("a law is touched and left if it acts inside only")
-    if len(x) < 2 or len(switches) != len(x) - 1:
-        raise Invalid("a motion has two positions or more, and one switch position in each interval")
+def _require_sound(p: Loop, x: list[Fraction]) -> None:
+    require_surface(p)
     if _read(p, x[0]) > 0 or x[0] != x[-1]:
         raise Invalid("the motion must begin at rest outside and return to where it began")
-    if not _inside_unit_circle(p.denominator):
+    if not inside_unit_circle(p.denominator):
         raise Invalid("H(z) has a pole outside or on the unit circle: it does not forget")
 
 

@@ -8,6 +8,7 @@ rounding is added to r.  A 0 stays exact.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 
 Slopes = tuple[int, ...]
@@ -36,6 +37,9 @@ class Enclosed:
         first, second = [b * s for s in self.slopes], [a * s for s in other.slopes]
         slopes = _merged(tuple(first), tuple(second), 1)
         return _rounded(bits, a * b, slopes, rest, bits)
+
+    def __neg__(self) -> Enclosed:
+        return self.times(-1)
 
     def times(self, whole: int) -> Enclosed:
         """Times a whole number, exactly."""
@@ -70,6 +74,11 @@ class Enclosed:
         return sum(map(abs, self.slopes)) + self.radius
 
     @property
+    def is_zero(self) -> bool:
+        """True where it is certainly 0."""
+        return not self.middle and not self.radius and not any(self.slopes)
+
+    @property
     def sign(self) -> int | None:
         """1, 0 or −1 where it is certain."""
         if abs(self.middle) > self.reach:
@@ -94,6 +103,24 @@ def between(low: Fraction, high: Fraction, place: int, places: int, bits: int) -
     slopes = tuple(half.middle if i == place else 0 for i in range(places))
     middle = known((low + high) / 2, bits)
     return Enclosed(bits, middle.middle, slopes if high > low else (), middle.radius + half.radius)
+
+
+def dot(a: Iterable[Enclosed], b: Iterable[Enclosed]) -> Enclosed:
+    """Σ a_i b_i of numbers with one `bits`, rounded once; at least one of each."""
+    middle = rest = bits = 0
+    slopes: list[int] = []
+    for x, y in zip(a, b, strict=True):
+        bits = x.bits
+        if x.is_zero or y.is_zero:
+            continue
+        middle += x.middle * y.middle
+        own, strange = x.reach, y.reach
+        rest += abs(x.middle) * y.radius + abs(y.middle) * x.radius + own * strange
+        for factor, part in ((y.middle, x.slopes), (x.middle, y.slopes)):
+            if part:
+                moved = [factor * s for s in part]
+                slopes = [s + t for s, t in zip(slopes, moved, strict=True)] if slopes else moved
+    return _rounded(bits, middle, tuple(slopes), rest, bits)
 
 
 def _merged(a: Slopes, b: Slopes, sign: int) -> Slopes:

@@ -12,105 +12,114 @@ convexity of Φ = ∫φ, and its slope.  Times |D|² the left side is a cosine p
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any
 
-from ..document.reading import Invalid, get, integer, number
-from ..loop.proofs import _in_powers, _multiply, _strictly_positive
-from .plant import Enclosed, Plant, read_plant
+from ..document.effort import spend
+from ..document.fields import Choice, List, Number, Read, Record, Whole, document
+from ..document.number import common_scale, down
+from ..document.refusal import Invalid
+from ..exact.enclosed import Enclosed
+from ..exact.polynomial import in_powers
+from ..exact.positivity import require_positive
+from ..exact.roots import inside_unit_circle
+from .plant import PLANT, Plant, given, plant_of
 
+BITS = 320
 MOST_TAPS = 400
 FURTHEST_TAP = 200
 
+_TAP = Record({"place": Whole(least=-FURTHEST_TAP, most=FURTHEST_TAP), "weight": Number()})
+ABSOLUTE_STABILITY = document(
+    {
+        **PLANT,
+        "nonlinearity": Choice("monotone", "odd monotone"),
+        "slope": Number(above=0),
+        "center": Number(shown=False),
+        "taps": List(_TAP, most=MOST_TAPS, shown=False),
+        "convexity": Number(least=0, shown=False),
+        "smoothness": Number(least=0, shown=False),
+    }
+)
 
-def absolute(document: Mapping[str, Any]) -> str:
-    plant, slope = read_plant(document), number(get(document, "slope"))
-    if slope <= 0:
-        raise Invalid("the slope must be > 0")
-    center, taps = _multiplier(document)
-    convex, smooth = (number(get(document, name)) for name in ("convexity", "smoothness"))
-    if convex < 0 or smooth < 0:
-        raise Invalid("convexity and smoothness must be ≥ 0")
-    middle, radius = _inequality(plant, slope, center, taps, convex, smooth)
-    _positive_cosines(middle, sum(radius.values(), Fraction(0)))
-    kind = get(document, "nonlinearity")
-    return f"every {kind} wall with slopes between 0 and {float(slope):.9g} brings the loop to rest"
+
+def absolute(told: Read) -> str:
+    """Say what was proved."""
+    plant = plant_of(told, BITS)
+    _require_stable(told)
+    terms = _terms(told, _multiplier(told))
+    scale = common_scale(weight for weight, _, _ in terms)
+    weights = [(int(weight * scale), at, pair) for weight, at, pair in terms]
+    _require_positive(_inequality(plant, weights))
+    return (
+        f"every {told.nonlinearity} wall with slopes between 0 and {down(told.slope)} brings the loop to rest"
+    )
 
 
-def _multiplier(document: Mapping[str, Any]) -> tuple[Fraction, dict[int, Fraction]]:
-    kind = get(document, "nonlinearity")
-    if kind not in ("monotone", "odd monotone"):
-        raise Invalid('the nonlinearity must be "monotone" or "odd monotone"')
-    center, listed = number(get(document, "center")), get(document, "taps")
-    if not isinstance(listed, list) or len(listed) > MOST_TAPS:
-        raise Invalid("the taps must be a short list")
-    taps: dict[int, Fraction] = {}
-    for entry in listed:
-        place = integer(get(entry, "place"), -FURTHEST_TAP)
-        if place == 0 or place in taps or place > FURTHEST_TAP:
-            raise Invalid("every tap has a place of its own, near 0 and not 0")
-        taps[place] = number(get(entry, "weight"))
-    if kind == "monotone" and any(h < 0 for h in taps.values()):
+def _require_stable(told: Read) -> None:
+    if told.plant is not None:
+        if not inside_unit_circle([Fraction(c) for c in given(told.plant)[1]]):
+            raise Invalid("G(z) has a pole outside or on the unit circle")
+    elif told.loop.hand_stiffness == 0 or told.loop.damping + told.loop.hand_damping == 0:
+        raise Invalid("b + c and k must be > 0: else G(z) is not stable")
+
+
+def _multiplier(told: Read) -> dict[int, Fraction]:
+    """The weights of z^i in M."""
+    taps = {tap.place: tap.weight for tap in told.taps}
+    if len(taps) < len(told.taps) or 0 in taps:
+        raise Invalid("every tap has a place of its own, and not 0")
+    if told.nonlinearity == "monotone" and any(h < 0 for h in taps.values()):
         raise Invalid("a wall that is not odd allows no negative tap")
-    if sum(abs(h) for h in taps.values()) >= center:
+    if sum(map(abs, taps.values()), Fraction(0)) >= told.center:
         raise Invalid("the taps outweigh the center")
-    return center, taps
+    return {0: told.center, **{-place: -weight for place, weight in taps.items()}}
 
 
-def _inequality(
-    plant: Plant,
-    slope: Fraction,
-    center: Fraction,
-    taps: Mapping[int, Fraction],
-    convex: Fraction,
-    smooth: Fraction,
-) -> tuple[dict[int, Fraction], dict[int, Fraction]]:
-    """The coefficients of cos jθ of the left side times |D|², and their error bounds."""
-    n, d = plant
-    middle: dict[int, Fraction] = {}
-    radius: dict[int, Fraction] = {}
-
-    def add(weight: Fraction, at: int, terms: tuple[dict[int, Fraction], dict[int, Fraction]]) -> None:
-        for total, part, size in ((middle, terms[0], weight), (radius, terms[1], abs(weight))):
-            for j, x in part.items():
-                total[abs(j + at)] = total.get(abs(j + at), Fraction(0)) + size * x
-
-    direct, through = _lags(d, d), _lags(n, d)
-    for place, weight in {0: center, **{i: -h for i, h in taps.items()}}.items():
-        add(weight, -place, direct)
-        add(weight * slope, -place, through)
-    add(convex * slope, 0, through)
-    add(-convex * slope, -1, through)
-    add(smooth * slope, 1, through)
-    add(-smooth * slope, 0, through)
-    moved = _lags(n, n)
-    add(-smooth * slope**2, 0, moved)  # |z − 1|² = 2 − 2 cos θ
-    add(smooth * slope**2, 1, moved)
-    return middle, radius
+_Term = tuple[Fraction, int, str]
+"""A weight, a power of z, and which product: D D̄, N D̄ or N N̄."""
 
 
-def _lags(a: Enclosed, b: Enclosed) -> tuple[dict[int, Fraction], dict[int, Fraction]]:
-    """a(z) b(1/z) by powers of z."""
-    size = [abs(x) for x in a.middle], [abs(x) for x in b.middle]
-    middle = _multiply(a.middle, b.middle[::-1])
-    over = [
-        x + y + z
-        for x, y, z in zip(
-            _multiply(size[0], b.radius[::-1]),
-            _multiply(a.radius, size[1][::-1]),
-            _multiply(a.radius, b.radius[::-1]),
-            strict=True,
-        )
-    ]
-    shift = len(b.middle) - 1
-    return {i - shift: x for i, x in enumerate(middle)}, {i - shift: x for i, x in enumerate(over)}
+def _terms(told: Read, multiplier: Mapping[int, Fraction]) -> list[_Term]:
+    slope, convex, smooth = told.slope, told.convexity * told.slope, told.smoothness * told.slope
+    terms: list[_Term] = []
+    for power, weight in multiplier.items():
+        terms += [(weight, power, "DD"), (weight * slope, power, "ND")]
+    terms += [(convex, 0, "ND"), (-convex, -1, "ND"), (smooth, 1, "ND"), (-smooth, 0, "ND")]
+    return [*terms, (-smooth * slope, 0, "NN"), (smooth * slope, 1, "NN")]  # |z − 1|² = 2 − 2 cos θ
 
 
-def _positive_cosines(middle: Mapping[int, Fraction], error: Fraction) -> None:
-    degree = max((j for j, x in middle.items() if x), default=0)
-    total = _in_powers([middle.get(j, Fraction(0)) for j in range(degree + 1)], 1)
-    total[0] -= error
+def _inequality(plant: Plant, terms: Sequence[tuple[int, int, str]]) -> list[Enclosed]:
+    """The coefficients of cos jθ of the left side times |D|²."""
+    lags = {
+        "DD": _lags(plant.denominator, plant.denominator),
+        "ND": _lags(plant.numerator, plant.denominator),
+        "NN": _lags(plant.numerator, plant.numerator),
+    }
+    highest = max(abs(j + at) for _, at, pair in terms for j in lags[pair])
+    sums = [Enclosed(plant.bits, 0)] * (highest + 1)
+    for weight, at, pair in terms:
+        for j, x in lags[pair].items():
+            sums[abs(j + at)] = sums[abs(j + at)] + x.times(weight)
+    return sums
+
+
+def _lags(a: Sequence[Enclosed], b: Sequence[Enclosed]) -> dict[int, Enclosed]:
+    """a(z) b(1/z) by powers of z, both descending."""
+    longest = max(x.middle.bit_length() for x in (*a, *b))
+    spend(60 * len(a) * len(b), longest)
+    out: dict[int, Enclosed] = {}
+    for i, x in enumerate(a):
+        for k, y in enumerate(b):
+            power = (len(a) - i) - (len(b) - k)
+            out[power] = out[power] + x * y if power in out else x * y
+    return out
+
+
+def _require_positive(sums: Sequence[Enclosed]) -> None:
+    """> 0 for every θ, whatever the coefficients are within their bounds: |cos jθ| ≤ 1."""
+    total = in_powers([x.middle for x in sums], 1)
+    total[0] -= sum(x.reach for x in sums)
     while len(total) > 1 and total[-1] == 0:
         total.pop()
-    _strictly_positive(total)
+    require_positive([Fraction(c) for c in total])

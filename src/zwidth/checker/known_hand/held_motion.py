@@ -18,7 +18,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..document.reading import Invalid, number, the_one
+from ..document.refusal import Invalid
 from ..exact.enclosed import Enclosed, between, known
 
 MOST_LATE = 300
@@ -72,25 +72,12 @@ class Sampled(NamedTuple):
     late: int
 
 
-def read_motion(mass: Range, damping: Range, stiffness: Range, period: Range, delay: Range) -> Motion:
-    """The numbers of the loop, in bounds."""
-    if period[0] != period[1] or delay[0] != delay[1]:
-        raise Invalid("T and the delay must be certain")
-    if mass[0] <= 0 or period[0] <= 0 or min(damping[0], stiffness[0], delay[0]) < 0:
-        raise Invalid("M and T must be > 0, and D, k and the delay ≥ 0")
-    late = delay[0] / period[0]
+def motion_of(mass: Range, damping: Range, stiffness: Range, period: Fraction, delay: Fraction) -> Motion:
+    """Of mass > 0, damping and stiffness ≥ 0, each from … to."""
+    late = delay / period
     if late > MOST_LATE:
         raise Invalid(f"the delay is more than {MOST_LATE} samples")
-    return Motion((1 / mass[1], 1 / mass[0]), damping, stiffness, period[0], late)
-
-
-def quantity(loop: Any, name: str) -> Range:
-    """A number of the loop by its name and unit, or both ends of an interval."""
-    value = the_one(loop, name)
-    ends = [number(end) for end in value] if isinstance(value, list) else [number(value)] * 2
-    if len(ends) != 2 or ends[0] > ends[1]:
-        raise Invalid(f"{name} must be a number, or the smaller and the larger end of an interval")
-    return ends[0], ends[1]
+    return Motion((1 / mass[1], 1 / mass[0]), damping, stiffness, period, late)
 
 
 def sampled(motion: Motion, bits: int) -> Sampled:

@@ -8,16 +8,19 @@ every other value no root meets the unit circle; a box that does not show it is 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from math import ceil, lcm
 from typing import Any, NamedTuple
 
-from ..document.reading import Invalid, common_scale, get, numbers, with_no_more_than
+from ..document.fields import Between, Number, Read, Record, document, numbers
+from ..document.number import common_scale
+from ..document.refusal import Invalid
+from ..document.unit import DAMPING, MASS, SECONDS, STIFFNESS
 from ..exact.crossing import never_crosses
 from ..exact.enclosed import Enclosed, quotient
 from ..exact.schur_cohn import decays
-from .held_motion import Motion, Sampled, quantity, read_motion, sampled, sampled_free
+from .held_motion import Motion, Sampled, motion_of, sampled, sampled_free
 
 MOST_ORDER = 300
 MOST_BOXES = 4000
@@ -30,7 +33,22 @@ BOX_BITS = 128
 PRECISIONS = (128, 512, 2048)
 
 
-_NAMES = ("mass", "damping", "stiffness", "sample_period", "delay")
+KNOWN_HAND = document(
+    {
+        "loop": Record(
+            {
+                "mass": Between(MASS, above=0),
+                "damping": Between(DAMPING, least=0),
+                "stiffness": Between(STIFFNESS, least=0),
+                "sample_period": Number(SECONDS, above=0),
+                "delay": Number(SECONDS, least=0),
+                "numerator": numbers(least=1, most=MOST_ORDER),
+                "denominator": numbers(least=1, most=MOST_ORDER),
+            }
+        )
+    }
+)
+"""Device and hand together, and H(z) of the law in descending powers of z."""
 
 _Numbers = list[Any]
 """All Enclosed or all Fraction."""
@@ -42,8 +60,9 @@ class _Loop(NamedTuple):
     below: list[int]
 
 
-def stability(document: Mapping[str, Any]) -> str:
-    loop = _read(document)
+def stability(told: Read) -> str:
+    """That every motion dies out."""
+    loop = _read(told.loop)
     middle = loop.motion.middle
     if not _decays(loop._replace(motion=middle)):
         raise Invalid("that all roots lie inside the unit circle could not be confirmed")
@@ -53,8 +72,9 @@ def stability(document: Mapping[str, Any]) -> str:
     return f"device, hand and wall come to rest for every value in the intervals, contact kept, {boxes} boxes"
 
 
-def instability(document: Mapping[str, Any]) -> str:
-    loop = _read(document)
+def instability(told: Read) -> str:
+    """That one does not."""
+    loop = _read(told.loop)
     if loop.motion.middle != loop.motion:
         raise Invalid("what does not come to rest must be certain")
     if _decays(loop) is not False:
@@ -62,12 +82,10 @@ def instability(document: Mapping[str, Any]) -> str:
     return "device, hand and wall do not come to rest, contact kept: a disturbance does not die out"
 
 
-def _read(document: Mapping[str, Any]) -> _Loop:
-    loop = get(document, "loop")
-    motion = read_motion(*(quantity(loop, name) for name in _NAMES))
-    above, below = (numbers(get(loop, name), MOST_ORDER) for name in ("numerator", "denominator"))
-    with_no_more_than(loop, len(_NAMES) + 2)
-    if not below or below[0] == 0 or not 0 < len(above) <= len(below):
+def _read(loop: Read) -> _Loop:
+    motion = motion_of(loop.mass, loop.damping, loop.stiffness, loop.sample_period, loop.delay)
+    above, below = loop.numerator, loop.denominator
+    if below[0] == 0 or len(above) > len(below):
         raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
     scale = common_scale((*above, *below))
     return _Loop(motion, *(_in_zeta([int(c * scale) for c in part]) for part in (above, below)))

@@ -9,13 +9,14 @@ x(j) > g exactly where s(j) = 1.  A pattern with samples on both sides is not at
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ..document.reading import Invalid, get, number, numbers, with_no_more_than
-from ..exact.enclosed import Enclosed, in_z, known
-from .held_motion import Motion, quantity, read_motion, sampled
+from ..document.fields import Flag, List, Number, Read, document
+from ..document.number import about
+from ..document.refusal import Invalid
+from ..exact.enclosed import Enclosed, known, quotient
+from .plant import PLANT, plant_of
 
 MOST_ORDER = 60
 LONGEST = 1000
@@ -26,69 +27,48 @@ _Row = list[Enclosed]
 """What a position is made of: a weight of each of the p first ones, and a constant."""
 
 
+VIBRATION = document(
+    {
+        **PLANT,
+        "slope": Number(above=0),
+        "gap": Number(),
+        "inside": List(Flag(), least=2, most=LONGEST, shown=False),
+    }
+)
+
+
 class _Wall(NamedTuple):
     slope: Fraction
     gap: Fraction
     inside: list[bool]
 
 
-def vibration(document: Mapping[str, Any]) -> str:
-    wall = _wall(document)
-    order = len(_plant(document, PRECISIONS[0])[1])
-    if order**2 * len(wall.inside) > MOST_EFFORT:
-        raise Invalid("the motion is too long for a plant of this order")
-    answers = (_repeats(*_plant(document, bits), wall, bits) for bits in PRECISIONS)
+def vibration(told: Read) -> str:
+    """Say what was proved."""
+    wall = _Wall(told.slope, told.gap, told.inside)
+    if len(set(wall.inside)) < 2:
+        raise Invalid("some samples must find the wall and some not")
+    order = len(_plant(told, PRECISIONS[0])[1])
+    if order > MOST_ORDER or order**2 * len(wall.inside) > MOST_EFFORT:
+        raise Invalid("the order of G(z) is too high, or the motion too long for it")
+    answers = (_repeats(*_plant(told, bits), wall, bits) for bits in PRECISIONS)
     if not next((answer for answer in answers if answer is not None), False):
         raise Invalid("the motion with this pattern is not one of the wall")
     return (
-        f"a one-sided wall of slope {float(wall.slope):.9g}, {float(wall.gap):.9g} off the hand's rest, "
+        f"a one-sided wall of slope {about(wall.slope)}, {about(wall.gap)} off the hand's rest, "
         f"vibrates for ever: rounds of {len(wall.inside)} samples, {sum(wall.inside)} inside"
     )
 
 
-def _wall(document: Mapping[str, Any]) -> _Wall:
-    slope, gap, inside = number(get(document, "slope")), number(get(document, "gap")), get(document, "inside")
-    if slope <= 0:
-        raise Invalid("the slope must be > 0")
-    if not isinstance(inside, list) or not 2 <= len(inside) <= LONGEST:
-        raise Invalid(f"inside must say of 2 … {LONGEST} samples whether they find the wall")
-    if not all(isinstance(s, bool) for s in inside) or len(set(inside)) < 2:
-        raise Invalid("some samples must find the wall and some not, true or false")
-    return _Wall(slope, gap, inside)
-
-
-def _plant(document: Mapping[str, Any], bits: int) -> tuple[list[Enclosed], list[Enclosed]]:
+def _plant(told: Read, bits: int) -> tuple[list[Enclosed], list[Enclosed]]:
     """N and D in ascending powers of z without the leading 1 of D, of one length."""
-    if "plant" in document:
-        if "loop" in document:
-            raise Invalid("the document speaks of a plant and of a loop: only one can be meant")
-        plant = get(document, "plant")
-        top, bottom = (numbers(get(plant, name), MOST_ORDER) for name in ("numerator", "denominator"))
-        if not bottom or bottom[0] == 0 or not 0 < len(top) < len(bottom):
-            raise Invalid("G(z) must be strictly proper")
-        above, below = ([known(c / bottom[0], bits) for c in part] for part in (top, bottom))
-    else:
-        found = sampled(_touched(get(document, "loop")), bits)
-        above, below = in_z(found.numerator), in_z(found.denominator)
-        below = [*below, *[Enclosed(bits, 0)] * found.late]
-    if len(below) > MOST_ORDER:
-        raise Invalid(f"the order of G(z) is more than {MOST_ORDER}")
+    found = plant_of(told, bits)
+    above, below = found.numerator, found.denominator
+    if found.bits == 0:
+        lead = below[0].middle
+        above, below = ([quotient(c.middle, lead, bits) for c in part] for part in (above, below))
     padded = [*[Enclosed(bits, 0)] * (len(below) - 1 - len(above)), *above]
     return padded[::-1], below[:0:-1]
-
-
-def _touched(loop: Any) -> Motion:
-    own = [quantity(loop, name) for name in ("mass", "damping")]
-    hand = [quantity(loop, f"hand_{name}") for name in ("mass", "damping")]
-    if min(low for low, _ in (own[1], *hand)) < 0:
-        raise Invalid("b, m_h and c must be ≥ 0")
-    mass, damping = ((a[0] + b[0], a[1] + b[1]) for a, b in zip(own, hand, strict=True))
-    rest = [quantity(loop, name) for name in ("hand_stiffness", "sample_period", "delay")]
-    with_no_more_than(loop, len(own) + len(hand) + len(rest))
-    motion = read_motion(mass, damping, *rest)
-    if motion.middle != motion:
-        raise Invalid("a motion is of certain numbers")
-    return motion
 
 
 def _repeats(above: list[Enclosed], below: list[Enclosed], wall: _Wall, bits: int) -> bool | None:

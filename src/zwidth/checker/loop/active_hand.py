@@ -7,72 +7,90 @@ below f₀     q ≥ 0 with b on all of [−1, 1], and with b_in on [c₀, 1], c
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any
 
-from ..contact.damped_wall import contact
-from ..contact.multiplier import multiplier_contact
-from ..contact.relaxing import relaxing_contact
-from ..document.reading import Invalid, Loop, get, number, quantity, read_loop
-from .proofs import PROOFS, _criterion, _friction, _linear_part, _positivity
+from ..contact.damped_wall import CONTACT, contact
+from ..contact.multiplier import MULTIPLIER_CONTACT, multiplier_contact
+from ..contact.relaxing import RELAXING_CONTACT, relaxing_contact
+from ..document.fields import Either, Number, OneOf, Read, Record, document, only_if
+from ..document.refusal import Invalid
+from ..document.unit import DAMPING, HERTZ
+from ..exact.positivity import POSITIVITY, require_nonnegative
+from .criterion import CRITERION, criterion, require_criterion
+from .linear import LINEAR, QUANTIZED, linear, quantized
+from .loop import LOOP, Loop, loop_of
+from .one_norm import NORM, require_friction
+from .spring import SPRING, spring
 
 MOST_BITS_OF_ANGLE = 4000  # high powers of it are taken
 _PI = Fraction(31415926535897932385, 10**19)
 """Above π, by less than its last digit."""
 _LESS_THAN_PI = _PI - Fraction(1, 10**19)
 
+REDUCED: dict[str, tuple[Record, Callable[[Read], str]]] = {
+    "spring": (SPRING, spring),
+    "linear": (LINEAR, linear),
+    "quantized": (QUANTIZED, quantized),
+    "contact": (CONTACT, contact),
+    "relaxing contact": (RELAXING_CONTACT, relaxing_contact),
+    "multiplier contact": (MULTIPLIER_CONTACT, multiplier_contact),
+}
+"""Proofs of passivity that the loop with less damping may have."""
 
-def active_hand(document: Mapping[str, Any]) -> str:
-    p, proof = read_loop(document), get(document, "proof")
-    activity = _activity(document)
-    if isinstance(proof, Mapping) and "reduced" in proof:
-        return _everywhere(p, activity, proof["reduced"])
-    return _in_band(document, p, activity, proof)
-
-
-def _activity(document: Mapping[str, Any]) -> Fraction:
-    found = quantity(document, "activity")
-    if found < 0:
-        raise Invalid("the activity must be ≥ 0")
-    return found
-
-
-def _everywhere(p: Loop, activity: Fraction, reduced: Mapping[str, Any]) -> str:
-    kinds = {
-        **PROOFS,
-        "contact": contact,
-        "relaxing contact": relaxing_contact,
-        "multiplier contact": multiplier_contact,
+_EVERYWHERE = Record({"reduced": OneOf("kind", {kind: fields for kind, (fields, _) in REDUCED.items()})})
+_IN_BAND = Record(
+    {
+        **CRITERION,
+        "norm": NORM,
+        "angle": Number(above=0, most=4),
+        "cosine": Number(least=-1),
+        "in_band": POSITIVITY,
     }
-    kind = get(reduced, "kind")
-    if kind not in kinds or kind == "delays":
-        raise Invalid("the loop with less damping needs a proof of passivity")
-    reason = kinds[kind](reduced)
-    less = read_loop(reduced)
+)
+ACTIVE_HAND = document(
+    {
+        "loop": LOOP,
+        "activity": Number(DAMPING, least=0),
+        "below": Number(HERTZ, above=0, default=None),
+        "proof": Either(_EVERYWHERE, _IN_BAND, lambda value: "reduced" in value, shown=False),
+    }
+)
+
+
+def active_hand(told: Read) -> str:
+    """Say what was proved."""
+    p = loop_of(told.loop)
+    if only_if(hasattr(told.proof, "in_band"), told.below, "below_Hz"):
+        return _in_band(p, told.activity, told.below, told.proof)
+    return _everywhere(p, told.activity, told.proof.reduced)
+
+
+def _everywhere(p: Loop, activity: Fraction, reduced: Read) -> str:
+    _, check = REDUCED[reduced.kind]
+    reason = check(reduced)
+    less = loop_of(reduced.loop)
     if less._replace(damping=less.damping + activity) != p:
         raise Invalid("the loop that is proved is not this one with the activity taken from its damping")
     return f"with the activity taken from the damping, {reason}"
 
 
-def _in_band(document: Mapping[str, Any], p: Loop, activity: Fraction, proof: Mapping[str, Any]) -> str:
+def _in_band(p: Loop, activity: Fraction, below: Fraction, proof: Read) -> str:
     if p.part:
         raise Invalid("a band is proved for delays of whole samples")
-    if get(get(proof, "stability"), "kind") != "open loop":
+    if proof.stability.kind != "open loop":
         raise Invalid("a band is proved for laws that are stable by themselves")
-    _linear_part(document, p)
-    if p.resolution:
-        _friction(p, proof)
-    below = number(get(document, "below_Hz"))
-    if below <= 0 or 2 * below * p.period > 1:
-        raise Invalid("the band must end above 0 and at most at half the rate")
-    angle, cosine = number(get(proof, "angle")), number(get(proof, "cosine"))
-    if max(x.denominator for x in (angle, cosine)).bit_length() > MOST_BITS_OF_ANGLE or angle > 4:
-        raise Invalid("the angle of the band is too large, or has too many digits")
-    if angle < 2 * _PI * below * p.period or not -1 <= cosine <= _least_cosine(angle):
+    require_criterion(proof, p)
+    if only_if(p.resolution, proof.norm, "norm"):
+        require_friction(p, proof.norm)
+    if 2 * below * p.period > 1:
+        raise Invalid("the band must end at most at half the rate")
+    if max(x.denominator for x in (proof.angle, proof.cosine)).bit_length() > MOST_BITS_OF_ANGLE:
+        raise Invalid("the angle of the band has too many digits")
+    if proof.angle < 2 * _PI * below * p.period or proof.cosine > _least_cosine(proof.angle):
         raise Invalid("the band of the proof is narrower than what is said")
-    inside = p._replace(damping=_inside(p.damping, activity, angle))
-    _positivity(get(proof, "in_band"), _from(_criterion(inside), cosine))
+    inside = p._replace(damping=_inside(p.damping, activity, proof.angle))
+    require_nonnegative(_from(criterion(inside), proof.cosine), proof.in_band)
     return "the criterion holds with b − a in the band and with b above it, and the environment is stable"
 
 
@@ -99,7 +117,7 @@ def _cosine_from_below(angle: Fraction) -> Fraction:
     return total
 
 
-def _from(q: list[Fraction], low: Fraction) -> list[Fraction]:
+def _from(q: Sequence[Fraction], low: Fraction) -> list[Fraction]:
     """q(c) in t, c = ((1 + low) + (1 − low) t)/2: −1 … 1 is low … 1."""
     middle, half = (1 + low) / 2, (1 - low) / 2
     total = [Fraction(0)]

@@ -19,11 +19,29 @@ summed, S and the bound by ε of theirs.  Forces, energies and readings may be a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ..document.reading import Invalid, get, quantity, with_no_more_than
+from ..document.fields import Number, Read, Record, document
+from ..document.refusal import Invalid
+from ..document.unit import FORCE, LENGTH, STIFFNESS
+from .loop import DEVICE
+
+FORCE_BOUNDING = document(
+    {
+        "loop": Record({**DEVICE, "force_resolution": Number(FORCE, least=0)}),
+        "law": Record(
+            {
+                "credit": Number(STIFFNESS, above=0),
+                "friction": Number(FORCE, least=0),
+                "count": Number(LENGTH, least=0),
+                "half_step": Number(FORCE, least=0),
+                "hair": Number(least=0, below=1),
+                "roundoff": Number(least=0, below=1),
+            }
+        ),
+    }
+)
 
 
 class _Device(NamedTuple):
@@ -42,8 +60,9 @@ class _Law(NamedTuple):
     roundoff: Fraction  # u
 
 
-def force_bounding(document: Mapping[str, Any]) -> str:
-    device, law = _device(document), _law(document)
+def force_bounding(told: Read) -> str:
+    """Say what was proved."""
+    device, law = _device(told.loop), _law(told.law)
     _moves_are_paid(device, law)
     _counts_are_covered(device, law)
     _bound_is_paid(device, law)
@@ -55,27 +74,15 @@ def force_bounding(document: Mapping[str, Any]) -> str:
     )
 
 
-def _device(document: Mapping[str, Any]) -> _Device:
-    loop = get(document, "loop")
-    names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay", "force_resolution")
-    b, friction, resolution, period, delay, step = (quantity(loop, name) for name in names)
-    with_no_more_than(loop, len(names))
-    if period <= 0 or min(b, friction, resolution, step) < 0:
-        raise Invalid("T must be > 0 and b, f_c, Δ and ΔF ≥ 0")
-    if delay != 0:
+def _law(law: Read) -> _Law:
+    return _Law(law.credit, law.friction, law.count, law.half_step, law.hair, law.roundoff)
+
+
+def _device(loop: Read) -> _Device:
+    if loop.delay != 0:
         raise Invalid("the force is applied late: the credit of a move would come before its cost")
-    return _Device(b / period, friction, resolution, step)
-
-
-def _law(document: Mapping[str, Any]) -> _Law:
-    names = ("credit", "friction", "count", "half_step", "hair", "roundoff")
-    law = _Law(*(quantity(get(document, "law"), name) for name in names))
-    with_no_more_than(get(document, "law"), len(names))
-    if law.credit <= 0 or min(law) < 0:
-        raise Invalid("the credit must be > 0, and no other number of the law below 0")
-    if law.hair >= 1 or law.roundoff >= 1:
-        raise Invalid("hair and roundoff must be below 1")
-    return law
+    rate = loop.damping / loop.sample_period
+    return _Device(rate, loop.coulomb_friction, loop.resolution, loop.force_resolution)
 
 
 def _moves_are_paid(device: _Device, law: _Law) -> None:

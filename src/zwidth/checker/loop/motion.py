@@ -2,48 +2,59 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from math import gcd
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..document.effort import spend
-from ..document.reading import (
-    MOST_BITS,
-    MOST_SAMPLES,
-    Invalid,
-    Loop,
-    common_scale,
-    get,
-    integer,
-    numbers,
-    read_loop,
+from ..document.fields import List, Number, Read, Record, Whole, document, numbers, only_if
+from ..document.number import MOST_BITS, common_scale
+from ..document.refusal import Invalid
+from ..document.unit import JOULES, LENGTH, SECONDS
+from .loop import LOOP, Loop, loop_of
+
+MOST_SAMPLES = 4_000_000
+
+REPEAT = Record({"first": Whole(least=0), "last": Whole(least=0), "times": Whole(least=1)}, shown=False)
+"""A part of the motion, listed once, that is done so many times."""
+
+TOLD = {
+    "sample_period": Number(SECONDS, default=None, shown=False),
+    "energy": Number(JOULES, shown=False),
+}
+"""What a motion says of itself, and is compared."""
+
+MOTION = document(
+    {
+        "loop": LOOP,
+        **TOLD,
+        "positions": numbers(LENGTH, least=2, most=MOST_SAMPLES, shown=False),
+        "switch_positions": numbers(LENGTH, most=MOST_SAMPLES, default=None, shown=False),
+        "repeats": List(REPEAT, most=MOST_SAMPLES, default=(), shown=False),
+    }
 )
 
 
-def motion_energy(document: Mapping[str, Any]) -> Fraction:
+def motion_energy(told: Read) -> Fraction:
     """Net energy the hand takes out of the device over a motion from rest to rest [J]."""
-    p = read_loop(document)
-    positions = numbers(get(document, _key(document, "positions")), MOST_SAMPLES)
-    if len(positions) < 2:
-        raise Invalid("a motion has at least two positions")
+    p, positions = loop_of(told.loop), told.positions
     if p.unilateral and positions[0] > 0:
         raise Invalid("the motion must start at rest outside the wall or on its surface")
     start = positions[0] // p.resolution if p.resolution else positions[0]
     if not p.unilateral and start != 0:
         raise Invalid("the motion must start at rest at x = 0")
-    switches = _switch_positions(document, p, positions)
-    repeats = _repeats(document, len(positions))
+    switches = switch_positions(told, bool(p.part))
+    repeats = _repeats(told.repeats, len(positions))
     return _energy_of(p, positions, switches, repeats)
 
 
-def stored_at_start(document: Mapping[str, Any]) -> Fraction:
+def stored_at_start(told: Read) -> Fraction:
     """What even a passive loop may give out once from rest: H(1) Δ²/8, half a count of its spring.
 
     Nothing for an ideal encoder, nor for a spring wall touched from outside: its
     storage ½ K max(x − Δ/2, 0)² is 0 there.
     """
-    p = read_loop(document)
+    p = loop_of(told.loop)
     spring_wall = p.unilateral and not any(p.numerator[1:]) and not any(p.denominator[1:])
     at_one = sum(p.denominator)
     if spring_wall or p.resolution == 0 or at_one == 0:
@@ -51,21 +62,13 @@ def stored_at_start(document: Mapping[str, Any]) -> Fraction:
     return max(sum(p.numerator) / at_one, Fraction(0)) * p.resolution**2 / 8
 
 
-def _key(document: Mapping[str, Any], name: str) -> str:
-    for unit in ("m", "rad"):
-        if f"{name}_{unit}" in document:
-            return f"{name}_{unit}"
-    raise Invalid(f"{name}_m is missing")
-
-
-def _switch_positions(document: Mapping[str, Any], p: Loop, x: list[Fraction]) -> list[Fraction]:
+def switch_positions(told: Read, inside_sample: bool) -> list[Fraction]:
     """Positions at the instant inside each interval when the delayed force changes."""
-    if not p.part:
-        return x[:-1]
-    y = numbers(get(document, _key(document, "switch_positions")), MOST_SAMPLES)
-    if len(y) != len(x) - 1:
+    only_if(inside_sample, told.switch_positions, "switch_positions")
+    found: list[Fraction] = told.positions[:-1] if told.switch_positions is None else told.switch_positions
+    if len(found) != len(told.positions) - 1:
         raise Invalid("there must be one switch position in each interval")
-    return y
+    return found
 
 
 class _Repeat(NamedTuple):
@@ -74,19 +77,13 @@ class _Repeat(NamedTuple):
     times: int
 
 
-def _repeats(document: Mapping[str, Any], size: int) -> list[_Repeat]:
+def _repeats(told: list[Read], size: int) -> list[_Repeat]:
     """Parts of the motion that are done more than once.
 
     The positions list each of them once; where one ends ahead of its start,
     every round and all that follows is that much further on.
     """
-    entries = document.get("repeats", [])
-    if not isinstance(entries, list) or len(entries) > size:
-        raise Invalid("repeats must be a list")
-    parts = [
-        _Repeat(integer(get(e, "first")), integer(get(e, "last")), integer(get(e, "times"), 1))
-        for e in entries
-    ]
+    parts = [_Repeat(**vars(part)) for part in told]
     before = 0
     for part in parts:
         if not before <= part.first < part.last < size:

@@ -17,13 +17,17 @@ A polynomial is evaluated at the one point by Chebyshev's recurrences, in whole 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from math import acos, pi
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ..document.reading import Invalid, Loop, get, number, read_loop, with_no_more_than
-from .proofs import _inside_unit_circle, _positive_real_denominator, _require_coprime, _whole
+from ..document.fields import Number, OneOf, Read, Record, document, only_if
+from ..document.refusal import Invalid
+from ..exact.polynomial import bits
+from ..exact.roots import inside_unit_circle
+from .criterion import positive_real_denominator, require_coprime
+from .loop import LOOP, Loop, in_whole_numbers, loop_of
 
 MOST_WORK = 2e10
 """Length of the polynomials squared, times the bits of c, times the bits of the longest factor."""
@@ -31,33 +35,35 @@ MOST_WORK = 2e10
 MOST_TERMS = 150
 """Coefficients of H(z) and samples of delay up to which roots are placed."""
 
+VIOLATION = document(
+    {
+        "loop": LOOP,
+        "proof": OneOf(
+            "kind",
+            {
+                "criterion": Record({"cosine": Number(least=-1, most=1)}),
+                "negative static stiffness": Record({}),
+                "unstable environment": Record({"offset": Number(above=0, default=None)}),
+            },
+            shown=False,
+        ),
+    }
+)
 
-def violation(document: Mapping[str, Any]) -> str:
+
+def violation(told: Read) -> str:
     """Confirm that the loop is active, and say why."""
-    p, proof = read_loop(document), get(document, "proof")
-    with_no_more_than(document, 4)  # format, kind, loop, proof
-    kind = get(proof, "kind")
-    if kind == "criterion":
-        return _violated(p, _only_number(proof, "cosine"))
-    if kind == "unstable environment" and not p.part:
-        return _not_positive_real(p, _only_number(proof, "offset"))
-    with_no_more_than(proof, 1)
-    if kind == "unstable environment":
-        return _unstable(p)
-    if kind == "negative static stiffness":
+    p, proof = loop_of(told.loop), told.proof
+    if proof.kind == "criterion":
+        return _violated(p, proof.cosine)
+    if proof.kind == "negative static stiffness":
         return _negative(p)
-    raise Invalid(f"unknown kind of violation: {str(kind)[:40]!r}")
-
-
-def _only_number(proof: Mapping[str, Any], key: str) -> Fraction:
-    """The one number that stands in a proof beside its kind."""
-    with_no_more_than(proof, 2)
-    return number(get(proof, key))
+    if only_if(not p.part, proof.offset, "offset"):
+        return _not_positive_real(p, proof.offset)
+    return _unstable(p)
 
 
 def _violated(p: Loop, cosine: Fraction) -> str:
-    if not -1 <= cosine <= 1:
-        raise Invalid(f"no frequency has the cosine {float(cosine):g}")
     if criterion_at(p, cosine) >= 0:
         raise Invalid("the criterion is not violated at this frequency")
     turns = acos(cosine) / (2 * pi)
@@ -73,16 +79,14 @@ def _negative(p: Loop) -> str:
 def _not_positive_real(p: Loop, offset: Fraction) -> str:
     """With b + T z⁻ᵈ H/(z − 1) = n/d in lowest terms, n + g d has a root on or outside the circle, g > 0."""
     _require_lowest_terms(p)
-    if offset <= 0:
-        raise Invalid("the offset must be positive")
-    if _inside_unit_circle(_positive_real_denominator(p, offset)):
+    if inside_unit_circle(positive_real_denominator(p, offset)):
         raise Invalid("b + T z⁻ᵈ H/(z − 1) may be positive real: the offset does not show that it is not")
     return "the environment is unstable: b + T z⁻ᵈ H/(z − 1) is not positive real"
 
 
 def _unstable(p: Loop) -> str:
     _require_lowest_terms(p)
-    if _inside_unit_circle(p.denominator):
+    if inside_unit_circle(p.denominator):
         raise Invalid("every pole of H(z) lies inside the unit circle")
     return "the environment is unstable: H(z) has a pole on or outside the unit circle"
 
@@ -90,7 +94,7 @@ def _unstable(p: Loop) -> str:
 def _require_lowest_terms(p: Loop) -> None:
     if len(p.denominator) + p.whole > MOST_TERMS:
         raise Invalid("too many coefficients and samples of delay for the roots to be placed")
-    _require_coprime(p)
+    require_coprime(p)
 
 
 class _Value(NamedTuple):
@@ -102,7 +106,7 @@ class _Value(NamedTuple):
 
 def criterion_at(p: Loop, c: Fraction) -> Fraction:
     """The criterion at cos θ = c = x/y, times b where α > 0, and times a power of y."""
-    n, d = _whole(p.numerator, p), _whole(p.denominator, p)
+    n, d = in_whole_numbers(p.numerator, p), in_whole_numbers(p.denominator, p)
     _bounded(len(n) + p.whole + 1, c, [*n, *d])
     x, y = c.numerator, c.denominator
     top, bottom, law = _at([*[0] * p.whole, *_mixed(n, p.part)], c), _at(d, c), _at(n, c)
@@ -130,9 +134,8 @@ def _mixed(n: list[int], part: Fraction) -> list[int]:
 
 
 def _bounded(size: int, c: Fraction, coefficients: list[int]) -> None:
-    bits = max(c.denominator.bit_length(), 2)
-    longest = bits + max(abs(x).bit_length() for x in coefficients)
-    if size**2 * bits * longest > MOST_WORK:
+    digits = max(c.denominator.bit_length(), 2)
+    if size**2 * digits * (digits + bits(coefficients)) > MOST_WORK:
         raise Invalid("too many coefficients and digits for the criterion to be evaluated")
 
 

@@ -11,25 +11,49 @@ the product is multiplied out.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import count
 from math import lcm
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from ..document.reading import Invalid, common_scale, get, integer, number, numbers
-from ..loop.proofs import _multiply, _strictly_positive, _sum
-from .index import MOST_WORK, _horner, _in_left_half_plane, _inside, _trimmed, system_of
+from ..document.fields import List, Number, Read, Record, Whole, document, numbers
+from ..document.number import common_scale, down
+from ..document.refusal import Invalid
+from ..exact.polynomial import add, multiply, value
+from ..exact.positivity import POSITIVITY, product, require_positive
+from .index import CLAIM, TIME, require_inside, trimmed
 
 MOST_AXES = 12
 MOST_ORDER = 200
 MOST_POINTS = 4000
+MOST_WORK = 40_000_000
+
+_ROWS = List(List(numbers(), least=1, most=MOST_AXES), least=1, most=MOST_AXES)
+MATRIX_SYSTEM = Record({"time": TIME, "numerators": _ROWS, "denominator": numbers(least=1)})
+"""G = N/d, its rows; every polynomial in descending powers of s or z."""
+
+_MINOR = Record({"power": Whole(least=0, most=MOST_POINTS), "positivity": POSITIVITY})
+POSITIVE_REAL_MATRIX = document(
+    {
+        "system": MATRIX_SYSTEM,
+        **CLAIM,
+        "proof": Record(
+            {
+                "offset": Number(above=0),
+                "minors": List(_MINOR, most=MOST_AXES),
+                "resolvent": Record({"numerators": _ROWS, "denominator": numbers(least=1)}),
+            },
+            shown=False,
+        ),
+    }
+)
 
 Polynomial = list[Fraction]
 Gaussian = tuple[int, int]
 
 
-class _Ports(NamedTuple):
+class Ports(NamedTuple):
     outputs: list[list[Polynomial]]  # N, ascending in s or z
     inputs: list[list[Polynomial]]  # D
     denominator: Polynomial
@@ -39,50 +63,44 @@ class _Ports(NamedTuple):
     axes: int
 
 
-def read_ports(document: Mapping[str, Any]) -> _Ports:
+def ports_of(told: Read) -> Ports:
     """D = d and N = G d for the input index; exchanged for the output index."""
-    system, time, which = system_of(document)
-    d = _trimmed(numbers(get(system, "denominator")))
-    n = [[_trimmed(p) for p in row] for row in _square(get(system, "numerators"))]
+    system = told.system
+    d, n = trimmed(system.denominator), _square(system.numerators)
     if not d:
         raise Invalid("the denominator is zero")
     longest = max(len(p) for row in n for p in row)
-    if time == "discrete" and longest > len(d):
+    if system.time == "discrete" and longest > len(d):
         raise Invalid("G(z) has more zeros than poles")
     order = max(longest, len(d)) - 1
     if order > MOST_ORDER:
         raise Invalid(f"the order is {order}, more than {MOST_ORDER}")
     common_scale((*d, *(c for row in n for p in row for c in p)))
     diagonal: list[list[Polynomial]] = [[d if i == j else [] for j in range(len(n))] for i in range(len(n))]
-    sides = (n, diagonal) if which == "input" else (diagonal, n)
-    return _Ports(*sides, d, time == "continuous", number(get(document, "level")), order, len(n))
+    sides = (n, diagonal) if told.index == "input" else (diagonal, n)
+    return Ports(*sides, d, system.time == "continuous", told.level, order, len(n))
 
 
-def _square(rows: Any) -> list[list[Polynomial]]:
-    if not isinstance(rows, Sequence) or not 0 < len(rows) <= MOST_AXES:
-        raise Invalid(f"a matrix must have 1 to {MOST_AXES} rows")
-    if any(not isinstance(row, Sequence) or len(row) != len(rows) for row in rows):
+def _square(rows: Sequence[Sequence[Polynomial]]) -> list[list[Polynomial]]:
+    if any(len(row) != len(rows) for row in rows):
         raise Invalid("a matrix must have as many columns as rows")
-    return [[numbers(entry) for entry in row] for row in rows]
+    return [[trimmed(entry) for entry in row] for row in rows]
 
 
-def positive_real_matrix(document: Mapping[str, Any]) -> str:
+def positive_real_matrix(told: Read) -> str:
     """Every e_k(Π) is nonnegative on the boundary, and the resolvent is stable."""
-    p, proof = read_ports(document), get(document, "proof")
-    offset = number(get(proof, "offset"))
-    if offset <= 0:
-        raise Invalid("the offset must be positive")
-    _nonnegative(p, get(proof, "minors"))
-    _stable(p, offset, get(proof, "resolvent"))
-    return f"the {get(document, 'index')} index is at least {float(p.level):g}"
+    p, proof = ports_of(told), told.proof
+    _require_nonnegative(p, proof.minors)
+    _require_stable(p, proof.offset, proof.resolvent)
+    return f"the {told.index} index is at least {down(p.level)}"
 
 
-def _nonnegative(p: _Ports, minors: Any) -> None:
+def _require_nonnegative(p: Ports, minors: Sequence[Read]) -> None:
     """e_k = κ |d|^{2·power} (1 − c)ⁱ (1 + c)ʲ s² g with κ > 0, and g > 0 on [−1, 1]."""
-    if not isinstance(minors, Sequence) or len(minors) != p.axes:
+    if len(minors) != p.axes:
         raise Invalid("every size of principal minors needs its proof")
-    powers = [integer(get(minor, "power")) for minor in minors]
-    claimed = [_product(get(minor, "positivity")) for minor in minors]
+    powers = [minor.power for minor in minors]
+    claimed = [_product(minor.positivity) for minor in minors]
     degree = max(
         p.axes * p.order, *(len(q) + power * p.order for q, power in zip(claimed, powers, strict=True))
     )
@@ -93,31 +111,19 @@ def _nonnegative(p: _Ports, minors: Any) -> None:
     for step in range(degree + 1):
         c, weight, found = _minors_at(p, whole, Fraction(step + 1, degree // 2 + 2))
         for k, (minor, power, q) in enumerate(zip(found, powers, claimed, strict=True)):
-            said = weight**power * _horner(q, c)
+            said = weight**power * value(q, c)
             if ratios[k] is None and said and minor:
                 ratios[k] = minor / said
             if minor != (ratios[k] or 0) * said or (ratios[k] or 0) < 0 or (said != 0) != (minor != 0):
                 raise Invalid("the factors do not multiply to the sum of the principal minors")
 
 
-def _product(proof: Mapping[str, Any]) -> list[int]:
+def _product(sign: Read) -> list[int]:
     """(1 − c)ⁱ (1 + c)ʲ s² g times a positive number, with the sign of g confirmed."""
-    at_one, at_minus_one = integer(get(proof, "at_one")), integer(get(proof, "at_minus_one"))
-    square, g = numbers(get(proof, "square")), numbers(get(proof, "factor"))
-    if not g or at_one + at_minus_one + 2 * len(square) + len(g) > MOST_POINTS:
-        raise Invalid("the factors of a sum of minors are missing, or too long")
-    _strictly_positive(g)
-    side, rest = (_in_whole_numbers(q) for q in (square, g))
-    product = _multiply(_multiply(side, side), rest) if side else []
-    for times, root in ((at_one, -1), (at_minus_one, 1)):
-        for _ in range(times):
-            product = _multiply(product, [1, root]) if product else product
-    return product
-
-
-def _in_whole_numbers(q: Polynomial) -> list[int]:
-    scale = common_scale(q)
-    return [int(c * scale) for c in q]
+    if sign.at_one + sign.at_minus_one + 2 * len(sign.square) + len(sign.factor) > MOST_POINTS:
+        raise Invalid("the factors of a sum of minors are too long")
+    require_positive(sign.factor)
+    return product(sign)
 
 
 class _Whole(NamedTuple):
@@ -135,14 +141,14 @@ class _Whole(NamedTuple):
         return max(c.bit_length() for side in sides for row in side for q in row for c in q)
 
 
-def _whole(p: _Ports) -> _Whole:
+def _whole(p: Ports) -> _Whole:
     sides = (p.inputs, p.outputs)
     scale = lcm(*(x.denominator for side in sides for row in side for q in row for x in q))
     inputs, outputs = ([[[int(c * scale) for c in q] for q in row] for row in side] for side in sides)
     return _Whole(scale, inputs, outputs, [int(c * scale) for c in p.denominator])
 
 
-def _minors_at(p: _Ports, whole: _Whole, tangent: Fraction) -> tuple[Fraction, Fraction, list[Fraction]]:
+def _minors_at(p: Ports, whole: _Whole, tangent: Fraction) -> tuple[Fraction, Fraction, list[Fraction]]:
     """(c, |d|², e_1 … e_m) at tan θ/2 = tangent: s = j tan θ/2, all times (1 + c)^order; or z = e^{jθ}."""
     t, b = tangent.numerator, tangent.denominator
     c = Fraction(b * b - t * t, b * b + t * t)
@@ -208,44 +214,42 @@ def _negative(x: Gaussian) -> Gaussian:
     return -x[0], -x[1]
 
 
-def _stable(p: _Ports, offset: Fraction, resolvent: Mapping[str, Any]) -> None:
+def _require_stable(p: Ports, offset: Fraction, resolvent: Read) -> None:
     """R M = π D with M = N + (g − σ) D invertible, R/π proper, and every root of π inside."""
-    pi = _trimmed(numbers(get(resolvent, "denominator")))
-    rows = [[_trimmed(q) for q in row] for row in _square(get(resolvent, "numerators"))]
+    pi, rows = trimmed(resolvent.denominator), _square(resolvent.numerators)
     if not pi or len(rows) != p.axes or max(len(q) for row in rows for q in row) > len(pi):
         raise Invalid("the resolvent must be a proper matrix of the port's size")
     common_scale((*pi, *(c for row in rows for q in row for c in q)))
     share = offset - p.level
     m = [
-        [_sum(n, [share * c for c in d]) for n, d in zip(*pair, strict=True)]
+        [add(n, [share * c for c in d]) for n, d in zip(*pair, strict=True)]
         for pair in zip(p.outputs, p.inputs, strict=True)
     ]
-    _same_products(rows, m, pi, p.inputs)
-    _invertible(m, p)
-    if not (_in_left_half_plane(pi[::-1]) if p.continuous else _inside(pi[::-1])):
-        raise Invalid("the port is not positive real: a root lies outside")
+    _require_same_products(rows, m, pi, p.inputs)
+    _require_invertible(m, p)
+    require_inside(pi[::-1], p.continuous)
 
 
-def _same_products(
+def _require_same_products(
     rows: list[list[Polynomial]], m: list[list[Polynomial]], pi: Polynomial, d: list[list[Polynomial]]
 ) -> None:
     size = range(len(m))
     for i in size:
         for j in size:
-            total = [-x for x in _multiply(pi, d[i][j])] if d[i][j] else []
+            total = [-x for x in multiply(pi, d[i][j])] if d[i][j] else []
             for k in size:
                 if rows[i][k] and m[k][j]:
-                    total = _sum(total, _multiply(rows[i][k], m[k][j]))
+                    total = add(total, multiply(rows[i][k], m[k][j]))
             if any(total):
                 raise Invalid("the resolvent is not that of the port")
 
 
-def _invertible(m: list[list[Polynomial]], p: _Ports) -> None:
+def _require_invertible(m: list[list[Polynomial]], p: Ports) -> None:
     """det M is not zero at some whole number; a polynomial of its degree has no more zeros than that."""
     for at in count():
         if at > p.axes * p.order:
             raise Invalid("the port has no resolvent")
-        if _has_full_rank([[_horner(q, Fraction(at)) for q in row] for row in m]):
+        if _has_full_rank([[value(q, Fraction(at)) for q in row] for row in m]):
             return
 
 

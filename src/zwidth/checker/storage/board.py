@@ -18,17 +18,17 @@ function between them being the most that the second can lead to.
 
 from __future__ import annotations
 
-import base64
-import zlib
-from collections.abc import Mapping
 from fractions import Fraction
 from itertools import product
-from math import ceil, lcm, prod
+from math import ceil, lcm
 from typing import Any
 
-from ..contact.law import Law, Losses, read_law, read_losses
+from ..contact.law import LAW, LOSSES, Law, Losses, law_of, losses_of
 from ..document.effort import reserve, spend
-from ..document.reading import Invalid, get, integer, number
+from ..document.fields import Number, Packed, Read, Record, Whole, document, only_if
+from ..document.number import down
+from ..document.refusal import Invalid
+from .packed import storage_of
 
 MOST_VALUES = 60_000_000
 MOST_MOVES = 10_000_000
@@ -37,24 +37,46 @@ AT_ONCE = 10**6
 """Forces computed at once in whole numbers of any size, which take room."""
 
 
-def storage(document: Mapping[str, Any]) -> str:
+FARTHEST = 10**7
+"""Count."""
+
+DOMAIN = {
+    "lowest_count": Whole(least=-FARTHEST, most=FARTHEST),
+    "highest_count": Whole(least=-FARTHEST, most=FARTHEST),
+    "largest_move_counts": Number(above=0, most=MOST_MOVES),
+    "steps_per_count": Whole(least=1, most=MOST_MOVES),
+}
+"""The readings on the board, and the longest move in one sample."""
+
+STORAGE = document(
+    {
+        "loop": LOSSES,
+        "law": LAW,
+        "domain": Record({**DOMAIN, "levels_per_count": Whole(least=1, most=MOST_MOVES, default=None)}),
+        "force_unit": Number(above=0, shown=False),
+        "storage": Packed(),
+    }
+)
+
+
+def storage(told: Read) -> str:
+    """Say what was proved."""
     import numpy as np  # loaded only where a storage function is to be checked
 
-    losses, law = read_losses(document), read_law(document)
+    losses, law, domain = losses_of(told.loop), law_of(told.law), told.domain
+    only_if(law.relaxing, domain.levels_per_count, "levels_per_count")
     if law.relaxing is not None:
         from .relaxing import storage_of_relaxing
 
         if losses.part < 1 or losses.curve:
             raise Invalid("laws that relax are checked for delays of whole samples and one friction model")
-        return storage_of_relaxing(document, losses, law)
-    domain = get(document, "domain")
-    low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
-    fastest, steps = longest_move(domain), integer(get(domain, "steps_per_count"), 1)
+        return storage_of_relaxing(told, losses, law)
+    low, high = domain.lowest_count, domain.highest_count
+    fastest, steps, unit = domain.largest_move_counts, domain.steps_per_count, told.force_unit
     reach = ceil(fastest)
-    unit = number(get(document, "force_unit"))
     memory = law.memory + losses.delay
     width, cells = 2 * reach + 1, high - low + 1
-    if cells < 1 or unit <= 0 or reach * steps > MOST_MOVES:
+    if cells < 1 or reach * steps > MOST_MOVES:
         raise Invalid("the board is empty, or its moves are longer than can be checked")
     states = cells * width**memory
     if states * (steps + 1) > MOST_VALUES:
@@ -65,9 +87,7 @@ def storage(document: Mapping[str, Any]) -> str:
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
     shape = (cells, width**memory, steps + 1)
-    value = values_of(get(document, "storage"), shape)
-    if value.min() < 0:
-        raise Invalid("a storage function must be bounded below by 0")
+    value = storage_of(told.storage, shape)
     moves = []  # of one interval: the forces, and what a move costs
     for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):
         if part > 0:
@@ -89,17 +109,9 @@ def storage(document: Mapping[str, Any]) -> str:
     side = f"up to {high + 1} counts inside" if law.surface != "none" else f"from {low} to {high + 1} counts"
     return (
         "no move takes out more than the storage function falls, "
-        f"at any position {side} and with any memory, for moves of up to {float(fastest):.6g} counts a sample"
+        f"at any position {side} and with any memory, for moves of up to {down(fastest)} counts a sample"
         + ("" if losses.part == 1 else ", as fast in each part of a sample with one force")
     )
-
-
-def longest_move(domain: Any) -> Fraction:
-    """In one sample, in counts; between two knots it reaches no farther than the next one."""
-    fastest = number(get(domain, "largest_move_counts"))
-    if not 0 < fastest <= MOST_MOVES:
-        raise Invalid("the longest move must be > 0, and no longer than can be checked")
-    return fastest
 
 
 def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, fastest: Fraction, steps: int) -> Any:
@@ -130,29 +142,6 @@ def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int, reac
     most += highest * (1 + abs(law.rate) * losses.resolution * reach) + (law.limit or 0) + (law.step or 0)
     if most / unit >= _EXACT:
         raise Invalid("the forces are too large to be compared exactly")
-
-
-def signed(value: Any) -> int:
-    found = number(value)
-    if found.denominator != 1 or abs(found) > 10**7:
-        raise Invalid("a cell is a whole number of ordinary size")
-    return int(found)
-
-
-def values_of(text: Any, shape: tuple[int, ...], kind: str = "<i8") -> Any:
-    import numpy as np
-
-    if not isinstance(text, str):
-        raise Invalid("storage functions and tables must be text")
-    size = 8 * prod(shape)
-    try:
-        packed = base64.b64decode(text, validate=True)
-        raw = zlib.decompressobj().decompress(packed, size + 1)
-    except (ValueError, zlib.error) as error:
-        raise Invalid(f"a storage function or table cannot be unpacked: {error}") from None
-    if len(raw) != size:
-        raise Invalid("the storage function has not one value for each state")
-    return np.frombuffer(raw, dtype=kind).reshape(shape)
 
 
 def histories_of(reach: int, memory: int) -> list[tuple[int, ...]]:

@@ -15,18 +15,38 @@ at the corners is enough for all positions between.  At y = 0 all has two values
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from math import ceil
 from typing import Any, NamedTuple
 
-from ..contact.law import Law, Losses, read_law, read_losses
-from ..document.reading import Invalid, get, integer, number
-from .board import histories_of, signed, values_of
+from ..contact.law import LAW, LOSSES, MOST_TAPS, Law, Losses, law_of, losses_of
+from ..document.fields import Number, Packed, Read, Record, Whole, document
+from ..document.number import down
+from ..document.refusal import Invalid
+from .board import histories_of
+from .packed import storage_of
 
 MOST_VALUES = 4_000_000
 MOST_CELLS = 100_000
 _EXACT = 2**53
+
+COARSE_STORAGE = document(
+    {
+        "loop": LOSSES,
+        "law": LAW,
+        "domain": Record(
+            {
+                "lowest_cell": Whole(least=-MOST_CELLS, most=-1),
+                "highest_cell": Whole(least=1, most=MOST_CELLS),
+                "counts_per_cell": Number(above=0),
+                "largest_move_cells": Number(above=0, most=MOST_CELLS),
+                "remembered": Whole(least=0, most=2 * MOST_TAPS),
+            }
+        ),
+        "force_unit": Number(above=0, shown=False),
+        "storage": Packed(),
+    }
+)
 
 
 class _Line(NamedTuple):
@@ -40,25 +60,21 @@ class _Line(NamedTuple):
     inside: list[bool]
 
 
-def coarse_storage(document: Mapping[str, Any]) -> str:
+def coarse_storage(told: Read) -> str:
+    """Say what was proved."""
     import numpy as np  # loaded only where a storage function is to be checked
 
-    losses, law = read_losses(document), read_law(document)
+    losses, law = losses_of(told.loop), law_of(told.law)
     if law.points or law.clamped or law.relaxing or law.limit is not None or law.step is not None:
         raise Invalid("cells of any length are for laws that are linear inside")
     if losses.curve:
         raise Invalid("cells of any length are for one friction model")
-    line = _line(document, losses, law)
-    unit = number(get(document, "force_unit"))
-    if unit <= 0:
-        raise Invalid("the force unit must be > 0")
+    line, unit = _line(told.domain, losses, law), told.force_unit
     width = 2 * line.reach + 1
     shape = (len(line.places), width**line.memory)
     if shape[0] * shape[1] > MOST_VALUES:
         raise Invalid("the board is larger than can be checked")
-    value = values_of(get(document, "storage"), shape)
-    if value.min() < 0:
-        raise Invalid("a storage function must be bounded below by 0")
+    value = storage_of(told.storage, shape)
     moves = []
     for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):
         if part > 0:
@@ -77,27 +93,25 @@ def coarse_storage(document: Mapping[str, Any]) -> str:
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     speed = line.fastest * line.length / losses.period
-    length = "rad" if any(str(key).endswith("_rad") for key in get(document, "loop")) else "m"
+    length = "rad" if told.motion == "rotary" else "m"
     return (
         "no move takes out more than the storage function falls, at any position up to "
-        f"{float(line.places[-1] * line.length):.6g} {length} and at any count, for hands of up to "
-        f"{float(speed):.6g} {length}/s over each time in which one force is held"
+        f"{down(line.places[-1] * line.length)} {length} and at any count, for hands of up to "
+        f"{down(speed)} {length}/s over each time in which one force is held"
     )
 
 
-def _line(document: Mapping[str, Any], losses: Losses, law: Law) -> _Line:
-    domain = get(document, "domain")
-    low, high = (signed(get(domain, k)) for k in ("lowest_cell", "highest_cell"))
-    length = number(get(domain, "counts_per_cell")) * losses.resolution
-    fastest = number(get(domain, "largest_move_cells"))
-    if not (low < 0 < high and high - low <= MOST_CELLS and length > 0 and 0 < fastest <= MOST_CELLS):
-        raise Invalid("the board is empty, or has more cells than can be checked")
+def _line(domain: Read, losses: Losses, law: Law) -> _Line:
+    low, high, fastest = domain.lowest_cell, domain.highest_cell, domain.largest_move_cells
+    length = domain.counts_per_cell * losses.resolution
+    if high - low > MOST_CELLS:
+        raise Invalid("the board has more cells than can be checked")
     memory = law.memory + losses.delay
     if law.surface != "none" and low > -(memory + 1) * fastest:
         raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
     if law.surface == "none" and low * length + losses.resolution > -high * length:
         raise Invalid("the board must reach as far on the one side as on the other")
-    if integer(get(domain, "remembered")) != memory:
+    if domain.remembered != memory:
         raise Invalid("the law remembers another number of readings")
     sheets = law.surface != "none"
     places = [*range(low, 1), *range(0 if sheets else 1, high + 1)]

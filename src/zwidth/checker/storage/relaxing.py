@@ -8,20 +8,22 @@ a level.  So what holds at both levels and there holds between.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from math import ceil
 from typing import Any
 
 from ..contact.law import Law, Losses
-from ..document.reading import Invalid, get, integer, number
-from .board import MOST_MOVES, MOST_VALUES, costs_of, histories_of, longest_move, signed, values_of
+from ..document.fields import Read
+from ..document.number import down
+from ..document.refusal import Invalid
+from .board import MOST_MOVES, MOST_VALUES, costs_of, histories_of
+from .packed import storage_of
 
 PART = 2**16
 _MOST = 2**61
 
 
-def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -> str:
+def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     """Check every move; says what was proved."""
     import numpy as np
 
@@ -30,24 +32,20 @@ def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -
     assert law.relaxing is not None
     if law.limit is not None:
         raise Invalid("a force limit together with a law that relaxes is not covered")
-    domain = get(document, "domain")
-    low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
-    fastest, steps = longest_move(domain), integer(get(domain, "steps_per_count"), 1)
+    domain, unit = told.domain, told.force_unit
+    low, high, per_count = domain.lowest_count, domain.highest_count, domain.levels_per_count
+    fastest, steps = domain.largest_move_counts, domain.steps_per_count
     reach = ceil(fastest)
-    per_count = integer(get(domain, "levels_per_count"), 1)
-    unit = number(get(document, "force_unit"))
     least = 0 if law.surface == "penetration" else low
     levels = (max(high, least + 1) - least) * per_count + 1
     columns = (2 * reach + 1) ** losses.delay
     if reach * steps > MOST_MOVES:
         raise Invalid("the moves are longer than can be checked")
-    if high < low or unit <= 0 or (high - low + 1) * columns * levels * (steps + 1) > MOST_VALUES:
+    if high < low or (high - low + 1) * columns * levels * (steps + 1) > MOST_VALUES:
         raise Invalid("the board is empty, or larger than can be checked")
     if law.surface == "penetration" and low > 1 - (losses.delay + 1) * reach:
         raise Invalid("the board must reach so far out that a hand beyond it feels no force")
-    value = values_of(get(document, "storage"), (high - low + 1, columns, levels, steps + 1))
-    if value.min() < 0:
-        raise Invalid("a storage function must be bounded below by 0")
+    value = storage_of(told.storage, (high - low + 1, columns, levels, steps + 1))
     spring = int(law.taps[0] * losses.resolution // unit)
     branch = int(law.relaxing[1] * losses.resolution / per_count // unit)
     off = max(abs(low), abs(high)) + 2 + 2 * levels + 2
@@ -65,7 +63,7 @@ def storage_of_relaxing(document: Mapping[str, Any], losses: Losses, law: Law) -
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     return (
         f"no move takes out more than the storage function falls, at any position from {low} to {high + 1} "
-        f"counts and with any memory, for moves of up to {float(fastest):.6g} counts a sample"
+        f"counts and with any memory, for moves of up to {down(fastest)} counts a sample"
     )
 
 

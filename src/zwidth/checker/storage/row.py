@@ -8,44 +8,64 @@ the rules of `storage_proof`.  That the list is what the law does is not checked
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from math import ceil
 from typing import Any
 
-from ..contact.law import read_losses
-from ..contact.row_motion import read_words
-from ..document.reading import Invalid, get, integer, number
-from .board import MOST_MOVES, MOST_VALUES, costs_of, longest_move, signed, values_of
+from ..contact.law import LOSSES, losses_of
+from ..contact.row_motion import TOLD_LAW
+from ..document.fields import List, Number, Packed, Read, Record, Whole, document
+from ..document.number import down
+from ..document.refusal import Invalid
+from .board import DOMAIN, MOST_MOVES, MOST_VALUES, costs_of
+from .packed import DOUBLE, storage_of, values_of
 
 _EXACT = 2**53
 MOST_STATES = 1_000_000
 
+_TABLE = Record(
+    {
+        "states": Whole(least=1, most=MOST_STATES),
+        "starts": List(Whole(least=0, most=MOST_STATES), least=1, most=MOST_STATES),
+        "counts": Packed(),
+        "successors": Packed(),
+        "forces": Packed(),
+    },
+    shown=False,
+)
+ROW_STORAGE = document(
+    {
+        "loop": LOSSES,
+        "law": TOLD_LAW,
+        "domain": Record(DOMAIN),
+        "table": _TABLE,
+        "force_unit": Number(above=0, shown=False),
+        "storage": Packed(),
+    }
+)
 
-def storage_of_row(document: Mapping[str, Any]) -> str:
+
+def storage_of_row(told: Read) -> str:
+    """Say what was proved."""
     import numpy as np  # loaded only where a storage function is to be checked
 
-    losses = read_losses(document)
+    losses, domain, table = losses_of(told.loop), told.domain, told.table
     if losses.part < 1:
         raise Invalid("laws in a row are checked for delays of whole samples")
-    read_words(document)
-    domain, table = get(document, "domain"), get(document, "table")
-    low, high = (signed(get(domain, k)) for k in ("lowest_count", "highest_count"))
-    fastest, steps = longest_move(domain), integer(get(domain, "steps_per_count"), 1)
-    reach, unit = ceil(fastest), number(get(document, "force_unit"))
-    states = integer(get(table, "states"), 1)
-    if high < low or unit <= 0 or reach * steps > MOST_MOVES:
+    low, high, states = domain.lowest_count, domain.highest_count, table.states
+    fastest, steps, unit = domain.largest_move_counts, domain.steps_per_count, told.force_unit
+    reach = ceil(fastest)
+    if high < low or reach * steps > MOST_MOVES:
         raise Invalid("the board is empty, or its moves are longer than can be checked")
-    if states > MOST_STATES or states * max(2 * reach + 1, steps + 1) > MOST_VALUES:
+    if states * max(2 * reach + 1, steps + 1) > MOST_VALUES:
         raise Invalid("the table is larger than can be checked")
-    counts = values_of(get(table, "counts"), (states,))
-    successors = values_of(get(table, "successors"), (states, 2 * reach + 1))
+    counts = values_of(table.counts, (states,))
+    successors = values_of(table.successors, (states, 2 * reach + 1))
     _require_closed(counts, successors, low, high, reach)
-    _require_starts(get(table, "starts"), states)
-    forces = _in_units(values_of(get(table, "forces"), (states,), "<f8"), unit)
-    value = values_of(get(document, "storage"), (states, steps + 1))
-    if value.min() < 0:
-        raise Invalid("a storage function must be bounded below by 0")
+    if max(table.starts) >= states:
+        raise Invalid("the hand begins in a state that is not in the table")
+    forces = _in_units(values_of(table.forces, (states,), DOUBLE), unit)
+    value = storage_of(told.storage, (states, steps + 1))
     costs = costs_of(losses, unit, 1, losses.part, fastest, steps)  # a force is rounded down once
     largest = int(value.max()) + int(abs(costs).max()) + max(map(abs, forces)) * (len(costs) + 1)
     if largest >= _EXACT:
@@ -59,7 +79,7 @@ def storage_of_row(document: Mapping[str, Any]) -> str:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     return (
         f"no move takes out more than the storage function falls, in any of {states} states that the table "
-        f"lists for readings from {low} to {high}, for moves of up to {float(fastest):.6g} counts a sample"
+        f"lists for readings from {low} to {high}, for moves of up to {down(fastest)} counts a sample"
     )
 
 
@@ -76,13 +96,6 @@ def _require_closed(counts: Any, successors: Any, low: int, high: int, reach: in
         raise Invalid("the table is not closed: a reading on the board leads nowhere")
     if (counts[reached] != then[on_board]).any():
         raise Invalid("a reading leads to a state of another reading")
-
-
-def _require_starts(starts: Any, states: int) -> None:
-    if not isinstance(starts, list) or not 0 < len(starts) <= states:
-        raise Invalid("the table must say where a hand may begin")
-    if any(integer(s) >= states for s in starts):
-        raise Invalid("the hand begins in a state that is not in the table")
 
 
 def _in_units(forces: Any, unit: Fraction) -> list[int]:

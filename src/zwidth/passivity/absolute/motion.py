@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.passivity.absolute.orbit import Array, corrected, growth_of, is_certain, returns, simulated
+from zwidth.passivity.absolute.orbit import Array, corrected, growth_of, returns, simulated
 from zwidth.passivity.absolute.plant import Plant
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import exact_text
@@ -114,12 +114,13 @@ def periodic_motion(plant: Plant, slope: float, gap: float, longest: int = 120) 
         growth = growth_of(plant, slope, positions > gap)
         if found is not None and growth >= min(found.growth, 1.0):
             continue
-        if is_certain(plant, slope, gap, positions > gap):
-            share = len(alive) / len(runs)
-            found = PeriodicMotion(slope, gap, tuple(positions.tolist()), growth, share, plant.source)
+        share = len(alive) / len(runs)
+        motion = PeriodicMotion(slope, gap, tuple(positions.tolist()), growth, share, plant.source)
+        if motion.certificate.verify():
+            found = motion
             if growth < 1:
                 break
-    return found if found is not None and found.certificate.verify() else None
+    return found
 
 
 def smallest_motion(plant: Plant, low: float, gap: float, longest: int = 120) -> PeriodicMotion | None:
@@ -153,12 +154,14 @@ def _softened(plant: Plant, motion: PeriodicMotion, low: float) -> PeriodicMotio
         positions = corrected(plant, slope, gap, np.array(best.positions))
         if positions is None or np.ptp(positions) <= _SMALLEST * abs(gap):
             low = slope
-        elif is_certain(plant, slope, gap, positions > gap):
-            growth = growth_of(plant, slope, positions > gap)
-            best = motion._replace(slope=slope, positions=tuple(positions.tolist()), growth=growth)
+            continue
+        growth = growth_of(plant, slope, positions > gap)
+        softer = motion._replace(slope=slope, positions=tuple(positions.tolist()), growth=growth)
+        if softer.certificate.verify():
+            best = softer
         else:
             low = slope
     runs = simulated(plant, best.slope, gap)
     moving = sum(bool(np.ptp(run) > _SMALLEST * abs(gap)) for run in runs)
     best = best._replace(basin=moving / len(runs))
-    return best if best.certificate.verify() else motion
+    return best

@@ -10,11 +10,10 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
-from flint import arb, arb_mat, ctx, fmpq
+from flint import arb, fmpq
 from numpy.typing import NDArray
 from scipy.signal import tf2ss
 
-from zwidth.checker.known_hand.plant import read_plant
 from zwidth.passivity.absolute.plant import Plant
 
 _STARTS = 36
@@ -71,37 +70,6 @@ def corrected(plant: Plant, slope: float, gap: float, positions: Array) -> Array
             return positions
         inside = positions > gap
     return None
-
-
-def is_certain(plant: Plant, slope: float, gap: float, inside: NDArray[np.bool_]) -> bool:
-    """D x + K N s (x − g) = 0 around the period, solved in balls: every sample on its side of the surface."""
-    enclosed = read_plant(plant.source)
-    n = len(inside)
-    saved = ctx.prec
-    try:
-        ctx.prec = _PRECISION
-        top, bottom = (
-            [arb(_ball(m), _ball(r)) for m, r in zip(part.middle, part.radius, strict=True)]
-            for part in enclosed
-        )
-        rows = [[arb(0)] * n for _ in range(n)]
-        right = [arb(0) for _ in range(n)]
-        stiff, far = arb(slope), arb(gap)
-        for j in range(n):
-            for lead, own in enumerate(bottom):
-                rows[j][(j + lead) % n] += own
-            for lead, own in enumerate(top):
-                i = (j + lead) % n
-                if inside[i]:
-                    rows[j][i] += stiff * own
-                    right[j] += stiff * own * far
-        try:
-            found = arb_mat(rows).solve(arb_mat([[x] for x in right]))
-        except ZeroDivisionError:
-            return False
-        return all(bool(found[j, 0] > far if inside[j] else found[j, 0] < far) for j in range(n))
-    finally:
-        ctx.prec = saved
 
 
 def _ball(value: Fraction) -> arb:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from zwidth import checker
+from zwidth.checker import verify
 from zwidth.passivity.absolute.plant import Plant
 from zwidth.passivity.absolute.search import Found
 from zwidth.passivity.absolute.terms import Criterion, Term
@@ -27,7 +27,7 @@ def proved(plant: Plant, criterion: Criterion, found: Found) -> tuple[Fraction, 
     for step in _STEPS:
         slope = _rounded_down(found.slope * (1 - step))
         document = _document(plant, criterion, slope, found.weights)
-        if checker.verify(document).valid:
+        if verify(document).valid:
             return slope, document
     return None
 

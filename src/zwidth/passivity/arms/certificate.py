@@ -16,8 +16,7 @@ import flint
 import numpy as np
 import numpy.typing as npt
 
-from zwidth import checker
-from zwidth.checker.arm.region import KEYS, POSE_KEYS, matrix_at
+from zwidth.checker import verify
 from zwidth.device.arm import Arm, DescribedArm, LeggedArm, PlanarChain, PosedArm
 from zwidth.environment.environment import certain
 from zwidth.environment.matrix_wall import MatrixWall
@@ -32,6 +31,8 @@ from zwidth.passivity.document import exact_text
 Array = npt.NDArray[np.float64]
 Written = LeggedArm | PlanarChain | DescribedArm
 
+_KEYS = ("stiffness_N_per_m", "virtual_damping_N_s_per_m", "damping_bound_N_s_per_m")
+_POSE_KEYS = ("stiffness_N_m_rad", "virtual_damping_N_m_s_rad", "damping_bound_N_m_s_rad")
 _MARGIN = 1e-12
 """Of the largest entry of its unit: what is added so that rounded matrices are ⪰ 0 to the last digit."""
 _POINTS = 8
@@ -63,19 +64,22 @@ def arm_certificate(
         "wall": _wall_document(wall, arm.sites(2).jacobians.shape[-2]) | _pose_of(arm),
         "loop": _loop_document(arm, rate, delay_samples, held),
     }
+    free = {**document, "loop": _loop_document(arm, rate, delay_samples, ())}
+    if not _is_of(free, arm, wall, 1 / rate, delay_samples):
+        return None, "this arm moves in another way than its document can say"
     if count is not None and count.steps is not None and not isinstance(arm, LeggedArm):
         _add_steps(document, arm, count.steps, count.limits)
-    if not _is_of(document, arm, wall, 1 / rate, delay_samples):
-        return None, "this arm moves in another way than its document can say"
-    found = checker.verify(document)
+    found = verify(document)
     return Certificate((document,)) if found.valid else None, found.reason
 
 
 def _is_of(
     document: dict[str, Any], arm: Written, wall: Wall | MatrixWall, period: float, delay_samples: int
 ) -> bool:
-    """At a few points the matrix that the checker reads out of the document is the one of the arm's own J."""
-    free = {**document, "loop": {**document["loop"], "torque": "follows the arm", "encoder": "ideal"}}
+    """At a few points the matrix that the checker reads out of the document is the one of the arm's own J.
+
+    Where it is not ≻ 0 the checker has none; nor is the document a proof then.
+    """
     sites = arm.sites(2)
     size, count = sites.jacobians.shape[-2:]
     need = wall_need(wall, period, delay_samples, size)
@@ -90,11 +94,26 @@ def _is_of(
         places = sites.joints.reshape(-1, count)[:, own]
         found, given = surplus(jacobians, damping, taken)[:, own][:, :, own], damping
     for place, expected in zip(places[:_POINTS], found[:_POINTS], strict=True):
-        read = np.concatenate(matrix_at(free, [_exact(x) for x in place]))
+        rows = verify({**document, "arm": _resting(document["arm"], place)}).surplus
+        if not rows:
+            continue
+        read = np.concatenate(rows)
         upper = np.concatenate([row[i:] for i, row in enumerate(expected)])
         if np.abs(read - upper).max() > _SAME * (np.abs(given).max() + np.abs(expected).max()):
             return False
     return True
+
+
+def _resting(machine: dict[str, Any], place: Array) -> dict[str, Any]:
+    """The arm of a document, its region one place."""
+    told = _texts(place)
+    if machine["geometry"] == "legs":
+        return {**machine, "low_m": told, "high_m": told}
+    joints = [
+        {**joint, **{key: at for key in joint if key.startswith(("low_", "high_"))}}
+        for joint, at in zip(machine["joints"], told, strict=True)
+    ]
+    return {**machine, "joints": joints}
 
 
 def _legs_document(arm: LeggedArm) -> dict[str, Any]:
@@ -167,7 +186,7 @@ def _wall_document(wall: Wall | MatrixWall, size: int) -> dict[str, Any]:
         stiffness = k if _is_semidefinite(k) else _raised(k, wall.turns)
         bound = _raised(_absolute(b, wall.turns), wall.turns)
         matrices = [_matrix(m) for m in (stiffness, b, bound)]
-    keys = POSE_KEYS if isinstance(wall, MatrixWall) and wall.turns else KEYS
+    keys = _POSE_KEYS if isinstance(wall, MatrixWall) and wall.turns else _KEYS
     return dict(zip(keys, matrices, strict=True))
 
 

@@ -9,16 +9,14 @@ from math import ceil
 from pathlib import Path
 from typing import Any
 
-from zwidth import checker
-from zwidth.checker.contact.law import read_losses
-from zwidth.checker.contact.motion import contact_motion_energy
-from zwidth.checker.document.reading import Invalid
+from zwidth.checker import verify
 from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.motion import Motion, Repeat
 from zwidth.passivity.witness import FORMAT, rounded_energy
 from zwidth.passivity.worst_hand.board import Board
 from zwidth.passivity.worst_hand.hand_bounds import HandBounds, fastest, hand_bounds
 from zwidth.passivity.worst_hand.law import FiniteLaw
+from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.solve import Played
 from zwidth.passivity.worst_hand.storage import loop_document
 from zwidth.passivity.worst_hand.switching import switch_positions
@@ -42,8 +40,8 @@ class Gain:
         Positions at the samples, the cycle as its repeated part.
     exact_energy, exact_gain
         Taken out by the whole motion and by one more round [J]; of a law that relaxes, at least so much.
-    law
-        What the hand plays against.
+    law, losses
+        What the hand plays against, and what the device takes out.
     """
 
     document: dict[str, Any]
@@ -51,7 +49,7 @@ class Gain:
     exact_energy: Fraction
     exact_gain: Fraction
     law: FiniteLaw
-    period: Fraction
+    losses: Losses
     unit: str
 
     @property
@@ -67,7 +65,7 @@ class Gain:
     @property
     def sample_period(self) -> float:
         """T [s]."""
-        return float(self.period)
+        return float(self.losses.period)
 
     @property
     def cycle(self) -> tuple[float, ...]:
@@ -83,7 +81,7 @@ class Gain:
     @cached_property
     def peak_speed(self) -> float:
         """Largest mean speed of the whole motion, over each time in which one force is held [m/s; rad/s]."""
-        return float(fastest(self.motion, self.period, read_losses(self.document).part))
+        return float(fastest(self.motion, self.losses.period, self.losses.part))
 
     @cached_property
     def depth(self) -> float:
@@ -93,7 +91,7 @@ class Gain:
 
     def verify(self) -> bool:
         """True when the independent checker finds energy coming out."""
-        return checker.verify(self.document).valid
+        return verify(self.document).valid
 
     def to_dict(self) -> dict[str, Any]:
         """The motion as plain data, positions exact."""
@@ -176,11 +174,10 @@ def _settling(board: Board, samples: int) -> int:
 def _recomputed(document: dict[str, Any], settling: int) -> tuple[Fraction, Fraction] | None:
     """Energy and gain per round, over enough rounds for the law to settle; None without gain."""
     document["repeats"]["times"] = max(document["repeats"]["times"], settling)
-    try:
-        energy, per_round = contact_motion_energy(document)
-    except Invalid:  # it would leave the bounds, or does not settle
+    found = verify(document)
+    if found.energy is None or found.gain is None:  # it would leave the bounds, or does not settle
         return None
-    return (energy, per_round) if per_round > 0 else None
+    return (found.energy, found.gain) if found.gain > 0 else None
 
 
 def _document(board: Board, motion: Motion, kind: str, bounds: HandBounds) -> dict[str, Any]:
@@ -210,6 +207,6 @@ def _witness(
         energy,
         per_round,
         board.law,
-        board.losses.period,
+        board.encoder,
         "rad" if kind == "rotary" else "m",
     )

@@ -98,14 +98,16 @@ class FiniteLaw:
         """The force of a spring given by points, or of a contact, to a hand that waits at x [N; N·m]."""
         return interpolated(self.points, x) if self.power is None else resting_force(*self.power, x)
 
-    def force(self, readings: tuple[Fraction, ...]) -> Fraction:
-        """The force for the readings q_k, q_{k−1}, … [N; N·m]."""
+    def force(self, readings: tuple[Fraction, ...], average: Fraction = Fraction(0)) -> Fraction:
+        """The force for the readings q_k, q_{k−1}, …, and the average a_k of a part that relaxes [N; N·m]."""
         if self.surface != "none" and readings[0] <= 0:
             return Fraction(0)
         u = [max(q, Fraction(0)) for q in readings] if self.surface == "penetration" else list(readings)
         f = sum((c * v for c, v in zip(self.taps, u, strict=False)), Fraction(0))
         if self.is_curve:
             f += self.resting(u[0])
+        if self.relaxing is not None:
+            f += self.relaxing[1] * (u[0] - average)
         if self.rate:
             f *= 1 + self.rate * (readings[0] - readings[1])
         if self.clamped:
@@ -115,6 +117,14 @@ class FiniteLaw:
         if self.force_limit is not None:
             f = min(max(f, -self.force_limit), self.force_limit)
         return f
+
+    def averaged(self, average: Fraction, reading: Fraction) -> Fraction:
+        """a_{k+1} from a_k and q_k [m; rad]."""
+        if self.relaxing is None or (self.resets and reading <= 0):
+            return Fraction(0)
+        pole = self.relaxing[0]
+        u = max(reading, Fraction(0)) if self.surface == "penetration" else reading
+        return pole * average + (1 - pole) * u
 
     def document(self, motion: str, places: Iterable[Fraction] = ()) -> dict[str, Any]:
         """The law as exact data, a unit in each key; a contact by its forces at these places [m; rad]."""

@@ -6,8 +6,9 @@ from fractions import Fraction
 from itertools import accumulate, pairwise
 from typing import NamedTuple
 
-from zwidth.checker.contact.law import Law, Losses, read_law, read_losses
 from zwidth.passivity.worst_hand.gain import Gain
+from zwidth.passivity.worst_hand.law import FiniteLaw
+from zwidth.passivity.worst_hand.losses import Losses
 
 _SETTLING = 400
 """Rounds after which the law is taken to do the same in each."""
@@ -40,7 +41,7 @@ class Round(NamedTuple):
 def settled_round(gain: Gain) -> Round:
     """The round that is gained with, again and again."""
     _, forces = _forces(gain)
-    losses = read_losses(gain.document)
+    losses = gain.losses
     first, last, _ = gain.motion.repeats[0]
     x, switches = gain.motion.positions, gain.motion.switch_positions
     times, positions = [Fraction(0)], [x[first]]
@@ -75,7 +76,7 @@ def _forces(gain: Gain) -> tuple[list[float], list[float]]:
     if listed is not None:  # laws in a row, settled from the first round on
         first = gain.motion.repeats[0].first
         return [float(f) for f in listed[:first]], [float(f) for f in listed[first:]]
-    controller = _Controller(read_law(gain.document), read_losses(gain.document), gain.motion.positions[0])
+    controller = _Controller(gain.law, gain.losses, gain.motion.positions[0])
     x, (first, last, _) = gain.motion.positions, gain.motion.repeats[0]
     way_in = [force for position in x[:first] for force in controller.forces(position)]
     before: list[float] = []
@@ -90,7 +91,7 @@ def _forces(gain: Gain) -> tuple[list[float], list[float]]:
 class _Controller:
     """The law behind the encoder, sample by sample."""
 
-    def __init__(self, law: Law, losses: Losses, start: Fraction) -> None:
+    def __init__(self, law: FiniteLaw, losses: Losses, start: Fraction) -> None:
         self._law, self._losses = law, losses
         self._used = law.memory + 1
         rested = self._read(start)
@@ -105,7 +106,8 @@ class _Controller:
         late = self._losses.delay
         ages = [late] if self._losses.part == 1 else [late, late - 1]
         forces = [
-            self._law.force(self._readings[age : age + self._used], self._averages[age]) for age in ages
+            self._law.force(tuple(self._readings[age : age + self._used]), self._averages[age])
+            for age in ages
         ]
         after = float(self._law.averaged(self._averages[0], reading))  # exact, its digits would grow
         self._averages = [Fraction(after), *self._averages[:-1]]

@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from zwidth.checker.contact.row_motion import row_motion_energy
-from zwidth.checker.document.reading import Invalid
+from zwidth.checker import verify
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.loop.kernel import R_HAND_WORK
@@ -54,12 +53,10 @@ def row_gain(played: Played, law: RowLaw, device: Device, environment: Environme
         if found_motion is None:
             return None
         document, path = found_motion
-        try:
-            energy, per_round = row_motion_energy(document)
-        except Invalid:  # it would leave the bounds
+        counted = verify(document)
+        if counted.energy is None or counted.gain is None or counted.gain <= 0:  # it would leave the bounds
             continue
-        if per_round <= 0:
-            continue
+        energy, per_round = counted.energy, counted.gain
         times = 1 if energy > 0 else ceil(-energy / per_round) + 2
         document["repeats"]["times"] = times
         energy += (times - 1) * per_round
@@ -70,7 +67,7 @@ def row_gain(played: Played, law: RowLaw, device: Device, environment: Environme
             energy,
             per_round,
             NO_LAW,
-            board.losses.period,
+            board.losses,
             "rad" if device.motion == "rotary" else "m",
         )
         if same_law(found.document, device, environment) and _simulated(path, law, device, environment):

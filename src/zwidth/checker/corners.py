@@ -1,0 +1,80 @@
+"""Proofs of several loops, one for every corner of the values that parameters may have.
+
+A corner is proved by itself.  What lies between is proved with them where all are one law but for N:
+with the same D, T, delay and device the criterion 2b/T |D|² + h(N) is affine in N, or with a delay of part of
+a sample concave; ‖h‖₁ is convex and H(1) affine.  So it holds for every mix of their laws.  The conditions of
+`contact`, (2d + 1) K T/2 + |B| Σ|w| and K + |B| ‖h_v‖₁, are convex in (K, B) for the same weights.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from .document.fields import Read, read_document
+from .document.refusal import Invalid
+from .kinds import KINDS, Found, fields_of, kind_of
+from .scope import ACTIVE, Scope, weakest
+
+MOST_CORNERS = 4096
+_MIXED = ("spring", "linear", "quantized", "contact")
+_PROVED = ("loop", "law", "arm", "wall", "system", "plant")
+"""Where a document says what it is of."""
+
+
+def corners(document: Mapping[str, Any]) -> tuple[Found, Scope | None, tuple[Read, str]]:
+    """Whether every corner is proved; what they cover together; the first of them, and its motion."""
+    listed = document.get("corners")
+    if set(document) - {"format", "kind", "corners"}:
+        raise Invalid("entries that no proof of this kind reads beside corners")
+    if not isinstance(listed, list) or not 1 <= len(listed) <= MOST_CORNERS:
+        raise Invalid("corners must be a list of certificates")
+    reasons, scopes, told = [], [], []
+    for corner in listed:
+        if not isinstance(corner, Mapping):
+            raise Invalid("a corner must be a certificate")
+        kind = kind_of(corner)
+        read, motion = read_document(fields_of(kind), corner)
+        found, covered = KINDS[kind].check(read), KINDS[kind].scope(read)
+        if found.energy is not None or covered.shows == ACTIVE:
+            raise Invalid("a corner must be a proof, and is evidence against one")
+        reasons.append(found.reason)
+        scopes.append(covered)
+        told.append((read, motion))
+    _require_different([read for read, _ in told])
+    between = "and every mix of their laws" if _are_mixed([read for read, _ in told]) else _BETWEEN
+    reason = f"all {len(listed)} corners: {'; or '.join(dict.fromkeys(reasons))}; {between}"
+    return Found(reason), weakest(scopes), told[0]
+
+
+_BETWEEN = "what lies between them follows from the theory of intervals, which is not checked here"
+
+
+def _require_different(told: list[Read]) -> None:
+    seen = []
+    for read in told:
+        proved = [getattr(read, name, None) for name in _PROVED]
+        if proved in seen:
+            raise Invalid("the same corner is given twice")
+        seen.append(proved)
+
+
+def _are_mixed(told: list[Read]) -> bool:
+    """True where every mix of the laws is proved with them."""
+    first = told[0]
+    return first.kind in _MIXED and all(
+        other.kind == first.kind and _is_one_device(first, other) and _is_one_denominator(first, other)
+        for other in told
+    )
+
+
+def _is_one_device(first: Read, other: Read) -> bool:
+    names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay", "unilateral")
+    same = all(getattr(first.loop, name) == getattr(other.loop, name) for name in names)
+    weights = [getattr(getattr(read, "law", None), "weights", None) for read in (first, other)]
+    return same and weights[0] == weights[1]
+
+
+def _is_one_denominator(first: Read, other: Read) -> bool:
+    a, b = first.loop.denominator, other.loop.denominator
+    return len(a) == len(b) and all(x * b[0] == y * a[0] for x, y in zip(a, b, strict=True))

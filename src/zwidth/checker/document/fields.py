@@ -1,0 +1,486 @@
+"""What a document of a kind consists of, declared once: names, units, signs, bounds.
+
+A document is read into what is declared, and anything else is refused: an entry too many or too few, at any
+depth, a unit other than the one declared, linear and rotary units side by side, a number out of its bounds.
+What was read is all that a proof sees, and all that is shown of it.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from operator import ge, gt, le, lt
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+from .number import PATTERN, about, number
+from .refusal import Invalid
+from .unit import NONE, Unit, in_words
+
+LINEAR, ROTARY = "linear", "rotary"
+SHOWN_AT_MOST = 12
+"""Numbers of a list."""
+MOST_LETTERS = 60
+"""Of the words that say what a document is."""
+
+_REQUIRED = object()
+
+
+class Read(SimpleNamespace):
+    """An object of a document, each entry by its name without its unit."""
+
+
+class Row(NamedTuple):
+    """One entry as it is shown: what it is called, what it is, and its unit.
+
+    `told` is True of words, which no proof reads.
+    """
+
+    name: str
+    text: str
+    unit: str
+    told: bool
+
+
+class Field(ABC):
+    """One entry.
+
+    Parameters
+    ----------
+    unit
+        What its key ends in.
+    default
+        Its value where it is left out; without one it must be there.
+    shown
+        False of what is a part of the proof, and not of what is proved.
+    """
+
+    def __init__(self, *, unit: Unit = NONE, default: Any = _REQUIRED, shown: bool = True) -> None:
+        self.unit, self.default, self.shown = unit, default, shown
+
+    @property
+    def required(self) -> bool:
+        """True if it may not be left out."""
+        return self.default is _REQUIRED
+
+    def key(self, name: str, motion: str) -> str:
+        """Its key in a document."""
+        unit = self.unit.of(motion)
+        return f"{name}_{unit}" if unit else name
+
+    @abstractmethod
+    def read(self, value: Any, at: str, motion: str) -> Any:
+        """The value, refused if it is not as declared; `at` says where it stands."""
+
+    @abstractmethod
+    def schema(self, motion: str) -> dict[str, Any]:
+        """The same as JSON Schema."""
+
+    def keys(self, motion: str) -> Iterator[str]:
+        """All keys within."""
+        yield from ()
+
+    def rows(self, name: str, value: Any, motion: str) -> Iterator[Row]:
+        """How it is shown."""
+        yield Row(name.replace("_", " "), self.text(value, motion), in_words(self.unit.of(motion)), False)
+
+    def text(self, value: Any, motion: str) -> str:
+        """A value for people, without its unit."""
+        return str(value)
+
+
+class Number(Field):
+    """A rational number within bounds."""
+
+    def __init__(
+        self,
+        unit: Unit = NONE,
+        *,
+        least: int | None = None,
+        above: int | None = None,
+        most: int | None = None,
+        below: int | None = None,
+        default: Any = _REQUIRED,
+        shown: bool = True,
+    ) -> None:
+        super().__init__(unit=unit, default=default, shown=shown)
+        self.least, self.above, self.most, self.below = least, above, most, below
+
+    def read(self, value: Any, at: str, motion: str) -> Fraction:
+        try:
+            found = number(value)
+        except Invalid as error:
+            raise Invalid(f"{at}: {error}") from None
+        for bound, keeps, sign in self._bounds():
+            if not keeps(found, bound):
+                raise Invalid(f"{at} must be {sign} {bound}, got {about(found)}")
+        return found
+
+    def _bounds(self) -> Iterator[tuple[int, Callable[[Any, Any], bool], str]]:
+        if self.least is not None:
+            yield self.least, ge, "≥"
+        if self.above is not None:
+            yield self.above, gt, ">"
+        if self.most is not None:
+            yield self.most, le, "≤"
+        if self.below is not None:
+            yield self.below, lt, "<"
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        bounds = {
+            "minimum": self.least,
+            "exclusiveMinimum": self.above,
+            "maximum": self.most,
+            "exclusiveMaximum": self.below,
+        }
+        stated = {name: bound for name, bound in bounds.items() if bound is not None}
+        return {"anyOf": [{"type": "number", **stated}, {"type": "string", "pattern": PATTERN}]}
+
+    def text(self, value: Fraction, motion: str) -> str:
+        return _exactly(value)
+
+
+class Whole(Number):
+    """A whole number within bounds."""
+
+    def read(self, value: Any, at: str, motion: str) -> Any:
+        found = super().read(value, at, motion)
+        if found.denominator != 1:
+            raise Invalid(f"{at} must be a whole number, got {about(found)}")
+        return int(found)
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        number_, text = super().schema(motion)["anyOf"]
+        return {"anyOf": [{**number_, "type": "integer"}, text]}
+
+
+class Flag(Field):
+    """True or false."""
+
+    def __init__(self, *, default: Any = _REQUIRED, shown: bool = True) -> None:
+        super().__init__(default=default, shown=shown)
+
+    def read(self, value: Any, at: str, motion: str) -> bool:
+        if not isinstance(value, bool):
+            raise Invalid(f"{at} must be true or false")
+        return value
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        return {"type": "boolean"}
+
+    def text(self, value: bool, motion: str) -> str:
+        return "yes" if value else "no"
+
+
+class Choice(Field):
+    """One of some words, or numbers that stand for them."""
+
+    def __init__(self, *words: Any, default: Any = _REQUIRED, shown: bool = True) -> None:
+        super().__init__(default=default, shown=shown)
+        self.words = words
+
+    def read(self, value: Any, at: str, motion: str) -> Any:
+        if isinstance(value, bool) or not isinstance(value, (str, int)) or value not in self.words:
+            raise Invalid(f"{at} must be {' or '.join(map(str, self.words))}")
+        return value
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        return {"enum": list(self.words)}
+
+
+class Words(Field):
+    """What people are told, and no proof reads."""
+
+    def __init__(self, most: int, *, default: Any = _REQUIRED, shown: bool = True) -> None:
+        super().__init__(default=default, shown=shown)
+        self.most = most
+
+    def read(self, value: Any, at: str, motion: str) -> str:
+        if not isinstance(value, str) or len(value) > self.most:
+            raise Invalid(f"{at} must be text of at most {self.most} letters")
+        return value
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        return {"type": "string", "maxLength": self.most}
+
+    def rows(self, name: str, value: Any, motion: str) -> Iterator[Row]:
+        yield Row(name, str(value), "", True)
+
+
+class Packed(Field):
+    """Numbers of one size, deflated, in base 64: unpacked where it is known how many there must be."""
+
+    def __init__(self) -> None:
+        super().__init__(shown=False)
+
+    def read(self, value: Any, at: str, motion: str) -> str:
+        if not isinstance(value, str):
+            raise Invalid(f"{at} must be text: numbers, deflated, in base 64")
+        return value
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        return {"type": "string", "contentEncoding": "base64"}
+
+
+class List(Field):
+    """So many of one sort."""
+
+    def __init__(
+        self,
+        of: Field,
+        *,
+        unit: Unit = NONE,
+        least: int = 0,
+        most: int = 2000,
+        default: Any = _REQUIRED,
+        shown: bool = True,
+    ) -> None:
+        super().__init__(unit=unit, default=default, shown=shown)
+        self.of, self.least, self.most = of, least, most
+
+    def read(self, value: Any, at: str, motion: str) -> list[Any]:
+        if not isinstance(value, Sequence) or isinstance(value, (str, bytes)):
+            raise Invalid(f"{at} must be a list")
+        if not self.least <= len(value) <= self.most:
+            raise Invalid(f"{at} must have {self.least} to {self.most} entries, got {len(value)}")
+        return [self.of.read(v, f"{at}[{k}]", motion) for k, v in enumerate(value)]
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        sizes = {"minItems": self.least, "maxItems": self.most}
+        return {"type": "array", "items": self.of.schema(motion), **sizes}
+
+    def keys(self, motion: str) -> Iterator[str]:
+        yield from self.of.keys(motion)
+
+    def rows(self, name: str, value: Any, motion: str) -> Iterator[Row]:
+        if isinstance(self.of, (Number, List)):
+            yield from super().rows(name, value, motion)
+            return
+        for place, entry in enumerate(value, start=1):
+            yield Row(f"{name.removesuffix('s')} {place}", self.of.text(entry, motion), "", False)
+
+    def text(self, value: Sequence[Any], motion: str) -> str:
+        more = ", …" if len(value) > SHOWN_AT_MOST else ""
+        return f"[{', '.join(self.of.text(v, motion) for v in value[:SHOWN_AT_MOST])}{more}]"
+
+
+def numbers(
+    unit: Unit = NONE, *, least: int = 0, most: int = 2000, default: Any = _REQUIRED, shown: bool = True
+) -> List:
+    """A list of numbers."""
+    return List(Number(), unit=unit, least=least, most=most, default=default, shown=shown)
+
+
+def pairs(unit: Unit, *, least: int, most: int, default: Any = _REQUIRED) -> List:
+    """A list of lists of two numbers."""
+    return List(numbers(least=2, most=2), unit=unit, least=least, most=most, default=default)
+
+
+class Between(Field):
+    """A number, or the smaller and the larger end of an interval; read as both ends."""
+
+    def __init__(self, unit: Unit, *, least: int | None = None, above: int | None = None) -> None:
+        super().__init__(unit=unit)
+        self.end = Number(least=least, above=above)
+
+    def read(self, value: Any, at: str, motion: str) -> tuple[Fraction, Fraction]:
+        ends = value if isinstance(value, list) else [value, value]
+        if len(ends) != 2:
+            raise Invalid(f"{at} must be a number, or both ends of an interval")
+        low, high = (self.end.read(end, at, motion) for end in ends)
+        if low > high:
+            raise Invalid(f"{at} must begin at the smaller end of the interval")
+        return low, high
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        one = self.end.schema(motion)
+        return {"anyOf": [one, {"type": "array", "items": one, "minItems": 2, "maxItems": 2}]}
+
+    def text(self, value: tuple[Fraction, Fraction], motion: str) -> str:
+        low, high = map(_exactly, value)
+        return low if low == high else f"{low} to {high}"
+
+
+class Record(Field):
+    """An object with these entries and no others."""
+
+    def __init__(self, fields: Mapping[str, Field], *, default: Any = _REQUIRED, shown: bool = True) -> None:
+        super().__init__(default=default, shown=shown)
+        self.fields = dict(fields)
+
+    def extended(self, **more: Field) -> Record:
+        """The same with more entries."""
+        return Record({**self.fields, **more}, default=self.default, shown=self.shown)
+
+    def read(self, value: Any, at: str, motion: str) -> Read:
+        if not isinstance(value, Mapping):
+            raise Invalid(f"{at or 'a document'} must be an object")
+        place = f"{at}." if at else ""
+        by_key = {field.key(name, motion): name for name, field in self.fields.items()}
+        unknown = [f"{place}{str(key)[:60]}" for key in value if key not in by_key]
+        if unknown:
+            raise Invalid(f"entries that no proof of this kind reads: {', '.join(unknown[:4])}")
+        found = {}
+        for key, name in by_key.items():
+            field = self.fields[name]
+            if key in value:
+                found[name] = field.read(value[key], place + key, motion)
+            elif field.required:
+                raise Invalid(f"{place}{key} is missing")
+            else:
+                found[name] = field.default
+        return Read(**found)
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        properties = {field.key(name, motion): field.schema(motion) for name, field in self.fields.items()}
+        required = [field.key(name, motion) for name, field in self.fields.items() if field.required]
+        return {
+            "type": "object",
+            "properties": properties,
+            "required": required,
+            "additionalProperties": False,
+        }
+
+    def keys(self, motion: str) -> Iterator[str]:
+        for name, field in self.fields.items():
+            yield field.key(name, motion)
+            yield from field.keys(motion)
+
+    def rows(self, name: str, value: Any, motion: str) -> Iterator[Row]:
+        for inner, field in self.fields.items():
+            found = getattr(value, inner)
+            if field.shown and (field.required or found != field.default):
+                yield from field.rows(inner, found, motion)
+
+    def text(self, value: Any, motion: str) -> str:
+        rows = self.rows("", value, motion)
+        return ", ".join(f"{row.name} {row.text} {row.unit}".rstrip() for row in rows)
+
+
+class OneOf(Field):
+    """An object whose entry `tag` says which others it has."""
+
+    def __init__(
+        self, tag: str, cases: Mapping[Any, Record], *, default: Any = _REQUIRED, shown: bool = True
+    ) -> None:
+        super().__init__(default=default, shown=shown)
+        self.tag = tag
+        self.cases = {word: record.extended(**{tag: Choice(word)}) for word, record in cases.items()}
+
+    def read(self, value: Any, at: str, motion: str) -> Read:
+        if not isinstance(value, Mapping) or self.tag not in value:
+            raise Invalid(f"{at} must be an object with {self.tag}")
+        word = Choice(*self.cases).read(value[self.tag], f"{at}.{self.tag}", motion)
+        found: Read = self.cases[word].read(value, at, motion)
+        return found
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        return {"oneOf": [case.schema(motion) for case in self.cases.values()]}
+
+    def keys(self, motion: str) -> Iterator[str]:
+        for case in self.cases.values():
+            yield from case.keys(motion)
+
+    def rows(self, name: str, value: Any, motion: str) -> Iterator[Row]:
+        yield from self.cases[getattr(value, self.tag)].rows(name, value, motion)
+
+    def text(self, value: Any, motion: str) -> str:
+        return self.cases[getattr(value, self.tag)].text(value, motion)
+
+
+class Either(Field):
+    """One of two sorts; `is_first` tells of a value which."""
+
+    def __init__(
+        self,
+        first: Field,
+        second: Field,
+        is_first: Callable[[Any], bool],
+        *,
+        default: Any = _REQUIRED,
+        shown: bool = True,
+    ) -> None:
+        super().__init__(default=default, shown=shown)
+        self.first, self.second, self.is_first = first, second, is_first
+
+    def read(self, value: Any, at: str, motion: str) -> Any:
+        if not isinstance(value, (Mapping, list, tuple)):
+            raise Invalid(f"{at} must be a list or an object")
+        return (self.first if self.is_first(value) else self.second).read(value, at, motion)
+
+    def schema(self, motion: str) -> dict[str, Any]:
+        return {"oneOf": [self.first.schema(motion), self.second.schema(motion)]}
+
+    def keys(self, motion: str) -> Iterator[str]:
+        yield from self.first.keys(motion)
+        yield from self.second.keys(motion)
+
+    def rows(self, name: str, value: Any, motion: str) -> Iterator[Row]:
+        yield from self._sort(value).rows(name, value, motion)
+
+    def _sort(self, value: Any) -> Field:
+        """The one by which a value was read."""
+        return self.second if _is_of(self.second, value) else self.first
+
+
+def _is_of(field: Field, value: Any) -> bool:
+    if isinstance(field, Record):
+        return isinstance(value, Read) and vars(value).keys() == field.fields.keys()
+    return not isinstance(value, Read)
+
+
+def document(fields: Mapping[str, Field]) -> Record:
+    """What a document consists of, besides its kind and words for those who sort documents."""
+    return Record({"format": Words(MOST_LETTERS, default=None, shown=False), **fields})
+
+
+def only_if(condition: object, value: Any, name: str) -> Any:
+    """An entry that stands there exactly if a condition holds; None where it does not."""
+    if condition and value is None:
+        raise Invalid(f"{name} is missing")
+    if not condition and value is not None:
+        raise Invalid(f"entries that no proof of this kind reads: {name} is of no use here")
+    return value
+
+
+def read_document(fields: Record, document: Mapping[str, Any]) -> tuple[Read, str]:
+    """What a document says, and whether it is of a linear or a rotary device."""
+    motion = _motion(fields, document)
+    found: Read = fields.read(document, "", motion)
+    found.motion = motion
+    return found, motion
+
+
+def _motion(fields: Record, document: Mapping[str, Any]) -> str:
+    linear, rotary = set(fields.keys(LINEAR)), set(fields.keys(ROTARY))
+    told = set(_told(document))
+    slides, turns = sorted(told & (linear - rotary)), sorted(told & (rotary - linear))
+    if slides and turns:
+        raise Invalid(f"a device slides or turns, and one document is of one: {slides[0]} and {turns[0]}")
+    return ROTARY if turns else LINEAR
+
+
+def _told(value: Any, depth: int = 12) -> Iterator[str]:
+    """The keys of a document."""
+    if depth == 0:
+        raise Invalid("a document is not so deep")
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield str(key)
+            yield from _told(inner, depth - 1)
+    elif isinstance(value, (list, tuple)) and any(isinstance(v, (Mapping, list, tuple)) for v in value):
+        for inner in value:
+            yield from _told(inner, depth - 1)
+
+
+def _exactly(value: Fraction) -> str:
+    """As a decimal where one ends soon, else as it is written."""
+    rest = value.denominator
+    for prime in (2, 5):
+        while rest % prime == 0:
+            rest //= prime
+    if rest == 1 and max(value.denominator, abs(value.numerator)).bit_length() <= 200:
+        return about(value, 200)
+    text = str(value)
+    return text if len(text) <= 40 else f"about {about(value, 12)}"

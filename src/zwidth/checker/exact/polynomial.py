@@ -1,0 +1,75 @@
+"""Polynomials as lists of coefficients, ascending, in whole or rational numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import lcm
+from typing import Any, TypeVar
+
+Exact = TypeVar("Exact", int, Fraction)
+
+
+def multiply(a: Sequence[Exact], b: Sequence[Exact]) -> list[Exact]:
+    """a b."""
+    out: list[Any] = [0] * (len(a) + len(b) - 1) if a and b else []
+    for i, x in enumerate(a):
+        if x:
+            for j, y in enumerate(b):
+                out[i + j] += x * y
+    return out
+
+
+def add(a: Sequence[Exact], b: Sequence[Exact]) -> list[Exact]:
+    """a + b."""
+    size = max(len(a), len(b))
+    sums: list[Any] = [(a[i] if i < len(a) else 0) + (b[i] if i < len(b) else 0) for i in range(size)]
+    return sums
+
+
+def same(a: Sequence[Exact], b: Sequence[Exact]) -> bool:
+    """True if a and b are one polynomial, whatever zeros they end in."""
+    return not any(add(a, [-c for c in b]))
+
+
+def value(ascending: Sequence[Fraction | int], x: Fraction) -> Fraction:
+    """a(x), 0 of an empty one."""
+    total = Fraction(0)
+    for c in reversed(ascending):
+        total = total * x + c
+    return total
+
+
+def cleared(a: Sequence[Fraction]) -> list[int]:
+    """A polynomial times the positive integer that makes it whole."""
+    scale = lcm(*(c.denominator for c in a))
+    return [c.numerator * (scale // c.denominator) for c in a]
+
+
+def bits(a: Sequence[int]) -> int:
+    """Of the largest coefficient."""
+    return max((c.bit_length() for c in a), default=0)
+
+
+def in_powers(sums: Sequence[Exact], kind: int) -> list[Exact]:
+    """Σ sums_j T_j (kind 1) or Σ sums_j U_j (kind 2) in ascending powers, by Clenshaw's recursion."""
+    later: list[Exact] = []
+    last: list[Exact] = []
+    for c in reversed(sums[1:]):
+        later, last = _recurred(c, later, last, 2), later
+    return _recurred(sums[0], later, last, kind) if sums else []
+
+
+def _recurred(c: Exact, later: list[Exact], last: list[Exact], times: int) -> list[Exact]:
+    """c + times x later − last."""
+    out: list[Any] = [c, *(times * v for v in later)]
+    for i, v in enumerate(last):
+        out[i] -= v
+    return out
+
+
+def square_modulus(a: list[int], degree: int) -> list[int]:
+    """|Σ a_j e^{−jθ}|² in c = cos θ, with zeros up to a degree."""
+    lags = [sum(a[i] * a[i + j] for i in range(len(a) - j)) for j in range(len(a))]
+    found = in_powers([lags[0], *(2 * lag for lag in lags[1:])], 1)
+    return found + [0] * (degree + 1 - len(found))
