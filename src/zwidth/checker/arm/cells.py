@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from itertools import product
-from math import isqrt
+from math import inf, isqrt
 
 from ..document.refusal import Invalid
 from ..exact.enclosed import Enclosed
@@ -62,16 +62,32 @@ def _part_to_halve(cell: Cell, matrix: Function, fails: str) -> int | None:
     moving = [j for j, ends in enumerate(cell) if _moves(ends)]
     _require_at_middle(cell, matrix, fails)
     try:
-        rows = matrix([_coordinate(ends, j, moving) for j, ends in enumerate(cell)])
+        if _at_corners(*_parted(_over(cell, matrix, moving), len(moving))):
+            return None
     except NotPositive:
-        return max(moving, key=lambda j: cell[j][1] - cell[j][0])
-    start, rest, lines = _parted(rows, len(moving))
-    if _at_corners(start, rest, lines):
-        return None
+        pass
     if not moving:
         raise Invalid(f"{fails} by so little that rounding hides it")
-    sizes = [sum(abs(x) for row in line for x in row) for line in lines]
-    return moving[sizes.index(max(sizes))]
+    return max(moving, key=lambda j: _moved_by(cell, matrix, j))
+
+
+def _over(cell: Cell, matrix: Function, moving: Sequence[int]) -> list[list[Enclosed]]:
+    """S where these coordinates may be anywhere in the cell, and the others in its middle."""
+    return matrix([_coordinate(ends, j, moving) for j, ends in enumerate(cell)])
+
+
+def _moved_by(cell: Cell, matrix: Function, place: int) -> float:
+    """How far one coordinate by itself moves S."""
+    middle = tuple(ends if j == place else _middle(ends) for j, ends in enumerate(cell))
+    try:
+        return sum(x.reach for row in _over(middle, matrix, [place]) for x in row)
+    except NotPositive:
+        return inf
+
+
+def _middle(ends: Range) -> Range:
+    at = sum(ends) // 2
+    return (at, at) if _moves(ends) else ends
 
 
 def _moves(ends: Range) -> bool:

@@ -448,7 +448,7 @@ def read_document(fields: Record, document: Mapping[str, Any]) -> tuple[Read, st
     """What a document says, and whether it is of a linear or a rotary device."""
     motion = _motion(fields, document)
     found: Read = fields.read(document, "", motion)
-    found.motion = motion
+    found.units = motion
     return found, motion
 
 

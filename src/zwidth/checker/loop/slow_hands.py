@@ -47,7 +47,7 @@ def slow_hands(told: Read) -> str:
         contact(Read(loop=stronger, law=told.law))
     else:
         spring(Read(loop=stronger))
-    unit = "rad/s" if told.motion == "rotary" else "m/s"
+    unit = "rad/s" if told.units == "rotary" else "m/s"
     return (
         f"for hands of up to {down(told.largest_speed)} {unit}, over each time in which one force is held, "
         "Coulomb friction makes up for the damping that is missing, contact made and broken"

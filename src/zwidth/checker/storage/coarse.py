@@ -93,7 +93,7 @@ def coarse_storage(told: Read) -> str:
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
     speed = line.fastest * line.length / losses.period
-    length = "rad" if told.motion == "rotary" else "m"
+    length = "rad" if told.units == "rotary" else "m"
     return (
         "no move takes out more than the storage function falls, at any position up to "
         f"{down(line.places[-1] * line.length)} {length} and at any count, for hands of up to "
