@@ -110,11 +110,12 @@ class LawComparison:
 
     def plot(self, path: str | Path | None = None) -> Any:
         """Stability against fidelity, and the touches of each law; saved where a path is given."""
-        from zwidth.plots.laws import laws_figure  # matplotlib takes its time
+        from zwidth.plots.files import save_figure  # matplotlib takes its time
+        from zwidth.plots.laws import laws_figure
 
         figure = laws_figure(self)
         if path is not None:
-            figure.savefig(path)
+            save_figure(lambda: figure, path, overwrite=True)
         return figure
 
 

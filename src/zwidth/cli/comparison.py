@@ -73,8 +73,8 @@ def run_compare(arguments: argparse.Namespace) -> int:
     laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
     found = compare(loop.device, loop.environment, laws, fastest=_speed(arguments.fastest))
     if save is not None:
-        with writing_whole(save) as unfinished:
-            unfinished.write_text(_json(found) + "\n", encoding="utf-8")
+        with writing_whole(save) as file:
+            file.write(f"{_json(found)}\n".encode())
     if plot is not None:
         with writing(plot):
             found.plot(plot)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -40,7 +41,7 @@ def save_figure(draw: Callable[[], Figure], path: str | Path, overwrite: bool = 
     picture = BytesIO()
     with rc_context({"svg.hashsalt": "zwidth"}):
         draw().savefig(picture, format=ending, dpi=160, metadata=_METADATA[ending])
-    if target.exists() and not overwrite:
+    if os.path.lexists(target) and not overwrite:
         raise InputError(f"{target} exists already and is not replaced; give another name or remove it first")
-    with writing_whole(target) as unfinished:
-        unfinished.write_bytes(picture.getvalue())
+    with writing_whole(target) as file:
+        file.write(picture.getvalue())

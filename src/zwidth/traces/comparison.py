@@ -117,13 +117,12 @@ class Comparison:
 
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """All traces in one figure; saved if a path is given."""
-        from zwidth.plots.trace import comparison_figure  # matplotlib takes its time
-        from zwidth.writing import writing_whole
+        from zwidth.plots.files import save_figure  # matplotlib takes its time
+        from zwidth.plots.trace import comparison_figure
 
         figure = comparison_figure(self.traces)
         if path is not None:
-            with writing_whole(Path(path)) as unfinished:
-                figure.savefig(unfinished, dpi=150, format=Path(path).suffix.lstrip(".").lower() or "png")
+            save_figure(lambda: figure, Path(path), overwrite=True)
         return figure
 
     def __repr__(self) -> str:

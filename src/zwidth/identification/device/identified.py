@@ -255,8 +255,8 @@ class Identified:
         """
         text, target = self.to_toml(confidence, **others), Path(path)
         check_target(target, force)
-        with writing_whole(target) as unfinished:
-            unfinished.write_text(text, encoding="utf-8")
+        with writing_whole(target) as file:
+            file.write(text.encode())
 
     def plot(self, path: str | PathLike[str] | None = None, *, force: bool = False) -> Figure:
         """Friction against speed, what is left over, data against model; saved where a path is given.
