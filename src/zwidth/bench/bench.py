@@ -24,6 +24,7 @@ from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.quantity.exact import RealLike
+from zwidth.showing import Html
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -103,7 +104,7 @@ class LawComparison:
 
         return as_text(self)
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Html:
         from zwidth.bench.table import as_html
 
         return as_html(self)

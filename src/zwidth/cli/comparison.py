@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.laws import with_laws
 from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
-from zwidth.cli.output import print_json, quiet_pipe, say_written, targets, writing
+from zwidth.cli.output import print_json, print_text, say_written, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
@@ -81,8 +81,7 @@ def run_compare(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json(_json(found))
     else:
-        with quiet_pipe():
-            print(found)
+        print_text(found)
         say_written(save, plot)
     return 0
 

@@ -25,6 +25,7 @@ from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.one_norm import NormBound
 from zwidth.passivity.positivity import Positivity
 from zwidth.passivity.relaxing_contact import RelaxingLaw
+from zwidth.showing import Html, element
 
 FORMAT = "zwidth certificate 1"
 LARGEST_FILE = 200_000_000
@@ -74,9 +75,10 @@ class Certificate:
         """Write the certificate as JSON for `zwidth verify`."""
         save_json(path, self.to_dict())
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Html:
         state = "accepted" if self.verify() else "rejected"
-        return f"<p>{self.kind} certificate, {len(self.documents)} part(s): {state} by the checker</p>"
+        about = f"{self.kind} certificate, {len(self.documents)} part(s): {state} by the checker"
+        return element("p", about)
 
 
 def certify(decision: Decision) -> dict[str, Any]:

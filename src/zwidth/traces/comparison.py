@@ -14,6 +14,7 @@ import numpy as np
 from zwidth.energy import ledger
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
+from zwidth.showing import Html, printable, table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -133,14 +134,11 @@ class Comparison:
             cells = [row[0].ljust(widths[0])]
             cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
             lines.append("  ".join(cells))
-        return "\n".join(lines)
+        return printable("\n".join(lines))
 
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        head, *lines = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in self.table()]
-        body = "".join(f"<tr>{line}</tr>" for line in lines)
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    def _repr_html_(self) -> Html:
+        head, *lines = self.table()
+        return table(head, lines)
 
 
 def compare_traces(*traces: xr.Dataset | Mapping[str, xr.Dataset]) -> Comparison:

@@ -16,6 +16,7 @@ from zwidth.errors import InputError
 from zwidth.identification.device.table import as_html, as_text, source_name
 from zwidth.identification.logs import Finding
 from zwidth.quantity.exact import Interval
+from zwidth.showing import Html
 from zwidth.writing import check_target, writing_whole
 
 if TYPE_CHECKING:
@@ -283,7 +284,7 @@ class Identified:
     def __repr__(self) -> str:
         return as_text(self)
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Html:
         return as_html(self)
 
 
