@@ -19,6 +19,7 @@ import xarray as xr
 
 from zwidth.errors import InputError
 from zwidth.loop.trace import FORMAT, UNITS, VARIABLES
+from zwidth.reading import check_hdf5, check_parquet
 from zwidth.writing import check_target, first_line, writing_whole
 
 if TYPE_CHECKING:
@@ -123,6 +124,7 @@ def _write_netcdf(data: xr.Dataset, file: IO[bytes]) -> None:
 
 
 def _read_netcdf(path: Path) -> xr.Dataset:
+    check_hdf5(path)
     with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
         trace: xr.Dataset = file.load()
     for name in trace.variables:
@@ -177,6 +179,7 @@ def _write_parquet(trace: xr.Dataset, file: IO[bytes]) -> None:
 def _read_parquet(path: Path) -> xr.Dataset:
     import pyarrow.parquet as pq
 
+    check_parquet(path)
     table = pq.read_table(path)
     attributes = json.loads((table.schema.metadata or {}).get(b"zwidth", b"{}"))
     return _from_columns({name: table[name].to_numpy() for name in table.column_names}, attributes, path)

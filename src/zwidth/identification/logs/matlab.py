@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from os import SEEK_CUR
 from pathlib import Path
-from typing import Any
+from struct import unpack
+from typing import IO, Any
+from zlib import decompressobj
 
 import numpy as np
 from scipy.io import loadmat
@@ -12,11 +15,17 @@ from scipy.io.matlab import mat_struct
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.table import PIECE, Table, Values
+from zwidth.reading import FREE, RATIO, check_expansion
 
 LARGEST = 2**30
 """[bytes] Largest file that is read whole; MATLAB's own limit for a variable in it is 2 GiB."""
 
 _MOST_COLUMNS = 64
+_HEADER, _COMPRESSED = 128, 15
+"""Bytes before the first variable, and the type of one that is compressed."""
+
+_ORDERS = {b"MI": ">", b"IM": "<"}
+_PIECE = 2**20
 
 
 def matlab_table(path: Path) -> Table:
@@ -25,7 +34,7 @@ def matlab_table(path: Path) -> Table:
     Raises
     ------
     InputError
-        If it is larger than `LARGEST`.
+        If it is larger than `LARGEST`, or would be when it is expanded.
     """
     size = path.stat().st_size
     if size > LARGEST:
@@ -33,6 +42,7 @@ def matlab_table(path: Path) -> Table:
             f"{path} has {size >> 20} MiB; MATLAB files before 7.3 are read whole, up to {LARGEST >> 20}; "
             'save it with "-v7.3"'
         )
+    check_expansion(path, _expanded(path))
     columns: dict[str, Values] = {}
     for name, value in loadmat(path, squeeze_me=True, struct_as_record=False).items():
         if not name.startswith("__"):
@@ -48,6 +58,37 @@ def matlab_table(path: Path) -> Table:
             yield tuple(values[k : k + PIECE] for values in chosen)
 
     return Table(source=str(path), units=dict.fromkeys(columns), read=read)
+
+
+def _expanded(path: Path) -> int:
+    """[bytes] What the compressed variables of a file of MATLAB 5 to 7.2 are, up to what is read of them."""
+    most = max(FREE, RATIO * path.stat().st_size)
+    total = 0
+    with open(path, "rb") as file:
+        order = _ORDERS.get(file.read(_HEADER)[-2:])
+        if order is None:
+            return 0  # of MATLAB 4, which compresses nothing
+        while total <= most and len(tag := file.read(8)) == 8:
+            kind, size = unpack(f"{order}II", tag)
+            if kind == 0:  # zeros that were never written
+                break
+            if kind == _COMPRESSED:
+                total += _inflated(file, size, most - total)
+            else:
+                file.seek(size, SEEK_CUR)
+    return total
+
+
+def _inflated(file: IO[bytes], size: int, most: int) -> int:
+    """[bytes] What a compressed variable becomes; counting ends beyond `most`."""
+    stream, total = decompressobj(), 0
+    while size > 0 and total <= most and (piece := file.read(min(size, _PIECE))):
+        size -= len(piece)
+        while piece and total <= most:
+            total += len(stream.decompress(piece, _PIECE))
+            piece = stream.unconsumed_tail
+    file.seek(size, SEEK_CUR)
+    return total
 
 
 def _vectors(name: str, value: Any) -> dict[str, Values]:

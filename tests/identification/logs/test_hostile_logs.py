@@ -1,0 +1,178 @@
+"""Files made to fill the memory, to lead to other files, or to run what is in them: one message each."""
+
+from __future__ import annotations
+
+import bz2
+import gzip
+import struct
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from scipy.io import savemat
+
+import zwidth as zw
+from zwidth import reading
+
+SIZE = 4_000_000
+"""[bytes] What the small files below become, far beyond what the tests allow."""
+
+
+@pytest.fixture(autouse=True)
+def little_is_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A megabyte, so that the files of the tests are quickly made."""
+    monkeypatch.setattr(reading, "FREE", 2**20)
+    monkeypatch.setattr(reading, "LARGEST_CHUNK", 2**20)
+
+
+def refused(path: Path, message: str) -> None:
+    """Reading it is one line that says so."""
+    with pytest.raises(zw.InputError, match=message) as caught:
+        zw.read_log(path, columns={"time": "time_s", "position": "position_mm"})
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("suffix", "pressed"), [(".gz", gzip.compress), (".bz2", bz2.compress)])
+def test_compressed_text_that_grows_is_refused(suffix: str, pressed, tmp_path: Path) -> None:
+    """Counted while it is read, since it says nothing of its size itself."""
+    path = tmp_path / f"log.csv{suffix}"
+    rows = "".join(f"{k},{k % 7}\n" for k in range(100)) + "100,0\n" * (SIZE // 6)
+    path.write_bytes(pressed(f"time_s,position_mm\n{rows}".encode()))
+    refused(path, "would become")
+
+
+def test_parquet_that_grows_is_refused(tmp_path: Path) -> None:
+    """Half a million times the same number takes some bytes."""
+    path = tmp_path / "log.parquet"
+    pq.write_table(pa.table({"time_s": np.zeros(SIZE // 8), "position_mm": np.zeros(SIZE // 8)}), path)
+    assert path.stat().st_size < 5000
+    refused(path, "would become")
+
+
+def test_hdf5_that_declares_more_than_it_holds_is_refused(tmp_path: Path) -> None:
+    """Numbers that were never written are filled in by the library, as many as are declared."""
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        for name in ("time_s", "position_mm"):
+            file.create_dataset(name, shape=(2**50,), dtype="f8", chunks=(2**10,), fillvalue=1.0)
+    refused(path, "would become")
+
+
+def test_hdf5_in_too_large_pieces_is_refused(tmp_path: Path) -> None:
+    """A piece is expanded whole, however little of it is wanted."""
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        for name in ("time_s", "position_mm"):
+            file.create_dataset(name, data=np.zeros(2**15), chunks=(2**15,), maxshape=(None,))
+            file.create_dataset(f"{name}_raw", data=np.random.default_rng(1).random(2**15))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reading, "LARGEST_CHUNK", 2**17)
+        refused(path, "in smaller pieces")
+
+
+def test_hdf5_does_not_lead_to_other_files(tmp_path: Path) -> None:
+    """Not by a link, which is not followed; not by numbers that are kept elsewhere."""
+    secret = tmp_path / "secret"
+    secret.write_bytes(np.arange(100.0).tobytes())
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["position_mm"] = np.arange(100.0)
+    linked, kept = tmp_path / "linked.h5", tmp_path / "kept.h5"
+    with h5py.File(linked, "w") as file:
+        file["time_s"] = np.arange(100.0)
+        file["position_mm"] = h5py.ExternalLink("other.h5", "/position_mm")
+    refused(linked, "position_mm")
+    with h5py.File(kept, "w") as file:
+        file["time_s"] = np.arange(100.0)
+        file.create_dataset("position_mm", shape=(100,), dtype="f8", external=[(str(secret), 0, 800)])
+    refused(kept, "are elsewhere")
+
+
+def test_hdf5_is_not_put_together_of_other_files(tmp_path: Path) -> None:
+    """As a virtual dataset is."""
+    path = tmp_path / "log.h5"
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["x"] = np.arange(100.0)
+    layout = h5py.VirtualLayout(shape=(100,), dtype="f8")
+    layout[:] = h5py.VirtualSource(str(tmp_path / "other.h5"), "x", shape=(100,))
+    with h5py.File(path, "w") as file:
+        file["time_s"] = np.arange(100.0)
+        file.create_virtual_dataset("position_mm", layout)
+    refused(path, "are elsewhere")
+
+
+def test_matlab_that_grows_is_refused(tmp_path: Path) -> None:
+    """By what its compressed variables really become."""
+    path = tmp_path / "log.mat"
+    savemat(path, {"time_s": np.zeros(SIZE // 8), "position_mm": np.zeros(SIZE // 8)}, do_compression=True)
+    assert path.stat().st_size < SIZE // reading.RATIO
+    refused(path, "would become")
+
+
+def _mcap(chunks: list[tuple[str, bytes, int]], indexed: bool) -> bytes:
+    """A file with these chunks, (how compressed, bytes, size that it says), or with their index alone."""
+
+    def word(text: bytes) -> bytes:
+        return struct.pack("<I", len(text)) + text
+
+    def record(kind: int, content: bytes) -> bytes:
+        return struct.pack("<BQ", kind, len(content)) + content
+
+    magic, data, index = b"\x89MCAP0\r\n", b"", b""
+    start = magic + record(1, word(b"ros2") + word(b"zwidth"))
+    for codec, content, declared in chunks:
+        place = len(start + data)
+        head = struct.pack("<QQQI", 0, 1, declared, 0) + word(codec.encode())
+        chunk = head + struct.pack("<Q", len(content)) + content
+        data += record(0x05 if indexed else 0x06, chunk)
+        about = struct.pack("<QQQQ", 0, 1, place, len(chunk) + 9) + word(b"") + struct.pack("<Q", 0)
+        index += record(0x08, about + word(codec.encode()) + struct.pack("<QQ", len(content), declared))
+    summary = len(start + data)
+    footer = record(2, struct.pack("<QQI", summary, 0, 0))
+    return start + data + index + footer + magic
+
+
+@pytest.mark.parametrize("indexed", [False, True])
+@pytest.mark.parametrize("declared", [2**60, SIZE, 100])
+@pytest.mark.parametrize("codec", ["zstd", "lz4"])
+def test_chunks_that_grow_are_refused(codec: str, declared: int, indexed: bool, tmp_path: Path) -> None:
+    """By what they say, and by what they really become; where the index leads too."""
+    pytest.importorskip("rosbags")
+    path = tmp_path / "log.mcap"
+    content = pa.compress(bytes(SIZE), codec="lz4" if codec == "lz4" else "zstd", asbytes=True)
+    path.write_bytes(_mcap([(codec, content, declared)], indexed))
+    refused(path, "in smaller pieces")
+
+
+def test_a_bag_that_grows_on_the_disk_is_refused(tmp_path: Path) -> None:
+    """A whole file of a bag is unpacked to the disk."""
+    pytest.importorskip("rosbags")
+    path = tmp_path / "bag"
+    path.mkdir()
+    (path / "metadata.yaml").write_text("rosbag2_bagfile_information: {}", encoding="utf-8")
+    (path / "bag.db3.zstd").write_bytes(pa.compress(bytes(SIZE), codec="zstd", asbytes=True))
+    refused(path, "would become")
+
+
+def test_zip_archives_and_arrays_of_objects_are_not_read(tmp_path: Path) -> None:
+    """Neither spreadsheets nor NumPy's own files are logs: nothing in them is expanded or run."""
+    for name in ("log.npz", "log.npy"):
+        path = tmp_path / name
+        np_file = {"position_mm": np.array([{"run": "this"}], dtype=object)}
+        if name == "log.npz":
+            np.savez_compressed(path, **np_file)
+        else:
+            np.save(path, np_file["position_mm"])
+        refused(path, "zip archive" if name == "log.npz" else "no text|no table")
+
+
+def test_what_a_recording_becomes_is_read(tmp_path: Path) -> None:
+    """The bounds are far from what is recorded: a log of the size of the tests' bombs, compressed."""
+    path = tmp_path / "log.csv.gz"
+    rows = "".join(f"{k / 1000},{round(1e3 * np.sin(k / 97))}\n" for k in range(SIZE // 40))
+    text = f"time_s,position_mm\n{rows}".encode()
+    path.write_bytes(gzip.compress(text))
+    assert len(text) > reading.FREE
+    assert zw.read_log(path).samples == SIZE // 40
