@@ -6,8 +6,11 @@ other files of the reader's.  Both are refused before anything is expanded or op
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zlib import decompressobj
 
 from zwidth.errors import InputError
 
@@ -22,6 +25,11 @@ RATIO = 200
 
 LARGEST_CHUNK = 2**28
 """[bytes] Largest piece that is compressed by itself."""
+
+_DEFLATE, _MOST_DEFLATED = 1, 1032
+"""The filter's number in HDF5, and the most bytes that it makes of one."""
+
+_STEP = 2**20
 
 
 def check_expansion(path: Path, expanded: int) -> None:
@@ -67,7 +75,8 @@ def check_dataset(path: Path, data: h5py.Dataset) -> None:
         raise InputError(f"{path} is not read: the numbers of {data.name} are elsewhere; copy them into it")
     check_expansion(path, data.size * data.dtype.itemsize if data.shape else 0)
     if data.chunks:
-        check_chunk(path, _product(data.chunks) * data.dtype.itemsize)
+        check_chunk(path, prod(data.chunks) * data.dtype.itemsize)
+        _check_deflated(path, data)
 
 
 def check_hdf5(path: Path) -> None:
@@ -99,11 +108,32 @@ def check_hdf5(path: Path) -> None:
         check_expansion(path, sum((data.size or 0) * data.dtype.itemsize for data in datasets))
 
 
-def _product(shape: tuple[int, ...]) -> int:
-    product = 1
-    for length in shape:
-        product *= length
-    return product
+def _check_deflated(path: Path, data: h5py.Dataset) -> None:
+    """HDF5 expands a chunk to its end, whatever the chunk should be: count those that could become large."""
+    filters = data.id.get_create_plist()
+    deflated = [filters.get_filter(k)[0] for k in range(filters.get_nfilters())].count(_DEFLATE)
+    if deflated > 1:
+        raise InputError(f"{path} is not read: {data.name} is compressed {deflated} times over")
+    suspects: list[Any] = []
+
+    def visit(chunk: Any) -> None:
+        if deflated and chunk.filter_mask == 0 and chunk.size * _MOST_DEFLATED > LARGEST_CHUNK:
+            suspects.append(chunk.chunk_offset)
+
+    data.id.chunk_iter(visit)
+    for offset in suspects:
+        stored = data.id.read_direct_chunk(offset)[1]
+        check_chunk(path, inflated([stored], LARGEST_CHUNK))
+
+
+def inflated(pieces: Iterable[bytes], most: int) -> int:
+    """[bytes] What a stream of zlib becomes; counting ends beyond `most`."""
+    stream, total = decompressobj(), 0
+    for piece in pieces:
+        while piece and total <= most:
+            total += len(stream.decompress(piece, _STEP))
+            piece = stream.unconsumed_tail
+    return total
 
 
 def check_parquet(path: Path, columns: set[str] | None = None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -303,6 +304,28 @@ def test_a_full_disk_keeps_what_is_finished(tmp_path: Path) -> None:
     left: list[int] = []
     zw.z_width(PADDLE, *WIDE, cells=(CHUNK, CHUNK + 1), path=path, progress=lambda n, total: left.append(n))
     assert left == [2]
+
+
+def test_a_store_that_leads_elsewhere_is_refused(tmp_path: Path) -> None:
+    """Neither read nor written is what a link in it names."""
+    path, other = tmp_path / "map", tmp_path / "other"
+    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    (path / "passive").rename(other)
+    (path / "passive").symlink_to(other)
+    with pytest.raises(zw.InputError, match="passive in it is a link"):
+        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+
+
+def test_a_store_that_declares_more_than_its_map_is_refused(tmp_path: Path) -> None:
+    """Cells that were never written are filled in, as many as are declared."""
+    path = tmp_path / "map"
+    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    about = path / "passive" / "zarr.json"
+    document = json.loads(about.read_text(encoding="utf-8"))
+    document["shape"] = [2**40, 2**40]
+    about.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(zw.InputError, match="holds another map"):
+        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
 
 
 def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:

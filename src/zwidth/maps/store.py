@@ -87,6 +87,7 @@ def _on_disk(path: Path) -> Iterator[None]:
 
 
 def _resumed(zarr: Any, path: Path, asked: Request) -> Any:
+    _refuse_links(path)
     try:
         group = zarr.open_group(path, mode="r+")
         found, begun = (group.attrs.get("format"), group.attrs.get("digest")), group.attrs.get("begun")
@@ -94,11 +95,31 @@ def _resumed(zarr: Any, path: Path, asked: Request) -> Any:
         raise InputError(f"{path} exists and holds no map; choose another name or remove it first") from None
     if found == (FORMAT, None) and begun == asked.digest():
         return _created(zarr, path, asked)  # stopped before all its arrays were there
-    if found != (FORMAT, asked.digest()):
+    if found != (FORMAT, asked.digest()) or not _fits(group, asked):
         raise InputError(
             f"{path} holds another map, or one of another version; choose another name or remove it first"
         )
     return group
+
+
+def _fits(group: Any, asked: Request) -> bool:
+    """Whether the arrays are those of this map: what is read is as much as they declare."""
+    layer = ((asked.stiffness.cells, asked.virtual_damping.cells), (CHUNK, CHUNK))
+    arrays = {name: (*layer, kind) for name, kind in layer_types(asked).items()}
+    arrays["done"] = (asked.chunks, (1, 1), "uint8")
+    found = {name: group.get(name) for name in arrays}
+    return all(
+        hasattr(array, "shards")  # else it is a group, or not there
+        and (array.shape, array.chunks, str(array.dtype), array.shards) == (*arrays[name], None)
+        for name, array in found.items()
+    )
+
+
+def _refuse_links(path: Path) -> None:
+    """A part of a map that is a link would be read, and written, wherever it leads."""
+    link = next((part for part in path.rglob("*") if part.is_symlink()), None)
+    if link is not None:
+        raise InputError(f"{path} is not gone on with: {link.relative_to(path)} in it is a link to elsewhere")
 
 
 def _created(zarr: Any, path: Path, asked: Request) -> Any:

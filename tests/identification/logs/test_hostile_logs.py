@@ -5,6 +5,7 @@ from __future__ import annotations
 import bz2
 import gzip
 import struct
+import zlib
 from pathlib import Path
 
 import h5py
@@ -71,6 +72,29 @@ def test_hdf5_in_too_large_pieces_is_refused(tmp_path: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(reading, "LARGEST_CHUNK", 2**17)
         refused(path, "in smaller pieces")
+
+
+def test_hdf5_whose_pieces_grow_is_refused(tmp_path: Path) -> None:
+    """The library expands a piece to its end, far beyond what the dataset declares."""
+    path = tmp_path / "log.h5"
+    with h5py.File(path, "w") as file:
+        for name in ("time_s", "position_mm"):
+            data = file.create_dataset(name, shape=(100,), dtype="f8", chunks=(100,), compression="gzip")
+            data.id.write_direct_chunk((0,), zlib.compress(bytes(SIZE)))
+    refused(path, "in smaller pieces")
+
+
+def test_hdf5_compressed_many_times_over_is_refused(tmp_path: Path) -> None:
+    """Each time a thousandfold."""
+    path = tmp_path / "log.h5"
+    filters = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    filters.set_chunk((100,))
+    filters.set_deflate(9)
+    filters.set_deflate(9)
+    with h5py.File(path, "w") as file:
+        for name in (b"time_s", b"position_mm"):
+            h5py.h5d.create(file.id, name, h5py.h5t.NATIVE_DOUBLE, h5py.h5s.create_simple((100,)), filters)
+    refused(path, "2 times over")
 
 
 def test_hdf5_does_not_lead_to_other_files(tmp_path: Path) -> None:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from os import SEEK_CUR
 from pathlib import Path
 from struct import unpack
 from typing import IO, Any
-from zlib import decompressobj
 
 import numpy as np
 from scipy.io import loadmat
@@ -15,7 +13,7 @@ from scipy.io.matlab import mat_struct
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.table import PIECE, Table, Values
-from zwidth.reading import FREE, RATIO, check_expansion
+from zwidth.reading import FREE, RATIO, check_expansion, inflated
 
 LARGEST = 2**30
 """[bytes] Largest file that is read whole; MATLAB's own limit for a variable in it is 2 GiB."""
@@ -72,23 +70,18 @@ def _expanded(path: Path) -> int:
             kind, size = unpack(f"{order}II", tag)
             if kind == 0:  # zeros that were never written
                 break
+            place = file.tell() + size
             if kind == _COMPRESSED:
-                total += _inflated(file, size, most - total)
-            else:
-                file.seek(size, SEEK_CUR)
+                total += inflated(_pieces(file, size), most - total)
+            file.seek(place)
     return total
 
 
-def _inflated(file: IO[bytes], size: int, most: int) -> int:
-    """[bytes] What a compressed variable becomes; counting ends beyond `most`."""
-    stream, total = decompressobj(), 0
-    while size > 0 and total <= most and (piece := file.read(min(size, _PIECE))):
+def _pieces(file: IO[bytes], size: int) -> Iterator[bytes]:
+    """The next so many bytes, a megabyte at a time."""
+    while size > 0 and (piece := file.read(min(size, _PIECE))):
         size -= len(piece)
-        while piece and total <= most:
-            total += len(stream.decompress(piece, _PIECE))
-            piece = stream.unconsumed_tail
-    file.seek(size, SEEK_CUR)
-    return total
+        yield piece
 
 
 def _vectors(name: str, value: Any) -> dict[str, Values]:
