@@ -265,10 +265,13 @@ def read_document(path: str | Path) -> object:
     """
     path = Path(path)
     try:
-        if path.stat().st_size > LARGEST_FILE:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)  # a device says nothing of its size
+        if len(content) > LARGEST_FILE:
             raise InputError(f"larger than {LARGEST_FILE} bytes, and no certificate is")
-        text = path.read_text(encoding="utf-8")
-        return json.loads(text, parse_float=Decimal, parse_int=_integer, object_pairs_hook=_once_each)
+        return json.loads(
+            content.decode(), parse_float=Decimal, parse_int=_integer, object_pairs_hook=_once_each
+        )
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     except InputError as error:

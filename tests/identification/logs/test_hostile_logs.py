@@ -170,14 +170,84 @@ def test_chunks_that_grow_are_refused(codec: str, declared: int, indexed: bool, 
     refused(path, "in smaller pieces")
 
 
+def _rosbag1(codec: bytes, content: bytes, declared: int, place: int | None) -> bytes:
+    """A bag of ROS 1 with one chunk, and an index that says where it is."""
+
+    def record(content: bytes, **fields: bytes) -> bytes:
+        named = [name.encode() + b"=" + value for name, value in fields.items()]
+        header = b"".join(struct.pack("<I", len(field)) + field for field in named)
+        return struct.pack("<I", len(header)) + header + struct.pack("<I", len(content)) + content
+
+    magic = b"#ROSBAG V2.0\n"
+    zero = struct.pack("<I", 0)
+    one = struct.pack("<I", 1)
+
+    def head(index: int) -> bytes:
+        return record(
+            b" " * 100, op=b"\x03", index_pos=struct.pack("<Q", index), conn_count=zero, chunk_count=one
+        )
+
+    start = magic + head(0)
+    chunk = record(content, op=b"\x05", compression=codec, size=struct.pack("<I", declared))
+    begun = len(start) if place is None else place
+    times = {"start_time": bytes(8), "end_time": bytes(8)}
+    about = record(b"", op=b"\x06", ver=one, chunk_pos=struct.pack("<Q", begun), count=zero, **times)
+    return magic + head(len(start + chunk)) + chunk + about
+
+
+@pytest.mark.parametrize("declared", [2**32 - 1, 100])
+def test_chunks_of_ros_1_that_grow_are_refused(declared: int, tmp_path: Path) -> None:
+    """By what they say, and by what they really become."""
+    pytest.importorskip("rosbags")
+    path = tmp_path / "log.bag"
+    path.write_bytes(_rosbag1(b"bz2", bz2.compress(bytes(SIZE)), declared, None))
+    refused(path, "in smaller pieces")
+
+
+def test_an_index_of_ros_1_leads_to_its_chunks(tmp_path: Path) -> None:
+    """And to no bytes that were not looked at."""
+    pytest.importorskip("rosbags")
+    path = tmp_path / "log.bag"
+    path.write_bytes(_rosbag1(b"bz2", bz2.compress(bytes(100)), 100, 50))
+    refused(path, "index leads to")
+
+
+@pytest.mark.parametrize("grown", [False, True])
+def test_messages_that_are_compressed_one_by_one(grown: bool, recording, tmp_path: Path) -> None:
+    """They are read, unless one becomes too large."""
+    pytest.importorskip("rosbags")
+    from rosbags.rosbag2 import CompressionFormat, CompressionMode, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    number, text = store.types["std_msgs/msg/Float64"], store.types["std_msgs/msg/String"]
+    path = tmp_path / "bag"
+    writer = Writer(path, version=9)
+    writer.set_compression(CompressionMode.MESSAGE, CompressionFormat.ZSTD)
+    with writer:
+        place = writer.add_connection("/position", number.__msgtype__, typestore=store)
+        words = writer.add_connection("/words", text.__msgtype__, typestore=store)
+        for t, x in zip(recording.time[:500], recording.position, strict=False):
+            data = store.serialize_cdr(number(x), place.msgtype)
+            writer.write(place, 10**18 + round(t * 1e9), data)
+        if grown:
+            writer.write(words, 10**18, store.serialize_cdr(text(" " * SIZE), words.msgtype))
+    if grown:
+        refused(path, "in smaller pieces")
+    else:
+        log = zw.read_log(path, columns={"position": "/position.data"}, units={"position": "m"})
+        assert log.samples == 500
+
+
 def test_a_bag_that_grows_on_the_disk_is_refused(tmp_path: Path) -> None:
     """A whole file of a bag is unpacked to the disk."""
     pytest.importorskip("rosbags")
     path = tmp_path / "bag"
     path.mkdir()
     (path / "metadata.yaml").write_text("rosbag2_bagfile_information: {}", encoding="utf-8")
-    (path / "bag.db3.zstd").write_bytes(pa.compress(bytes(SIZE), codec="zstd", asbytes=True))
-    refused(path, "would become")
+    for content, message in ((bytes(SIZE), "would become"), (b"\x89MCAP0\r\n", "unpack it first")):
+        (path / "bag").write_bytes(pa.compress(content, codec="zstd", asbytes=True))
+        refused(path, message)
 
 
 def test_zip_archives_and_arrays_of_objects_are_not_read(tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
 """The pieces of a bag that are compressed, each looked at before the library expands it whole.
 
-An MCAP file says of each chunk what it becomes, in the chunk and again in the index, and nobody
-holds what is in it against that before it is expanded.
+A bag says of each chunk what it becomes, and an index says where the chunks are; the library believes
+both, and holds neither against what is in the file before it is expanded.
 """
 
 from __future__ import annotations
@@ -11,14 +11,17 @@ from io import BytesIO
 from os import fstat
 from pathlib import Path
 from struct import unpack
-from typing import IO, NamedTuple
+from typing import IO, Any, NamedTuple
 
 import pyarrow as pa
 
+from zwidth.errors import InputError
 from zwidth.reading import LARGEST_CHUNK, Bounded, check_chunk, check_expansion
 
 _CHUNK, _CHUNK_INDEX = 0x06, 0x08
-_CODECS = {"lz4": "lz4", "zstd": "zstd"}
+_MCAP = b"\x89MCAP"
+_CODECS = ("lz4", "zstd", "bz2")
+_ROS1_START, _ROS1_CHUNK, _ROS1_INDEX = 13, b"\x05", b"\x06"
 _STEP = 2**20
 
 
@@ -39,13 +42,41 @@ def check_bag(path: Path) -> None:
     InputError
         If so.
     """
-    for file in sorted(path.iterdir()) if path.is_dir() else [path]:
-        if file.suffix == ".mcap":
+    files = [file for file in sorted(path.iterdir()) if file.is_file()] if path.is_dir() else [path]
+    for file in files:
+        with open(file, "rb") as opened:
+            start = opened.read(8)
+        if start.startswith(_MCAP):
             _check_mcap(file)
-        elif file.suffix == ".zstd":  # the library unpacks it to the disk
-            with Bounded(file, pa.input_stream(str(file), compression="zstd")) as whole:
-                while whole.read(_STEP):
-                    pass
+        elif start.startswith(b"#ROSBAG"):
+            _check_rosbag1(file)
+        elif start[:4] == b"\x28\xb5\x2f\xfd" or start[1:4] == b"\x2a\x4d\x18":  # of zstd
+            _check_packed(file)
+
+
+def _check_packed(path: Path) -> None:
+    """Count what the library would unpack to the disk, and then trust."""
+    with Bounded(path, pa.input_stream(str(path), compression="zstd")) as whole:
+        if whole.read(_STEP).startswith(_MCAP):
+            raise InputError(f"{path} is not read: compressed are its pieces, and it again; unpack it first")
+        while whole.read(_STEP):
+            pass
+
+
+def check_messages(path: Path, reader: Any) -> None:
+    """Refuse a bag whose messages are compressed one by one, if one would become too large.
+
+    Raises
+    ------
+    InputError
+        If so.
+    """
+    for part in reader.readers:
+        if getattr(part, "compression_mode", None) != "message":
+            continue
+        for store in part.storage.storages:
+            for _, _, data in store.messages(store.connections):
+                check_chunk(path, _grown(data, "zstd"))
 
 
 def _check_mcap(path: Path) -> None:
@@ -73,6 +104,43 @@ def _pieces(file: IO[bytes], end: int) -> Iterator[_Piece]:
             yield _indexed(BytesIO(file.read(size)))
 
 
+def _check_rosbag1(path: Path) -> None:
+    with open(path, "rb") as file:
+        pieces, index = _ros1_pieces(file, path.stat().st_size)
+        if not index <= set(pieces):
+            raise InputError(f"{path} is not read: its index leads to where no piece of it begins")
+        for piece in pieces.values():
+            check_chunk(path, piece.declared)
+            check_chunk(path, _expanded(file, piece))
+    check_expansion(path, sum(piece.declared for piece in pieces.values()))
+
+
+def _ros1_pieces(file: IO[bytes], end: int) -> tuple[dict[int, _Piece], set[int]]:
+    """The pieces by where their records begin, and where the index says that they do."""
+    pieces: dict[int, _Piece] = {}
+    index: set[int] = set()
+    place = _ROS1_START
+    while place + 8 <= end:
+        file.seek(place)
+        fields = _ros1_fields(BytesIO(_part(file)))
+        (size,) = unpack("<I", file.read(4))
+        if fields.get(b"op") == _ROS1_CHUNK:
+            (declared,) = unpack("<I", fields[b"size"])
+            pieces[place] = _Piece(file.tell(), size, fields[b"compression"].decode("latin-1"), declared)
+        elif fields.get(b"op") == _ROS1_INDEX:
+            index |= set(unpack("<Q", fields[b"chunk_pos"]))
+        place = file.tell() + size
+    return pieces, index
+
+
+def _ros1_fields(header: IO[bytes]) -> dict[bytes, bytes]:
+    fields = {}
+    while field := _part(header):
+        name, _, value = field.partition(b"=")
+        fields[name] = value
+    return fields
+
+
 def _chunk(file: IO[bytes], start: int) -> _Piece:
     *_, declared, _ = unpack("<QQQI", file.read(28))
     codec = _word(file)
@@ -90,17 +158,26 @@ def _indexed(record: IO[bytes]) -> _Piece:
 
 
 def _word(record: IO[bytes]) -> str:
-    return record.read(unpack("<I", record.read(4))[0]).decode("latin-1")
+    return _part(record).decode("latin-1")
+
+
+def _part(record: IO[bytes]) -> bytes:
+    """Bytes after their number; none at the end."""
+    return record.read(int.from_bytes(record.read(4), "little"))
 
 
 def _expanded(file: IO[bytes], piece: _Piece) -> int:
-    """[bytes] What it really becomes; counting ends beyond what is read at once."""
+    """[bytes] What it really becomes."""
     if piece.codec not in _CODECS:
         return 0
     file.seek(piece.start)
+    return _grown(file.read(min(piece.size, fstat(file.fileno()).st_size)), piece.codec)
+
+
+def _grown(packed: bytes, codec: str) -> int:
+    """[bytes] What is packed becomes; counting ends beyond what is read at once."""
     total = 0
-    packed = file.read(min(piece.size, fstat(file.fileno()).st_size))
-    with pa.CompressedInputStream(pa.BufferReader(packed), _CODECS[piece.codec]) as stream:
+    with pa.CompressedInputStream(pa.BufferReader(packed), codec) as stream:
         while total <= LARGEST_CHUNK and (part := stream.read(_STEP)):
             total += len(part)
     return total
