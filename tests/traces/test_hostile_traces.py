@@ -57,6 +57,17 @@ def test_numbers_of_netcdf_are_in_it(saved: Path, tmp_path: Path) -> None:
     refused(saved, "are elsewhere")
 
 
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("motion", "sideways"), ("motion", [1.0, 2.0]), ("stops", [1.0, 2.0]), ("stops", "no")],
+)
+def test_attributes_that_are_wrong_are_refused(key: str, value: object, saved: Path) -> None:
+    """As a file of others may have them."""
+    with h5py.File(saved, "r+") as file:
+        file.attrs[key] = value
+    refused(saved, f"attribute {key}")
+
+
 def test_parquet_that_grows_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """By what it says that it holds."""
     monkeypatch.setattr(reading, "FREE", 2**20)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from io import BytesIO
+from numbers import Real
 from os import PathLike
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -26,6 +27,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
+_ATTRIBUTES: dict[str, Callable[[Any], bool]] = {
+    "motion": lambda value: isinstance(value, str) and value in UNITS,
+    "stops": lambda value: isinstance(value, Real),
+}
+"""What is computed with, and what it must be."""
 
 _KEYS = {"m/s": "m_per_s", "rad/s": "rad_per_s", "N*m": "N_m"}
 
@@ -108,6 +115,9 @@ def _format(path: Path) -> tuple[Callable[[xr.Dataset, IO[bytes]], None], Callab
 def _refuse_foreign(trace: xr.Dataset, what: str) -> None:
     if trace.attrs.get("format") != FORMAT or "time" not in trace.coords:
         raise InputError(f"{what} is no zwidth trace: its attribute format is not {FORMAT!r}")
+    wrong = [key for key, fits in _ATTRIBUTES.items() if not fits(trace.attrs.get(key))]
+    if wrong:
+        raise InputError(f"{what} is no whole zwidth trace: its attribute {wrong[0]} is missing or wrong")
     missing = [name for name in VARIABLES if name not in trace and name != "anchor_position"]
     if missing:
         raise InputError(f"{what} is no whole zwidth trace: it lacks {', '.join(missing)}")
