@@ -117,10 +117,11 @@ def _check_deflated(path: Path, data: h5py.Dataset) -> None:
     suspects: list[Any] = []
 
     def visit(chunk: Any) -> None:
-        if deflated and chunk.filter_mask == 0 and chunk.size * _MOST_DEFLATED > LARGEST_CHUNK:
+        if chunk.filter_mask == 0 and chunk.size * _MOST_DEFLATED > LARGEST_CHUNK:
             suspects.append(chunk.chunk_offset)
 
-    data.id.chunk_iter(visit)
+    if deflated:
+        data.id.chunk_iter(visit)
     for offset in suspects:
         stored = data.id.read_direct_chunk(offset)[1]
         check_chunk(path, inflated([stored], LARGEST_CHUNK))
