@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import errno
 import os
+import re
+import secrets
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from stat import S_IMODE
+from typing import Any
 
 import pytest
+from full_disk import full_disk
 
 import zwidth as zw
 from zwidth.passivity.document import save_json
-from zwidth.writing import writing_whole
+from zwidth.writing import check_target, writing_whole
 
 LOOP = zw.Device(mass=0.04, damping=0.15, sample_period=0.001), zw.Wall(200)
 
@@ -22,8 +28,8 @@ def test_what_fails_half_way_leaves_the_old_file(tmp_path: Path) -> None:
     old = path.read_text(encoding="utf-8")
 
     def half() -> None:
-        with writing_whole(path) as unfinished:
-            unfinished.write_text("{", encoding="utf-8")
+        with writing_whole(path) as file:
+            file.write(b"{")
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
@@ -64,3 +70,140 @@ def test_a_place_that_is_not_there_is_said(tmp_path: Path) -> None:
             save(tmp_path / "none" / "proof.json")
     with pytest.raises(zw.InputError, match="cannot be written"):
         verdict.save(tmp_path / "zero\0byte.json")
+
+
+def test_a_directory_is_one_message(tmp_path: Path) -> None:
+    """It keeps its place."""
+    with pytest.raises(zw.InputError, match="cannot be written"):
+        save_json(tmp_path, {"whole": 1})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_link_that_leads_nowhere_is_there(tmp_path: Path) -> None:
+    """Somebody may have laid it where a file was about to be made."""
+    link = tmp_path / "link.json"
+    link.symlink_to(tmp_path / "chosen by another")
+    with pytest.raises(zw.InputError, match="exists"):
+        check_target(link, force=False)
+
+
+def test_nobody_knows_the_name_before(tmp_path: Path) -> None:
+    """It is another each time, and long enough that none is guessed."""
+    names = set()
+    for _ in range(2):
+        with writing_whole(tmp_path / "proof.json"):
+            names |= {path.name for path in tmp_path.iterdir()} - {"proof.json"}
+    assert len(names) == 2
+    assert min(len(name) for name in names) > 32
+
+
+def test_a_long_name_is_no_obstacle(tmp_path: Path) -> None:
+    """What the folder takes can be written, up to its last character."""
+    path = tmp_path / ("n" * (os.pathconf(tmp_path, "PC_NAME_MAX") if hasattr(os, "pathconf") else 200))
+    save_json(path, {"whole": 1})
+    assert path.is_file()
+
+
+def test_a_link_in_the_way_is_not_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Even where the name was guessed: what it leads to stays as it is, and so does the link."""
+    monkeypatch.setattr(secrets, "token_hex", lambda *_: "guessed")
+    other, path = tmp_path / "other", tmp_path / "proof.json"
+    other.write_text("of another", encoding="utf-8")
+    with writing_whole(path):
+        trap = next(p for p in tmp_path.iterdir() if "guessed" in p.name)
+    trap.symlink_to(other)
+    path.unlink()
+    with pytest.raises(zw.InputError, match="cannot be written"):
+        save_json(path, {"whole": 1})
+    assert other.read_text(encoding="utf-8") == "of another"
+    assert trap.is_symlink()
+    assert not path.exists()
+
+
+@pytest.fixture
+def umask() -> Iterator[None]:
+    """The group may read what is written, others may not."""
+    before = os.umask(0o027)
+    yield
+    os.umask(before)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="permissions are those of POSIX")
+@pytest.mark.usefixtures("umask")
+def test_permissions_are_those_of_the_umask(tmp_path: Path) -> None:
+    """A private file stays private when it is replaced."""
+    path = tmp_path / "proof.json"
+    save_json(path, {"whole": 1})
+    assert S_IMODE(path.stat().st_mode) == 0o640
+    path.chmod(0o600)
+    save_json(path, {"whole": 2})
+    assert S_IMODE(path.stat().st_mode) == 0o600
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write everywhere")
+def test_what_may_not_be_written_is_kept(tmp_path: Path) -> None:
+    """A write-protected file, though its folder could be written; and a folder that cannot be."""
+    path = tmp_path / "proof.json"
+    path.write_text("kept", encoding="utf-8")
+    path.chmod(0o400)
+    with pytest.raises(zw.InputError, match=os.strerror(errno.EACCES)):
+        save_json(path, {"whole": 1})
+    assert path.read_text(encoding="utf-8") == "kept"
+    tmp_path.chmod(0o500)
+    try:
+        with pytest.raises(zw.InputError, match=os.strerror(errno.EACCES)):
+            save_json(tmp_path / "new.json", {"whole": 1})
+    finally:
+        tmp_path.chmod(0o700)
+
+
+@pytest.mark.skipif(not Path("/dev/fd").is_dir(), reason="pipes have no names")
+def test_a_pipe_is_written_itself() -> None:
+    """As for --save /dev/stdout."""
+    reader, writer = os.pipe()
+    save_json(f"/dev/fd/{writer}", {"whole": 1})
+    os.close(writer)
+    with open(reader, encoding="utf-8") as pipe:
+        assert pipe.read() == '{\n  "whole": 1\n}\n'
+
+
+FORMATS: dict[str, Callable[[Any, Path], None]] = {
+    "touch.nc": lambda trace, path: trace.zwidth.save(path, force=True),
+    "touch.parquet": lambda trace, path: trace.zwidth.save(path, force=True),
+    "touch.csv": lambda trace, path: trace.zwidth.save(path, force=True),
+    "touch.wav": lambda trace, path: trace.zwidth.sound(path, force=True),
+    "touch.png": lambda trace, path: trace.zwidth.plot(path),
+    "touch.svg": lambda trace, path: trace.zwidth.plot(path),
+    "both.pdf": lambda trace, path: zw.compare_traces(trace, trace).plot(path),
+    "measures.json": lambda trace, path: save_json(path, zw.compare_traces(trace).to_dict()),
+}
+
+
+@pytest.fixture(scope="module")
+def trace() -> Any:
+    """A short touch."""
+    return zw.simulate(*LOOP, zw.operators.ConstantForce(1), 0.02)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_full_disk_keeps_the_old_file(name: str, trace: Any, tmp_path: Path) -> None:
+    """One message in every format, and nothing but the old file; HDF5 would end the process."""
+    path = tmp_path / name
+    path.write_text("old", encoding="utf-8")
+    with full_disk(), pytest.raises(zw.InputError, match=f"{name} cannot be written: ") as caught:
+        FORMATS[name](trace, path)
+    assert "\n" not in str(caught.value)
+    assert path.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+_WRITES = re.compile(
+    r"\.(to_netcdf|to_csv|savefig|write_text|write_bytes)\(|(?<!wave\.)open\([^)\n]*[\"'][wax]b?\+?[\"']"
+)
+
+
+def test_only_one_place_opens_files_to_write() -> None:
+    """So that no format forgets what is promised here; pictures are drawn in memory."""
+    source = Path(zw.__file__).parent
+    writers = {p for p in source.rglob("*.py") if _WRITES.search(p.read_text(encoding="utf-8"))}
+    assert writers == {source / "writing.py", source / "plots" / "files.py"}

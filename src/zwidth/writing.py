@@ -1,17 +1,29 @@
 """A file is written whole or not at all.
 
-It is written beside its place under another name and put there when it is whole: a full disk
-or a Ctrl-C leaves neither half a file nor the loss of an old one.
+It is written beside its place under a name that nobody can guess, which no file has yet, and put
+in its place when it is whole: a full disk or a Ctrl-C leaves neither half a file nor the loss of an
+old one, and nobody else who may write to the folder can lay a link where the new file begins.
+
+A link stays a link: the file that it names is replaced, in its own folder.  The new file has the
+permissions that the umask gives, none more than the file that it replaces; a file that may
+not be written is not replaced either.
 """
 
 from __future__ import annotations
 
 import os
+import secrets
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import IO
 
 from zwidth.errors import InputError
+
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+_ANYBODY = 0o666
+"""Permissions of a new file before the umask."""
 
 
 def check_target(path: Path, force: bool) -> None:
@@ -24,43 +36,70 @@ def check_target(path: Path, force: bool) -> None:
     """
     if path.is_dir():
         raise InputError(f"{path} is a directory; name a file")
-    if path.exists() and not force:
+    if os.path.lexists(path) and not force:  # a link that leads nowhere is there too
         raise InputError(f"{path} exists; choose another name, or give force=True to replace it")
     if not path.parent.is_dir():
         raise InputError(f"{path} cannot be written: there is no directory {path.parent}")
 
 
 @contextmanager
-def writing_whole(path: Path) -> Iterator[Path]:
-    """A name to write to; what is there at the end takes the place of `path`, of the file that a link names.
+def writing_whole(path: Path) -> Iterator[IO[bytes]]:
+    """A file to write to; at the end it takes the place of `path`, or of the file that a link names.
 
     What exists and is no file, such as /dev/null, keeps its place and is written itself.
 
     Raises
     ------
     InputError
-        If writing fails for a reason of the disk; nothing is then left behind.
+        If writing fails for a reason of the disk; what was there is then still there, and nothing else.
     """
     try:
-        place = Path(os.path.realpath(path))
-    except ValueError as error:  # a name that no file can have
-        raise InputError(f"{path} cannot be written: {error}") from None
-    device = place.exists() and not place.is_file()
-    unfinished = place if device else place.with_name(f".{place.name}.{os.getpid()}.part")
-    try:
-        yield unfinished
-        if device:
-            return
-        with open(unfinished, "rb+") as file:
-            os.fsync(file.fileno())  # a full disk may show only here
-        os.replace(unfinished, place)
+        with _opened(path) as file:
+            yield file
     except OSError as error:
         reason = error.strerror or first_line(error)
-        raise InputError(f"{path} cannot be written: {reason}; nothing was left there") from None
-    finally:
-        if not device:
-            with suppress(OSError):
-                unfinished.unlink()
+        raise InputError(f"{path} cannot be written: {reason}; nothing was changed there") from None
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[IO[bytes]]:
+    try:
+        old = os.open(path, os.O_WRONLY)  # the system says whether this link and this file may be written
+    except FileNotFoundError:
+        mode = _ANYBODY
+    except ValueError as error:  # a name that no file can have
+        raise InputError(f"{path} cannot be written: {error}") from None
+    else:
+        with open(old, "wb") as there:
+            mode = os.fstat(old).st_mode
+            if not stat.S_ISREG(mode):
+                yield there
+                return
+    with _replacing(Path(os.path.realpath(path)), mode & _ANYBODY) as file:
+        yield file
+
+
+@contextmanager
+def _replacing(place: Path, mode: int) -> Iterator[IO[bytes]]:
+    unfinished = place.with_name(f".zwidth-{secrets.token_hex(16)}.part")
+    with open(os.open(unfinished, _NEW, mode), "wb") as file:
+        try:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())  # a full disk may show only here
+            file.close()
+            os.replace(unfinished, place)
+        except BaseException:
+            _abandoned(file, unfinished)
+            raise
+
+
+def _abandoned(file: IO[bytes], unfinished: Path) -> None:
+    """Leave nothing of what was begun; what is still to be written may fail as what was."""
+    with suppress(OSError):
+        file.close()
+    with suppress(OSError):
+        unfinished.unlink()
 
 
 def first_line(error: BaseException) -> str:

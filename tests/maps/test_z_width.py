@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from full_disk import full_disk
 
 import zwidth as zw
 from zwidth.maps.chunk import Place, compute
@@ -287,6 +290,42 @@ def test_a_store_stopped_before_its_arrays_were_there(tmp_path: Path) -> None:
     zarr.create_group(path, attributes={"format": FORMAT, "begun": asked.digest()})
     found = zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
     assert same(found, zw.z_width(PADDLE, *WIDE, cells=(5, 5)))
+
+
+def test_a_full_disk_keeps_what_is_finished(tmp_path: Path) -> None:
+    """One message, and the same map goes on when there is room."""
+    path = tmp_path / "map"
+
+    def full(done: int, total: int) -> None:
+        disk.enter_context(full_disk(largest=0))
+
+    with ExitStack() as disk, pytest.raises(zw.InputError, match=r"map cannot be written: .*goes on with it"):
+        zw.z_width(PADDLE, *WIDE, cells=(CHUNK, CHUNK + 1), path=path, progress=full, workers=1)
+    left: list[int] = []
+    zw.z_width(PADDLE, *WIDE, cells=(CHUNK, CHUNK + 1), path=path, progress=lambda n, total: left.append(n))
+    assert left == [2]
+
+
+def test_a_store_that_leads_elsewhere_is_refused(tmp_path: Path) -> None:
+    """Neither read nor written is what a link in it names."""
+    path, other = tmp_path / "map", tmp_path / "other"
+    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    (path / "passive").rename(other)
+    (path / "passive").symlink_to(other)
+    with pytest.raises(zw.InputError, match="passive in it is a link"):
+        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+
+
+def test_a_store_that_declares_more_than_its_map_is_refused(tmp_path: Path) -> None:
+    """Cells that were never written are filled in, as many as are declared."""
+    path = tmp_path / "map"
+    zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
+    about = path / "passive" / "zarr.json"
+    document = json.loads(about.read_text(encoding="utf-8"))
+    document["shape"] = [2**40, 2**40]
+    about.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(zw.InputError, match="holds another map"):
+        zw.z_width(PADDLE, *WIDE, cells=(5, 5), path=path)
 
 
 def test_a_store_of_another_map_is_refused(tmp_path: Path) -> None:

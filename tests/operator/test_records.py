@@ -292,6 +292,7 @@ def test_a_force_is_read_from_a_file(text: str, column: str | int | None, tmp_pa
         (b"1,2\n3\n", 0, "line 2: 1 values where the first line has 2"),
         (b"1\nnan\n", None, "got nan at index 1"),
         (b"\x89PNG\xff\xfe", None, "not a text file"),
+        (bytes(2**20 + 1), None, "line of more than"),
     ],
 )
 def test_a_file_of_another_shape_is_refused(

@@ -7,6 +7,7 @@ import json
 from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
+from pathlib import Path
 from random import Random
 
 import numpy as np
@@ -18,6 +19,7 @@ from scipy.optimize import minimize_scalar
 
 import zwidth as zw
 from zwidth import checker
+from zwidth.passivity import certificate
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.document import to_json
 from zwidth.passivity.loop import linear_loop
@@ -173,6 +175,14 @@ def friction_holds(document):
 def test_honest_documents_are_accepted(name):
     """What the prover wrote is accepted as it stands."""
     assert checker.verify(DOCUMENTS[name]).valid
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="there is no device without end")
+def test_what_says_nothing_of_its_size_is_not_read_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A device has size 0 and gives bytes for ever."""
+    monkeypatch.setattr(certificate, "LARGEST_FILE", 1000)
+    with pytest.raises(zw.InputError, match="larger than 1000 bytes"):
+        read_document("/dev/zero")
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)

@@ -24,6 +24,7 @@ from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.quantity.exact import RealLike
+from zwidth.showing import Html
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -103,18 +104,19 @@ class LawComparison:
 
         return as_text(self)
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Html:
         from zwidth.bench.table import as_html
 
         return as_html(self)
 
     def plot(self, path: str | Path | None = None) -> Any:
         """Stability against fidelity, and the touches of each law; saved where a path is given."""
-        from zwidth.plots.laws import laws_figure  # matplotlib takes its time
+        from zwidth.plots.files import save_figure  # matplotlib takes its time
+        from zwidth.plots.laws import laws_figure
 
         figure = laws_figure(self)
         if path is not None:
-            figure.savefig(path)
+            save_figure(lambda: figure, path, overwrite=True)
         return figure
 
 

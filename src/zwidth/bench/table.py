@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from html import escape
 from math import isfinite, isinf
 from typing import TYPE_CHECKING, NamedTuple
+
+from zwidth.showing import Html, element, printable, row
 
 if TYPE_CHECKING:
     from zwidth.bench.bench import LawComparison
@@ -74,19 +74,15 @@ def as_text(comparison: LawComparison) -> str:
     ]
     title = f"{comparison.environment.describe()} on {comparison.device.name or 'the device'}"
     below = [text for text in (legend(comparison), comparison.advice) if text]
-    return "\n".join([title, "", *lines, "", *below])
+    return printable("\n".join([title, "", *lines, "", *below]))
 
 
-def as_html(comparison: LawComparison) -> str:
+def as_html(comparison: LawComparison) -> Html:
     """The same for a notebook."""
     head, units, *body = rows(comparison)
-
-    def row(cells: list[str], tag: str, text: Callable[[str], str] = escape) -> str:
-        return "<tr>" + "".join(f"<{tag}>{text(c)}</{tag}>" for c in cells) + "</tr>"
-
-    inner = row(head, "th") + row(units, "th") + "".join(row(cells, "td") for cells in body)
-    below = "".join(f"<p>{escape(text)}</p>" for text in (legend(comparison), comparison.advice) if text)
-    return f"<div><table>{inner}</table>{below}</div>"
+    table = element("table", row(head, "th"), row(units, "th"), *map(row, body))
+    below = (element("p", text) for text in (legend(comparison), comparison.advice) if text)
+    return element("div", table, *below)
 
 
 def _number(value: float) -> str:

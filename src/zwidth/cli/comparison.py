@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.laws import with_laws
 from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
-from zwidth.cli.output import print_json, quiet_pipe, say_written, targets, writing
+from zwidth.cli.output import print_json, print_text, say_written, targets, writing
 from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
@@ -73,16 +73,15 @@ def run_compare(arguments: argparse.Namespace) -> int:
     laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
     found = compare(loop.device, loop.environment, laws, fastest=_speed(arguments.fastest))
     if save is not None:
-        with writing_whole(save) as unfinished:
-            unfinished.write_text(_json(found) + "\n", encoding="utf-8")
+        with writing_whole(save) as file:
+            file.write(f"{_json(found)}\n".encode())
     if plot is not None:
         with writing(plot):
             found.plot(plot)
     if arguments.json:
         print_json(_json(found))
     else:
-        with quiet_pipe():
-            print(found)
+        print_text(found)
         say_written(save, plot)
     return 0
 

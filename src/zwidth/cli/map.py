@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.options import Once, Parameter, add_all, device_parameters, given
-from zwidth.cli.output import print_json, quiet_pipe, say_written, targets, writing
+from zwidth.cli.output import print_json, print_text, say_written, targets, writing
 from zwidth.cli.specification import read_tables, specified_device
-from zwidth.cli.table import quoted, suggestion
+from zwidth.cli.table import plain, quoted, suggestion
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
@@ -83,9 +83,8 @@ def run_map(arguments: argparse.Namespace) -> int:
         found = z_width(device, **options)
     except KeyboardInterrupt:
         if arguments.save is not None and Path(arguments.save).exists():
-            print(
-                f"zwidth: {arguments.save} keeps what is finished; the same command goes on", file=sys.stderr
-            )
+            name = plain(arguments.save, 200)
+            print(f"zwidth: {name} keeps what is finished; the same command goes on", file=sys.stderr)
         raise
     if plot is not None:
         from zwidth.plots import save_z_width  # matplotlib takes its time
@@ -97,8 +96,7 @@ def run_map(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json(_json(found))
     else:
-        with quiet_pipe():
-            print(_report(found))
+        print_text(_report(found))
         kept = None if arguments.save is None else Path(arguments.save)
         say_written(kept, plot, proof)
     return 0

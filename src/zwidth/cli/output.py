@@ -13,6 +13,7 @@ from typing import TextIO
 
 from zwidth.cli.table import plain
 from zwidth.errors import InputError
+from zwidth.showing import OBEYED, printable
 
 PICTURES = (".png", ".svg", ".pdf")
 
@@ -79,8 +80,15 @@ def quiet_pipe(stream: TextIO | None = None) -> Iterator[None]:
             raise InputError(f"the output cannot be written: {_reason(error)}") from None
 
 
+def print_text(text: object) -> None:
+    """Print what may hold text of others; the terminal obeys none of it."""
+    with quiet_pipe():
+        print(printable(str(text)))
+
+
 def print_json(text: str) -> None:
-    """Print JSON, its non-ASCII characters escaped where the encoding lacks them."""
+    """Print JSON; escaped is what a terminal would obey, and what the encoding lacks."""
+    text = OBEYED.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
     if not encodes(text):
         text = "".join(c if c.isascii() else json.dumps(c)[1:-1] for c in text)
     with quiet_pipe():

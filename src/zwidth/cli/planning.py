@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from zwidth.cli.options import Once, add_all, device_parameters, given
-from zwidth.cli.output import quiet_pipe
+from zwidth.cli.output import print_text
 from zwidth.cli.specification import load_device
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
@@ -45,8 +45,7 @@ def run_plan(arguments: argparse.Namespace) -> int:
 
     device = load_device(arguments.sources, given(arguments, [p.key for p in device_parameters()]))
     plan = plan_identification(device, **_numbers(arguments, device.motion))
-    with quiet_pipe():
-        print(plan)
+    print_text(plan)
     return 0
 
 

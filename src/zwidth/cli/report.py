@@ -12,8 +12,9 @@ from contextlib import contextmanager
 from io import StringIO
 from typing import TYPE_CHECKING
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.padding import Padding
+from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
@@ -28,6 +29,7 @@ from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.wording import intervals
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.showing import printable
 
 if TYPE_CHECKING:
     from zwidth.passivity.active_hand import ToleratedActivity
@@ -42,11 +44,19 @@ _ORDER = (
 """What is changed most easily comes first: the law, then the loop, then the machine."""
 
 
+class _Shown(Console):
+    """A console of which only its own colours are obeyed, never what stands in a text."""
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+        for part in super().render(renderable, options):
+            yield part if part.control else Segment(printable(part.text), part.style)
+
+
 @contextmanager
 def page() -> Iterator[Console]:
     """A console that prints text as it is, at a width that reads well, without blanks at line ends."""
     terminal = sys.stdout is not None and sys.stdout.isatty()
-    console = Console(
+    console = _Shown(
         file=StringIO(), force_terminal=terminal or None, markup=False, highlight=False, emoji=False
     )
     console.width = min(console.width, _WIDEST)

@@ -13,7 +13,6 @@ from zwidth.cli.workspace_report import print_workspace
 from zwidth.cli.workspace_wall import WALL_OPTIONS, wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
-from zwidth.writing import writing_whole
 
 _RATE = "1 kHz"
 _SAVED = (".json", ".nc")
@@ -108,8 +107,9 @@ def run_workspace(arguments: argparse.Namespace) -> int:
             if save.suffix.lower() == ".json":
                 space.save(save)
             else:
-                with writing_whole(save) as unfinished:
-                    space.data.to_netcdf(unfinished, engine="h5netcdf")
+                from zwidth.traces.files import save_netcdf  # xarray takes its time
+
+                save_netcdf(space.data, save)
     if plot is not None:
         from zwidth.plots.workspace import save_workspace  # matplotlib takes its time
 

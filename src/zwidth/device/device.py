@@ -14,13 +14,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from fractions import Fraction
-from html import escape
 from typing import Any, Literal
 
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse
+from zwidth.showing import Html, element, row
 
 Parameter = RealLike | Interval | tuple[RealLike, RealLike]
 Motion = Literal["linear", "rotary"]
@@ -182,13 +182,12 @@ class Device:
         extra = f", motion={self.motion!r}" if self.motion != "linear" else ""
         return f"Device({inside}{extra}, name={self.name!r})"
 
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{GLOSSARY[k].symbol}</td><td>{k}</td><td>{_shown(v)}</td>"
-            f"<td>{GLOSSARY[k].unit_for(self.motion)}</td></tr>"
+    def _repr_html_(self) -> Html:
+        rows = (
+            row((GLOSSARY[k].symbol, k, _shown(v), GLOSSARY[k].unit_for(self.motion)))
             for k, v in self.parameters().items()
         )
-        return f"<table><caption>{escape(self.name)}</caption>{rows}</table>"
+        return element("table", element("caption", self.name), *rows)
 
 
 def _shown(value: Exact | Interval) -> str:

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
+from zwidth.showing import Html, table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -153,12 +154,8 @@ class Ledger:
         lines += [f"  {text:<42} {value: .6e}" for text, value in self.rows()]
         return "\n".join(lines)
 
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{text}</td><td style='text-align:right'>{value:.6e}</td></tr>"
-            for text, value in self.rows()
-        )
-        return f"<table><thead><tr><th>energy</th><th>J</th></tr></thead><tbody>{rows}</tbody></table>"
+    def _repr_html_(self) -> Html:
+        return table(("energy", "J"), ((text, f"{value:.6e}") for text, value in self.rows()))
 
 
 def ledger(trace: xr.Dataset) -> Ledger:

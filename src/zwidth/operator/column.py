@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
+from typing import TextIO
 
 from zwidth.errors import InputError
 
 MOST_LINES = 50_000_000
 """Lines read at most: 14 hours at 1 kHz."""
+
+LONGEST_LINE = 2**20
+"""Characters of the longest line."""
 
 
 def read_column(path: str | Path, column: str | int | None = None) -> list[float]:
@@ -30,11 +34,18 @@ def read_column(path: str | Path, column: str | int | None = None) -> list[float
     """
     try:
         with Path(path).open(encoding="utf-8-sig", newline="") as lines:
-            return _numbers(path, lines, column)
+            return _numbers(path, _lines(path, lines), column)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
     except (UnicodeDecodeError, csv.Error):
         raise InputError(f"{path} is not a text file of numbers; give one number on each line") from None
+
+
+def _lines(path: str | Path, file: TextIO) -> Iterator[str]:
+    while line := file.readline(LONGEST_LINE + 1):
+        if len(line) > LONGEST_LINE:
+            raise InputError(f"{path} has a line of more than {LONGEST_LINE} characters; it is no table")
+        yield line
 
 
 def _numbers(path: str | Path, lines: Iterable[str], column: str | int | None) -> list[float]:

@@ -24,6 +24,7 @@ from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.one_norm import NormBound
 from zwidth.passivity.positivity import Positivity
 from zwidth.passivity.relaxing_contact import RelaxingLaw
+from zwidth.showing import Html, element
 
 FORMAT = "zwidth certificate 1"
 LARGEST_FILE = 200_000_000
@@ -71,9 +72,10 @@ class Certificate:
         """Write the certificate as JSON for `zwidth verify`."""
         save_json(path, self.to_dict())
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Html:
         state = "accepted" if self.verify() else "rejected"
-        return f"<p>{self.kind} certificate, {len(self.documents)} part(s): {state} by the checker</p>"
+        about = f"{self.kind} certificate, {len(self.documents)} part(s): {state} by the checker"
+        return element("p", about)
 
 
 def certify(decision: Decision) -> dict[str, Any]:
@@ -244,10 +246,13 @@ def read_document(path: str | Path) -> object:
     """
     path = Path(path)
     try:
-        if path.stat().st_size > LARGEST_FILE:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)  # a device says nothing of its size
+        if len(content) > LARGEST_FILE:
             raise InputError(f"larger than {LARGEST_FILE} bytes, and no certificate is")
-        text = path.read_text(encoding="utf-8")
-        return json.loads(text, parse_float=Decimal, parse_int=_integer, object_pairs_hook=_once_each)
+        return json.loads(
+            content.decode(), parse_float=Decimal, parse_int=_integer, object_pairs_hook=_once_each
+        )
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     except InputError as error:

@@ -81,8 +81,8 @@ def save_json(path: str | Path, document: object) -> None:
     InputError
         If the file cannot be written.
     """
-    with writing_whole(Path(path)) as unfinished:
-        unfinished.write_text(to_json(document) + "\n", encoding="utf-8")
+    with writing_whole(Path(path)) as file:
+        file.write(f"{to_json(document)}\n".encode())
 
 
 def to_json(document: object, indent: int | None = 2) -> str:

@@ -12,6 +12,7 @@ from typing import Any, Literal, Protocol
 from zwidth.checker import verify
 from zwidth.passivity.document import save_json
 from zwidth.passivity.port import Time
+from zwidth.showing import Html, element
 
 
 class AnyPort(Protocol):
@@ -117,5 +118,5 @@ class Extraction(ABC):
     def __repr__(self) -> str:
         return f"<Extraction {self.describe()}>"
 
-    def _repr_html_(self) -> str:
-        return f"<p>{self.describe()}</p>"
+    def _repr_html_(self) -> Html:
+        return element("p", self.describe())

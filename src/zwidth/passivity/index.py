@@ -22,6 +22,7 @@ from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.extracted import AnyPort, Extraction
 from zwidth.passivity.positive_real import Largest, NoLevel
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.showing import Html, element
 
 Which = Literal["input", "output"]
 
@@ -137,8 +138,8 @@ class PassivityIndex(ABC):
     def __repr__(self) -> str:
         return f"<PassivityIndex {self.name} {self.describe()}>"
 
-    def _repr_html_(self) -> str:
-        return f"<p>{self.name} index {self.describe()}</p>"
+    def _repr_html_(self) -> Html:
+        return element("p", f"{self.name} index {self.describe()}")
 
     @abstractmethod
     def _proof(self, level: Fraction) -> dict[str, Any] | None:

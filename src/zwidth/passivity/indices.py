@@ -36,6 +36,7 @@ from zwidth.passivity.positive_real import largest_level
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.supremum import frequency, tightest
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.showing import Html, element, named
 
 
 @dataclass(frozen=True)
@@ -136,11 +137,10 @@ class PassivityIndices:
         rows = "; ".join(f"{name} {text}" for name, text in self.rows())
         return f"<PassivityIndices {self._said()}: {rows}>"
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Html:
         word = self._said()
         colour = {"passive": "#2a7d4f", "undecided": "#8a6d00", "not passive": "#b3261e"}[word]
-        rows = "".join(f"<tr><th align='left'>{k}</th><td align='left'>{v}</td></tr>" for k, v in self.rows())
-        return f"<div><b style='color:{colour}'>{word}</b><table>{rows}</table></div>"
+        return element("div", element("b", word, style=f"color:{colour}"), named(self.rows()))
 
 
 def passivity_indices(

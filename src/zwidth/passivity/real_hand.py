@@ -26,6 +26,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.motion import Motion
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness import Witness
+from zwidth.showing import Html, element, row
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -150,8 +151,8 @@ class RealHand:
         width = max(len(name) for name, _ in rows)
         return "\n".join(f"{name:<{width}}  {text}" for name, text in rows)
 
-    def _repr_html_(self) -> str:
-        return "<table>" + "".join(f"<tr><td>{a}</td><td>{b}</td></tr>" for a, b in self.rows()) + "</table>"
+    def _repr_html_(self) -> Html:
+        return element("table", *map(row, self.rows()))
 
 
 def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> RealHand:

@@ -19,6 +19,7 @@ from zwidth.passivity.scope import Scope
 from zwidth.passivity.violation import Violation
 from zwidth.passivity.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.showing import Html, bullets, element, named
 
 if TYPE_CHECKING:
     from zwidth.passivity.nonlinear_spring import EndlessPull
@@ -163,14 +164,11 @@ class Verdict:
     def __repr__(self) -> str:
         return f"<Verdict {self.outcome}: {self.claim}>"
 
-    def _repr_html_(self) -> str:
-        colour = TOLD[self.outcome].colour
-        rows = "".join(f"<tr><th align='left'>{k}</th><td align='left'>{v}</td></tr>" for k, v in self.rows())
-        assumed = "".join(f"<li>{a}</li>" for a in (*self.assumptions, *self.demand))
-        return (
-            f"<div><b style='color:{colour}'>{self.outcome}</b> {self.claim}"
-            f"<table>{rows}</table><details><summary>assumptions</summary><ul>{assumed}</ul></details></div>"
-        )
+    def _repr_html_(self) -> Html:
+        word = element("b", self.outcome, style=f"color:{TOLD[self.outcome].colour}")
+        assumed = bullets((*self.assumptions, *self.demand))
+        small = element("details", element("summary", "assumptions"), assumed)
+        return element("div", word, f" {self.claim}", named(self.rows()), small)
 
     def numbers(self) -> dict[str, Any]:
         """What is needed and what there is, as plain data, a unit in every key of a physical quantity."""

@@ -21,6 +21,7 @@ from zwidth.passivity.refutation import refute_linear
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.supremum import frequency
 from zwidth.passivity.witness import Setting, Witness
+from zwidth.showing import Html, element
 
 FORMAT = "zwidth violation 1"
 
@@ -91,6 +92,6 @@ class Violation:
         stiffness = self.setting.loop.static_stiffness or Fraction(0)
         return f"static stiffness {float(stiffness):.6g} {unit}"
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Html:
         state = "accepted" if self.verify() else "rejected"
-        return f"<p>{self.describe()}: {state} by the checker</p>"
+        return element("p", f"{self.describe()}: {state} by the checker")

@@ -17,6 +17,7 @@ from zwidth.passivity.document import loop_document, save_json, unit_key
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Motion
 from zwidth.passivity.scope import Contact
+from zwidth.showing import Html, element
 
 FORMAT = "zwidth witness 1"
 
@@ -167,8 +168,8 @@ class Witness:
         """Write the witness as JSON for `zwidth verify`."""
         save_json(path, rounded_energy(self.to_dict()))
 
-    def _repr_html_(self) -> str:
-        return f"<p>{self.describe()}</p>"
+    def _repr_html_(self) -> Html:
+        return element("p", self.describe())
 
     def describe(self) -> str:
         """The motion in a sentence."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -9,8 +10,10 @@ from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from zwidth.errors import InputError
+from zwidth.showing import OBEYED, printable
 from zwidth.writing import writing_whole
 
 ENDINGS = ("png", "svg", "pdf")
@@ -39,8 +42,16 @@ def save_figure(draw: Callable[[], Figure], path: str | Path, overwrite: bool = 
         )
     picture = BytesIO()
     with rc_context({"svg.hashsalt": "zwidth"}):
-        draw().savefig(picture, format=ending, dpi=160, metadata=_METADATA[ending])
-    if target.exists() and not overwrite:
+        _printable(draw()).savefig(picture, format=ending, dpi=160, metadata=_METADATA[ending])
+    if os.path.lexists(target) and not overwrite:
         raise InputError(f"{target} exists already and is not replaced; give another name or remove it first")
-    with writing_whole(target) as unfinished:
-        unfinished.write_bytes(picture.getvalue())
+    with writing_whole(target) as file:
+        file.write(picture.getvalue())
+
+
+def _printable(figure: Figure) -> Figure:
+    """No control characters, of which an SVG must have none."""
+    for text in figure.findobj(Text):
+        if OBEYED.search(text.get_text()):
+            text.set_text(printable(text.get_text()))
+    return figure

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, new_figure
+from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, new_figure, verbatim
 
 _SHOWN = 0.12
 """Time of a tap that is drawn [s]."""
@@ -51,7 +51,7 @@ def laws_figure(comparison: Any) -> Figure:
     for axes in columns:
         axes.tick_params(axis="y", length=0, labelcolor=BLACK)
         axes.spines["left"].set_visible(False)
-    felt.set_yticks(range(len(names)), names)
+    felt.set_yticks(range(len(names)), [verbatim(name) for name in names])
     felt.set_ylim(len(names) - 0.4, -0.9)
     handles = [
         felt.plot([], [], mark, color=OUTCOME[status], label=_LABELS.get(status, status))[0]

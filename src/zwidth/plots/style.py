@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from zwidth.device import Device
 from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.showing import printable
 
 BLACK, GREY = "#222222", "#777777"
 BLUE, SKY = "#0072B2", "#56B4E9"
@@ -109,8 +110,13 @@ def quantity_text(value: float, name: str, motion: str = "linear") -> str:
 
 def shown_name(device: Device) -> str:
     """The name of a device on one short line; it is drawn as it is, without mathematics."""
-    name = " ".join(device.name.split())
+    name = printable(" ".join(device.name.split()))
     return name if len(name) <= _LONGEST else name[: _LONGEST - 1] + "…"
+
+
+def verbatim(text: str) -> str:
+    """Text of others as it is drawn: nothing in it is mathematics, and nothing obeyed."""
+    return printable(text).replace("$", r"\$")
 
 
 def note(axes: Axes, text: str) -> None:

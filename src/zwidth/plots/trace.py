@@ -25,6 +25,7 @@ from zwidth.plots.style import (
     new_figure,
     number,
     scale,
+    verbatim,
 )
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def comparison_figure(traces: Mapping[str, xr.Dataset]) -> Figure:
         factor, shown = scale([float(np.abs(values(t)).max()) for t in traces.values()], base)
         for colour, (label, trace) in zip(_cycle(len(traces)), traces.items(), strict=True):
             x, y = thinned(trace["time"].values * seconds, values(trace) * factor)
-            axes.plot(x, y, color=colour, label=label, lw=1.3)
+            axes.plot(x, y, color=colour, label=verbatim(label), lw=1.3)
         axes.axhline(0, color=GREY, lw=0.8)
         axes.set_ylabel(f"{name}\n[{shown}]")
     rows[-1].set_xlabel(f"time [{unit}]")
@@ -171,7 +172,7 @@ def _time(trace: xr.Dataset) -> tuple[Array, str]:
 
 def _title(trace: xr.Dataset) -> str:
     about = trace.attrs
-    return f"{about['device']}, {about['environment']}\n{about['operator']}"
+    return verbatim(f"{about['device']}, {about['environment']}\n{about['operator']}")
 
 
 def _cycle(count: int) -> list[str]:

@@ -17,7 +17,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.arms import Workspace
 from zwidth.passivity.arms.held import in_words
 from zwidth.plots.files import save_figure
-from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, pretty
+from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, pretty, verbatim
 
 _ARROWS = 14
 """Marks of the worst direction along each side."""
@@ -164,4 +164,4 @@ def _directions(axes: Axes, space: Workspace, across: Any, up: Any) -> None:
 def _axis(space: Workspace, name: str) -> str:
     if name in ("x", "y"):
         return f"{name} [m]"
-    return f"joint {name} [{pretty(space.data[name].attrs['units'])}]"
+    return f"joint {verbatim(name)} [{pretty(space.data[name].attrs['units'])}]"

@@ -34,6 +34,7 @@ from zwidth.plots.style import (
     note,
     number,
     pretty,
+    verbatim,
 )
 
 if TYPE_CHECKING:
@@ -171,7 +172,7 @@ def _edges(middles: Array) -> Array:
 def _outline(axes: Axes, found: xr.Dataset, name: str, place: int) -> None:
     """The stiffest walls that are stable in one hand."""
     values = found[f"stable_{name}"].values
-    text = "no hand" if name == "none" else name
+    text = "no hand" if name == "none" else verbatim(name)
     colour, style = _HAND_COLOURS[place % 5], _LINES[place % 5]
     if values.all() or not values.any():
         everywhere = "everywhere" if values.any() else "nowhere"

@@ -43,13 +43,12 @@ class TraceAccessor:
 
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """Position, force and energy against time, as the papers draw them; saved if a path is given."""
-        from zwidth.plots.trace import trace_figure  # matplotlib takes its time
-        from zwidth.writing import writing_whole
+        from zwidth.plots.files import save_figure  # matplotlib takes its time
+        from zwidth.plots.trace import trace_figure
 
         figure = trace_figure(self._trace)
         if path is not None:
-            with writing_whole(Path(path)) as unfinished:
-                figure.savefig(unfinished, dpi=150, format=Path(path).suffix.lstrip(".").lower() or "png")
+            save_figure(lambda: figure, Path(path), overwrite=True)
         return figure
 
     def save(self, path: str | PathLike[str], *, force: bool = False) -> None:

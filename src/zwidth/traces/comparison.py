@@ -14,6 +14,7 @@ import numpy as np
 from zwidth.energy import ledger
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
+from zwidth.showing import Html, printable, table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,13 +118,12 @@ class Comparison:
 
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """All traces in one figure; saved if a path is given."""
-        from zwidth.plots.trace import comparison_figure  # matplotlib takes its time
-        from zwidth.writing import writing_whole
+        from zwidth.plots.files import save_figure  # matplotlib takes its time
+        from zwidth.plots.trace import comparison_figure
 
         figure = comparison_figure(self.traces)
         if path is not None:
-            with writing_whole(Path(path)) as unfinished:
-                figure.savefig(unfinished, dpi=150, format=Path(path).suffix.lstrip(".").lower() or "png")
+            save_figure(lambda: figure, Path(path), overwrite=True)
         return figure
 
     def __repr__(self) -> str:
@@ -134,14 +134,11 @@ class Comparison:
             cells = [row[0].ljust(widths[0])]
             cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
             lines.append("  ".join(cells))
-        return "\n".join(lines)
+        return printable("\n".join(lines))
 
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        head, *lines = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in self.table()]
-        body = "".join(f"<tr>{line}</tr>" for line in lines)
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    def _repr_html_(self) -> Html:
+        head, *lines = self.table()
+        return table(head, lines)
 
 
 def compare_traces(*traces: xr.Dataset | Mapping[str, xr.Dataset]) -> Comparison:

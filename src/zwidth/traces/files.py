@@ -9,21 +9,30 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from io import BytesIO
+from numbers import Real
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
 from zwidth.errors import InputError
 from zwidth.loop.trace import FORMAT, UNITS, VARIABLES
+from zwidth.reading import check_hdf5, check_parquet
 from zwidth.writing import check_target, first_line, writing_whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
+_ATTRIBUTES: dict[str, Callable[[Any], bool]] = {
+    "motion": lambda value: isinstance(value, str) and value in UNITS,
+    "stops": lambda value: isinstance(value, Real),
+}
+"""What is computed with, and what it must be."""
 
 _KEYS = {"m/s": "m_per_s", "rad/s": "rad_per_s", "N*m": "N_m"}
 
@@ -49,8 +58,20 @@ def save_trace(trace: xr.Dataset, path: str | PathLike[str], *, force: bool = Fa
     write, _ = _format(target)
     _refuse_foreign(trace, "this Dataset")
     check_target(target, force)
-    with writing_whole(target) as unfinished:
-        write(trace, unfinished)
+    with writing_whole(target) as file:
+        write(trace, file)
+
+
+def save_netcdf(data: xr.Dataset, path: Path) -> None:
+    """Save any Dataset as NetCDF 4, in the place of what was there.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    with writing_whole(path) as file:
+        _write_netcdf(data, file)
 
 
 def load_trace(path: str | PathLike[str]) -> xr.Dataset:
@@ -80,7 +101,7 @@ def column_name(variable: str, unit: str) -> str:
     return f"{variable}_{_KEYS.get(unit, unit)}"
 
 
-def _format(path: Path) -> tuple[Callable[[xr.Dataset, Path], None], Callable[[Path], xr.Dataset]]:
+def _format(path: Path) -> tuple[Callable[[xr.Dataset, IO[bytes]], None], Callable[[Path], xr.Dataset]]:
     formats = {
         ".nc": (_write_netcdf, _read_netcdf),
         ".parquet": (_write_parquet, _read_parquet),
@@ -94,16 +115,26 @@ def _format(path: Path) -> tuple[Callable[[xr.Dataset, Path], None], Callable[[P
 def _refuse_foreign(trace: xr.Dataset, what: str) -> None:
     if trace.attrs.get("format") != FORMAT or "time" not in trace.coords:
         raise InputError(f"{what} is no zwidth trace: its attribute format is not {FORMAT!r}")
+    wrong = [key for key, fits in _ATTRIBUTES.items() if not fits(trace.attrs.get(key))]
+    if wrong:
+        raise InputError(f"{what} is no whole zwidth trace: its attribute {wrong[0]} is missing or wrong")
     missing = [name for name in VARIABLES if name not in trace and name != "anchor_position"]
     if missing:
         raise InputError(f"{what} is no whole zwidth trace: it lacks {', '.join(missing)}")
 
 
-def _write_netcdf(trace: xr.Dataset, path: Path) -> None:
-    trace.to_netcdf(path, engine="h5netcdf")
+def _write_netcdf(data: xr.Dataset, file: IO[bytes]) -> None:
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
+    whole = BytesIO()  # HDF5 ends the process on a disk that becomes full
+    with h5netcdf.File(whole, "w") as store:
+        data.dump_to_store(H5NetCDFStore(store))
+    file.write(whole.getbuffer())
 
 
 def _read_netcdf(path: Path) -> xr.Dataset:
+    check_hdf5(path)
     with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
         trace: xr.Dataset = file.load()
     for name in trace.variables:
@@ -145,30 +176,32 @@ def _from_columns(columns: dict[str, Any], attributes: dict[str, Any], source: P
 _SAMPLED = "a sample is taken at this instant"
 
 
-def _write_parquet(trace: xr.Dataset, path: Path) -> None:
+def _write_parquet(trace: xr.Dataset, file: IO[bytes]) -> None:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     table = pa.table(_columns(trace)).replace_schema_metadata({"zwidth": json.dumps(trace.attrs)})
-    pq.write_table(table, path)
+    whole = BytesIO()
+    pq.write_table(table, whole)
+    file.write(whole.getbuffer())
 
 
 def _read_parquet(path: Path) -> xr.Dataset:
     import pyarrow.parquet as pq
 
+    check_parquet(path)
     table = pq.read_table(path)
     attributes = json.loads((table.schema.metadata or {}).get(b"zwidth", b"{}"))
     return _from_columns({name: table[name].to_numpy() for name in table.column_names}, attributes, path)
 
 
-def _write_csv(trace: xr.Dataset, path: Path) -> None:
+def _write_csv(trace: xr.Dataset, file: IO[bytes]) -> None:
     columns = _columns(trace)
     columns["sampled"] = columns["sampled"].astype(np.int64)
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        file.write(f"# {json.dumps(trace.attrs, ensure_ascii=False)}\n")
-        file.write(",".join(columns) + "\n")
-        for row in zip(*(values.tolist() for values in columns.values()), strict=True):
-            file.write(",".join(map(repr, row)) + "\n")  # repr: the shortest text with the same bits
+    file.write(f"# {json.dumps(trace.attrs, ensure_ascii=False)}\n".encode())
+    file.write(f"{','.join(columns)}\n".encode())
+    for row in zip(*(values.tolist() for values in columns.values()), strict=True):
+        file.write(f"{','.join(map(repr, row))}\n".encode())  # repr: the shortest text with the same bits
 
 
 def _read_csv(path: Path) -> xr.Dataset:

@@ -8,6 +8,7 @@ only what changes is heard.  Full scale is the largest of what is left.
 from __future__ import annotations
 
 import wave
+from io import BytesIO
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -52,11 +53,18 @@ def save_sound(trace: xr.Dataset, path: str | PathLike[str], *, force: bool = Fa
         raise InputError(f"sound is a file that ends in .wav, got {str(target)!r}")
     check_target(target, force)
     samples = waveform(trace)
-    with writing_whole(target) as unfinished, wave.open(str(unfinished), "wb") as file:
+    with writing_whole(target) as file:
+        file.write(_as_wav(samples))
+
+
+def _as_wav(samples: NDArray[np.int16]) -> bytes:
+    sound = BytesIO()
+    with wave.open(sound, "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(2)
         file.setframerate(RATE)
         file.writeframes(samples.astype("<i2").tobytes())
+    return sound.getvalue()
 
 
 def waveform(trace: xr.Dataset) -> NDArray[np.int16]:

@@ -132,6 +132,42 @@ def test_what_cannot_be_read_is_said_in_one_message(tmp_path: Path, urdf: Path) 
         read_arm(urdf, frame="hook")
 
 
+ENTITIES = "<!DOCTYPE robot [<!ENTITY a '{}'>{}]>".format(
+    10 * "x", "".join(f"<!ENTITY {b} '{10 * f'&{a};'}'>" for a, b in zip("abcdefgh", "bcdefghi", strict=True))
+)
+
+
+@pytest.mark.parametrize(
+    ("start", "inside", "message"),
+    [
+        (ENTITIES, "<link name='&i;'/>", "a DOCTYPE"),
+        ("<!DOCTYPE robot [<!ENTITY a SYSTEM 'file:///etc/hostname'>]>", "&a;", "a DOCTYPE"),
+        ("", "<include file='../other.xml'/>", "another file"),
+        ("", 300 * "<body>" + 300 * "</body>", "more than 200 levels"),
+        ("", 3000 * "<link/>", "or 2000 bodies and joints"),
+        ("", (2**25 + 1) * " ", "larger than"),
+    ],
+)
+def test_descriptions_that_lead_elsewhere_or_without_end_are_refused(
+    start: str, inside: str, message: str, tmp_path: Path
+) -> None:
+    """Entities that stand for gigabytes or for other files, files in files, levels without end."""
+    for ending in ("urdf", "xml"):
+        path = tmp_path / f"arm.{ending}"
+        path.write_text(f"{start}<robot name='arm'>{inside}</robot>", encoding="utf-8")
+        with pytest.raises(zw.InputError, match=f"arm.{ending} cannot be read: it .*{message}") as caught:
+            read_arm(path)
+        assert "\n" not in str(caught.value)
+
+
+def test_meshes_are_not_opened(urdf: Path) -> None:
+    """Wherever they are said to be: an arm is read without them."""
+    text = urdf.read_text(encoding="utf-8")
+    mesh = "<visual><geometry><mesh filename='package://../../none.stl'/></geometry></visual>"
+    urdf.write_text(text.replace('<link name="tip"/>', f'<link name="tip">{mesh}</link>'), encoding="utf-8")
+    assert read_arm(urdf, frame="tip").damping == (0.02, 0.01)
+
+
 def test_the_words_of_the_parsers_are_in_the_message_alone(
     tmp_path: Path, urdf: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -9,12 +9,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
-from xml.etree import ElementTree
+from xml.parsers.expat import ExpatError, ParserCreate
 
 from zwidth.errors import InputError
 
 _ENDINGS = {".urdf": "buildModelFromUrdf", ".xml": "buildModelFromMJCF", ".mjcf": "buildModelFromMJCF"}
 _STANDARD_ERROR = 2
+_LARGEST = 2**25
+"""[bytes] Largest description that is read."""
+
+_DEEPEST, _MOST_PARTS = 200, 2000
+_PARTS = ("link", "body", "joint", "freejoint")
 
 
 def read_model(path: Path) -> Any:
@@ -47,10 +52,44 @@ def read_model(path: Path) -> Any:
 
 
 def _check_xml(path: Path) -> None:
+    """Refuse what is no XML, and what other parsers would be led astray by."""
+    watch, parser = _Watch(), ParserCreate()
+    parser.StartDoctypeDeclHandler = watch.doctype
+    parser.StartElementHandler, parser.EndElementHandler = watch.begin, watch.end
     try:
-        ElementTree.parse(path)
-    except (ElementTree.ParseError, OSError, ValueError) as error:
+        if path.stat().st_size > _LARGEST:
+            raise InputError(f"it is larger than {_LARGEST} bytes, and no description of an arm is")
+        with open(path, "rb") as file:
+            parser.ParseFile(file)
+    except InputError as error:
+        raise InputError(f"{path.name} cannot be read: {error}") from None
+    except (ExpatError, OSError, ValueError) as error:
         raise InputError(f"{path.name} cannot be read: it is no XML, {error}") from None
+
+
+class _Watch:
+    """Refuses, while a description is parsed, what would make it grow, lead elsewhere, or end the process."""
+
+    def __init__(self) -> None:
+        self._depth = self._parts = 0
+
+    def doctype(self, *_: object) -> None:
+        """Entities can name other files, and a few lines of them stand for gigabytes."""
+        raise InputError("it has a DOCTYPE, which no robot description needs; take it out")
+
+    def begin(self, name: str, _: object) -> None:
+        """Parsers go deeper by themselves with each level, and with each joint."""
+        self._depth += 1
+        self._parts += name in _PARTS
+        if name == "include":
+            raise InputError("it includes another file; put all into one")
+        if self._depth > _DEEPEST or self._parts > _MOST_PARTS:
+            raise InputError(
+                f"it has more than {_DEEPEST} levels, or {_MOST_PARTS} bodies and joints; no arm has so many"
+            )
+
+    def end(self, _: str) -> None:
+        self._depth -= 1
 
 
 @contextmanager

@@ -16,6 +16,7 @@ from zwidth.errors import InputError
 from zwidth.identification.device.table import as_html, as_text, source_name
 from zwidth.identification.logs import Finding
 from zwidth.quantity.exact import Interval
+from zwidth.showing import Html
 from zwidth.writing import check_target, writing_whole
 
 if TYPE_CHECKING:
@@ -255,8 +256,8 @@ class Identified:
         """
         text, target = self.to_toml(confidence, **others), Path(path)
         check_target(target, force)
-        with writing_whole(target) as unfinished:
-            unfinished.write_text(text, encoding="utf-8")
+        with writing_whole(target) as file:
+            file.write(text.encode())
 
     def plot(self, path: str | PathLike[str] | None = None, *, force: bool = False) -> Figure:
         """Friction against speed, what is left over, data against model; saved where a path is given.
@@ -283,7 +284,7 @@ class Identified:
     def __repr__(self) -> str:
         return as_text(self)
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Html:
         return as_html(self)
 
 

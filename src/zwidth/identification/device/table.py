@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.identification.device.limits import limits, percent
+from zwidth.showing import Html, bullets, element, printable, row
 
 if TYPE_CHECKING:
     from zwidth.identification.device.identified import Identified
@@ -88,22 +88,15 @@ def as_text(identified: Identified, confidence: float = 0.95) -> str:
     widths = [max(len(row[i]) for row in table) for i in range(5)]
     lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in table]
     findings = [f"· {finding}" for finding in identified.findings]
-    return "\n".join([title(identified), "", *lines, "", facts(identified), *findings])
+    return printable("\n".join([title(identified), "", *lines, "", facts(identified), *findings]))
 
 
-def as_html(identified: Identified, confidence: float = 0.95) -> str:
+def as_html(identified: Identified, confidence: float = 0.95) -> Html:
     """The same for a notebook."""
-    head = ("", "", "best guess", percent(confidence), "")
-    body = "".join(_html(row, "td") for row in rows(identified, confidence))
-    findings = "".join(f"<li>{escape(str(finding))}</li>" for finding in identified.findings)
-    return (
-        f"<div><table><caption>{escape(title(identified))}</caption>{_html(head, 'th')}{body}</table>"
-        f"<p>{escape(facts(identified))}</p><ul>{findings}</ul></div>"
-    )
-
-
-def _html(cells: tuple[str, ...], tag: str) -> str:
-    return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+    head = row(("", "", "best guess", percent(confidence), ""), "th")
+    numbers = (row(cells) for cells in rows(identified, confidence))
+    table = element("table", element("caption", title(identified)), head, *numbers)
+    return element("div", table, element("p", facts(identified)), bullets(identified.findings))
 
 
 def _row(symbol: str, name: str, value: float, low: float, high: float, unit: str) -> Row:

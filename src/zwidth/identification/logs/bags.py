@@ -16,6 +16,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.log import Finding
+from zwidth.identification.logs.pieces import check_bag, check_messages
 from zwidth.identification.logs.table import PIECE, Table, Values
 
 if TYPE_CHECKING:
@@ -39,7 +40,10 @@ def bag_table(path: Path) -> Table:
     """
     paths: dict[str, str] = {}
     units: dict[str, str | None] = {TIME: "ns"}
-    with _opened(path) as reader:
+    bag = _opened(path)
+    check_bag(path)
+    with bag as reader:
+        check_messages(path, reader)
         for connection in reader.connections:
             message = _first(reader, connection)
             for field, unit in _fields(message):

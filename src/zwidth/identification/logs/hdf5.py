@@ -11,6 +11,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.table import PIECE, Table, Values
+from zwidth.reading import check_dataset
 
 _MOST_COLUMNS = 64
 
@@ -88,6 +89,8 @@ def _read(path: Path, columns: list[_Column], names: tuple[str, ...]) -> Iterato
             )
     with h5py.File(path, "r") as file:
         data = [file[column.dataset] for column in columns]
+        for one in data:
+            check_dataset(path, one)
         step = max(PIECE, *((d.chunks or (1,))[0] if len(d.shape) == 1 else 1 for d in data))
         for k in range(0, rows, step):
             yield tuple(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from struct import unpack
+from typing import IO, Any
 
 import numpy as np
 from scipy.io import loadmat
@@ -12,11 +13,17 @@ from scipy.io.matlab import mat_struct
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.table import PIECE, Table, Values
+from zwidth.reading import FREE, RATIO, check_expansion, inflated
 
 LARGEST = 2**30
 """[bytes] Largest file that is read whole; MATLAB's own limit for a variable in it is 2 GiB."""
 
 _MOST_COLUMNS = 64
+_HEADER, _COMPRESSED = 128, 15
+"""Bytes before the first variable, and the type of one that is compressed."""
+
+_ORDERS = {b"MI": ">", b"IM": "<"}
+_PIECE = 2**20
 
 
 def matlab_table(path: Path) -> Table:
@@ -25,7 +32,7 @@ def matlab_table(path: Path) -> Table:
     Raises
     ------
     InputError
-        If it is larger than `LARGEST`.
+        If it is larger than `LARGEST`, or would be when it is expanded.
     """
     size = path.stat().st_size
     if size > LARGEST:
@@ -33,6 +40,7 @@ def matlab_table(path: Path) -> Table:
             f"{path} has {size >> 20} MiB; MATLAB files before 7.3 are read whole, up to {LARGEST >> 20}; "
             'save it with "-v7.3"'
         )
+    check_expansion(path, _expanded(path))
     columns: dict[str, Values] = {}
     for name, value in loadmat(path, squeeze_me=True, struct_as_record=False).items():
         if not name.startswith("__"):
@@ -48,6 +56,32 @@ def matlab_table(path: Path) -> Table:
             yield tuple(values[k : k + PIECE] for values in chosen)
 
     return Table(source=str(path), units=dict.fromkeys(columns), read=read)
+
+
+def _expanded(path: Path) -> int:
+    """[bytes] What the compressed variables of a file of MATLAB 5 to 7.2 are, up to what is read of them."""
+    most = max(FREE, RATIO * path.stat().st_size)
+    total = 0
+    with open(path, "rb") as file:
+        order = _ORDERS.get(file.read(_HEADER)[-2:])
+        if order is None:
+            return 0  # of MATLAB 4, which compresses nothing
+        while total <= most and len(tag := file.read(8)) == 8:
+            kind, size = unpack(f"{order}II", tag)
+            if kind == 0:  # zeros that were never written
+                break
+            place = file.tell() + size
+            if kind == _COMPRESSED:
+                total += inflated(_pieces(file, size), most - total)
+            file.seek(place)
+    return total
+
+
+def _pieces(file: IO[bytes], size: int) -> Iterator[bytes]:
+    """The next so many bytes, a megabyte at a time."""
+    while size > 0 and (piece := file.read(min(size, _PIECE))):
+        size -= len(piece)
+        yield piece
 
 
 def _vectors(name: str, value: Any) -> dict[str, Values]:

@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from zwidth.identification.logs.table import PIECE, Table, Values
+from zwidth.reading import check_parquet
 
 
 def parquet_table(path: Path) -> Table:
@@ -46,6 +47,7 @@ def _unit(field: pa.Field) -> str | None:
 
 
 def _read(path: Path, names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
+    check_parquet(path, set(names))
     with pq.ParquetFile(path, pre_buffer=False) as file:
         for batch in file.iter_batches(batch_size=PIECE, columns=list(dict.fromkeys(names))):
             yield tuple(_values(batch.column(batch.schema.get_field_index(name))) for name in names)

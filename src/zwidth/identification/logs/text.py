@@ -16,6 +16,7 @@ from zwidth.errors import InputError
 from zwidth.identification.logs.layout import SNIFFED, Layout, layout_of
 from zwidth.identification.logs.log import Finding
 from zwidth.identification.logs.table import Table, Values
+from zwidth.reading import Bounded
 
 _PIECE = 2**23
 _NULLS = ["", "NaN", "nan", "NAN", "-nan", "null", "NULL", "None", "none", "NA", "N/A", "#N/A", "-"]
@@ -48,9 +49,9 @@ def text_table(path: Path) -> Table:
     return table
 
 
-def _opened(path: Path) -> IO[bytes]:
+def _opened(path: Path) -> IO[bytes] | Bounded:
     if path.suffix.lower() in (".gz", ".bz2", ".zst"):
-        return pa.input_stream(str(path), compression="detect")  # type: ignore[no-any-return]
+        return Bounded(path, pa.input_stream(str(path), compression="detect"))
     return open(path, "rb")
 
 

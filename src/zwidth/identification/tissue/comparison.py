@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from zwidth.identification.tissue.result import TissueFit
 from zwidth.identification.tissue.table import html_of, lines_of
+from zwidth.showing import Html
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,5 +42,5 @@ class TissueComparison:
     def __repr__(self) -> str:
         return "\n".join(lines_of(self.table()))
 
-    def _repr_html_(self) -> str:
+    def _repr_html_(self) -> Html:
         return html_of(self.table())

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from html import escape
 from math import exp, inf, log, sqrt
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +17,7 @@ from zwidth.errors import InputError
 from zwidth.identification.tissue.model import Model, unit_of
 from zwidth.identification.tissue.table import html_of, lines_of
 from zwidth.quantity.exact import Interval
+from zwidth.showing import Html, element
 
 if TYPE_CHECKING:
     from zwidth.device import Device
@@ -274,9 +274,9 @@ class TissueFit:
     def __repr__(self) -> str:
         return "\n".join([self._summary(), *lines_of(self.table()), *(f"! {r}" for r in self.remarks)])
 
-    def _repr_html_(self) -> str:
-        remarks = "".join(f"<p><b>{escape(remark)}</b></p>" for remark in self.remarks)
-        return f"<div><p>{escape(self._summary())}</p>{html_of(self.table())}{remarks}</div>"
+    def _repr_html_(self) -> Html:
+        remarks = (element("p", element("b", remark)) for remark in self.remarks)
+        return element("div", element("p", self._summary()), html_of(self.table()), *remarks)
 
 
 def _exp(value: float) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from html import escape
+from zwidth.showing import Html, table
 
 
 def lines_of(table: list[list[str]]) -> list[str]:
@@ -11,8 +11,6 @@ def lines_of(table: list[list[str]]) -> list[str]:
     return ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in table]
 
 
-def html_of(table: list[list[str]]) -> str:
+def html_of(lines: list[list[str]]) -> Html:
     """The first row as the head."""
-    head, *lines = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in table]
-    body = "".join(f"<tr>{line}</tr>" for line in lines)
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return table(lines[0], lines[1:])

@@ -20,6 +20,7 @@ from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.solve import Played
 from zwidth.passivity.worst_hand.storage import loop_document
 from zwidth.passivity.worst_hand.switching import switch_positions
+from zwidth.showing import Html, element
 
 _NEAREST = 40
 """Halvings of a count by which a hand on the upper edge of a cell may have to stay below it."""
@@ -109,8 +110,8 @@ class Gain:
             f"{self.peak_speed:.4g} {self.unit}/s, extracts {self.energy_per_cycle:.4g} J in each round"
         )
 
-    def _repr_html_(self) -> str:
-        return f"<p>{self.describe()}</p>"
+    def _repr_html_(self) -> Html:
+        return element("p", self.describe())
 
 
 def gain(played: Played, motion: str, bounds: HandBounds | None = None) -> Gain | None:

@@ -36,6 +36,7 @@ from zwidth.passivity.worst_hand.solve import Played, Tell, play
 from zwidth.passivity.worst_hand.storage import Storage
 from zwidth.quantity.exact import RealLike
 from zwidth.rendering.rendered import Rendered
+from zwidth.showing import Html, bullets, element
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -146,10 +147,9 @@ class WorstHand:
     def __repr__(self) -> str:
         return f"<WorstHand {self.outcome}: {self.claim}>"
 
-    def _repr_html_(self) -> str:
-        assumed = "".join(f"<li>{a}</li>" for a in self.assumptions)
-        colour = TOLD[self.outcome].colour
-        return f"<div><b style='color:{colour}'>{self.outcome}</b> {self.claim}<ul>{assumed}</ul></div>"
+    def _repr_html_(self) -> Html:
+        word = element("b", self.outcome, style=f"color:{TOLD[self.outcome].colour}")
+        return element("div", word, f" {self.claim}", bullets(self.assumptions))
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,7 @@ from zwidth.passivity.worst_hand.two_sides import Side, approach
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.rendering.rendered import Rendered
+from zwidth.showing import Html, bullets, element
 
 MORE_IS_SAFER = frozenset({"device.damping", "device.coulomb_friction", "device.rate"})
 """Parameters of which a loop needs enough; of all others it may have too much."""
@@ -148,11 +149,9 @@ class Bracket:
     def __repr__(self) -> str:
         return f"<Bracket {self.describe()}>"
 
-    def _repr_html_(self) -> str:
-        assumed = "".join(f"<li>{a}</li>" for a in self.assumptions)
-        return (
-            f"<div>{self.describe()}<details><summary>assumptions</summary><ul>{assumed}</ul></details></div>"
-        )
+    def _repr_html_(self) -> Html:
+        assumed = element("details", element("summary", "assumptions"), bullets(self.assumptions))
+        return element("div", self.describe(), assumed)
 
 
 class _Parameter(NamedTuple):

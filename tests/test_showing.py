@@ -1,0 +1,151 @@
+"""Text of others is shown, never obeyed: in a notebook, in a picture, on a terminal."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import re
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+import zwidth as zw
+from zwidth.cli.main import main
+from zwidth.showing import OBEYED, Html, element, printable, table
+
+SCRIPT = "<script>alert(1)</script>"
+HOSTILE = f"{SCRIPT} $\\frac{{$ & \x1b[2J\x9b31m \u202e\"'"
+SOURCE = sorted(Path(zw.__file__).parent.rglob("*.py"))
+DEVICE = zw.Device(mass=0.04, damping=0.15, sample_period=0.001, name=HOSTILE)
+
+
+def test_only_html_becomes_a_part_of_html() -> None:
+    """Text is escaped wherever it stands, attributes too; what was escaped is not escaped again."""
+    assert element("p", "a < b") == "<p>a &lt; b</p>"
+    assert element("p", element("b", "&")) == "<p><b>&amp;</b></p>"
+    assert element("p", style='"><b>') == '<p style="&quot;&gt;&lt;b&gt;"></p>'
+    assert table(["<"], [[1]]) == (
+        "<table><thead><tr><th>&lt;</th></tr></thead><tbody><tr><td>1</td></tr></tbody></table>"
+    )
+
+
+def test_what_a_terminal_obeys_is_not_printed() -> None:
+    """Escapes, carriage returns, C1 controls, a change of direction; line ends and Greek letters stay."""
+    assert printable("a\x1b[31m\rb\x9bc\u202ed\ue000") == "a?[31m?b?c?d\ue000"
+    assert printable("2b/T ≥ K·s²\n\tμ") == "2b/T ≥ K·s²\n\tμ"
+
+
+def _pages() -> list[tuple[str, ast.FunctionDef]]:
+    texts = [(path.name, path.read_text(encoding="utf-8")) for path in SOURCE]
+    return [
+        (name, node)
+        for name, text in texts
+        if "_repr_html_" in text
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.FunctionDef) and node.name == "_repr_html_"
+    ]
+
+
+def test_every_page_of_a_notebook_is_made_of_escaped_parts() -> None:
+    """By its type: `Html` comes from one module only, and a text or an f-string is none."""
+    pages = _pages()
+    assert len(pages) >= 18
+    for name, page in pages:
+        assert page.returns is not None
+        assert ast.unparse(page.returns) == "Html", name
+        assert not [part for part in ast.walk(page) if isinstance(part, ast.Return) and _is_text(part)], name
+    makers = {path.name for path in SOURCE if re.search(r"\bHtml\(", path.read_text(encoding="utf-8"))}
+    assert makers == {"showing.py"}
+
+
+def _is_text(answer: ast.Return) -> bool:
+    return isinstance(answer.value, (ast.JoinedStr, ast.Constant, ast.BinOp))
+
+
+@pytest.fixture(scope="module")
+def trace() -> Any:
+    """Of a device whose name is hostile."""
+    return zw.simulate(DEVICE, zw.Wall(200), zw.operators.ConstantForce(1), 0.02)
+
+
+def test_names_are_escaped_in_notebooks(trace: Any) -> None:
+    """Whatever can hold a name of a user shows it as it was typed."""
+    verdict = zw.check(DEVICE, zw.Wall(200))
+    active = zw.check(DEVICE, zw.Wall(2000))
+    shown = (
+        DEVICE, verdict, verdict.certificate, active, active.witness, zw.replay(active), trace.zwidth.energy,
+        zw.compare_traces({HOSTILE: trace}),
+    )  # fmt: skip
+    for page in (one._repr_html_() for one in shown):
+        assert isinstance(page, Html)
+        assert "<script" not in page
+        assert not OBEYED.search(page)
+        ElementTree.fromstring(page)
+    assert "&lt;script&gt;" in DEVICE._repr_html_()
+
+
+@pytest.mark.parametrize("draw", ["trace", "traces", "verdict", "law"])
+def test_names_are_drawn_as_they_are(draw: str, trace: Any, tmp_path: Path) -> None:
+    """Neither markup nor mathematics; the picture is whole XML without a script."""
+    path = tmp_path / "picture.svg"
+    if draw == "trace":
+        trace.zwidth.plot(path)
+    elif draw == "traces":
+        zw.compare_traces({HOSTILE: trace}).plot(path)
+    elif draw == "verdict":
+        zw.plots.save_check(zw.check(DEVICE, zw.Wall(200)), path)
+    else:
+        _with_law(trace).plot(path)
+    tree = ElementTree.parse(path)
+    assert not [part for part in tree.iter() if "script" in str(part.tag)]
+
+
+def _with_law(trace: Any) -> Any:
+    wall = zw.Wall(200)
+    return zw.compare(DEVICE, wall, {HOSTILE: wall})
+
+
+TOML = """
+[device]
+name = {name}
+mass = 0.04
+damping = 0.15
+sample_period = 0.001
+
+[environment]
+type = "wall"
+stiffness = 200
+"""
+
+
+def test_a_file_cannot_command_the_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What a specification calls its device is printed without what a terminal obeys."""
+    path = tmp_path / "loop.toml"
+    path.write_text(TOML.format(name='"bad \\u001b[2J \\u009b31m \\u202e"'), encoding="utf-8")
+    assert main(["check", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert "bad" in printed
+    assert not OBEYED.search(printed)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="no such names of files")
+@pytest.mark.parametrize("options", [[], ["--json"]])
+def test_the_name_of_a_file_cannot_command_the_terminal(
+    options: list[str],
+    trace: Any,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A trace is called by it, in the table and in JSON, where it can be read back."""
+    monkeypatch.chdir(tmp_path)
+    name = "\x1b[2J\x7f\x9btouch.nc"
+    trace.zwidth.save(name)
+    assert main(["traces", name, *options]) == 0
+    printed = capsys.readouterr().out
+    assert "touch.nc" in printed
+    assert not OBEYED.search(printed)
+    assert not options or name in json.loads(printed)
