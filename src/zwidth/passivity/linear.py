@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Literal
 
 from zwidth.passivity.loop import LinearLoop
@@ -47,6 +48,7 @@ class LinearRefutation:
     cosine: Fraction | None
 
 
+@lru_cache(maxsize=64)
 def decide_linear(loop: LinearLoop) -> LinearProof | LinearRefutation:
     """Decide the linear criterion exactly, equality counted as passive."""
     positivity = prove_nonnegative(loop.criterion)

@@ -19,18 +19,22 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
-from math import gcd, inf, lcm
+from math import gcd, inf, isfinite, lcm
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import arb, fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.errors import InputError
 from zwidth.passivity.cosines import from_cosines, real_product
+from zwidth.passivity.roots import precision
 from zwidth.passivity.schur import is_schur
 
 LARGEST_DEGREE = 120
 """The order of H plus the delay in samples that is still decided."""
+
+_PRECISIONS = (256, 1024, 4096)
+"""Bits of the balls in which a need is evaluated, one after the other."""
 
 
 @dataclass(frozen=True)
@@ -123,24 +127,48 @@ class LinearLoop:
 
         ½ [A + √(A² + T² α(1−α) |H|²)],  A = (T/2) (R − (1 + c) S)/|D|².
         """
-        point = _q(c)
-        scale = self.dissipation(point)
-        if scale == 0:
+        values = self._values_at(c)
+        if values is None:
             return inf
-        try:
-            base = -float(self.period) / 2 * _float(self.hold(point) / scale)
-            alpha = float(self.part_delay)
-            extra = float(self.period) ** 2 * alpha * (1 - alpha) * _float(self.switching(point) / scale)
-        except OverflowError:
-            return inf
+        hold, switching = values
+        base = -float(self.period) / 2 * hold
+        alpha = float(self.part_delay)
+        extra = float(self.period) ** 2 * alpha * (1 - alpha) * switching
         if extra == 0:
             return base
         root = (base * base + extra) ** 0.5
         return float((base + root) / 2 if base > 0 else extra / 2 / (root - base))
 
+    def _values_at(self, c: Fraction) -> tuple[float, float] | None:
+        """(−R + (1 + c) S)/|D|² and |N|²/|D|², to rounding; None where they are beyond doubles."""
+        point = _q(c)
+        parts = (self.hold, self.switching) if self.part_delay else (self.hold, fmpq_poly())
+        for bits in _PRECISIONS:
+            with precision(bits):
+                scale = _in_balls(self.dissipation, point)
+                values = [_in_balls(part, point) / scale for part in parts]
+                if all(value.rel_accuracy_bits() > 60 for value in values):
+                    return _finite(*(float(value) for value in values))
+        below = self.dissipation(point)
+        if below == 0:
+            return None
+        return _finite(*(_float(part(point) / below) for part in parts))
+
+
+def _in_balls(p: fmpq_poly, point: fmpq) -> arb:
+    return p.numer()(arb(point)) / p.denom()
+
+
+def _finite(hold: float, switching: float) -> tuple[float, float] | None:
+    return (hold, switching) if isfinite(hold) and isfinite(switching) else None
+
 
 def _float(value: fmpq) -> float:
-    return float(Fraction(int(value.p), int(value.q)))
+    """The nearest double, infinite beyond the largest."""
+    try:
+        return float(Fraction(int(value.p), int(value.q)))
+    except OverflowError:
+        return inf
 
 
 def linear_loop(device: Device, environment: Environment) -> LinearLoop:

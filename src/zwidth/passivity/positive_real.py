@@ -23,7 +23,7 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.port import Port, Time
 from zwidth.passivity.positivity import Positivity, prove_nonnegative
-from zwidth.passivity.roots import real_roots
+from zwidth.passivity.roots import roots_inside
 
 OFFSET = Fraction(1)
 """The g > 0 of every proof."""
@@ -106,8 +106,7 @@ def vanishes(w: fmpq_poly) -> bool:
 def _minimum(p: fmpq_poly, w: fmpq_poly) -> tuple[Fraction, Fraction]:
     """The least p/w over [−1, 1], at its ends or a stationary point, and where: of equals the largest c."""
     slope = (p.derivative() * w - p * w.derivative()).numer()
-    inside = real_roots(slope, _BITS) if slope.degree() >= 1 else []
-    places = [Fraction(1), Fraction(-1), *(c for c in inside if -1 < c < 1)]
+    places = [Fraction(1), Fraction(-1), *roots_inside(slope, _BITS)]
     values = [(_value(p, w, c), c) for c in places]
     least = min(value for value, _ in values)
     return least, max(c for value, c in values if value == least)

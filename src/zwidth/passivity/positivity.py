@@ -13,8 +13,9 @@ from fractions import Fraction
 
 from flint import fmpq, fmpz_poly
 
+from zwidth.passivity.descartes import halves, on_unit_interval, sign_changes
+
 _ONE = fmpz_poly([1])
-_SHIFT = fmpz_poly([1, 1])
 
 
 @dataclass(frozen=True)
@@ -64,19 +65,15 @@ def _split_square(p: fmpz_poly) -> tuple[fmpz_poly, fmpz_poly]:
 
 
 def _negative_point(g: fmpz_poly) -> Fraction | None:
-    """A point of [−1, 1] where a squarefree g < 0, or None when g > 0 throughout.
-
-    `work` holds g mapped, up to a positive factor, so that (0, 1) covers the interval.
-    """
+    """A point of [−1, 1] where a squarefree g < 0, or None when g > 0 throughout."""
     if g(1) < 0:
         return Fraction(1)
     if g(-1) < 0:
         return Fraction(-1)
-    on_unit = g(fmpz_poly([-1, 2]))  # c = 2t − 1
-    work = [(on_unit, Fraction(-1), Fraction(1))]
+    work = [(on_unit_interval(g), Fraction(-1), Fraction(1))]
     while work:
         h, low, high = work.pop()
-        if _sign_changes(h) == 0:
+        if sign_changes(h) == 0:
             continue
         middle = (low + high) / 2
         value = g(fmpq(middle.numerator, middle.denominator))
@@ -84,24 +81,9 @@ def _negative_point(g: fmpz_poly) -> Fraction | None:
             return middle
         if value == 0:  # a simple root: g is negative on one side of it
             return where_negative(g, middle)
-        left = _halve(h)
-        work.append((left, low, middle))
-        work.append((left(_SHIFT), middle, high))
+        left, right = halves(h)
+        work += [(left, low, middle), (right, middle, high)]
     return None
-
-
-def _sign_changes(h: fmpz_poly) -> int:
-    """Descartes' bound on the number of roots of h in (0, 1)."""
-    n = h.degree()
-    reverse = fmpz_poly([h[n - i] for i in range(n + 1)])
-    signs = [c > 0 for c in reverse(_SHIFT).coeffs() if c != 0]
-    return sum(1 for a, b in zip(signs, signs[1:], strict=False) if a != b)
-
-
-def _halve(h: fmpz_poly) -> fmpz_poly:
-    """2ⁿ h(t/2)."""
-    n = h.degree()
-    return fmpz_poly([h[i] * (1 << (n - i)) for i in range(n + 1)])
 
 
 def where_negative(p: fmpz_poly, point: Fraction) -> Fraction:

@@ -2,26 +2,93 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from fractions import Fraction
 
-from flint import ctx, fmpq, fmpz_poly
+from flint import arb, ctx, fmpq, fmpz_poly
+
+from zwidth.passivity.descartes import halves, on_unit_interval, sign_changes
 
 
 def real_roots(p: fmpz_poly, bits: int = 128) -> list[Fraction]:
     """Rationals within rounding at `bits` of each real root."""
-    roots = []
+    with precision(bits):
+        return [_middle(root.real) for root, _ in p.complex_roots() if abs(float(root.imag)) <= 1e-30]
+
+
+def roots_inside(p: fmpz_poly, bits: int = 128) -> list[Fraction]:
+    """The same of the roots in (−1, 1) alone, in a fraction of the time.
+
+    Roots that are no further apart than the rounding are one.
+    """
+    if p.degree() < 1:
+        return []
+    simple = p // p.gcd(p.derivative())
+    with precision(bits + 4 * simple.degree() + 64):  # near a root the powers cancel about as many bits
+        return [_root_between(simple, low, high, bits) for low, high in _isolated(simple, bits)]
+
+
+@contextmanager
+def precision(bits: int) -> Iterator[None]:
+    """Balls of so many bits inside."""
     saved = ctx.prec
+    ctx.prec = bits
     try:
-        ctx.prec = bits
-        for root, _ in p.complex_roots():
-            if abs(float(root.imag)) <= 1e-30:
-                roots.append(_fraction(root.real))
+        yield
     finally:
         ctx.prec = saved
-    return roots
 
 
-def _fraction(ball: object) -> Fraction:
+def _isolated(p: fmpz_poly, bits: int) -> Iterator[tuple[Fraction, Fraction]]:
+    """Intervals of one simple root each, open, or the root itself as both ends; the narrowest may hold more."""
+    work = [(on_unit_interval(p), Fraction(-1), Fraction(1))]
+    while work:
+        h, low, high = work.pop()
+        changes = sign_changes(h)
+        if changes == 0:
+            continue
+        if changes == 1 or high - low < Fraction(1, 1 << bits):
+            yield low, high
+            continue
+        middle = (low + high) / 2
+        left, right = halves(h)
+        if right[0] == 0:
+            yield middle, middle
+        work += [(left, low, middle), (right, middle, high)]
+
+
+def _root_between(p: fmpz_poly, low: Fraction, high: Fraction, bits: int) -> Fraction:
+    """The root in (low, high) by Newton's steps, and by halving where they leave it or shrink too little."""
+    slope = p.derivative()
+    a, b = _ball(low), _ball(high)
+    rising = not _is_positive_after(p, slope, low)
+    x, before, close = (a + b) / 2, b - a, arb(2) ** -bits
+    while b - a > close:
+        value = p(x)
+        if value.contains(0):
+            break
+        a, b = (x.mid(), b) if (value < 0) == rising else (a, x.mid())
+        step = (value / slope(x)).mid()
+        if not (abs(step) * 2 < before and a < x - step and x - step < b):
+            step = (x - (a + b) / 2).mid()
+        x, before = (x - step).mid(), abs(step)
+        if before < close:
+            break
+    return _middle(x) if low < high else low
+
+
+def _is_positive_after(p: fmpz_poly, slope: fmpz_poly, at: Fraction) -> bool:
+    """The sign of p just above a point, which may be a simple root."""
+    point = fmpq(at.numerator, at.denominator)
+    return bool((p(point) or slope(point)) > 0)
+
+
+def _ball(value: Fraction) -> arb:
+    return arb(fmpq(value.numerator, value.denominator))
+
+
+def _middle(ball: arb) -> Fraction:
     """The midpoint of a real ball, exactly."""
-    middle: fmpq = ball.mid().fmpq()  # type: ignore[attr-defined]
+    middle = ball.mid().fmpq()
     return Fraction(int(middle.p), int(middle.q))

@@ -12,11 +12,12 @@ from collections.abc import Iterator
 from fractions import Fraction
 from math import ceil, cos, log2, pi, sin
 
-from flint import arb, ctx, fmpq, fmpz_poly
+from flint import arb, fmpq, fmpz_poly
 
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Pattern, Repeat
 from zwidth.passivity.positivity import prove_nonnegative
+from zwidth.passivity.roots import precision, roots_inside
 from zwidth.passivity.schur import is_schur
 from zwidth.passivity.supremum import tightest
 
@@ -28,6 +29,8 @@ LONGEST_LISTED = 5_000
 
 LONGEST_WAY_IN = 50_000
 """Samples in which a filter must come to rest inside the wall."""
+
+_TURN_BITS = 256
 
 _PIECES, _SPEED = 64, 1000
 _RAMPS = (1, 16, 256)
@@ -144,23 +147,17 @@ def negative_band(loop: LinearLoop) -> tuple[Fraction, Fraction] | None:
             return None
         at = fmpq(point.numerator, point.denominator)
     low, high = Fraction(0), Fraction(1, 2)
-    saved = ctx.prec
-    try:
-        ctx.prec = 256
-        here = _turn(arb(at))
-        for root, _ in criterion.complex_roots():
-            if abs(float(root.imag)) <= 1e-40 and -1 <= float(root.real) <= 1:
-                turn = _turn(root.real)
-                low, high = (max(low, turn), high) if turn < here else (low, min(high, turn))
-    finally:
-        ctx.prec = saved
+    with precision(_TURN_BITS):
+        here = _turn(at)
+        for root in roots_inside(criterion, _TURN_BITS):
+            turn = _turn(fmpq(root.numerator, root.denominator))
+            low, high = (max(low, turn), high) if turn < here else (low, min(high, turn))
     margin = (high - low) / 4
     return low + margin, high if high == Fraction(1, 2) else high - margin
 
 
-def _turn(cosine: arb) -> Fraction:
-    bounded = max(min(cosine.mid(), arb(1)), arb(-1))
-    value = (bounded.acos() / (2 * arb.pi())).mid().fmpq()
+def _turn(cosine: fmpq) -> Fraction:
+    value = (arb(cosine).acos() / (2 * arb.pi())).mid().fmpq()
     return Fraction(int(value.p), int(value.q))
 
 
@@ -180,30 +177,25 @@ def _cycle(loop: LinearLoop, turn: Fraction) -> tuple[int, ...]:
     p, q = turn.numerator, turn.denominator
     if q == 2:
         return (1, 0)
-    saved = ctx.prec
-    try:
-        ctx.prec = 512
-        depth = abs(float(_evaluate(loop.criterion, arb.cos_pi_fmpq(fmpq(2 * p, q)))))
-        largest = float(sum(abs(c) for c in loop.criterion.coeffs()))
-        bits = 6 + ceil(max(0.0, 0.5 * log2(largest / depth)) - log2(2 * sin(pi * p / q)))
-        if bits <= 44:
-            size = float(1 << bits)
-            return tuple(round(size * (1 - cos(2 * pi * (p * k % q) / q))) for k in range(1, q + 1))
-        ctx.prec = bits + 64
+    needed = _bits_of_size(loop.criterion, fmpq(2 * p, q))
+    bits = 6 + ceil(needed - log2(2 * sin(pi * p / q)))
+    if bits <= 44:
+        size = float(1 << bits)
+        return tuple(round(size * (1 - cos(2 * pi * (p * k % q) / q))) for k in range(1, q + 1))
+    with precision(bits + 64):
         return tuple(
             _nearest((1 << bits) * (1 - arb.cos_pi_fmpq(fmpq(2 * (p * k % q), q)))) for k in range(1, q + 1)
         )
-    finally:
-        ctx.prec = saved
+
+
+def _bits_of_size(criterion: fmpz_poly, half_turns: fmpq) -> float:
+    """Bits that a wave of this frequency needs, for rounding not to matter beside what it gains."""
+    largest = sum(abs(c) for c in criterion.coeffs())
+    with precision(512 + criterion.height_bits()):
+        gained = criterion(arb.cos_pi_fmpq(half_turns))
+        return max(0.0, 0.5 * float((largest / abs(gained)).log_base(2)))
 
 
 def _nearest(value: arb) -> int:
     middle = value.mid().fmpq()
     return round(Fraction(int(middle.p), int(middle.q)))
-
-
-def _evaluate(p: fmpz_poly, at: arb) -> arb:
-    total = arb(0)
-    for c in reversed(p.coeffs()):
-        total = total * at + c
-    return total
