@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
-from math import gcd, inf, isfinite, lcm
+from math import floor, gcd, inf, isfinite, lcm, log10
 
 from flint import arb, fmpq, fmpq_poly, fmpz_poly
 
@@ -32,6 +32,12 @@ from zwidth.passivity.schur import is_schur
 
 LARGEST_DEGREE = 120
 """The order of H plus the delay in samples that is still decided."""
+
+HIGH_DEGREE = 40
+"""Order and delay beyond which limits and advice are looked for in coarser steps."""
+
+LARGEST_DIGITS = 1000
+"""Digits of N and D as whole numbers that are still decided: a proof has numbers of more than twice as many."""
 
 _PRECISIONS = (256, 1024, 4096)
 """Bits of the balls in which a need is evaluated, one after the other."""
@@ -70,6 +76,11 @@ class LinearLoop:
     def order(self) -> int:
         """Order of H(z)."""
         return len(self.denominator) - 1
+
+    @property
+    def degree(self) -> int:
+        """Order of H(z) and delay in whole samples together."""
+        return max(len(self.numerator), len(self.denominator)) - 1 + self.whole_delay
 
     @cached_property
     def follower(self) -> tuple[int, ...]:
@@ -177,8 +188,8 @@ def linear_loop(device: Device, environment: Environment) -> LinearLoop:
     Raises
     ------
     InputError
-        If a parameter is an interval, H(z) does not exist, or order and delay
-        together exceed `LARGEST_DEGREE`.
+        If a parameter is an interval, H(z) does not exist, order and delay together
+        exceed `LARGEST_DEGREE`, or its whole coefficients have more than `LARGEST_DIGITS`.
     """
     period = device.exact("sample_period")
     h = environment.pulse_transfer_function(period)
@@ -189,13 +200,13 @@ def loop_from(h: RationalFunction, damping: Fraction, period: Fraction, delay: F
     """The exact loop of H(z), b [N·s/m], T [s] and a delay [s]."""
     numerator, denominator, decay = _coprime(h)
     whole = delay // period
-    degree = max(len(numerator), len(denominator)) - 1 + whole
-    if degree > LARGEST_DEGREE:
+    loop = LinearLoop(numerator, denominator, damping, period, int(whole), delay / period - whole, decay)
+    if loop.degree > LARGEST_DEGREE:
         raise InputError(
-            f"the order of the environment plus the delay in samples is {degree}; at most "
+            f"the order of the environment plus the delay in samples is {loop.degree}; at most "
             f"{LARGEST_DEGREE} can be certified: shorten the delay or lower the rate"
         )
-    return LinearLoop(numerator, denominator, damping, period, int(whole), delay / period - whole, decay)
+    return loop
 
 
 def _q(value: Fraction) -> fmpq:
@@ -204,7 +215,7 @@ def _q(value: Fraction) -> fmpq:
 
 def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...], bool]:
     """N and D as coprime integer polynomials in ζ, D(1) ≥ 0, and whether what was cancelled decays."""
-    scale = lcm(*(c.denominator for c in (*h.numerator, *h.denominator)))
+    scale = _common_denominator(h)
     n = fmpz_poly([c.numerator * (scale // c.denominator) for c in reversed(h.numerator)])
     d = fmpz_poly([c.numerator * (scale // c.denominator) for c in reversed(h.denominator)])
     if d.degree() < 0:
@@ -225,6 +236,20 @@ def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...], boo
     while len(top_down_d) > 1 and top_down_d[-1] == 0:
         top_down_d.pop()
     return tuple(top_down_n), tuple(top_down_d), decay
+
+
+def _common_denominator(h: RationalFunction) -> int:
+    """What makes all coefficients whole, if none is too long then."""
+    scale, longest, most = 1, 0, floor(LARGEST_DIGITS / log10(2))
+    for c in (*h.numerator, *h.denominator):
+        longest = max(longest, c.numerator.bit_length() - c.denominator.bit_length())
+        scale = lcm(scale, c.denominator)
+        if scale.bit_length() + max(longest, 0) > most:
+            raise InputError(
+                f"over a common denominator the coefficients of H(z) have more than {LARGEST_DIGITS} digits, "
+                "and no more can be certified: give them with fewer digits"
+            )
+    return scale
 
 
 def _dirichlet(r: list[fmpq], lag: int) -> list[fmpq]:

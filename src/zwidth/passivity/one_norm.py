@@ -19,6 +19,7 @@ from typing import NamedTuple
 from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.loop import LinearLoop
+from zwidth.passivity.roots import rational_roots_inside
 
 LONGEST = 1500
 """Coefficients of 1/S kept; a rest that remembers longer than this stays unbounded."""
@@ -69,11 +70,8 @@ def _bounded(top: tuple[int, ...], bottom: tuple[int, ...]) -> NormBound | None:
 def _split_slow(n: fmpq_poly, d: fmpq_poly) -> tuple[tuple[Mode, ...], fmpq_poly, fmpq_poly]:
     """N/D as slow simple modes with rational poles, and the rest."""
     modes, rest = [], d
-    for factor, times in fmpz_poly(d.numer()).factor()[1]:
-        if factor.degree() != 1 or times != 1:
-            continue
-        pole = Fraction(-int(factor[1]), int(factor[0])) if factor[0] != 0 else Fraction(0)
-        if not _SLOW < abs(pole) < 1:
+    for pole in rational_roots_inside(fmpz_poly(d.numer().coeffs()[::-1])):
+        if abs(pole) <= _SLOW:
             continue
         line = fmpq_poly([1, _q(-pole)])
         others = d // line

@@ -29,6 +29,23 @@ def roots_inside(p: fmpz_poly, bits: int = 128) -> list[Fraction]:
         return [_root_between(simple, low, high, bits) for low, high in _isolated(simple, bits)]
 
 
+def rational_roots_inside(p: fmpz_poly) -> list[Fraction]:
+    """The simple rational roots in (−1, 1), in time bounded by degree and digits, as factoring is not."""
+    largest = abs(int(p[p.degree()]))  # denominators divide it: between two such fractions lies 1/largest²
+    bits = 2 * largest.bit_length() + 2
+    near = (root.limit_denominator(largest) for root in roots_inside(p, bits))
+    slope = p.derivative()
+    return [root for root in near if _vanishes(p, root, bits) and slope(_exact(root)) != 0]
+
+
+def _vanishes(p: fmpz_poly, at: Fraction, bits: int) -> bool:
+    """True where p(at) = 0; balls see most that are not."""
+    with precision(bits):
+        if not p(_ball(at)).contains(0):
+            return False
+    return bool(p(_exact(at)) == 0)
+
+
 @contextmanager
 def precision(bits: int) -> Iterator[None]:
     """Balls of so many bits inside."""
@@ -41,7 +58,7 @@ def precision(bits: int) -> Iterator[None]:
 
 
 def _isolated(p: fmpz_poly, bits: int) -> Iterator[tuple[Fraction, Fraction]]:
-    """Intervals of one simple root each, open, or the root itself as both ends; the narrowest may hold more."""
+    """Open intervals of one root each, of a narrowest perhaps more; or the root itself as both ends."""
     work = [(on_unit_interval(p), Fraction(-1), Fraction(1))]
     while work:
         h, low, high = work.pop()
@@ -80,12 +97,16 @@ def _root_between(p: fmpz_poly, low: Fraction, high: Fraction, bits: int) -> Fra
 
 def _is_positive_after(p: fmpz_poly, slope: fmpz_poly, at: Fraction) -> bool:
     """The sign of p just above a point, which may be a simple root."""
-    point = fmpq(at.numerator, at.denominator)
+    point = _exact(at)
     return bool((p(point) or slope(point)) > 0)
 
 
+def _exact(value: Fraction) -> fmpq:
+    return fmpq(value.numerator, value.denominator)
+
+
 def _ball(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))
+    return arb(_exact(value))
 
 
 def _middle(ball: arb) -> Fraction:

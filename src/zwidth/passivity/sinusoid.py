@@ -96,7 +96,7 @@ def _following(loop: LinearLoop, x: list[float], depth: int, start: float = 0.0)
     """
     d, at_one = loop.follower, sum(loop.follower)
     scale = 1 << (64 + 16 * len(d))  # clustered poles cancel many digits
-    past = [round(start * scale)] * (len(d) - 1)
+    past = [round(start) * scale] * (len(d) - 1)
     w: list[int] = []
     while len(w) < len(x) or x[-1] == 1:
         target = x[len(w)] if len(w) < len(x) else 1.0
