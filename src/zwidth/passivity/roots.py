@@ -25,8 +25,13 @@ def roots_inside(p: fmpz_poly, bits: int = 128) -> list[Fraction]:
     if p.degree() < 1:
         return []
     simple = p // p.gcd(p.derivative())
-    with precision(bits + 4 * simple.degree() + 64):  # near a root the powers cancel about as many bits
-        return [_root_between(simple, low, high, bits) for low, high in _isolated(simple, bits)]
+    return [root_between(simple, low, high, bits) for low, high in _isolated(simple, bits)]
+
+
+def root_between(p: fmpz_poly, low: Fraction, high: Fraction, bits: int) -> Fraction:
+    """The one root of p in (low, high), within rounding at `bits`; `low` where that is `high`."""
+    with precision(bits + 4 * p.degree() + 64):  # near a root the powers cancel about as many bits
+        return _middle(_refined(p, low, high, bits)) if low < high else low
 
 
 def rational_roots_inside(p: fmpz_poly) -> list[Fraction]:
@@ -35,7 +40,7 @@ def rational_roots_inside(p: fmpz_poly) -> list[Fraction]:
     bits = 2 * largest.bit_length() + 2
     near = (root.limit_denominator(largest) for root in roots_inside(p, bits))
     slope = p.derivative()
-    return [root for root in near if _vanishes(p, root, bits) and slope(_exact(root)) != 0]
+    return [root for root in near if _vanishes(p, root, bits) and slope(exact(root)) != 0]
 
 
 def _vanishes(p: fmpz_poly, at: Fraction, bits: int) -> bool:
@@ -43,7 +48,7 @@ def _vanishes(p: fmpz_poly, at: Fraction, bits: int) -> bool:
     with precision(bits):
         if not p(_ball(at)).contains(0):
             return False
-    return bool(p(_exact(at)) == 0)
+    return bool(p(exact(at)) == 0)
 
 
 @contextmanager
@@ -75,8 +80,8 @@ def _isolated(p: fmpz_poly, bits: int) -> Iterator[tuple[Fraction, Fraction]]:
         work += [(left, low, middle), (right, middle, high)]
 
 
-def _root_between(p: fmpz_poly, low: Fraction, high: Fraction, bits: int) -> Fraction:
-    """The root in (low, high) by Newton's steps, and by halving where they leave it or shrink too little."""
+def _refined(p: fmpz_poly, low: Fraction, high: Fraction, bits: int) -> arb:
+    """The root by Newton's steps, and by halving where they leave the interval or shrink too little."""
     slope = p.derivative()
     a, b = _ball(low), _ball(high)
     rising = not _is_positive_after(p, slope, low)
@@ -92,21 +97,22 @@ def _root_between(p: fmpz_poly, low: Fraction, high: Fraction, bits: int) -> Fra
         x, before = (x - step).mid(), abs(step)
         if before < close:
             break
-    return _middle(x) if low < high else low
+    return x
 
 
 def _is_positive_after(p: fmpz_poly, slope: fmpz_poly, at: Fraction) -> bool:
     """The sign of p just above a point, which may be a simple root."""
-    point = _exact(at)
+    point = exact(at)
     return bool((p(point) or slope(point)) > 0)
 
 
-def _exact(value: Fraction) -> fmpq:
+def exact(value: Fraction) -> fmpq:
+    """A rational as flint has it."""
     return fmpq(value.numerator, value.denominator)
 
 
 def _ball(value: Fraction) -> arb:
-    return arb(_exact(value))
+    return arb(exact(value))
 
 
 def _middle(ball: arb) -> Fraction:
