@@ -165,7 +165,7 @@ def _require_few(corners: list[Loop]) -> None:
     """Refuse many corners of a law of high order: each is decided, and its proof checked, by itself."""
     if len(corners) <= MOST_CORNERS_OF_HIGH_DEGREE:
         return
-    degree = linear_loop(*corners[0]).degree
+    degree = max(linear_loop(*corner).degree for corner in corners)
     if degree > HIGH_DEGREE:
         raise InputError(
             f"the intervals have {len(corners)} corners, and the order of the environment plus the delay in "

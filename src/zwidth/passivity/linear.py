@@ -44,7 +44,7 @@ class LinearProof:
 class LinearRefutation:
     """Why a linear loop is not proved passive; `cosine` is where the criterion is negative.
 
-    "too close to zero": the sign of the criterion would take more work than is spent on it; it may be passive.
+    "too close to zero": its sign would take more work than is spent on it, and the loop may be passive.
     """
 
     reason: Reason

@@ -37,7 +37,7 @@ HIGH_DEGREE = 40
 """Order and delay beyond which limits and advice are looked for in coarser steps."""
 
 LARGEST_DIGITS = 1000
-"""Digits of N and D as whole numbers that are still decided: a proof has numbers of more than twice as many."""
+"""Digits of N and D as whole numbers that are still decided: a proof has more than twice as many."""
 
 _PRECISIONS = (256, 1024, 4096)
 """Bits of the balls in which a need is evaluated, one after the other."""

@@ -31,7 +31,7 @@ def _is_schur(ascending: tuple[int, ...]) -> bool:
     """The same; one law is asked about on many devices."""
     p = fmpz_poly(list(ascending))
     if p.degree() < 1:
-        return p.degree() == 0
+        return bool(p.degree() == 0)
     if abs(p[0]) >= abs(p[p.degree()]) or p.gcd(_reversed(p)).degree() > 0:
         return False  # roots on the circle, and pairs that mirror each other in it, are common to both
     for bits in _PRECISIONS:
