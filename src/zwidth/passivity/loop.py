@@ -27,8 +27,8 @@ from zwidth.device import Device
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.errors import InputError
 from zwidth.passivity.cosines import from_cosines, real_product
-from zwidth.passivity.roots import precision
 from zwidth.passivity.schur import is_schur
+from zwidth.quantity.balls import as_fmpq, as_fraction, precision
 
 LARGEST_DEGREE = 120
 """The order of H plus the delay in samples that is still decided."""
@@ -113,7 +113,7 @@ class LinearLoop:
         """−R + (1 + c) S as a polynomial in c."""
         alpha = self.part_delay
         n = fmpq_poly(list(self.numerator))
-        shift = fmpq_poly([_q(1 - alpha), _q(alpha)])
+        shift = fmpq_poly([as_fmpq(1 - alpha), as_fmpq(alpha)])
         m = (n * shift).left_shift(self.whole_delay)
         lag = len(self.denominator) - 1
         r = (m * fmpq_poly(list(self.denominator[::-1]))).coeffs()
@@ -124,14 +124,14 @@ class LinearLoop:
         """q(c), times b where α > 0, times a positive integer: ≥ 0 on [−1, 1] if passive."""
         b, t, alpha = self.damping, self.period, self.part_delay
         if alpha == 0:
-            return (_q(2 * b / t) * self.dissipation + self.hold).numer()
+            return (as_fmpq(2 * b / t) * self.dissipation + self.hold).numer()
         return self.bounded_criterion(alpha * (1 - alpha))
 
     def bounded_criterion(self, share: Fraction) -> fmpz_poly:
         """b q(c), times a positive integer, with `share` in the place of α(1−α)."""
         b, t = self.damping, self.period
-        damped = _q(2 * b * b / t) * self.dissipation + _q(b) * self.hold
-        return (damped - _q(t * share / 2) * self.switching).numer()
+        damped = as_fmpq(2 * b * b / t) * self.dissipation + as_fmpq(b) * self.hold
+        return (damped - as_fmpq(t * share / 2) * self.switching).numer()
 
     def required_damping_at(self, c: Fraction) -> float:
         """The damping that the criterion asks for at cos ωT = c, to rounding [N·s/m].
@@ -152,7 +152,7 @@ class LinearLoop:
 
     def _values_at(self, c: Fraction) -> tuple[float, float] | None:
         """(−R + (1 + c) S)/|D|² and |N|²/|D|², to rounding; None where they are beyond doubles."""
-        point = _q(c)
+        point = as_fmpq(c)
         parts = (self.hold, self.switching) if self.part_delay else (self.hold, fmpq_poly())
         for bits in _PRECISIONS:
             with precision(bits):
@@ -177,7 +177,7 @@ def _finite(hold: float, switching: float) -> tuple[float, float] | None:
 def _float(value: fmpq) -> float:
     """The nearest double, infinite beyond the largest."""
     try:
-        return float(Fraction(int(value.p), int(value.q)))
+        return float(as_fraction(value))
     except OverflowError:
         return inf
 
@@ -207,10 +207,6 @@ def loop_from(h: RationalFunction, damping: Fraction, period: Fraction, delay: F
             f"{LARGEST_DEGREE} can be certified: shorten the delay or lower the rate"
         )
     return loop
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
 
 
 def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...], bool]:

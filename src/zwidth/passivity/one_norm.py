@@ -16,10 +16,11 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq_poly, fmpz_poly
 
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.roots import rational_roots_inside
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 LONGEST = 1500
 """Coefficients of 1/S kept; a rest that remembers longer than this stays unbounded."""
@@ -73,19 +74,15 @@ def _split_slow(n: fmpq_poly, d: fmpq_poly) -> tuple[tuple[Mode, ...], fmpq_poly
     for pole in rational_roots_inside(fmpz_poly(d.numer().coeffs()[::-1])):
         if abs(pole) <= _SLOW:
             continue
-        line = fmpq_poly([1, _q(-pole)])
+        line = fmpq_poly([1, as_fmpq(-pole)])
         others = d // line
-        at = 1 / _q(pole)
+        at = 1 / as_fmpq(pole)
         residue = n(at) / others(at)
-        modes.append(Mode(pole, Fraction(int(residue.p), int(residue.q))))
+        modes.append(Mode(pole, as_fraction(residue)))
         rest //= line
     for pole, residue in modes:
-        n -= _q(residue) * (d // fmpq_poly([1, _q(-pole)]))
+        n -= as_fmpq(residue) * (d // fmpq_poly([1, as_fmpq(-pole)]))
     return tuple(modes), n // (d // rest), rest
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
 
 
 def _series(d: list[int], length: int) -> tuple[int, ...]:
@@ -115,4 +112,4 @@ def _bound(
 
 
 def _fractions(p: fmpq_poly) -> list[Fraction]:
-    return [Fraction(int(c.p), int(c.q)) for c in p.coeffs()]
+    return [as_fraction(c) for c in p.coeffs()]

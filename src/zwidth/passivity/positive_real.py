@@ -24,6 +24,7 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 from zwidth.passivity.port import Port, Time
 from zwidth.passivity.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.roots import roots_inside
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 OFFSET = Fraction(1)
 """The g > 0 of every proof."""
@@ -66,7 +67,7 @@ def largest_level(port: Port, root: str = "pole") -> Largest | NoLevel:
     )
     if not port.is_stable_with(OFFSET - low):
         return NoLevel(_not_stable(port, root))
-    if vanishes(p - fmpq(low.numerator, low.denominator) * w):
+    if vanishes(p - as_fmpq(low) * w):
         least = low
     return Largest(low, least, None if flat else cosine)
 
@@ -82,7 +83,7 @@ def prove_level(port: Port, level: Fraction) -> Positivity | None:
 def above_level(port: Port, level: Fraction) -> fmpz_poly:
     """Re(N D̄) − level |D|² in c, times a positive integer."""
     p, w = port.real_part
-    return (p - fmpq(level.numerator, level.denominator) * w).numer()
+    return (p - as_fmpq(level) * w).numer()
 
 
 def _in_lowest_terms(p: fmpq_poly, w: fmpq_poly) -> tuple[fmpq_poly, fmpq_poly]:
@@ -113,9 +114,9 @@ def _minimum(p: fmpq_poly, w: fmpq_poly) -> tuple[Fraction, Fraction]:
 
 
 def _value(p: fmpq_poly, w: fmpq_poly, c: Fraction) -> Fraction:
-    at = fmpq(c.numerator, c.denominator)
+    at = as_fmpq(c)
     value = p(at) / w(at)
-    return Fraction(int(value.p), int(value.q))
+    return as_fraction(value)
 
 
 def proved_below(least: Fraction, holds: Callable[[Fraction], bool]) -> Fraction:

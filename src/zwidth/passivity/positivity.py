@@ -15,7 +15,8 @@ from flint import fmpq, fmpz_poly
 
 from zwidth.errors import InputError
 from zwidth.passivity.descartes import halves, on_unit_interval, sign_changes
-from zwidth.passivity.roots import exact, root_between
+from zwidth.passivity.roots import root_between
+from zwidth.quantity.balls import as_fmpq
 
 MOST_WORDS = 40_000_000
 """Words of 64 bits in all polynomials that one sign is decided from: a few seconds' work."""
@@ -111,7 +112,7 @@ def _negative_point(g: fmpz_poly) -> Fraction | None:
         if valley is not False:
             return valley
         middle = (low + high) / 2
-        value = g(exact(middle))
+        value = g(as_fmpq(middle))
         if value < 0:
             return middle
         if value == 0:  # a simple root: g is negative on one side of it
@@ -131,14 +132,14 @@ def _valley(g: fmpz_poly, h: fmpz_poly, low: Fraction, high: Fraction) -> Fracti
     if sign_changes(bend):
         return False
     slope = g.derivative()
-    if bend(_HALF) < 0 or slope(exact(low)) >= 0 or slope(exact(high)) <= 0:
+    if bend(_HALF) < 0 or slope(as_fmpq(low)) >= 0 or slope(as_fmpq(high)) <= 0:
         return bool(bend(_HALF))
     for bits in _VALLEY_BITS:
         lowest = Fraction(round(root_between(slope, low, high, bits) * (1 << bits)), 1 << bits)
-        value = g(exact(lowest))
+        value = g(as_fmpq(lowest))
         if value < 0:
             return lowest
-        if value > abs(slope(exact(lowest))) * exact(high - low):
+        if value > abs(slope(as_fmpq(lowest))) * as_fmpq(high - low):
             return True
     raise TooClose
 
@@ -149,7 +150,7 @@ def where_negative(p: fmpz_poly, point: Fraction) -> Fraction:
     while True:
         for candidate in (point, point + step, point - step):
             inside = -1 < candidate < 1
-            if inside and p(exact(candidate)) < 0:
+            if inside and p(as_fmpq(candidate)) < 0:
                 return candidate
         step /= 2
 

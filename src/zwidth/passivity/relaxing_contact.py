@@ -25,6 +25,7 @@ from zwidth.environment import GeneralizedMaxwell, Maxwell, StandardLinearSolid,
 from zwidth.environment.environment import Environment
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.roots import rational_roots_inside
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 MOST_PARTS = 60
 
@@ -119,7 +120,7 @@ def _parts(loop: LinearLoop) -> tuple[Part, ...] | None:
     poles = rational_roots_inside(fmpz_poly(bottom.coeffs()[::-1]))
     if len(poles) < bottom.degree():
         return None
-    parts = [_part(loop, fmpq(pole.numerator, pole.denominator)) for pole in poles]
+    parts = [_part(loop, as_fmpq(pole)) for pole in poles]
     at_once = Fraction(loop.numerator[0], loop.denominator[0]) - (loop.static_stiffness or 0)
     rest = at_once - sum((part.stiffness for part in parts), Fraction(0))
     return (*parts, Part(Fraction(0), rest)) if rest else tuple(parts)
@@ -130,4 +131,4 @@ def _part(loop: LinearLoop, pole: fmpq) -> Part:
     others = fmpq_poly(list(loop.denominator)) // fmpq_poly([fmpq(1), -pole])
     residue = fmpq_poly(list(loop.numerator))(1 / pole) / others(1 / pole)
     stiffness = residue * pole / (pole - 1)
-    return Part(*(Fraction(int(c.p), int(c.q)) for c in (pole, stiffness)))
+    return Part(*(as_fraction(c) for c in (pole, stiffness)))

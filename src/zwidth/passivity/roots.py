@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from fractions import Fraction
 
-from flint import arb, ctx, fmpq, fmpz_poly
+from flint import arb, fmpz_poly
 
 from zwidth.passivity.descartes import halves, on_unit_interval, sign_changes
+from zwidth.quantity.balls import as_fmpq, ball, middle, precision
 
 
 def real_roots(p: fmpz_poly, bits: int = 128) -> list[Fraction]:
     """Rationals within rounding at `bits` of each real root."""
     with precision(bits):
-        return [_middle(root.real) for root, _ in p.complex_roots() if abs(float(root.imag)) <= 1e-30]
+        return [middle(root.real) for root, _ in p.complex_roots() if abs(float(root.imag)) <= 1e-30]
 
 
 def roots_inside(p: fmpz_poly, bits: int = 128) -> list[Fraction]:
@@ -31,7 +31,7 @@ def roots_inside(p: fmpz_poly, bits: int = 128) -> list[Fraction]:
 def root_between(p: fmpz_poly, low: Fraction, high: Fraction, bits: int) -> Fraction:
     """The one root of p in (low, high), within rounding at `bits`; `low` where that is `high`."""
     with precision(bits + 4 * p.degree() + 64):  # near a root the powers cancel about as many bits
-        return _middle(_refined(p, low, high, bits)) if low < high else low
+        return middle(_refined(p, low, high, bits)) if low < high else low
 
 
 def rational_roots_inside(p: fmpz_poly) -> list[Fraction]:
@@ -40,26 +40,15 @@ def rational_roots_inside(p: fmpz_poly) -> list[Fraction]:
     bits = 2 * largest.bit_length() + 2
     near = (root.limit_denominator(largest) for root in roots_inside(p, bits))
     slope = p.derivative()
-    return [root for root in near if _vanishes(p, root, bits) and slope(exact(root)) != 0]
+    return [root for root in near if _vanishes(p, root, bits) and slope(as_fmpq(root)) != 0]
 
 
 def _vanishes(p: fmpz_poly, at: Fraction, bits: int) -> bool:
     """True where p(at) = 0; balls see most that are not."""
     with precision(bits):
-        if not p(_ball(at)).contains(0):
+        if not p(ball(at)).contains(0):
             return False
-    return bool(p(exact(at)) == 0)
-
-
-@contextmanager
-def precision(bits: int) -> Iterator[None]:
-    """Balls of so many bits inside."""
-    saved = ctx.prec
-    ctx.prec = bits
-    try:
-        yield
-    finally:
-        ctx.prec = saved
+    return bool(p(as_fmpq(at)) == 0)
 
 
 def _isolated(p: fmpz_poly, bits: int) -> Iterator[tuple[Fraction, Fraction]]:
@@ -73,17 +62,17 @@ def _isolated(p: fmpz_poly, bits: int) -> Iterator[tuple[Fraction, Fraction]]:
         if changes == 1 or high - low < Fraction(1, 1 << bits):
             yield low, high
             continue
-        middle = (low + high) / 2
+        between = (low + high) / 2
         left, right = halves(h)
         if right[0] == 0:
-            yield middle, middle
-        work += [(left, low, middle), (right, middle, high)]
+            yield between, between
+        work += [(left, low, between), (right, between, high)]
 
 
 def _refined(p: fmpz_poly, low: Fraction, high: Fraction, bits: int) -> arb:
     """The root by Newton's steps, and by halving where they leave the interval or shrink too little."""
     slope = p.derivative()
-    a, b = _ball(low), _ball(high)
+    a, b = ball(low), ball(high)
     rising = not _is_positive_after(p, slope, low)
     x, before, close = (a + b) / 2, b - a, arb(2) ** -bits
     while b - a > close:
@@ -102,20 +91,5 @@ def _refined(p: fmpz_poly, low: Fraction, high: Fraction, bits: int) -> arb:
 
 def _is_positive_after(p: fmpz_poly, slope: fmpz_poly, at: Fraction) -> bool:
     """The sign of p just above a point, which may be a simple root."""
-    point = exact(at)
+    point = as_fmpq(at)
     return bool((p(point) or slope(point)) > 0)
-
-
-def exact(value: Fraction) -> fmpq:
-    """A rational as flint has it."""
-    return fmpq(value.numerator, value.denominator)
-
-
-def _ball(value: Fraction) -> arb:
-    return arb(exact(value))
-
-
-def _middle(ball: arb) -> Fraction:
-    """The midpoint of a real ball, exactly."""
-    middle = ball.mid().fmpq()
-    return Fraction(int(middle.p), int(middle.q))

@@ -13,7 +13,7 @@ from typing import TypeVar
 
 from flint import arb_poly, fmpz_poly
 
-from zwidth.passivity.roots import precision
+from zwidth.quantity.balls import precision
 
 Polynomial = TypeVar("Polynomial", fmpz_poly, arb_poly)
 

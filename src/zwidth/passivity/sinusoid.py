@@ -17,9 +17,10 @@ from flint import arb, fmpq, fmpz_poly
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Pattern, Repeat
 from zwidth.passivity.positivity import prove_nonnegative
-from zwidth.passivity.roots import precision, roots_inside
+from zwidth.passivity.roots import roots_inside
 from zwidth.passivity.schur import is_schur
 from zwidth.passivity.supremum import tightest
+from zwidth.quantity.balls import as_fmpq, middle, precision
 
 LONGEST_PERIOD = 10_000
 """Samples in one period; a criterion violated in a narrower band is shown by no motion."""
@@ -140,25 +141,24 @@ def negative_band(loop: LinearLoop) -> tuple[Fraction, Fraction] | None:
     """Turns per sample ωT/2π, low to high, well inside a band where the criterion is negative."""
     criterion = loop.criterion
     _, cosine = tightest(loop)
-    at = fmpq(cosine.numerator, cosine.denominator)
+    at = as_fmpq(cosine)
     if criterion(at) >= 0:  # beside a pole on the unit circle the need has no largest value
         point = prove_nonnegative(criterion)
         if not isinstance(point, Fraction):
             return None
-        at = fmpq(point.numerator, point.denominator)
+        at = as_fmpq(point)
     low, high = Fraction(0), Fraction(1, 2)
     with precision(_TURN_BITS):
         here = _turn(at)
         for root in roots_inside(criterion, _TURN_BITS):
-            turn = _turn(fmpq(root.numerator, root.denominator))
+            turn = _turn(as_fmpq(root))
             low, high = (max(low, turn), high) if turn < here else (low, min(high, turn))
     margin = (high - low) / 4
     return low + margin, high if high == Fraction(1, 2) else high - margin
 
 
 def _turn(cosine: fmpq) -> Fraction:
-    value = (arb(cosine).acos() / (2 * arb.pi())).mid().fmpq()
-    return Fraction(int(value.p), int(value.q))
+    return middle(arb(cosine).acos() / (2 * arb.pi()))
 
 
 def simplest_between(low: Fraction, high: Fraction) -> Fraction:
@@ -184,7 +184,8 @@ def _cycle(loop: LinearLoop, turn: Fraction) -> tuple[int, ...]:
         return tuple(round(size * (1 - cos(2 * pi * (p * k % q) / q))) for k in range(1, q + 1))
     with precision(bits + 64):
         return tuple(
-            _nearest((1 << bits) * (1 - arb.cos_pi_fmpq(fmpq(2 * (p * k % q), q)))) for k in range(1, q + 1)
+            round(middle((1 << bits) * (1 - arb.cos_pi_fmpq(fmpq(2 * (p * k % q), q)))))
+            for k in range(1, q + 1)
         )
 
 
@@ -194,8 +195,3 @@ def _bits_of_size(criterion: fmpz_poly, half_turns: fmpq) -> float:
     with precision(512 + criterion.height_bits()):
         gained = criterion(arb.cos_pi_fmpq(half_turns))
         return max(0.0, 0.5 * float((largest / abs(gained)).log_base(2)))
-
-
-def _nearest(value: arb) -> int:
-    middle = value.mid().fmpq()
-    return round(Fraction(int(middle.p), int(middle.q)))

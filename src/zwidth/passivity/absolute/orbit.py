@@ -7,15 +7,14 @@ it is solved once more with error bounds, and the signs of all x − g are certa
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import numpy as np
-from flint import arb, arb_mat, ctx, fmpq
+from flint import arb, arb_mat
 from numpy.typing import NDArray
 from scipy.signal import tf2ss
 
 from zwidth.checker.known_hand.plant import read_plant
 from zwidth.passivity.absolute.plant import Plant
+from zwidth.quantity.balls import ball, precision
 
 _STARTS = 36
 _SETTLING = 6000
@@ -77,11 +76,9 @@ def is_certain(plant: Plant, slope: float, gap: float, inside: NDArray[np.bool_]
     """D x + K N s (x − g) = 0 around the period, solved in balls: every sample on its side of the surface."""
     enclosed = read_plant(plant.source)
     n = len(inside)
-    saved = ctx.prec
-    try:
-        ctx.prec = _PRECISION
+    with precision(_PRECISION):
         top, bottom = (
-            [arb(_ball(m), _ball(r)) for m, r in zip(part.middle, part.radius, strict=True)]
+            [arb(ball(m), ball(r)) for m, r in zip(part.middle, part.radius, strict=True)]
             for part in enclosed
         )
         rows = [[arb(0)] * n for _ in range(n)]
@@ -100,12 +97,6 @@ def is_certain(plant: Plant, slope: float, gap: float, inside: NDArray[np.bool_]
         except ZeroDivisionError:
             return False
         return all(bool(found[j, 0] > far if inside[j] else found[j, 0] < far) for j in range(n))
-    finally:
-        ctx.prec = saved
-
-
-def _ball(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))
 
 
 def growth_of(plant: Plant, slope: float, inside: NDArray[np.bool_]) -> float:
