@@ -191,3 +191,14 @@ def test_the_work_on_one_sign_is_bounded(monkeypatch):
     monkeypatch.setattr(positivity, "MOST_WORDS", 20)
     with pytest.raises(TooClose):
         prove_nonnegative(p)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_valley_narrower_than_the_digits_of_its_lowest_point(sign):
+    """A tangent beside the interval says nothing of what is in it: more digits are taken."""
+    lowest, half = Fraction(1, 3), Fraction(1, 2**300)
+    low, high = lowest - half, lowest + half
+    dip = (lowest**2 + Fraction(sign, 2**700), -2 * lowest, 1)
+    on_unit = (half**2 + Fraction(sign, 2**700), -4 * half**2, 4 * half**2)  # c = low + 2 half t
+    answer = positivity._valley(product(dip), product(on_unit), low, high)
+    assert answer is True if sign > 0 else value(product(dip), answer) < 0

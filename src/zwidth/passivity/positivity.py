@@ -139,7 +139,7 @@ def _valley(g: fmpz_poly, h: fmpz_poly, low: Fraction, high: Fraction) -> Fracti
         value = g(as_fmpq(lowest))
         if value < 0:
             return lowest
-        if value > abs(slope(as_fmpq(lowest))) * as_fmpq(high - low):
+        if low <= lowest <= high and value > abs(slope(as_fmpq(lowest))) * as_fmpq(high - low):
             return True
     raise TooClose
 
