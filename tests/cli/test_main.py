@@ -11,11 +11,15 @@ from typing import NamedTuple
 
 import pytest
 
+import zwidth as zw
 from zwidth.cli.bars import bar, levels
+from zwidth.cli.commands import decided
 from zwidth.cli.main import main
 from zwidth.cli.numerals import shown
 from zwidth.cli.options import device_parameters, environment_parameters, joined
+from zwidth.cli.specification import Specification
 from zwidth.device import catalogue
+from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.verdict import Verdict
 
 PASSIVE = ("check", "haptic-paddle", "--stiffness", "300")
@@ -427,3 +431,19 @@ def test_a_long_delay_without_a_unit_is_questioned(run: Run) -> None:
     assert 'delay 3 without a unit is 3 s between sample and force; write "3 ms", or "3 s"' in asked.err
     assert "without a unit" not in run(*PASSIVE, "--delay", "3 s").err
     assert run(*PASSIVE, "--delay", "0.003").status != 2
+
+
+def test_the_closed_forms_are_worked_out_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before the game is played, its verdict is what they said, and not one worked out anew."""
+    once, asked = check_by_closed_forms, list[str]()
+
+    def counted(device: zw.Device, law: zw.Wall, contact: str) -> Verdict:
+        asked.append(contact)
+        return once(device, law, contact=contact)
+
+    monkeypatch.setattr(sys.modules["zwidth.passivity.check"], "check_by_closed_forms", counted)
+    monkeypatch.setattr("zwidth.passivity.game.with_game", lambda device, law, verdict, progress: verdict)
+    device = catalogue.device("haptic-paddle")
+    law = zw.Wall(stiffness=120, damping="0.2", velocity_filter=zw.Window(3))
+    assert decided(Specification(device, law)).outcome == "passive in contact"
+    assert asked == ["made and broken"]

@@ -13,7 +13,8 @@ from flint import fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from zwidth.passivity.positivity import Positivity, prove_nonnegative
+from zwidth.passivity import positivity
+from zwidth.passivity.positivity import Positivity, TooClose, prove_nonnegative
 
 
 def product(*factors):
@@ -154,3 +155,50 @@ def test_products_of_known_factors(simple, double, complex_pairs, sign):
 
     nonnegative = all(positive((a + b) / 2) for a, b in zip(cuts, cuts[1:], strict=False))
     assert_sound(product(*factors), nonnegative)
+
+
+def valley(degree, steep, sign):
+    """± cⁿ + (steep c − 1)²: all but touches zero at 1/steep, from above or below."""
+    return fmpz_poly([0] * degree + [sign]) + fmpz_poly([-1, steep]) ** 2
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("degree", "steep"), [(9, 1000), (40, 10**6), (100, 10**4)])
+def test_a_valley_that_all_but_touches_zero(monkeypatch, degree, steep, sign):
+    """By 1e-240 and more: halving down to it would read a thousand times as many words."""
+    monkeypatch.setattr(positivity, "MOST_WORDS", 400_000)
+    assert_sound(valley(degree, steep, sign), sign > 0)
+
+
+@pytest.mark.parametrize("middle", ["0.3", "0.25", "-0.9"])
+@pytest.mark.parametrize("gap", [TINY, -TINY])
+def test_a_valley_between_other_roots(middle, gap):
+    """Beside touching pairs, and at a place that halving meets."""
+    r = Fraction(middle)
+    assert_sound(product((r * r + gap, -2 * r, 1), root("0.31"), root("0.31"), (3, 1)), gap > 0)
+
+
+def test_what_is_too_close_is_said_to_be():
+    """A valley of 1e-1200 would be decided from numbers that no proof can hold: that is said, at once."""
+    with pytest.raises(TooClose, match="so close to zero"):
+        prove_nonnegative(valley(240, 10**10, 1))
+
+
+def test_the_work_on_one_sign_is_bounded(monkeypatch):
+    """What is read is counted before it is read, in words."""
+    p = product(*NONNEGATIVE["two near misses"])
+    assert isinstance(prove_nonnegative(p), Positivity)
+    monkeypatch.setattr(positivity, "MOST_WORDS", 20)
+    with pytest.raises(TooClose):
+        prove_nonnegative(p)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_valley_narrower_than_the_digits_of_its_lowest_point(sign):
+    """A tangent beside the interval says nothing of what is in it: more digits are taken."""
+    lowest, half = Fraction(1, 3), Fraction(1, 2**300)
+    low, high = lowest - half, lowest + half
+    dip = (lowest**2 + Fraction(sign, 2**700), -2 * lowest, 1)
+    on_unit = (half**2 + Fraction(sign, 2**700), -4 * half**2, 4 * half**2)  # c = low + 2 half t
+    answer = positivity._valley(product(dip), product(on_unit), low, high)
+    assert answer is True if sign > 0 else value(product(dip), answer) < 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product as choices
 from math import lcm
 from random import Random
 
@@ -87,3 +88,17 @@ def test_random_roots(seed):
         )
         stable &= radius < 1
     assert_stable(polynomial((Fraction("-2.3"),), *factors), stable)
+
+
+def test_every_small_cubic():
+    """Small whole numbers make a reflection of exactly 1 on the way, which no balls decide."""
+    for descending in choices(range(-3, 4), repeat=4):
+        if descending[0]:
+            expected = _inside_unit_circle([Fraction(c) for c in descending])
+            assert is_schur(descending[::-1]) is expected, descending
+
+
+@pytest.mark.parametrize(("furthest", "expected"), [(1 - HAIR, True), (1 + HAIR, False)])
+def test_order_one_hundred_and_ten(furthest, expected):
+    """A cluster of poles near 1 and one pole a hair inside or outside: decided, whatever the digits."""
+    assert is_schur(polynomial(*[(1, Fraction("-0.99"))] * 109, (1, -furthest))[::-1]) is expected

@@ -18,6 +18,7 @@ import flint
 
 from zwidth.environment.environment import RationalFunction
 from zwidth.errors import InputError
+from zwidth.quantity.balls import ball, precision
 
 Polynomial = tuple[Fraction, ...]
 Balls = list[Any]
@@ -80,7 +81,7 @@ def matched(numerator: Polynomial, denominator: Polynomial, period: Fraction) ->
     def compute() -> tuple[Balls, Balls]:
         top = _with_roots(num, zeros_at_0, missing)
         bottom = _with_roots(den, poles_at_0, 0)
-        gain = _ball(num[-1] / den[-1]) * _value_at_1(den) / (_value_at_1(num) * 2**missing)
+        gain = ball(num[-1] / den[-1]) * _value_at_1(den) / (_value_at_1(num) * 2**missing)
         return [gain * c for c in top], bottom
 
     return _at_rest(_rounded(compute, denominator), numerator, denominator)
@@ -116,15 +117,11 @@ def _state_space(
 
 
 def _matrix(a: list[list[Fraction]], column: list[int] | None = None) -> Any:
-    rows = [[_ball(c) for c in row] for row in a]
+    rows = [[ball(c) for c in row] for row in a]
     if column is not None:
         rows = [[*row, flint.arb(c)] for row, c in zip(rows, column, strict=True)]
         rows.append([flint.arb(0)] * len(rows[0]))
     return flint.arb_mat(rows)
-
-
-def _ball(value: Fraction) -> Any:
-    return flint.arb(flint.fmpq(value.numerator, value.denominator))
 
 
 def _transfer(phi: Any, start: Any, output: list[Fraction]) -> tuple[Balls, Balls]:
@@ -132,7 +129,7 @@ def _transfer(phi: Any, start: Any, output: list[Fraction]) -> tuple[Balls, Ball
 
     The numerator is the denominator times the response z⁻¹ C start + z⁻² C Φ start + …
     """
-    row = flint.arb_mat([[_ball(c) for c in output]])
+    row = flint.arb_mat([[ball(c) for c in output]])
     response, state = [], start
     for _ in output:
         response.append((row * state)[0, 0])
@@ -143,7 +140,7 @@ def _transfer(phi: Any, start: Any, output: list[Fraction]) -> tuple[Balls, Ball
 
 
 def _with_direct(num: Balls, den: Balls, direct: Fraction) -> Balls:
-    return [n + _ball(direct) * d for n, d in zip(num, den, strict=True)]
+    return [n + ball(direct) * d for n, d in zip(num, den, strict=True)]
 
 
 def _with_roots(polynomial: Polynomial, at_1: int, at_minus_1: int) -> Balls:
@@ -170,16 +167,12 @@ def _rounded(compute: Callable[[], tuple[Balls, Balls]], denominator: Polynomial
             f"H(s) has order {len(denominator) - 1}, above {LARGEST_ORDER}: rounded to doubles, its "
             'coefficients would not say where its poles are; use "backward", "forward" or "tustin"'
         )
-    before = flint.ctx.prec
-    try:
-        for precision in _PRECISIONS:
-            flint.ctx.prec = precision
+    for bits in _PRECISIONS:
+        with precision(bits):
             num, den = compute()
             top, bottom = ([_nearest_double(c) for c in part] for part in (num, den))
-            if None not in top and None not in bottom:
-                return RationalFunction(_decimals(top), _decimals(bottom))
-    finally:
-        flint.ctx.prec = before
+        if None not in top and None not in bottom:
+            return RationalFunction(_decimals(top), _decimals(bottom))
     raise InputError(
         "H(s) has modes so fast against the sample period that no double holds the coefficients of H(z); "
         "check the unit of the coefficients"
@@ -197,19 +190,19 @@ def _at_rest(rounded: RationalFunction, numerator: Polynomial, denominator: Poly
     return RationalFunction((*top[:-1], -sum(top[:-1], Fraction(0))), rounded.denominator)
 
 
-def _nearest_double(ball: Any) -> float | None:
+def _nearest_double(value: Any) -> float | None:
     """The double nearest to every number in the ball, None if there are several."""
-    if not ball.is_finite():
+    if not value.is_finite():
         return None
     try:
-        low, high = (float(_exactly(end)) for end in (ball.lower(), ball.upper()))
+        low, high = (float(_exactly(end)) for end in (value.lower(), value.upper()))
     except OverflowError:
         return None
     return low if low == high else None
 
 
-def _exactly(ball: Any) -> Fraction:
-    mantissa, exponent = (int(part) for part in ball.man_exp())
+def _exactly(value: Any) -> Fraction:
+    mantissa, exponent = (int(part) for part in value.man_exp())
     # below the smallest double there is nothing to tell apart, and 2^exponent may be vast
     if mantissa.bit_length() + exponent < -1100:
         return Fraction(0)

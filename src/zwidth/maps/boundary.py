@@ -18,10 +18,11 @@ from zwidth.device import Device
 from zwidth.environment import BackwardDifference
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
-from zwidth.passivity.known_hand.characteristic import PRECISIONS, family, precision
+from zwidth.passivity.known_hand.characteristic import PRECISIONS, family
 from zwidth.passivity.known_hand.crossing import Curve, curve, line, plain
 from zwidth.passivity.known_hand.hand import as_hand
 from zwidth.passivity.known_hand.stability import motion_of
+from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
 

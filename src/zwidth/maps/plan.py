@@ -27,10 +27,11 @@ from zwidth.maps.sustained import sustained_walls
 from zwidth.passivity.contact import damped_wall
 from zwidth.passivity.decision import decide
 from zwidth.passivity.delayed_spring import spring_stiffness
-from zwidth.passivity.known_hand.characteristic import Family, as_floats, bilinear, family, precision
+from zwidth.passivity.known_hand.characteristic import Family, as_floats, bilinear, family
 from zwidth.passivity.known_hand.crossing import last_stable, plain
 from zwidth.passivity.known_hand.plant import Coefficients, Motion
 from zwidth.passivity.known_hand.stability import motion_of
+from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact
 
 _BITS = 192

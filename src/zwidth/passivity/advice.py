@@ -14,8 +14,8 @@ from typing import Literal
 from zwidth.device import Device
 from zwidth.environment import OnePole, Wall, Window
 from zwidth.environment.environment import Environment
-from zwidth.passivity.boundary import COARSE, SMALLEST, Holds, largest_holding, smallest_holding
-from zwidth.passivity.limits import Change, has_stiffness, provable, stiffness_of
+from zwidth.passivity.boundary import COARSE, COARSER, SMALLEST, Holds, largest_holding, smallest_holding
+from zwidth.passivity.limits import Change, has_stiffness, is_of_high_degree, provable, stiffness_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -73,7 +73,8 @@ def advise(
     """Advice on every parameter of a certain loop; `contact` as for `provable`."""
     kind: Literal["change", "slack"] = "slack" if passive else "change"
     knobs = (replace(knob, contact=contact) for knob in _knobs(device, environment))
-    found = [_turn(knob, device.motion, kind) for knob in knobs]
+    grain = COARSER if is_of_high_degree(device, environment) else COARSE
+    found = [_turn(knob, device.motion, kind, grain) for knob in knobs]
     if not passive and isinstance(environment, Wall) and environment.damping != 0:
         found.extend(_estimators(device, environment, contact))
     return tuple(found)
@@ -116,11 +117,11 @@ def _time_constant(device: Device, wall: Wall) -> Iterator[_Knob]:
         yield _Knob("time_constant", float(velocity.time_constant), change, True, "filter time constant")
 
 
-def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"]) -> Advice:
+def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"], grain: int) -> Advice:
     search = smallest_holding if knob.more else largest_holding
-    to = search(knob.holds, knob.current or 1e-4, COARSE)
+    to = search(knob.holds, knob.current or 1e-4, grain)
     if to is not None and SMALLEST < to < inf:
-        to = _simplest_near(to, knob.holds, knob.more)
+        to = _simplest_near(to, knob.holds, knob.more, grain)
     if knob.more and to is not None and to <= SMALLEST:
         to = inf if knob.parameter == "rate" else 0.0
     if kind == "change" and to is not None and not _is_change(knob, to):
@@ -130,9 +131,10 @@ def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"]) -> Advice:
     return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind))
 
 
-def _simplest_near(value: float, holds: Holds, more: bool) -> float:
+def _simplest_near(value: float, holds: Holds, more: bool, grain: int) -> float:
     """The shortest decimal within a grain of the boundary, if it is proved too."""
-    beyond = value * (1 - 2**-21 if more else 1 + 2**-21)
+    near = grain * 2.0**-51
+    beyond = value * (1 - near if more else 1 + near)
     for digits in range(1, 9):
         short = float(f"{value:.{digits}g}")
         if min(value, beyond) <= short <= max(value, beyond) and holds(Exact(short).fraction):

@@ -19,6 +19,9 @@ SMALLEST, LARGEST = 1e-15, 1e15
 COARSE = 1 << 30
 """A grain of 2^30 doubles, 2.4e-7 of the value: near enough for advice, in half the decisions."""
 
+COARSER = 1 << 42
+"""1e-3 of the value: for advice on laws of high order, of which each decision takes long."""
+
 Holds = Callable[[Fraction], bool]
 
 

@@ -69,7 +69,7 @@ def budget(decision: Decision) -> Budget:
 def binding_limit(decision: Decision, account: Budget, environment: Environment) -> str:
     """The mechanism that binds: what is violated, or what would be violated first."""
     viscous = decision.viscous
-    if isinstance(viscous, LinearRefutation) and viscous.reason != "criterion":
+    if isinstance(viscous, LinearRefutation) and viscous.reason in (NEGATIVE, UNSTABLE):
         return viscous.reason
     friction = account.friction_required
     friction_load = _load(friction, account.coulomb_friction) if friction is not None else float("inf")

@@ -23,6 +23,7 @@ from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.game import has_gap, with_game
 from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.loop import HIGH_DEGREE, linear_loop
 from zwidth.passivity.other_laws import check_other
 from zwidth.passivity.refutation import refute_friction
 from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
@@ -38,6 +39,9 @@ if TYPE_CHECKING:
     from zwidth.environment import Wall
     from zwidth.environment.matrix_wall import MatrixWall
     from zwidth.passivity.arms import Workspace
+
+MOST_CORNERS_OF_HIGH_DEGREE = 8
+"""Corners of intervals that are decided for a law of high order."""
 
 Evidence = Violation | Witness
 
@@ -137,6 +141,7 @@ def check_by_closed_forms(
     """`check` without the game: exact, in milliseconds, of every hand."""
     asked, law = as_contact(contact), _as_law(device, environment)
     corners = worst_corners(device, law)
+    _require_few(corners)
     decisions = [decide(*corner) for corner in corners]
     failing = [k for k, d in enumerate(decisions) if not d.is_provable]
     if not failing:
@@ -154,6 +159,19 @@ def check_by_closed_forms(
     finding: Finding = "open" if at_worst is None else "depends on values"
     found = _undecided(device, law, corners[worst], decisions[worst], finding, at_worst)
     return (asked != "kept" and _touched(device, law, found)) or found
+
+
+def _require_few(corners: list[Loop]) -> None:
+    """Refuse many corners of a law of high order: each is decided, and its proof checked, by itself."""
+    if len(corners) <= MOST_CORNERS_OF_HIGH_DEGREE:
+        return
+    degree = max(linear_loop(*corner).degree for corner in corners)
+    if degree > HIGH_DEGREE:
+        raise InputError(
+            f"the intervals have {len(corners)} corners, and the order of the environment plus the delay in "
+            f"samples is {degree}: above {HIGH_DEGREE} at most {MOST_CORNERS_OF_HIGH_DEGREE} are decided; "
+            "give single values for some parameters"
+        )
 
 
 def _touched(device: Device, law: Environment, verdict: LinearVerdict) -> LinearVerdict | None:
@@ -279,6 +297,8 @@ def _refute(decision: Decision) -> Evidence | None:
         return None
     if isinstance(decision.viscous, LinearProof):
         return None if decision.friction_covers else refute_friction(decision.setting)
+    if decision.viscous.reason == "too close to zero":
+        return None
     violation = Violation(decision.setting, decision.viscous)
     return violation if violation.verify() else violation.witness
 

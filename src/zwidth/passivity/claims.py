@@ -114,6 +114,12 @@ def _open(decision: Decision) -> str:
     if decision.is_clamped:
         return _clamped(decision)
     if isinstance(decision.viscous, LinearRefutation):
+        if decision.viscous.reason == "too close to zero":
+            return (
+                "The linear criterion comes so close to zero that to tell its sign would take more work than "
+                "is spent on it. Give the law with fewer digits or of a lower order, or change the damping: "
+                "the damping that is required is known, and is given with what is proved."
+            )
         return (
             f"Passivity cannot be proved ({decision.viscous.reason}); that energy comes out was not "
             "confirmed by the independent checker within its bounds."

@@ -18,10 +18,13 @@ from typing import NamedTuple
 
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.loop import LinearLoop
-from zwidth.passivity.positivity import Positivity, prove_nonnegative
+from zwidth.passivity.positivity import Positivity, TooClose, prove_nonnegative
 
 SMALLEST_PIECE = Fraction(1, 512)
 """Samples; a delay that is proved only in smaller pieces than this stays undecided."""
+
+MOST_PIECES = 30_000
+"""Pieces that are tried, times degree: some seconds' work; an interval that needs more stays undecided."""
 
 
 class Piece(NamedTuple):
@@ -43,12 +46,14 @@ def prove_delays(loop: LinearLoop, proof: LinearProof, longest: Fraction) -> tup
     low, high = loop.whole_delay + loop.part_delay, longest / loop.period
     work = _at_whole_samples(low, high)[::-1]
     pieces: list[Piece] = []
+    left = MOST_PIECES // (10 + loop.order + floor(high))
     while work:
         low, high = work.pop()
+        left -= 1
         piece = _prove(loop, low, high)
         if piece is not None:
             pieces.append(piece)
-        elif high - low <= SMALLEST_PIECE:
+        elif high - low <= SMALLEST_PIECE or left <= 0:
             return None
         else:
             middle = (low + high) / 2
@@ -70,7 +75,10 @@ def _prove(loop: LinearLoop, low: Fraction, high: Fraction) -> Piece | None:
         part = end - whole
         tangent = middle * (1 - middle) + (1 - 2 * middle) * (part - middle)
         at_end = replace(loop, whole_delay=whole, part_delay=part)
-        found = prove_nonnegative(at_end.bounded_criterion(tangent))
+        try:
+            found = prove_nonnegative(at_end.bounded_criterion(tangent))
+        except TooClose:
+            return None
         if isinstance(found, Fraction):
             return None
         proofs.append(found)

@@ -26,6 +26,7 @@ from zwidth.passivity.port_motion import (
 )
 from zwidth.passivity.positive_real import above_level, pole_places
 from zwidth.passivity.positivity import prove_nonnegative
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 MOST_CYCLES = 1 << 22
 LONGEST_SEQUENCE = 1 << 17
@@ -98,7 +99,7 @@ def _pairing(
     level: Fraction,
 ) -> fmpq:
     total = sum(a * d + b * c - 2 * level * a * c for a, b, c, d in zip(u, y, v, z, strict=True))
-    return _q(Fraction(total) / 2)
+    return as_fmpq(Fraction(total) / 2)
 
 
 def _polynomial(port: Port, level: Fraction) -> Motion | None:
@@ -119,7 +120,7 @@ def _answers(port: Port, level: Fraction, tau: Fraction, power: int) -> tuple[fm
     """u and y − σ u of φ = xⁿ."""
     phi = [Fraction(0)] * power + [Fraction(1)]
     u, y = (differentiated(phi, side, tau) for side in (port.denominator, port.numerator))
-    first, second = (fmpq_poly([_q(c) for c in p]) for p in (u, above(y, u, level)))
+    first, second = (fmpq_poly([as_fmpq(c) for c in p]) for p in (u, above(y, u, level)))
     return first, second
 
 
@@ -144,7 +145,7 @@ def _verified(
     """The direction as a motion, in few digits where these are enough."""
     if direction is None:
         return None
-    exact = [Fraction(int(x.p), int(x.q)) for x in direction]
+    exact = [as_fraction(x) for x in direction]
     for digits in (3, 6, 12, 24):
         motion = Motion(kind, (*head, *rounded(exact, digits)))
         if absorbed(port, level, motion) < 0:
@@ -158,7 +159,3 @@ def rounded(values: Sequence[Fraction], digits: int) -> list[Fraction]:
     decade = digits - round(log10(largest)) if largest else 0
     unit = Fraction(10) ** decade
     return [Fraction(round(v * unit)) / unit for v in values]
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)

@@ -21,13 +21,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Literal
 
 from zwidth.passivity.loop import LinearLoop
-from zwidth.passivity.positivity import Positivity, prove_nonnegative
+from zwidth.passivity.positivity import Positivity, TooClose, prove_nonnegative
 from zwidth.passivity.schur import is_schur
 
-Reason = Literal["criterion", "negative static stiffness", "unstable environment"]
+Reason = Literal["criterion", "negative static stiffness", "unstable environment", "too close to zero"]
 
 
 @dataclass(frozen=True)
@@ -41,27 +42,40 @@ class LinearProof:
 
 @dataclass(frozen=True)
 class LinearRefutation:
-    """Why a linear loop is not passive; `cosine` is where the criterion is negative."""
+    """Why a linear loop is not proved passive; `cosine` is where the criterion is negative.
+
+    "too close to zero": its sign would take more work than is spent on it, and the loop may be passive.
+    """
 
     reason: Reason
     cosine: Fraction | None
 
 
+@lru_cache(maxsize=64)
 def decide_linear(loop: LinearLoop) -> LinearProof | LinearRefutation:
     """Decide the linear criterion exactly, equality counted as passive."""
-    positivity = prove_nonnegative(loop.criterion)
+    positivity = _sign(loop)
     if isinstance(positivity, Fraction):
         fastest = Fraction(-1)  # to and fro from sample to sample: the shortest motion, where it will do
         return LinearRefutation("criterion", fastest if loop.criterion(-1) < 0 else positivity)
-    if is_schur(loop.denominator[::-1]):
-        if sum(loop.numerator) < 0:
-            return LinearRefutation("negative static stiffness", None)
-        return LinearProof("open loop", None, positivity)
-    if loop.part_delay == 0:
+    stable, offset = is_schur(loop.denominator[::-1]), None
+    if stable and sum(loop.numerator) < 0:
+        return LinearRefutation("negative static stiffness", None)
+    if not stable:
         offset = offset_of(loop)
-        if is_schur(closed_loop(loop, offset)[::-1]):
-            return LinearProof("closed loop", offset, positivity)
-    return LinearRefutation("unstable environment", None)
+        if loop.part_delay or not is_schur(closed_loop(loop, offset)[::-1]):
+            return LinearRefutation("unstable environment", None)
+    if positivity is None:
+        return LinearRefutation("too close to zero", None)
+    return LinearProof("open loop" if stable else "closed loop", offset, positivity)
+
+
+def _sign(loop: LinearLoop) -> Positivity | Fraction | None:
+    """Of the criterion; None where it comes too close to zero."""
+    try:
+        return prove_nonnegative(loop.criterion)
+    except TooClose:
+        return None
 
 
 def offset_of(loop: LinearLoop) -> Fraction:

@@ -19,18 +19,28 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
-from math import gcd, inf, lcm
+from math import floor, gcd, inf, isfinite, lcm, log10
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import arb, fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.errors import InputError
 from zwidth.passivity.cosines import from_cosines, real_product
 from zwidth.passivity.schur import is_schur
+from zwidth.quantity.balls import as_fmpq, as_fraction, precision
 
 LARGEST_DEGREE = 120
 """The order of H plus the delay in samples that is still decided."""
+
+HIGH_DEGREE = 40
+"""Order and delay beyond which limits and advice are looked for in coarser steps."""
+
+LARGEST_DIGITS = 1000
+"""Digits of N and D as whole numbers that are still decided: a proof has more than twice as many."""
+
+_PRECISIONS = (256, 1024, 4096)
+"""Bits of the balls in which a need is evaluated, one after the other."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +77,11 @@ class LinearLoop:
         """Order of H(z)."""
         return len(self.denominator) - 1
 
+    @property
+    def degree(self) -> int:
+        """Order of H(z) and delay in whole samples together."""
+        return max(len(self.numerator), len(self.denominator)) - 1 + self.whole_delay
+
     @cached_property
     def follower(self) -> tuple[int, ...]:
         """D without its integer content: x = follower · w keeps x small for small whole w."""
@@ -98,7 +113,7 @@ class LinearLoop:
         """−R + (1 + c) S as a polynomial in c."""
         alpha = self.part_delay
         n = fmpq_poly(list(self.numerator))
-        shift = fmpq_poly([_q(1 - alpha), _q(alpha)])
+        shift = fmpq_poly([as_fmpq(1 - alpha), as_fmpq(alpha)])
         m = (n * shift).left_shift(self.whole_delay)
         lag = len(self.denominator) - 1
         r = (m * fmpq_poly(list(self.denominator[::-1]))).coeffs()
@@ -109,38 +124,62 @@ class LinearLoop:
         """q(c), times b where α > 0, times a positive integer: ≥ 0 on [−1, 1] if passive."""
         b, t, alpha = self.damping, self.period, self.part_delay
         if alpha == 0:
-            return (_q(2 * b / t) * self.dissipation + self.hold).numer()
+            return (as_fmpq(2 * b / t) * self.dissipation + self.hold).numer()
         return self.bounded_criterion(alpha * (1 - alpha))
 
     def bounded_criterion(self, share: Fraction) -> fmpz_poly:
         """b q(c), times a positive integer, with `share` in the place of α(1−α)."""
         b, t = self.damping, self.period
-        damped = _q(2 * b * b / t) * self.dissipation + _q(b) * self.hold
-        return (damped - _q(t * share / 2) * self.switching).numer()
+        damped = as_fmpq(2 * b * b / t) * self.dissipation + as_fmpq(b) * self.hold
+        return (damped - as_fmpq(t * share / 2) * self.switching).numer()
 
     def required_damping_at(self, c: Fraction) -> float:
         """The damping that the criterion asks for at cos ωT = c, to rounding [N·s/m].
 
         ½ [A + √(A² + T² α(1−α) |H|²)],  A = (T/2) (R − (1 + c) S)/|D|².
         """
-        point = _q(c)
-        scale = self.dissipation(point)
-        if scale == 0:
+        values = self._values_at(c)
+        if values is None:
             return inf
-        try:
-            base = -float(self.period) / 2 * _float(self.hold(point) / scale)
-            alpha = float(self.part_delay)
-            extra = float(self.period) ** 2 * alpha * (1 - alpha) * _float(self.switching(point) / scale)
-        except OverflowError:
-            return inf
+        hold, switching = values
+        base = -float(self.period) / 2 * hold
+        alpha = float(self.part_delay)
+        extra = float(self.period) ** 2 * alpha * (1 - alpha) * switching
         if extra == 0:
             return base
         root = (base * base + extra) ** 0.5
         return float((base + root) / 2 if base > 0 else extra / 2 / (root - base))
 
+    def _values_at(self, c: Fraction) -> tuple[float, float] | None:
+        """(−R + (1 + c) S)/|D|² and |N|²/|D|², to rounding; None where they are beyond doubles."""
+        point = as_fmpq(c)
+        parts = (self.hold, self.switching) if self.part_delay else (self.hold, fmpq_poly())
+        for bits in _PRECISIONS:
+            with precision(bits):
+                scale = _in_balls(self.dissipation, point)
+                values = [_in_balls(part, point) / scale for part in parts]
+                if all(value.rel_accuracy_bits() > 60 for value in values):
+                    return _finite(*(float(value) for value in values))
+        below = self.dissipation(point)
+        if below == 0:
+            return None
+        return _finite(*(_float(part(point) / below) for part in parts))
+
+
+def _in_balls(p: fmpq_poly, point: fmpq) -> arb:
+    return p.numer()(arb(point)) / p.denom()
+
+
+def _finite(hold: float, switching: float) -> tuple[float, float] | None:
+    return (hold, switching) if isfinite(hold) and isfinite(switching) else None
+
 
 def _float(value: fmpq) -> float:
-    return float(Fraction(int(value.p), int(value.q)))
+    """The nearest double, infinite beyond the largest."""
+    try:
+        return float(as_fraction(value))
+    except OverflowError:
+        return inf
 
 
 def linear_loop(device: Device, environment: Environment) -> LinearLoop:
@@ -149,8 +188,8 @@ def linear_loop(device: Device, environment: Environment) -> LinearLoop:
     Raises
     ------
     InputError
-        If a parameter is an interval, H(z) does not exist, or order and delay
-        together exceed `LARGEST_DEGREE`.
+        If a parameter is an interval, H(z) does not exist, order and delay together
+        exceed `LARGEST_DEGREE`, or its whole coefficients have more than `LARGEST_DIGITS`.
     """
     period = device.exact("sample_period")
     h = environment.pulse_transfer_function(period)
@@ -161,22 +200,18 @@ def loop_from(h: RationalFunction, damping: Fraction, period: Fraction, delay: F
     """The exact loop of H(z), b [N·s/m], T [s] and a delay [s]."""
     numerator, denominator, decay = _coprime(h)
     whole = delay // period
-    degree = max(len(numerator), len(denominator)) - 1 + whole
-    if degree > LARGEST_DEGREE:
+    loop = LinearLoop(numerator, denominator, damping, period, int(whole), delay / period - whole, decay)
+    if loop.degree > LARGEST_DEGREE:
         raise InputError(
-            f"the order of the environment plus the delay in samples is {degree}; at most "
+            f"the order of the environment plus the delay in samples is {loop.degree}; at most "
             f"{LARGEST_DEGREE} can be certified: shorten the delay or lower the rate"
         )
-    return LinearLoop(numerator, denominator, damping, period, int(whole), delay / period - whole, decay)
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
+    return loop
 
 
 def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...], bool]:
     """N and D as coprime integer polynomials in ζ, D(1) ≥ 0, and whether what was cancelled decays."""
-    scale = lcm(*(c.denominator for c in (*h.numerator, *h.denominator)))
+    scale = _common_denominator(h)
     n = fmpz_poly([c.numerator * (scale // c.denominator) for c in reversed(h.numerator)])
     d = fmpz_poly([c.numerator * (scale // c.denominator) for c in reversed(h.denominator)])
     if d.degree() < 0:
@@ -197,6 +232,20 @@ def _coprime(h: RationalFunction) -> tuple[tuple[int, ...], tuple[int, ...], boo
     while len(top_down_d) > 1 and top_down_d[-1] == 0:
         top_down_d.pop()
     return tuple(top_down_n), tuple(top_down_d), decay
+
+
+def _common_denominator(h: RationalFunction) -> int:
+    """What makes all coefficients whole, if none is too long then."""
+    scale, longest, most = 1, 0, floor(LARGEST_DIGITS / log10(2))
+    for c in (*h.numerator, *h.denominator):
+        longest = max(longest, c.numerator.bit_length() - c.denominator.bit_length())
+        scale = lcm(scale, c.denominator)
+        if scale.bit_length() + max(longest, 0) > most:
+            raise InputError(
+                f"over a common denominator the coefficients of H(z) have more than {LARGEST_DIGITS} digits, "
+                "and no more can be certified: give them with fewer digits"
+            )
+    return scale
 
 
 def _dirichlet(r: list[fmpq], lag: int) -> list[fmpq]:

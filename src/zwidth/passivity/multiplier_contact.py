@@ -28,7 +28,7 @@ from zwidth.environment.environment import Environment
 from zwidth.passivity.cosines import real_product
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.one_norm import NormBound, bound_one_norm
-from zwidth.passivity.positivity import Positivity, prove_nonnegative
+from zwidth.passivity.positivity import Positivity, TooClose, prove_nonnegative
 from zwidth.passivity.schur import is_schur
 
 _POINTS = 256
@@ -60,7 +60,10 @@ class Memory:
         left = [x - y for x, y in zip(*([*c, *[0] * (size - len(c))] for c in (d, moved)), strict=True)]
         share = 4 * multiplier * level
         total = fmpq(share.numerator, share.denominator) * real_product(d, d) - real_product(left, left)
-        found = prove_nonnegative(total.numer())
+        try:
+            found = prove_nonnegative(total.numer())
+        except TooClose:
+            return None
         return None if isinstance(found, Fraction) else found
 
     def choice(self) -> Choice | None:

@@ -16,9 +16,11 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import NamedTuple
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq_poly, fmpz_poly
 
 from zwidth.passivity.loop import LinearLoop
+from zwidth.passivity.roots import rational_roots_inside
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 LONGEST = 1500
 """Coefficients of 1/S kept; a rest that remembers longer than this stays unbounded."""
@@ -69,25 +71,18 @@ def _bounded(top: tuple[int, ...], bottom: tuple[int, ...]) -> NormBound | None:
 def _split_slow(n: fmpq_poly, d: fmpq_poly) -> tuple[tuple[Mode, ...], fmpq_poly, fmpq_poly]:
     """N/D as slow simple modes with rational poles, and the rest."""
     modes, rest = [], d
-    for factor, times in fmpz_poly(d.numer()).factor()[1]:
-        if factor.degree() != 1 or times != 1:
+    for pole in rational_roots_inside(fmpz_poly(d.numer().coeffs()[::-1])):
+        if abs(pole) <= _SLOW:
             continue
-        pole = Fraction(-int(factor[1]), int(factor[0])) if factor[0] != 0 else Fraction(0)
-        if not _SLOW < abs(pole) < 1:
-            continue
-        line = fmpq_poly([1, _q(-pole)])
+        line = fmpq_poly([1, as_fmpq(-pole)])
         others = d // line
-        at = 1 / _q(pole)
+        at = 1 / as_fmpq(pole)
         residue = n(at) / others(at)
-        modes.append(Mode(pole, Fraction(int(residue.p), int(residue.q))))
+        modes.append(Mode(pole, as_fraction(residue)))
         rest //= line
     for pole, residue in modes:
-        n -= _q(residue) * (d // fmpq_poly([1, _q(-pole)]))
+        n -= as_fmpq(residue) * (d // fmpq_poly([1, as_fmpq(-pole)]))
     return tuple(modes), n // (d // rest), rest
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
 
 
 def _series(d: list[int], length: int) -> tuple[int, ...]:
@@ -117,4 +112,4 @@ def _bound(
 
 
 def _fractions(p: fmpq_poly) -> list[Fraction]:
-    return [Fraction(int(c.p), int(c.q)) for c in p.coeffs()]
+    return [as_fraction(c) for c in p.coeffs()]

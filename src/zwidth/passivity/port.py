@@ -17,7 +17,7 @@ from functools import cached_property
 from math import acos, inf, lcm, pi, sqrt
 from typing import Any, Literal
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq_poly, fmpz_poly
 
 from zwidth.environment.environment import Environment
 from zwidth.environment.system import Polynomial, is_system, read_system
@@ -25,6 +25,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.cosines import real_product
 from zwidth.passivity.loop import LARGEST_DEGREE
 from zwidth.passivity.schur import is_schur
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Time = Literal["continuous", "discrete"]
 
@@ -88,7 +89,7 @@ class Port:
 
     def real_part_at(self, c: Fraction) -> float:
         """Re F at cos θ = c; ±inf or nan at a pole."""
-        p, w = (Fraction(int(v.p), int(v.q)) for v in (r(_q(c)) for r in self.real_part))
+        p, w = (as_fraction(v) for v in (r(as_fmpq(c)) for r in self.real_part))
         if w == 0:
             return inf if p > 0 else -inf if p < 0 else float("nan")
         try:
@@ -186,7 +187,3 @@ def in_zeta(ascending: Sequence[int], order: int, time: Time) -> tuple[int, ...]
         if coefficient:
             total += coefficient * minus**power * plus ** (order - power)
     return tuple(int(total[i]) for i in range(order + 1))
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)

@@ -23,7 +23,8 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.port import Port, Time
 from zwidth.passivity.positivity import Positivity, prove_nonnegative
-from zwidth.passivity.roots import real_roots
+from zwidth.passivity.roots import roots_inside
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 OFFSET = Fraction(1)
 """The g > 0 of every proof."""
@@ -66,7 +67,7 @@ def largest_level(port: Port, root: str = "pole") -> Largest | NoLevel:
     )
     if not port.is_stable_with(OFFSET - low):
         return NoLevel(_not_stable(port, root))
-    if vanishes(p - fmpq(low.numerator, low.denominator) * w):
+    if vanishes(p - as_fmpq(low) * w):
         least = low
     return Largest(low, least, None if flat else cosine)
 
@@ -82,7 +83,7 @@ def prove_level(port: Port, level: Fraction) -> Positivity | None:
 def above_level(port: Port, level: Fraction) -> fmpz_poly:
     """Re(N D̄) − level |D|² in c, times a positive integer."""
     p, w = port.real_part
-    return (p - fmpq(level.numerator, level.denominator) * w).numer()
+    return (p - as_fmpq(level) * w).numer()
 
 
 def _in_lowest_terms(p: fmpq_poly, w: fmpq_poly) -> tuple[fmpq_poly, fmpq_poly]:
@@ -106,17 +107,16 @@ def vanishes(w: fmpq_poly) -> bool:
 def _minimum(p: fmpq_poly, w: fmpq_poly) -> tuple[Fraction, Fraction]:
     """The least p/w over [−1, 1], at its ends or a stationary point, and where: of equals the largest c."""
     slope = (p.derivative() * w - p * w.derivative()).numer()
-    inside = real_roots(slope, _BITS) if slope.degree() >= 1 else []
-    places = [Fraction(1), Fraction(-1), *(c for c in inside if -1 < c < 1)]
+    places = [Fraction(1), Fraction(-1), *roots_inside(slope, _BITS)]
     values = [(_value(p, w, c), c) for c in places]
     least = min(value for value, _ in values)
     return least, max(c for value, c in values if value == least)
 
 
 def _value(p: fmpq_poly, w: fmpq_poly, c: Fraction) -> Fraction:
-    at = fmpq(c.numerator, c.denominator)
+    at = as_fmpq(c)
     value = p(at) / w(at)
-    return Fraction(int(value.p), int(value.q))
+    return as_fraction(value)
 
 
 def proved_below(least: Fraction, holds: Callable[[Fraction], bool]) -> Fraction:

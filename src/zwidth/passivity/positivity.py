@@ -13,8 +13,32 @@ from fractions import Fraction
 
 from flint import fmpq, fmpz_poly
 
+from zwidth.errors import InputError
+from zwidth.passivity.descartes import halves, on_unit_interval, sign_changes
+from zwidth.passivity.roots import root_between
+from zwidth.quantity.balls import as_fmpq
+
+MOST_WORDS = 40_000_000
+"""Words of 64 bits in all polynomials that one sign is decided from: a few seconds' work."""
+
+
+class TooClose(InputError):
+    """A polynomial comes so close to zero that its sign would take more work than is spent on it."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "a criterion comes so close to zero that to tell its sign would take more work than is spent on "
+            "it: give fewer digits, or a lower order"
+        )
+
+
 _ONE = fmpz_poly([1])
-_SHIFT = fmpz_poly([1, 1])
+_HALF = fmpq(1, 2)
+_NARROW = Fraction(1, 100)
+"""Intervals in which a valley is looked for; in wider ones halving does."""
+
+_VALLEY_BITS = (256, 1024, 3072)
+"""To which its lowest point is computed, one after the other."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +55,13 @@ class Positivity:
 
 
 def prove_nonnegative(p: fmpz_poly) -> Positivity | Fraction:
-    """A proof that p ≥ 0 on [−1, 1], or a rational point of (−1, 1) where p < 0."""
+    """A proof that p ≥ 0 on [−1, 1], or a rational point of (−1, 1) where p < 0.
+
+    Raises
+    ------
+    TooClose
+        If p comes so close to zero that more than `MOST_WORDS` would be read.
+    """
     if p.degree() < 0:
         return Positivity(0, 0, (), (1,))
     g, at_one = _strip(p, 1)
@@ -64,44 +94,54 @@ def _split_square(p: fmpz_poly) -> tuple[fmpz_poly, fmpz_poly]:
 
 
 def _negative_point(g: fmpz_poly) -> Fraction | None:
-    """A point of [−1, 1] where a squarefree g < 0, or None when g > 0 throughout.
-
-    `work` holds g mapped, up to a positive factor, so that (0, 1) covers the interval.
-    """
+    """A point of [−1, 1] where a squarefree g < 0, or None when g > 0 throughout."""
     if g(1) < 0:
         return Fraction(1)
     if g(-1) < 0:
         return Fraction(-1)
-    on_unit = g(fmpz_poly([-1, 2]))  # c = 2t − 1
-    work = [(on_unit, Fraction(-1), Fraction(1))]
+    work, words = [(on_unit_interval(g), Fraction(-1), Fraction(1))], 0
     while work:
         h, low, high = work.pop()
-        if _sign_changes(h) == 0:
+        words += 2 * (h.degree() + 1) * (h.height_bits() // 64 + 1)  # this one, or its halves
+        if words > MOST_WORDS:
+            raise TooClose
+        changes = sign_changes(h)
+        valley = changes == 2 and high - low < _NARROW and _valley(g, h, low, high)
+        if changes == 0 or valley is True:
             continue
+        if valley is not False:
+            return valley
         middle = (low + high) / 2
-        value = g(fmpq(middle.numerator, middle.denominator))
+        value = g(as_fmpq(middle))
         if value < 0:
             return middle
         if value == 0:  # a simple root: g is negative on one side of it
             return where_negative(g, middle)
-        left = _halve(h)
-        work.append((left, low, middle))
-        work.append((left(_SHIFT), middle, high))
+        left, right = halves(h)
+        work += [(left, low, middle), (right, middle, high)]
     return None
 
 
-def _sign_changes(h: fmpz_poly) -> int:
-    """Descartes' bound on the number of roots of h in (0, 1)."""
-    n = h.degree()
-    reverse = fmpz_poly([h[n - i] for i in range(n + 1)])
-    signs = [c > 0 for c in reverse(_SHIFT).coeffs() if c != 0]
-    return sum(1 for a, b in zip(signs, signs[1:], strict=False) if a != b)
+def _valley(g: fmpz_poly, h: fmpz_poly, low: Fraction, high: Fraction) -> Fraction | bool:
+    """Whether g > 0 between two points where it is, or a point where g < 0; False where that stays open.
 
-
-def _halve(h: fmpz_poly) -> fmpz_poly:
-    """2ⁿ h(t/2)."""
-    n = h.degree()
-    return fmpz_poly([h[i] * (1 << (n - i)) for i in range(n + 1)])
+    `h` is g with (0, 1) over the interval.  Bent down throughout, g is least at an end.  Bent up, it lies
+    above each of its tangents: one at nearly the lowest point decides.
+    """
+    bend = h.derivative().derivative()
+    if sign_changes(bend):
+        return False
+    slope = g.derivative()
+    if bend(_HALF) < 0 or slope(as_fmpq(low)) >= 0 or slope(as_fmpq(high)) <= 0:
+        return bool(bend(_HALF))
+    for bits in _VALLEY_BITS:
+        lowest = Fraction(round(root_between(slope, low, high, bits) * (1 << bits)), 1 << bits)
+        value = g(as_fmpq(lowest))
+        if value < 0:
+            return lowest
+        if low <= lowest <= high and value > abs(slope(as_fmpq(lowest))) * as_fmpq(high - low):
+            return True
+    raise TooClose
 
 
 def where_negative(p: fmpz_poly, point: Fraction) -> Fraction:
@@ -110,7 +150,7 @@ def where_negative(p: fmpz_poly, point: Fraction) -> Fraction:
     while True:
         for candidate in (point, point + step, point - step):
             inside = -1 < candidate < 1
-            if inside and p(fmpq(candidate.numerator, candidate.denominator)) < 0:
+            if inside and p(as_fmpq(candidate)) < 0:
                 return candidate
         step /= 2
 

@@ -24,6 +24,8 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 from zwidth.environment import GeneralizedMaxwell, Maxwell, StandardLinearSolid, Wall
 from zwidth.environment.environment import Environment
 from zwidth.passivity.loop import LinearLoop
+from zwidth.passivity.roots import rational_roots_inside
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 MOST_PARTS = 60
 
@@ -115,11 +117,10 @@ def _parts(loop: LinearLoop) -> tuple[Part, ...] | None:
     bottom = fmpz_poly(list(loop.denominator))
     if not bottom.degree() <= MOST_PARTS or len(loop.numerator) > len(loop.denominator) + 1:
         return None
-    parts = []
-    for factor, times in bottom.factor()[1]:
-        if factor.degree() != 1 or times != 1 or abs(factor[1]) >= abs(factor[0]):
-            return None
-        parts.append(_part(loop, fmpq(-factor[1], factor[0])))
+    poles = rational_roots_inside(fmpz_poly(bottom.coeffs()[::-1]))
+    if len(poles) < bottom.degree():
+        return None
+    parts = [_part(loop, as_fmpq(pole)) for pole in poles]
     at_once = Fraction(loop.numerator[0], loop.denominator[0]) - (loop.static_stiffness or 0)
     rest = at_once - sum((part.stiffness for part in parts), Fraction(0))
     return (*parts, Part(Fraction(0), rest)) if rest else tuple(parts)
@@ -130,4 +131,4 @@ def _part(loop: LinearLoop, pole: fmpq) -> Part:
     others = fmpq_poly(list(loop.denominator)) // fmpq_poly([fmpq(1), -pole])
     residue = fmpq_poly(list(loop.numerator))(1 / pole) / others(1 / pole)
     stiffness = residue * pole / (pole - 1)
-    return Part(*(Fraction(int(c.p), int(c.q)) for c in (pole, stiffness)))
+    return Part(*(as_fraction(c) for c in (pole, stiffness)))

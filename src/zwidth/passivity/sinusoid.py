@@ -12,13 +12,15 @@ from collections.abc import Iterator
 from fractions import Fraction
 from math import ceil, cos, log2, pi, sin
 
-from flint import arb, ctx, fmpq, fmpz_poly
+from flint import arb, fmpq, fmpz_poly
 
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.motion import Pattern, Repeat
 from zwidth.passivity.positivity import prove_nonnegative
+from zwidth.passivity.roots import roots_inside
 from zwidth.passivity.schur import is_schur
 from zwidth.passivity.supremum import tightest
+from zwidth.quantity.balls import as_fmpq, middle, precision
 
 LONGEST_PERIOD = 10_000
 """Samples in one period; a criterion violated in a narrower band is shown by no motion."""
@@ -28,6 +30,8 @@ LONGEST_LISTED = 5_000
 
 LONGEST_WAY_IN = 50_000
 """Samples in which a filter must come to rest inside the wall."""
+
+_TURN_BITS = 256
 
 _PIECES, _SPEED = 64, 1000
 _RAMPS = (1, 16, 256)
@@ -93,7 +97,7 @@ def _following(loop: LinearLoop, x: list[float], depth: int, start: float = 0.0)
     """
     d, at_one = loop.follower, sum(loop.follower)
     scale = 1 << (64 + 16 * len(d))  # clustered poles cancel many digits
-    past = [round(start * scale)] * (len(d) - 1)
+    past = [round(start) * scale] * (len(d) - 1)
     w: list[int] = []
     while len(w) < len(x) or x[-1] == 1:
         target = x[len(w)] if len(w) < len(x) else 1.0
@@ -137,31 +141,24 @@ def negative_band(loop: LinearLoop) -> tuple[Fraction, Fraction] | None:
     """Turns per sample ωT/2π, low to high, well inside a band where the criterion is negative."""
     criterion = loop.criterion
     _, cosine = tightest(loop)
-    at = fmpq(cosine.numerator, cosine.denominator)
+    at = as_fmpq(cosine)
     if criterion(at) >= 0:  # beside a pole on the unit circle the need has no largest value
         point = prove_nonnegative(criterion)
         if not isinstance(point, Fraction):
             return None
-        at = fmpq(point.numerator, point.denominator)
+        at = as_fmpq(point)
     low, high = Fraction(0), Fraction(1, 2)
-    saved = ctx.prec
-    try:
-        ctx.prec = 256
-        here = _turn(arb(at))
-        for root, _ in criterion.complex_roots():
-            if abs(float(root.imag)) <= 1e-40 and -1 <= float(root.real) <= 1:
-                turn = _turn(root.real)
-                low, high = (max(low, turn), high) if turn < here else (low, min(high, turn))
-    finally:
-        ctx.prec = saved
+    with precision(_TURN_BITS):
+        here = _turn(at)
+        for root in roots_inside(criterion, _TURN_BITS):
+            turn = _turn(as_fmpq(root))
+            low, high = (max(low, turn), high) if turn < here else (low, min(high, turn))
     margin = (high - low) / 4
     return low + margin, high if high == Fraction(1, 2) else high - margin
 
 
-def _turn(cosine: arb) -> Fraction:
-    bounded = max(min(cosine.mid(), arb(1)), arb(-1))
-    value = (bounded.acos() / (2 * arb.pi())).mid().fmpq()
-    return Fraction(int(value.p), int(value.q))
+def _turn(cosine: fmpq) -> Fraction:
+    return middle(arb(cosine).acos() / (2 * arb.pi()))
 
 
 def simplest_between(low: Fraction, high: Fraction) -> Fraction:
@@ -180,30 +177,21 @@ def _cycle(loop: LinearLoop, turn: Fraction) -> tuple[int, ...]:
     p, q = turn.numerator, turn.denominator
     if q == 2:
         return (1, 0)
-    saved = ctx.prec
-    try:
-        ctx.prec = 512
-        depth = abs(float(_evaluate(loop.criterion, arb.cos_pi_fmpq(fmpq(2 * p, q)))))
-        largest = float(sum(abs(c) for c in loop.criterion.coeffs()))
-        bits = 6 + ceil(max(0.0, 0.5 * log2(largest / depth)) - log2(2 * sin(pi * p / q)))
-        if bits <= 44:
-            size = float(1 << bits)
-            return tuple(round(size * (1 - cos(2 * pi * (p * k % q) / q))) for k in range(1, q + 1))
-        ctx.prec = bits + 64
+    needed = _bits_of_size(loop.criterion, fmpq(2 * p, q))
+    bits = 6 + ceil(needed - log2(2 * sin(pi * p / q)))
+    if bits <= 44:
+        size = float(1 << bits)
+        return tuple(round(size * (1 - cos(2 * pi * (p * k % q) / q))) for k in range(1, q + 1))
+    with precision(bits + 64):
         return tuple(
-            _nearest((1 << bits) * (1 - arb.cos_pi_fmpq(fmpq(2 * (p * k % q), q)))) for k in range(1, q + 1)
+            round(middle((1 << bits) * (1 - arb.cos_pi_fmpq(fmpq(2 * (p * k % q), q)))))
+            for k in range(1, q + 1)
         )
-    finally:
-        ctx.prec = saved
 
 
-def _nearest(value: arb) -> int:
-    middle = value.mid().fmpq()
-    return round(Fraction(int(middle.p), int(middle.q)))
-
-
-def _evaluate(p: fmpz_poly, at: arb) -> arb:
-    total = arb(0)
-    for c in reversed(p.coeffs()):
-        total = total * at + c
-    return total
+def _bits_of_size(criterion: fmpz_poly, half_turns: fmpq) -> float:
+    """Bits that a wave of this frequency needs, for rounding not to matter beside what it gains."""
+    largest = sum(abs(c) for c in criterion.coeffs())
+    with precision(512 + criterion.height_bits()):
+        gained = criterion(arb.cos_pi_fmpq(half_turns))
+        return max(0.0, 0.5 * float((largest / abs(gained)).log_base(2)))

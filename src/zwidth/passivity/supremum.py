@@ -9,18 +9,20 @@ claimed there is decided exactly elsewhere.
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from math import acos, inf, pi
 
 from flint import fmpq_poly
 
 from zwidth.passivity.loop import LinearLoop
-from zwidth.passivity.roots import real_roots
+from zwidth.passivity.roots import roots_inside
 from zwidth.passivity.schur import is_schur
 
 _FLAT = 1e-12
 """Relative difference below which two frequencies are equally tight."""
 
 
+@lru_cache(maxsize=16)
 def tightest(loop: LinearLoop) -> tuple[float, Fraction]:
     """(required damping [N·s/m], cos ωT) where the criterion is tightest.
 
@@ -55,16 +57,14 @@ def _poles_on_circle(loop: LinearLoop) -> list[Fraction]:
     """Where |D|² vanishes, and the need may be without bound."""
     if is_schur(loop.denominator[::-1]):
         return []
-    return [c for c in real_roots(loop.dissipation.numer()) if -1 <= c <= 1]
+    return roots_inside(loop.dissipation.numer())
 
 
 def _stationary(loop: LinearLoop) -> list[Fraction]:
     """Points of (−1, 1) where criterion/|D|² is stationary."""
     p, weight = fmpq_poly(loop.criterion), loop.dissipation
     slope = (p.derivative() * weight - p * weight.derivative()).numer()
-    if slope.degree() < 1:
-        return []
-    return [c for c in real_roots(slope) if -1 < c < 1]
+    return roots_inside(slope)
 
 
 def _rational(value: float) -> Fraction:

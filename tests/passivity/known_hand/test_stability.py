@@ -11,10 +11,11 @@ from scipy.linalg import expm
 
 import zwidth as zw
 from zwidth.operator import Dowel, Finger, PrescribedMotion
-from zwidth.passivity.known_hand.characteristic import PRECISIONS, decays, family, precision
+from zwidth.passivity.known_hand.characteristic import PRECISIONS, decays, family
 from zwidth.passivity.known_hand.hand import as_hand
 from zwidth.passivity.known_hand.stability import motion_of
 from zwidth.passivity.schur import is_schur
+from zwidth.quantity.balls import precision
 
 MASS, PERIOD = Fraction("0.036"), Fraction("0.001")
 BARE = zw.Device(mass=MASS, damping=0, sample_period=PERIOD)

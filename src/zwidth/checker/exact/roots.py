@@ -1,57 +1,64 @@
-"""Where the roots of a polynomial of rational coefficients lie: Routh's table, in whole numbers."""
+"""Where the roots of a polynomial of rational coefficients lie.
+
+The recursion of Schur and Cohn, in fixed point with bounds, with more digits where a sign is open, and at
+last in whole numbers.  What is to lie left of the imaginary axis is mapped to the unit circle by
+s = (z − 1)/(z + 1) = ζ/(ζ + 2), ζ = z − 1.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from math import gcd
 
 from ..document.effort import spend
 from ..document.refusal import Invalid
+from .enclosed import Enclosed, quotient
 from .polynomial import bits, cleared
+from .schur_cohn import decays
 
-MOST_ROUTH = 20_000_000
-"""Order squared times the bits of the largest coefficient."""
+PRECISIONS = (256, 1024)
+MOST_EXACT = 8_000_000
+"""Order squared times the bits of the largest coefficient, where only whole numbers tell."""
 
 
 def inside_unit_circle(descending: Sequence[Fraction]) -> bool:
-    """All roots of Σ a_i z^{n−i} inside |z| = 1, by z = (1 + s)/(1 − s)."""
+    """All roots of Σ a_i z^{n−i} inside |z| = 1; False of one that begins with 0."""
     whole = cleared(descending)
-    spend(2 * len(whole) ** 2, bits(whole) + len(whole), 1)
-    # a(z) with z = w − 1 and w = 2/(1 − s): Σ b_k 2^k (1 − s)^(n−k), a polynomial in t = 1 − s, then in s
-    shifted = _shifted(whole[::-1], -1)
-    in_t = [b << k for k, b in enumerate(shifted)][::-1]
-    in_s = [-c if k % 2 else c for k, c in enumerate(_shifted(in_t, 1))]
-    return _hurwitz(in_s[::-1])
+    spend(len(whole) ** 2, bits(whole) + len(whole), 1)
+    return bool(whole[0]) and _decay(_shifted(whole[::-1])[::-1])
 
 
 def in_left_half_plane(descending: Sequence[Fraction]) -> bool:
-    """All roots left of the imaginary axis."""
-    return _hurwitz(cleared(descending))
+    """All roots of Σ a_i s^{n−i} left of the imaginary axis; False of one that begins with 0."""
+    whole = cleared(descending)
+    spend(2 * len(whole) ** 2, bits(whole) + 2 * len(whole), 1)
+    in_zeta: list[int] = []  # Σ a_k ζᵏ (ζ + 2)ⁿ⁻ᵏ, ascending, by Horner's rule
+    power = [1]
+    for a in whole:
+        in_zeta = [x + a * c for x, c in zip([0, *in_zeta], power, strict=True)]
+        power = [2 * x + y for x, y in zip([*power, 0], [0, *power], strict=True)]
+    return bool(whole[0]) and _decay(in_zeta[::-1])
 
 
-def _shifted(ascending: Sequence[int], by: int) -> list[int]:
-    """The coefficients of a(x + by), `by` = ±1, by Horner's rule over and over."""
+def _shifted(ascending: Sequence[int]) -> list[int]:
+    """The coefficients of a(x + 1), by Horner's rule over and over."""
     a = list(ascending)
     for first in range(len(a) - 1):
         for k in range(len(a) - 2, first - 1, -1):
-            a[k] += by * a[k + 1]
+            a[k] += a[k + 1]
     return a
 
 
-def _hurwitz(descending: list[int]) -> bool:
-    if len(descending) ** 2 * bits(descending) > MOST_ROUTH:
-        raise Invalid("the stability of so high an order, with so many digits, is not decided")
-    if descending[0] == 0:
+def _decay(in_zeta: list[int]) -> bool:
+    """All roots inside |z| = 1, of a polynomial in ζ = z − 1, descending."""
+    lead, size = in_zeta[0], len(in_zeta)
+    if lead == 0:
         return False
-    if descending[0] < 0:
-        descending = [-c for c in descending]
-    upper, lower = descending[0::2], descending[1::2]
-    while lower:
-        if lower[0] <= 0:
-            return False
-        padded = lower + [0] * (len(upper) - len(lower))
-        following = [lower[0] * upper[i + 1] - upper[0] * padded[i + 1] for i in range(len(upper) - 1)]
-        common = gcd(*following) if following else 1
-        upper, lower = lower, [c // common for c in following] if common > 1 else following
-    return upper[0] > 0
+    for digits in PRECISIONS:
+        spend(150 * size**2, digits)
+        answer = decays([quotient(c, lead, digits) for c in in_zeta])
+        if answer is not None:
+            return answer
+    if size**2 * bits(in_zeta) > MOST_EXACT:
+        raise Invalid("the stability of so high an order, with so many digits, is not decided")
+    return bool(decays([Enclosed(0, c if lead > 0 else -c) for c in in_zeta]))

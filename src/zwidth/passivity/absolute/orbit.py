@@ -7,10 +7,7 @@ it is solved once more with error bounds, and the signs of all x − g are certa
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 import numpy as np
-from flint import arb, fmpq
 from numpy.typing import NDArray
 from scipy.signal import tf2ss
 
@@ -72,8 +69,6 @@ def corrected(plant: Plant, slope: float, gap: float, positions: Array) -> Array
     return None
 
 
-def _ball(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))
 
 
 def growth_of(plant: Plant, slope: float, inside: NDArray[np.bool_]) -> float:

@@ -15,11 +15,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq_poly, fmpz_poly
 
 from zwidth.errors import InputError
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.positivity import Positivity, prove_nonnegative
+from zwidth.quantity.balls import as_fmpq
 
 PI = Fraction(3141592653589793239, 10**18)
 """Above π, by less than 1e-18."""
@@ -86,11 +87,7 @@ def prove_inside(loop: LinearLoop, activity: Fraction, band: Band) -> Positivity
     if inside is None:
         return None
     half = (1 - band.cosine) / 2
-    shift = fmpq_poly([_q(1 - half), _q(half)])
+    shift = fmpq_poly([as_fmpq(1 - half), as_fmpq(half)])
     criterion: fmpz_poly = fmpq_poly(loop.with_damping(inside).criterion)(shift).numer()
     found = prove_nonnegative(criterion)
     return found if isinstance(found, Positivity) else None
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)

@@ -20,9 +20,10 @@ import numpy as np
 
 from zwidth.passivity.active_hand.band import PI, Band
 from zwidth.passivity.document import unit_key, unit_suffix
-from zwidth.passivity.known_hand.characteristic import as_floats, decays, precision
+from zwidth.passivity.known_hand.characteristic import as_floats, decays
 from zwidth.passivity.known_hand.plant import ball
 from zwidth.passivity.loop import LinearLoop
+from zwidth.quantity.balls import precision
 from zwidth.quantity.glossary import GLOSSARY
 
 EXCESS = 1e-3

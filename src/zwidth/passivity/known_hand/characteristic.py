@@ -9,12 +9,9 @@ In balls that answers for every number in them at once, or does not answer.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from fractions import Fraction
 from typing import NamedTuple
 
-import flint
 import numpy as np
 from numpy.typing import NDArray
 
@@ -96,17 +93,6 @@ def bilinear(polynomial: Coefficients) -> Coefficients:
         power = times(power, [-one, one])
         result = plus(times(result, [two, 0 * two]), [coefficient * c for c in power])
     return result
-
-
-@contextmanager
-def precision(bits: int) -> Iterator[None]:
-    """Balls of so many bits inside."""
-    before = flint.ctx.prec
-    flint.ctx.prec = bits
-    try:
-        yield
-    finally:
-        flint.ctx.prec = before
 
 
 def as_floats(polynomial: Coefficients) -> NDArray[np.float64]:

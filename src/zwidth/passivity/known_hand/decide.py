@@ -11,8 +11,9 @@ from fractions import Fraction
 from itertools import product
 from typing import Literal, NamedTuple
 
-from zwidth.passivity.known_hand.characteristic import PRECISIONS, decays, precision
+from zwidth.passivity.known_hand.characteristic import PRECISIONS, decays
 from zwidth.passivity.known_hand.plant import Coefficients, Motion
+from zwidth.quantity.balls import precision
 
 Outcome = Literal["stable", "unstable", "undecided"]
 

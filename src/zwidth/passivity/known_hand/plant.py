@@ -24,6 +24,8 @@ from typing import Any, NamedTuple
 
 import flint
 
+from zwidth.quantity import balls
+
 Number = Any
 """A Fraction or a `flint.arb`."""
 
@@ -122,7 +124,7 @@ def ball(value: Fraction | Range) -> Number:
     if isinstance(value, tuple):
         low, high = value
         return ball(low) if low == high else ball(low).union(ball(high))
-    return flint.arb(flint.fmpq(value.numerator, value.denominator))
+    return balls.ball(value)
 
 
 def one_like(value: Number) -> Number:

@@ -21,7 +21,7 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.boundary import largest_holding
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.known_hand.characteristic import PRECISIONS, as_floats, family, of_law, precision
+from zwidth.passivity.known_hand.characteristic import PRECISIONS, as_floats, family, of_law
 from zwidth.passivity.known_hand.crossing import Plain, last_stable, plain
 from zwidth.passivity.known_hand.decide import Found, Outcome, corners, decided
 from zwidth.passivity.known_hand.hand import PassiveHand, as_hand
@@ -29,6 +29,7 @@ from zwidth.passivity.known_hand.plant import Motion
 from zwidth.passivity.known_hand.proof import evidence
 from zwidth.passivity.scope import Hands, Scope, scope_of
 from zwidth.passivity.wording import lines
+from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, ends
 
 _HALVINGS = 8

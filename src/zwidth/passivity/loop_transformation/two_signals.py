@@ -17,10 +17,11 @@ from itertools import accumulate
 from math import lcm
 
 import numpy as np
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq_poly, fmpz_poly
 from numpy.typing import NDArray
 
 from zwidth.passivity.positivity import Positivity, prove_nonnegative
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Polynomial = Sequence[Fraction]
 Signal = tuple[Polynomial, Polynomial]
@@ -60,7 +61,7 @@ class TwoSignalForm:
     def is_nonnegative(self, more: Fraction = Fraction(0)) -> bool:
         """True when Q + `more` Σ D² ≥ 0 for all sequences: decided exactly."""
         first, second, cross = (_polynomial(a) for a in (self.first, self.second, self.cross))
-        second += _rational(more)
+        second += as_fmpq(more)
         return all(_holds(p) for p in (first, second, first * second - cross))
 
     def first_is_nonnegative(self) -> bool:
@@ -106,21 +107,17 @@ def _polynomial(cosines: Cosines) -> fmpq_poly:
     """Σ a_n cos nθ as a polynomial in cos θ."""
     total, chebyshev, following = fmpq_poly([0]), fmpq_poly([1]), fmpq_poly([0, 1])
     for a in cosines:
-        total += chebyshev * _rational(a)
+        total += chebyshev * as_fmpq(a)
         chebyshev, following = following, fmpq_poly([0, 2]) * following - chebyshev
     return total
 
 
 def _holds(p: fmpq_poly) -> bool:
     """p ≥ 0 on [−1, 1]."""
-    coefficients = [Fraction(int(c.p), int(c.q)) for c in p.coeffs()]
+    coefficients = [as_fraction(c) for c in p.coeffs()]
     scale = lcm(*(c.denominator for c in coefficients)) if coefficients else 1
     return isinstance(prove_nonnegative(fmpz_poly([int(c * scale) for c in coefficients])), Positivity)
 
 
 def _evaluate(cosines: Cosines, x: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.polynomial.chebyshev.chebval(x, [float(a) for a in cosines]))
-
-
-def _rational(x: Fraction) -> fmpq:
-    return fmpq(x.numerator, x.denominator)

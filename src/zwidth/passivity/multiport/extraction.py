@@ -22,6 +22,7 @@ from zwidth.passivity.multiport.motion import MatrixMotion, Signal, absorbed, po
 from zwidth.passivity.multiport.port import MatrixPort
 from zwidth.passivity.multiport.positive_real import prove_minors
 from zwidth.passivity.positive_real import places_of
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 _TERMS = 24
 _LENGTHS = (2, 4, 8, 16, 32, 48)
@@ -82,7 +83,7 @@ def _directions(port: MatrixPort, level: Fraction, tangent: Fraction) -> Iterato
     at = place(port, tangent)
     form = form_at(port, level, at)
     for axes in _candidates(form):
-        latent = [Gaussian(_q(alpha), -_q(beta)) for alpha, beta in axes]
+        latent = [Gaussian(as_fmpq(alpha), -as_fmpq(beta)) for alpha, beta in axes]
         if absorbed_at(port, level, at, latent) < 0:
             yield axes
             return
@@ -102,7 +103,7 @@ def _candidates(form: list[list[Gaussian]]) -> Iterator[Axes]:
     exact = negative_direction(_embedded(form))
     if exact is not None:
         size = len(form)
-        values = [Fraction(int(x.p), int(x.q)) for x in exact]
+        values = [as_fraction(x) for x in exact]
         yield tuple((values[i], -values[size + i]) for i in range(size))
 
 
@@ -170,7 +171,7 @@ def _pairing(
     """½ ∫ uᵀz + vᵀy − 2σ uᵀv dx over [0, 1] of the pairs (u, y), (v, z)."""
     total = fmpq_poly([])
     for u, y, v, z in zip(*first, *second, strict=True):
-        total += u * z + v * y - u * v * (2 * _q(level))
+        total += u * z + v * y - u * v * (2 * as_fmpq(level))
     return total.integral()(1) / 2
 
 
@@ -186,7 +187,7 @@ def _dotted(
             (a * d + b * c - 2 * level * a * c for a, b, c, d in zip(u, y, v, z, strict=True) if a or b),
             Fraction(0),
         )
-    return _q(total / 2)
+    return as_fmpq(total / 2)
 
 
 def _verified(
@@ -199,7 +200,7 @@ def _verified(
     """The direction as a motion, in few digits where these are enough."""
     if direction is None:
         return None
-    exact = [Fraction(int(x.p), int(x.q)) for x in direction]
+    exact = [as_fraction(x) for x in direction]
     for digits in (3, 6, 12, 24):
         motion = MatrixMotion(kind, head, _by_axis(rounded(exact, digits), port.axes))
         if absorbed(port, level, motion) < 0:
@@ -213,12 +214,8 @@ def _by_axis(values: Sequence[Fraction], axes: int) -> Axes:
 
 
 def _poly(ascending: Signal) -> fmpq_poly:
-    return fmpq_poly([_q(c) for c in ascending])
+    return fmpq_poly([as_fmpq(c) for c in ascending])
 
 
 def _decimal(value: float, digits: int) -> Fraction:
     return Fraction(f"{value:.{digits}f}")
-
-
-def _q(value: Fraction | int) -> fmpq:
-    return fmpq(value.numerator, value.denominator)

@@ -31,6 +31,7 @@ from zwidth.passivity.positive_real import (
     without_bound,
 )
 from zwidth.passivity.roots import real_roots
+from zwidth.quantity.balls import as_fmpq
 
 _BITS = 320
 _TIGHT = Fraction(1, 1 << 80)
@@ -49,22 +50,22 @@ class Spectrum:
 
     def at_level(self, level: Fraction) -> fmpq_poly:
         """The varying factor in c."""
-        total, sigma = fmpq_poly([]), _q(level)
+        total, sigma = fmpq_poly([]), as_fmpq(level)
         for coefficient in reversed(self.varying):
             total = total * sigma + coefficient
         return total
 
     def least_at(self, c: Fraction) -> Fraction | None:
         """The least eigenvalue of the varying factor, to 320 bits; None where it has none."""
-        at = _q(c)
+        at = as_fmpq(c)
         roots = real_roots(fmpq_poly([p(at) for p in self.varying]).numer(), _BITS)
         return min(roots, default=None)
 
     def is_below(self, c: Fraction, level: Fraction) -> bool:
         """Whether an eigenvalue of the varying factor lies below the level at c: exactly."""
-        at, shifted = _q(c), fmpq_poly([])
+        at, shifted = as_fmpq(c), fmpq_poly([])
         for coefficient in reversed(self.varying):
-            shifted = shifted * fmpq_poly([_q(level), -1]) + coefficient(at)
+            shifted = shifted * fmpq_poly([as_fmpq(level), -1]) + coefficient(at)
         signs = {shifted[k] > 0 for k in range(len(self.varying)) if shifted[k] != 0}
         return len(signs) > 1
 
@@ -171,7 +172,7 @@ def _near(value: Fraction) -> Fraction:
 
 def _reached(spectrum: Spectrum, low: Fraction, least: Fraction, cosine: Fraction | None) -> Fraction:
     """`low` where an eigenvalue equals it somewhere; otherwise a level that one is proved to lie below."""
-    if spectrum.constant(_q(low)) == 0 or vanishes(spectrum.at_level(low)):
+    if spectrum.constant(as_fmpq(low)) == 0 or vanishes(spectrum.at_level(low)):
         return low
     step = _near(least) / (1 << 100)
     while not _is_reached(spectrum, least + step, cosine):
@@ -183,7 +184,7 @@ def _is_reached(spectrum: Spectrum, level: Fraction, cosine: Fraction | None) ->
     if cosine is not None:
         return spectrum.is_below(cosine, level)
     low = level - 2 * _near(level)
-    return bool(spectrum.constant(_q(low)) * spectrum.constant(_q(level)) <= 0)
+    return bool(spectrum.constant(as_fmpq(low)) * spectrum.constant(as_fmpq(level)) <= 0)
 
 
 def _not_stable(port: MatrixPort, root: str) -> str:
@@ -200,7 +201,3 @@ def _not_stable(port: MatrixPort, root: str) -> str:
 
 def _integers(p: fmpz_poly) -> list[int]:
     return [int(c) for c in p.coeffs()]
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)

@@ -27,6 +27,7 @@ from flint import fmpq
 from zwidth.passivity.multiport.gaussian import Gaussian, absorbed_at, answer
 from zwidth.passivity.multiport.port import MatrixPort
 from zwidth.passivity.port_motion import differentiated, integral, lines, shifted
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 Signals = list[list[float]]
 Signal = Sequence[Fraction | int]
@@ -53,7 +54,7 @@ class MatrixMotion:
     @property
     def latent(self) -> list[Gaussian]:
         """a_i = α_i − jβ_i of a burst."""
-        return [Gaussian(_q(alpha), -_q(beta)) for alpha, beta in self.axes]
+        return [Gaussian(as_fmpq(alpha), -as_fmpq(beta)) for alpha, beta in self.axes]
 
 
 def absorbed(port: MatrixPort, level: Fraction, motion: MatrixMotion) -> Fraction:
@@ -82,9 +83,9 @@ def _burst_energy(port: MatrixPort, level: Fraction, motion: MatrixMotion) -> Fr
     step, cycles, power = motion.numbers
     total, latent = fmpq(0), motion.latent
     for j, b in lines(int(power)):
-        at = Gaussian(fmpq(0), _q((cycles + j) * step))
-        total += _q(b * b) * absorbed_at(port, level, at, latent)
-    return Fraction(int(total.p), int(total.q)) / step
+        at = Gaussian(fmpq(0), as_fmpq((cycles + j) * step))
+        total += as_fmpq(b * b) * absorbed_at(port, level, at, latent)
+    return as_fraction(total) / step
 
 
 def samples(port: MatrixPort, motion: MatrixMotion) -> tuple[list[Signal], list[Signal]]:
@@ -136,9 +137,9 @@ def _played_burst(
     for entries in (port.inputs, port.outputs):
         total = [[0.0] * points for _ in range(port.axes)]
         for j, b in lines(int(power)):
-            turn, at = 2 * pi * float(cycles + j), Gaussian(fmpq(0), _q((cycles + j) * step))
+            turn, at = 2 * pi * float(cycles + j), Gaussian(fmpq(0), as_fmpq((cycles + j) * step))
             for axis, line in enumerate(answer(entries, at, motion.latent)):
-                real, imaginary = (float(Fraction(int(v.p), int(v.q)) * b) for v in line)
+                real, imaginary = (float(as_fraction(v) * b) for v in line)
                 total[axis] = [
                     t + real * cos(turn * at) - imaginary * sin(turn * at)
                     for t, at in zip(total[axis], x, strict=True)
@@ -152,7 +153,3 @@ def _horner(ascending: Signal, x: Fraction) -> Fraction:
     for c in reversed(ascending):
         total = total * x + c
     return total
-
-
-def _q(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
