@@ -74,8 +74,23 @@ def test_a_damped_wall_is_passive_in_contact_only(tmp_path: Path, capsys: pytest
     assert "contact is kept" not in told(two_sided, tmp_path, capsys)
     assert SPRING["kind"] == "spring"
     assert "The loop below is passive, proved" in told(SPRING, tmp_path, capsys)
-    corners = {"kind": "corners", "corners": [DAMPED, DAMPED]}
+    corners = {"kind": "corners", "corners": [DAMPED, proof_of(zw.Wall(90, 0.05))]}
     assert "passive as long as contact is kept" in told(corners, tmp_path, capsys)
+
+
+def test_what_lies_between_corners(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two laws with one D are proved with every mix of them; with another period nothing is said of between."""
+    mixed = told({"kind": "corners", "corners": [SPRING, proof_of(zw.Wall(90))]}, tmp_path, capsys)
+    assert "and every mix of their laws" in mixed
+    slower = plain(zw.check(PADDLE.replace(rate=900), zw.Wall(90)).certificate.to_dict())
+    apart = told({"kind": "corners", "corners": [SPRING, slower]}, tmp_path, capsys)
+    assert "which is not checked here" in apart
+
+
+def test_the_same_corner_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two proofs of one corner are no proof of two."""
+    again = {"kind": "corners", "corners": [DAMPED, DAMPED]}
+    assert "the same corner is given twice" in told(again, tmp_path, capsys, status=1)
 
 
 def test_an_active_hand_keeps_contact_in_its_band(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -163,7 +178,7 @@ def test_a_key_that_is_given_twice(tmp_path: Path, capsys: pytest.CaptureFixture
 def test_numbers_are_in_plain_digits(written: str) -> None:
     """Nothing that one reader takes for a number and another one does not."""
     found = checker.verify({**SPRING, "loop": {**SPRING["loop"], "damping_N_s_per_m": written}})
-    assert (found.valid, found.reason) == (False, f"expected a number, got {written!r}")
+    assert (found.valid, found.reason) == (False, f"loop.damping_N_s_per_m: expected a number, got {written!r}")
 
 
 @pytest.mark.parametrize(
@@ -183,7 +198,6 @@ def test_another_unit_is_refused(key: str, other: str, kind: str) -> None:
     if kind == "spring":
         loop = SPRING["loop"]
     renamed = {other if k == key else k: v for k, v in loop.items()}
-    law = {"surface": "none", "clamped": False, "taps_N_per_m": ["1"]}
-    found = checker.verify({**SPRING, "kind": kind, "loop": renamed, "law": law})
+    found = checker.verify({"kind": kind, "loop": renamed})
     assert not found.valid
     assert "the unit of" in found.reason

@@ -26,7 +26,7 @@ def corners(document: Mapping[str, Any]) -> tuple[Found, Scope | None, tuple[Rea
     """Whether every corner is proved; what they cover together; the first of them, and its motion."""
     listed = document.get("corners")
     if set(document) - {"format", "kind", "corners"}:
-        raise Invalid("entries that no proof of this kind reads beside corners")
+        raise Invalid("entries that no proof of this kind has beside corners")
     if not isinstance(listed, list) or not 1 <= len(listed) <= MOST_CORNERS:
         raise Invalid("corners must be a list of certificates")
     reasons, scopes, told = [], [], []

@@ -318,9 +318,7 @@ class Record(Field):
             raise Invalid(f"{at or 'a document'} must be an object")
         place = f"{at}." if at else ""
         by_key = {field.key(name, motion): name for name, field in self.fields.items()}
-        unknown = [f"{place}{str(key)[:60]}" for key in value if key not in by_key]
-        if unknown:
-            raise Invalid(f"entries that no proof of this kind reads: {', '.join(unknown[:4])}")
+        self._require_known(value, place, motion)
         found = {}
         for key, name in by_key.items():
             field = self.fields[name]
@@ -331,6 +329,18 @@ class Record(Field):
             else:
                 found[name] = field.default
         return Read(**found)
+
+    def _require_known(self, told: Mapping[str, Any], place: str, motion: str) -> None:
+        """Refuse what is not declared, a quantity in another unit by itself."""
+        keys = {field.key(name, motion): name for name, field in self.fields.items()}
+        unknown = [str(key)[:60] for key in told if key not in keys]
+        for key in unknown:
+            for right, name in keys.items():
+                if right != name and (key == name or key.startswith(f"{name}_")):
+                    raise Invalid(f"the unit of {name} must be that of {right}, got {place}{key}")
+        if unknown:
+            listed = ", ".join(f"{place}{key}" for key in unknown[:4])
+            raise Invalid(f"entries that no proof of this kind has: {listed}")
 
     def schema(self, motion: str) -> dict[str, Any]:
         properties = {field.key(name, motion): field.schema(motion) for name, field in self.fields.items()}
@@ -440,7 +450,7 @@ def only_if(condition: object, value: Any, name: str) -> Any:
     if condition and value is None:
         raise Invalid(f"{name} is missing")
     if not condition and value is not None:
-        raise Invalid(f"entries that no proof of this kind reads: {name} is of no use here")
+        raise Invalid(f"entries that no proof of this kind has: {name} is of no use here")
     return value
 
 

@@ -16,7 +16,7 @@ from .enclosed import Enclosed, quotient
 from .polynomial import bits, cleared
 from .schur_cohn import decays
 
-PRECISIONS = (256, 1024)
+PRECISIONS = (256, 1024, 4096)
 MOST_EXACT = 8_000_000
 """Order squared times the bits of the largest coefficient, where only whole numbers tell."""
 
@@ -55,7 +55,8 @@ def _decay(in_zeta: list[int]) -> bool:
     if lead == 0:
         return False
     for digits in PRECISIONS:
-        spend(150 * size**2, digits)
+        spend(60 * size**2)
+        spend(2 * size**2, digits)
         answer = decays([quotient(c, lead, digits) for c in in_zeta])
         if answer is not None:
             return answer
