@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from zwidth.checker.exact.enclosed import Enclosed, between, in_z, known
-from zwidth.checker.known_hand.held_motion import read_motion, sampled, sampled_free
+from zwidth.checker.known_hand.held_motion import motion_of, sampled, sampled_free
 
 BITS = 200
 EPS = Fraction(1, 1 << 180)
@@ -65,8 +65,8 @@ def test_the_held_motion_is_that_of_matrix_exponentials(
     mass: str, damping: str, stiffness: str, period: str, delay: str, digits: int
 ) -> None:
     """They hold those of mpmath's expm at 80 digits; a motion that is fast within a sample costs bits."""
-    numbers = [(Fraction(x),) * 2 for x in (mass, damping, stiffness, period, delay)]
-    motion = read_motion(*numbers)
+    ends = [(Fraction(x),) * 2 for x in (mass, damping, stiffness)]
+    motion = motion_of(*ends, Fraction(period), Fraction(delay))
     found = sampled(motion, BITS)
     with mpmath.workdps(80):
         m, d, k, t, late = (mpmath.mpf(x) for x in (mass, damping, stiffness, period, delay))
@@ -99,7 +99,7 @@ def test_the_held_motion_is_that_of_matrix_exponentials(
 def test_a_free_mass_is_exact(delay: str) -> None:
     """Without spring and damper the enclosure holds the rational polynomials, to 10⁻⁵⁰."""
     zero = (Fraction(0),) * 2
-    motion = read_motion((Fraction(1, 30),) * 2, zero, zero, (Fraction(1, 1000),) * 2, (Fraction(delay),) * 2)
+    motion = motion_of((Fraction(1, 30),) * 2, zero, zero, Fraction(1, 1000), Fraction(delay))
     ball, exact = sampled(motion, BITS), sampled_free(motion)
     assert ball.late == exact.late
     pairs = zip([*ball.numerator, *ball.denominator], [*exact.numerator, *exact.denominator], strict=True)
@@ -112,15 +112,15 @@ def test_a_free_mass_is_exact(delay: str) -> None:
 def test_an_interval_holds_every_motion_in_it() -> None:
     """Polynomials of 30 random motions lie in those of the box, at their own place of it."""
     ends = [(Fraction(1, 30), Fraction(1, 20)), (Fraction(0), Fraction(2)), (Fraction(100), Fraction(900))]
-    clock = [(Fraction(1, 1000),) * 2, (Fraction(14, 10000),) * 2]
-    box = sampled(read_motion(*ends, *clock), BITS)
+    clock = [Fraction(1, 1000), Fraction(14, 10000)]
+    box = sampled(motion_of(*ends, *clock), BITS)
     rng = np.random.default_rng(5)
     for _ in range(30):
         inverse, d, k = (
             lo + (hi - lo) * Fraction(float(rng.uniform()))
             for lo, hi in ((1 / ends[0][1], 1 / ends[0][0]), *ends[1:])
         )
-        one = sampled(read_motion((1 / inverse,) * 2, (d,) * 2, (k,) * 2, *clock), BITS)
+        one = sampled(motion_of((1 / inverse,) * 2, (d,) * 2, (k,) * 2, *clock), BITS)
         spans = ((1 / ends[0][1], 1 / ends[0][0]), *ends[1:])
         e = tuple((2 * v - lo - hi) / (hi - lo) for v, (lo, hi) in zip((inverse, d, k), spans, strict=True))
         for wide, point in zip(

@@ -7,16 +7,22 @@ from random import Random
 
 import mpmath
 import pytest
+from checked import loop as read_loop
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.checker.document.reading import Invalid, read_loop
-from zwidth.checker.loop.proofs import _one_norm_bound
+from zwidth.checker.document.refusal import Invalid
+from zwidth.checker.loop.one_norm import NORM, one_norm_bound
 from zwidth.passivity.certificate import certify
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.loop import linear_loop
 from zwidth.passivity.one_norm import bound_one_norm
 from zwidth.passivity.witness import Setting
+
+
+def bound_of(document, norm):
+    """The bound that a norm proof gives of the loop of a document."""
+    return one_norm_bound(read_loop(document), NORM.read(norm, "norm", "linear"))
 
 
 def summed(loop, terms=6000):
@@ -101,13 +107,13 @@ def test_checker_finds_the_same_bound(seed):
     assert document["kind"] == "quantized"
     assert checker.verify(document).valid
     proof = document["proof"]["norm"]
-    assert _one_norm_bound(read_loop(document), proof) == decision.norm.bound
+    assert bound_of(document, proof) == decision.norm.bound
     true, inverse = float(summed(loop)), [Fraction(c) for c in proof["inverse"]]
     for _ in range(5):
         other = list(inverse)
         other[random.randrange(len(inverse))] += inverse[0] * Fraction(random.randint(-200, 200), 1000)
         try:
-            bound = _one_norm_bound(read_loop(document), {**proof, "inverse": other})
+            bound = bound_of(document, {**proof, "inverse": other})
         except Invalid:  # it bounds nothing, and says so
             continue
         assert float(bound) >= true * (1 - 1e-12)
@@ -139,4 +145,4 @@ def test_every_number_of_the_norm_proof_binds(seed):
     broken.append({**proof, "rest_numerator": ["0"], "rest_denominator": ["0"], "modes": []})
     for norm in broken:
         with pytest.raises(Invalid):
-            _one_norm_bound(read_loop(document), norm)
+            bound_of(document, norm)

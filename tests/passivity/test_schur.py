@@ -10,7 +10,7 @@ from random import Random
 import pytest
 from polynomials import product
 
-from zwidth.checker.loop.proofs import _inside_unit_circle
+from zwidth.checker.exact.roots import inside_unit_circle
 from zwidth.passivity.schur import is_schur
 
 
@@ -30,7 +30,7 @@ def pair(radius, cosine):
 def assert_stable(descending, expected):
     """Both roads give the expected answer."""
     assert is_schur(descending[::-1]) is expected
-    assert _inside_unit_circle([Fraction(c) for c in descending]) is expected
+    assert inside_unit_circle([Fraction(c) for c in descending]) is expected
 
 
 HAIR = Fraction(1, 10**12)
@@ -94,7 +94,7 @@ def test_every_small_cubic():
     """Small whole numbers make a reflection of exactly 1 on the way, which no balls decide."""
     for descending in choices(range(-3, 4), repeat=4):
         if descending[0]:
-            expected = _inside_unit_circle([Fraction(c) for c in descending])
+            expected = inside_unit_circle([Fraction(c) for c in descending])
             assert is_schur(descending[::-1]) is expected, descending
 
 

@@ -15,8 +15,8 @@ from tampered import tampered
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.checker.document.reading import read_loop
-from zwidth.checker.loop.proofs import _criterion
+from zwidth.checker.loop.criterion import criterion
+from zwidth.checker.loop.loop import LOOP, loop_of
 from zwidth.checker.loop.violation import criterion_at
 from zwidth.cli.verification import verifications
 from zwidth.passivity.certificate import verify_document
@@ -358,9 +358,9 @@ def test_two_roads_to_the_criterion():
         law = random_law(random)
         delay = random.choice((Fraction(0), T, T * Fraction(random.randint(1, 2999), 1000)))
         setting = check_by_closed_forms(device("0.3", delay), zw.PulseTransferFunction(*law)).decision.setting
-        loop = read_loop(setting_document(setting))
+        loop = loop_of(LOOP.read(setting_document(setting)["loop"], "loop", "linear"))
         c = Fraction(random.randint(-1000, 1000), 1000)
-        polynomial = sum(a * c**k for k, a in enumerate(_criterion(loop)))
+        polynomial = sum(a * c**k for k, a in enumerate(criterion(loop)))
         power = 2 * len(loop.denominator) + loop.whole + 1
         assert criterion_at(loop, c) == polynomial * c.denominator**power
 

@@ -6,10 +6,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from checked import read
 from scipy.linalg import expm
 
 from zwidth import checker
-from zwidth.checker.known_hand.plant import read_plant
+from zwidth.checker.known_hand.plant import plant_of
 
 LOOP = {
     "mass_kg": "0.05",
@@ -92,8 +93,10 @@ def test_refuses_what_proves_nothing(change, reason):
 
 def test_plant_of_a_touched_device_by_another_road():
     """The enclosed G(z) of a device with hand and late force is the response of a stepped state, to 1e-12."""
-    plant = read_plant({"loop": LOOP})
-    assert max(*plant.numerator.radius, *plant.denominator.radius) < Fraction(1, 10**60)
+    told = {**document(), "loop": LOOP}
+    del told["plant"]
+    plant = plant_of(read(told), 320)
+    assert max(x.reach for x in (*plant.numerator, *plant.denominator)) < 1 << 120
     mass, damping, stiffness, period, late = 0.06, 1.0, 350.0, 0.001, 1.4
     flow = np.array([[0, 1, 0], [-stiffness / mass, -damping / mass, 1 / mass], [0, 0, 0]])
 
@@ -106,8 +109,7 @@ def test_plant_of_a_touched_device_by_another_road():
         seen.append(state[0])
         held = [force[k - 2] if k >= 2 else 0.0, force[k - 1] if k >= 1 else 0.0]
         state = stepped(stepped(state, held[0], late - 1), held[1], 2 - late)
-    top = [float(c) for c in plant.numerator.middle][::-1]
-    bottom = [float(c) for c in plant.denominator.middle][::-1]
+    top, bottom = ([c.middle / 2**320 for c in part] for part in plant)
     top = [0.0] * (len(bottom) - len(top)) + top
     response = np.zeros(61)
     for k in range(61):

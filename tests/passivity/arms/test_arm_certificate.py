@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import pytest
+from checked import matrix_at
 
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker.arm import cells as arm_cells
-from zwidth.checker.arm.region import matrix_at
 from zwidth.device.arm import Arm, PlanarChain, Sites, built_in
 from zwidth.passivity.certificate import read_document, verify_document
 

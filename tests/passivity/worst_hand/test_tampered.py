@@ -15,7 +15,6 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.checker.contact.motion import contact_motion_energy
 from zwidth.passivity.worst_hand.board import Board
 from zwidth.passivity.worst_hand.hand import game_of
 from zwidth.passivity.worst_hand.solve import play
@@ -266,7 +265,7 @@ def test_a_force_that_wraps_around_is_not_believed():
         "repeats": repeats,
         "positions_m": positions,
     }
-    motion["energy_J"] = contact_motion_energy(motion)[0]
+    motion["energy_J"] = checker.verify(motion).energy
     assert checker.verify(motion).valid
     domain = {"lowest_count": -1, "highest_count": 0, "largest_move_counts": 1, "steps_per_count": 1}
     proof = {"kind": "storage", "loop": loop, "law": law, "domain": domain, "force_unit": "1"}

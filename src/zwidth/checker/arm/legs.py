@@ -23,7 +23,7 @@ from ..document.refusal import Invalid
 from ..document.unit import always
 from ..exact.enclosed import Enclosed, dot
 from ..exact.functions import inverse, root
-from .chain import NOTHING, constant
+from .chain import NEARLY, NOTHING, constant
 
 _METRES = always("m")
 
@@ -79,6 +79,10 @@ def _leg(told: Read, size: int) -> Leg:
     out, up = told.out, told.up
     across = [up[i - 2] * out[i - 1] - up[i - 1] * out[i - 2] for i in range(3)] if size == 3 else []
     axes = [out, up, across] if size == 3 else [out, up]
+    for i, a in enumerate((out, up)):
+        for j, b in enumerate((out, up)):
+            if abs(sum((x * y for x, y in zip(a, b, strict=True)), Fraction(-(i == j)))) > NEARLY:
+                raise Invalid("out and up must be of length 1, at right angles")
     return Leg(told.base, axes, told.link, told.rod, told.offset, told.bend, told.damping)
 
 

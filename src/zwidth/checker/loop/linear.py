@@ -20,7 +20,7 @@ DELAYS = document(
     {
         "loop": LOOP,
         "delay_high": Number(SECONDS),
-        "proof": Record({"stability": STABILITY, "pieces": List(_PIECE), "norm": NORM}, shown=False),
+        "proof": Record({"stability": STABILITY, "pieces": List(_PIECE, least=1), "norm": NORM}, shown=False),
     }
 )
 

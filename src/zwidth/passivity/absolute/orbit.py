@@ -69,8 +69,6 @@ def corrected(plant: Plant, slope: float, gap: float, positions: Array) -> Array
     return None
 
 
-
-
 def growth_of(plant: Plant, slope: float, inside: NDArray[np.bool_]) -> float:
     a, b, c, _ = tf2ss(plant.numerator, plant.denominator)
     total = np.eye(len(a))

@@ -101,7 +101,7 @@ class AbsoluteStability:
             "motions": [{k: v for k, v in m._asdict().items() if k != "source"} for m in motions],
         }
         if corners:
-            document["certificate"] = Certificate(tuple(corners)).to_dict()
+            document["certificate"] = Certificate(_of_different_walls(corners)).to_dict()
         if against:
             document["witness"] = Certificate(tuple(against)).to_dict()
         return document
@@ -194,6 +194,12 @@ def _linear(hand: LinearHand | PassiveHand | Operator) -> LinearHand:
             "value in it, or see robust_boundary"
         )
     return LinearHand(*certain)
+
+
+def _of_different_walls(proofs: list[dict[str, Any]]) -> tuple[dict[str, Any], ...]:
+    """One proof for each wall: of two criteria that come to the same slope, the first."""
+    walls = {(proof["nonlinearity"], proof["slope"]): proof for proof in reversed(proofs)}
+    return tuple(walls.values())[::-1]
 
 
 def _row(plant: Plant, criterion: Criterion, reach: int, limit: float) -> Proved:
