@@ -1,0 +1,154 @@
+"""Does the checker accept a false document?  Random ones of every kind, judged a second time by other roads.
+
+Each seed is one document: a valid one with some numbers, terms or choices changed and its claim strengthened by
+a little, or one from nothing in the right shape, or one that is ill-formed.  What the checker accepts is judged in
+`documents/`, which shares no code with it.
+
+    python benchmarks/random_documents.py --documents 1000000 --first 0 --processes 2 --ledger FILE.csv
+
+runs the seeds that the ledger does not have yet.  When it is stopped, chunks that were not finished are run again;
+what is false is made smaller and saved beside the ledger, with the reason.  --only N judges one seed alone.
+"""
+
+from __future__ import annotations
+
+import os
+
+for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")  # before numpy: every process is one thread
+
+import argparse
+import json
+import sys
+import time
+import warnings
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from attack.ledger import alone
+from documents import ledger, seeds
+from documents.examine import FINDINGS, Examined, examine, save, shrunken
+from documents.grammar import SHARES, by_kind
+from documents.self_test import self_test
+from rich.progress import track
+
+HERE = Path(__file__).parent
+
+SLOW_S, LARGE_MB = 10.0, 1000.0
+"""A document that takes more to be checked is named."""
+
+SAVED = 20
+"""Findings of each chunk that are made smaller and saved."""
+
+Found = tuple[int, Examined]
+
+
+def chunk(
+    work: tuple[int, int], given: Mapping[str, list[dict[str, Any]]], only: str | None
+) -> tuple[ledger.Stretch, list[Found], float]:
+    """A stretch of seeds: the counts, what is to be told of some, and how long it took [s]."""
+    warnings.simplefilter("ignore")
+    stretch, told, start = ledger.Stretch(*work), list[Found](), time.perf_counter()
+    for seed in range(work[0], work[1] + 1):
+        found = examine(seed, given, only)
+        stretch.add(seed, found)
+        if found.word in FINDINGS or found.seconds > SLOW_S or found.room > LARGE_MB:
+            told.append((seed, found))
+    return stretch, told, time.perf_counter() - start
+
+
+def campaign(given: argparse.Namespace, known: Mapping[str, list[dict[str, Any]]]) -> int:
+    """Run what the ledger does not have; returns how many findings there were."""
+    findings, start, ran = 0, time.perf_counter(), 0
+    folder = given.ledger.with_name(f"{given.ledger.stem}-findings")
+    if not given.ledger.exists():
+        given.ledger.parent.mkdir(parents=True, exist_ok=True)
+        ledger.write(given.ledger, [])
+    with alone(given.ledger):
+        done = ledger.read(given.ledger)
+        work = ledger.still_to_run(done, given.first, given.documents, given.chunk)
+        run = partial(chunk, given=known, only=given.kind)
+        try:
+            for stretch, told, _ in track(_results(run, work, given.processes), "documents", total=len(work)):
+                done = ledger.joined([*done, stretch])
+                ledger.write(given.ledger, done)
+                ran += stretch.last - stretch.first + 1
+                findings += _tell(told, folder)
+        except KeyboardInterrupt:
+            print("stopped: chunks that were not finished are run again next time")
+    spent = time.perf_counter() - start
+    print(f"{ran} documents, {spent:.0f} s, {1000 * spent / max(ran, 1):.2f} ms each, {findings} findings")
+    return findings
+
+
+def _tell(told: list[Found], folder: Path) -> int:
+    """Print what was noticed, save what was found; how many findings."""
+    findings = 0
+    for seed, found in told:
+        wrong = found.word in FINDINGS
+        findings += wrong
+        spent = f"{found.seconds:.1f} s, {found.room:.0f} MB"
+        print(f"seed {seed}, {found.written.kind}, {found.word}: {found.why}; {found.written.how}; {spent}", flush=True)
+        if wrong and findings <= SAVED:
+            save(folder, seed, found)
+    return findings
+
+
+def _results(run: Any, work: list[tuple[int, int]], processes: int) -> Iterator[Any]:
+    if processes == 1:
+        yield from map(run, work)
+        return
+    with ProcessPoolExecutor(processes) as pool:
+        try:
+            yield from pool.map(run, work)
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _alone(seed: int, known: Mapping[str, list[dict[str, Any]]], only: str | None) -> int:
+    """One seed: its document, what is said of it, and the smallest of which the same is."""
+    found = examine(seed, known, only)
+    print(json.dumps(found.written.document, indent=1, default=str))
+    print(f"{found.written.kind}, {found.written.how}: {found.word}, {found.why}")
+    print(f"{found.seconds:.3f} s, {found.room:.0f} MB")
+    if found.word in FINDINGS:
+        print("smaller:", json.dumps(shrunken(found, seed), default=str))
+    return int(found.word in FINDINGS)
+
+
+def main() -> int:
+    """Run, and print the totals."""
+    raw = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=raw)
+    parser.add_argument("--documents", type=int, default=0, help="how many seeds; 0: only print")
+    parser.add_argument("--first", type=int, default=0, help="the first of them")
+    parser.add_argument("--processes", type=int, default=1)
+    parser.add_argument("--chunk", type=int, default=500, help="seeds that are written down together")
+    parser.add_argument("--ledger", type=Path, default=HERE / "random_documents.csv")
+    parser.add_argument("--kind", choices=list(SHARES), help="one kind only; needs a ledger of its own")
+    parser.add_argument("--only", type=int, metavar="SEED", help="judge this document alone, and write nothing")
+    parser.add_argument("--seeds", type=Path, default=seeds.default_path(), help="the valid documents, kept here")
+    parser.add_argument("--write-readme", action="store_true")
+    parser.add_argument("--self-test", action="store_true", help="can every judge say no?")
+    given = parser.parse_args()
+    known = by_kind(seeds.read(given.seeds))
+    if given.self_test:
+        return int(self_test(known) > 0)
+    if given.only is not None:
+        return _alone(given.only, known, given.kind)
+    if given.kind and given.ledger == HERE / "random_documents.csv":
+        parser.error("--kind writes other documents than the campaign does: name another --ledger")
+    findings = campaign(given, known) if given.documents else 0
+    text = ledger.table(ledger.read(given.ledger))
+    print(text)
+    if given.write_readme:
+        ledger.into_readme(HERE / "README.md", text)
+    return int(findings > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
