@@ -31,7 +31,7 @@ from typing import Any
 from attack.ledger import alone
 from documents import ledger, seeds
 from documents.examine import FINDINGS, Examined, examine, save, shrunken
-from documents.grammar import SHARES, by_kind
+from documents.grammar import SHARES
 from documents.self_test import self_test
 from rich.progress import track
 
@@ -135,7 +135,7 @@ def main() -> int:
     parser.add_argument("--write-readme", action="store_true")
     parser.add_argument("--self-test", action="store_true", help="can every judge say no?")
     given = parser.parse_args()
-    known = by_kind(seeds.read(given.seeds))
+    known = seeds.read(given.seeds)
     if given.self_test:
         return int(self_test(known) > 0)
     if given.only is not None:

@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 from attack.referee import needed
 
-from .judges.motions import energy, kept_forces
+from .judges.arms import Chain
+from .judges.hands import held, radius
+from .judges.motions import board_run, energy, kept_forces, taken_out, touched_forces, unrolled
 from .plain import plain_loop, quantity
 
 Document = dict[str, Any]
@@ -491,16 +493,27 @@ def _absolute(rng: Random) -> Document:
 
 
 def _known_hand(rng: Random) -> Document:
+    """A law nearly as strong as the hand allows, some numbers within intervals."""
     above, below, _, _ = law(rng)
-    period = Fraction(1, 1000)
-    numbers = {
-        "mass_kg": short(rng, 0.01, 1), "damping_N_s_per_m": short(rng, 0.01, 10), "stiffness_N_per_m": short(rng, 1, 1000),
+    period, late = Fraction(1, 1000), Fraction(rng.choice((0, 0, 1, 2, 3, rng.randint(1, 60))), 20)
+    mass, damping, stiffness = short(rng, 0.01, 1), short(rng, 0.1, 10), short(rng, 10, 1000)
+    plant = held(float(mass), float(damping), float(stiffness), float(period), float(late * period))
+    n, d = (np.array([float(c) for c in side]) for side in (above, below))
+    low, high = 1e-3, 1e6
+    for _ in range(24):
+        middle = (low * high) ** 0.5
+        low, high = (middle, high) if radius(plant, middle * n, d) < 1 else (low, middle)
+    scale = abs(close(rng, Fraction(f"{low:.9g}")))
+    loop: Document = {
+        "mass_kg": str(mass), "damping_N_s_per_m": str(damping), "stiffness_N_per_m": str(stiffness),
+        "sample_period_s": str(period), "delay_s": str(late * period),
+        "numerator": texts([scale * c for c in above]), "denominator": texts(below),
     }  # fmt: skip
-    loop: Document = {k: str(v * rng.choice((0, 1, 1, 1)) if k != "mass_kg" else v) for k, v in numbers.items()}
-    scale = short(rng, 0.1, 100)
-    loop |= {"sample_period_s": str(period), "delay_s": str(period * Fraction(rng.randint(0, 6), 2))}
-    loop |= {"numerator": texts([scale * c for c in above]), "denominator": texts(below)}
-    return {"kind": rng.choice(("stability", "instability", "instability", "instability")), "loop": loop}
+    kind = rng.choice(("stability", "instability"))
+    if kind == "stability" and rng.random() < 0.3:
+        key = rng.choice(("mass_kg", "damping_N_s_per_m", "stiffness_N_per_m"))
+        loop[key] = [loop[key], str(Fraction(loop[key]) * Fraction(rng.randint(101, 150), 100))]
+    return {"kind": kind, "loop": loop}
 
 
 def _positive_real(rng: Random) -> Document:
@@ -511,8 +524,9 @@ def _positive_real(rng: Random) -> Document:
     continuous = rng.random() < 0.5
     z = 1j * np.geomspace(1e-3, 1e3, 60) if continuous else np.exp(1j * np.linspace(0, np.pi, 60))
     top, bottom = (np.polyval([float(c) for c in side], z) for side in (above, below))
-    least = float(np.nanmin((top / np.where(bottom == 0, np.nan, bottom)).real))
-    level = close(rng, Fraction(f"{least:.6g}")) if np.isfinite(least) else Fraction(0)
+    usable = bottom != 0
+    least = float((top[usable] / bottom[usable]).real.min(initial=1e9))
+    level = close(rng, Fraction(f"{least:.6g}"))
     m = plus(n, d, -level)
     order = max(len(n), len(d)) - 1
     q = _on_axis(m, d, order) if continuous else in_cosine(m, d)
@@ -568,6 +582,190 @@ def _row_motion(rng: Random) -> Document:
     }
 
 
+def _minus_transposed(p: dict[int, Fraction]) -> dict[int, Fraction]:
+    return {-k: v for k, v in p.items()}
+
+
+def _laurent(a: Polynomial) -> dict[int, Fraction]:
+    return dict(enumerate(a))
+
+
+def _laurent_times(a: dict[int, Fraction], b: dict[int, Fraction]) -> dict[int, Fraction]:
+    out: dict[int, Fraction] = {}
+    for i, x in a.items():
+        for j, y in b.items():
+            out[i + j] = out.get(i + j, Fraction(0)) + x * y
+    return out
+
+
+def _laurent_sum(*terms: tuple[Fraction, dict[int, Fraction]]) -> dict[int, Fraction]:
+    out: dict[int, Fraction] = {}
+    for share, part in terms:
+        for k, v in part.items():
+            out[k] = out.get(k, Fraction(0)) + share * v
+    return out
+
+
+def _symmetric_in_cosine(p: dict[int, Fraction]) -> Polynomial:
+    """Σ p_k zᵏ with p_{−k} = p_k, in powers of c."""
+    size = max(map(abs, p), default=0)
+    half = [p.get(0, Fraction(0)), *(2 * p.get(k, Fraction(0)) for k in range(1, size + 1))]
+    return in_cosine(half, [Fraction(1)])
+
+
+def _matrix_port(rng: Random) -> Document:
+    """Two axes in discrete time, at a level near the least eigenvalue, minors and resolvent multiplied out."""
+    below = [Fraction(1), Fraction(rng.randint(-9, 9), 10)]
+    rows = [[[Fraction(rng.randint(-9, 9), 10) + (3 if i == j and not k else 0) for k in range(2)] for j in range(2)] for i in range(2)]
+    z = np.exp(1j * np.linspace(0, np.pi, 80))
+    g = np.array([[np.polyval([float(c) for c in q], z) for q in row] for row in rows])
+    g = np.moveaxis(g / np.polyval([float(c) for c in below], z), 2, 0)
+    least = np.linalg.eigvalsh((g + np.conj(np.swapaxes(g, 1, 2))) / 2)[:, 0].min()
+    level = close(rng, Fraction(f"{least:.9g}"))
+    half = Fraction(1, 2)
+    d, n = _laurent(below[::-1]), [[_laurent(q[::-1]) for q in row] for row in rows]
+    size = _laurent_times(_minus_transposed(d), d)
+    p = [
+        [
+            _laurent_sum(
+                (half, _laurent_times(_minus_transposed(d), n[i][j])),
+                (half, _laurent_times(_minus_transposed(n[j][i]), d)),
+                (-level if i == j else Fraction(0), size),
+            )
+            for j in range(2)
+        ]
+        for i in range(2)
+    ]
+    trace = _laurent_sum((Fraction(1), p[0][0]), (Fraction(1), p[1][1]))
+    determinant = _laurent_sum(
+        (Fraction(1), _laurent_times(p[0][0], p[1][1])), (Fraction(-1), _laurent_times(p[0][1], p[1][0]))
+    )
+    offset = short(rng, 0.1, 10)
+    m = [[plus(rows[i][j], below, offset - level) if i == j else rows[i][j] for j in range(2)] for i in range(2)]
+    whole = plus(times(m[0][0], m[1][1]), times(m[0][1], m[1][0]), -1)
+    minus = [[[-c for c in q] for q in row] for row in m]
+    resolvent = [[m[1][1], minus[0][1]], [minus[1][0], m[0][0]]]
+    return {
+        "kind": "positive real matrix",
+        "system": {"time": "discrete", "numerators": [[texts(q) for q in row] for row in rows], "denominator": texts(below)},
+        "index": "input",
+        "level": str(level),
+        "proof": {
+            "offset": str(offset),
+            "minors": [{"power": 0, "positivity": positivity(_symmetric_in_cosine(e))} for e in (trace, determinant)],
+            "resolvent": {
+                "numerators": [[texts(times(below, q)) for q in row] for row in resolvent],
+                "denominator": texts(whole),
+            },
+        },
+    }
+
+
+def _matrix_extraction(rng: Random) -> Document:
+    document = _matrix_port(rng)
+    del document["proof"]
+    size = rng.randint(1, 8)
+    latent = [[str(rng.randint(-3, 3)) for _ in range(size)] for _ in range(2)]
+    return {**document, "kind": "matrix extraction", "motion": {"kind": "sequence", "latent": latent}}
+
+
+def _touching(rng: Random) -> Document:
+    """A run-up from outside, a touch, and back: its own energy told, or nearly."""
+    above, below, _, _ = law(rng)
+    loop = loop_of(rng, above, below, unilateral=True)
+    damp(rng, loop)
+    loop["damping_N_s_per_m"] = str(quantity(loop, "damping") * Fraction(rng.randint(1, 30), 20))
+    unit = Fraction(1, 1000)
+    x = [unit * Fraction(rng.randint(-40, 8), 4) for _ in range(rng.randint(3, 9))]
+    x = [min(x[0], Fraction(0)), *x[1:], min(x[0], Fraction(0))]
+    told = {"fed_with": rng.choice(("penetration", "position")), "never_pulls": rng.random() < 0.5}
+    document: Document = {"kind": "touching motion", "loop": loop, "law": told, "positions_m": texts(x)}
+    late = quantity(loop, "delay") / quantity(loop, "sample_period") % 1
+    y = [a + (b - a) * Fraction(rng.randint(-2, 12), 10) for a, b in zip(x, x[1:], strict=False)] if late else None
+    if y is not None:
+        document["switch_positions_m"] = texts(y)
+    out = taken_out(loop, x, y, touched_forces(loop, told["fed_with"], told["never_pulls"], x))
+    return {**document, "sample_period_s": loop["sample_period_s"], "energy_J": _told(rng, out)}
+
+
+def _told(rng: Random, energy_out: Any) -> str:
+    value = Fraction(float(energy_out.mid())) if hasattr(energy_out, "mid") else Fraction(energy_out)
+    return str(close(rng, value) if rng.random() < 0.2 else value)
+
+
+def _contact_motion(rng: Random) -> Document:
+    """In, a short round some times, its own energy told."""
+    count, period = Fraction(1, 10**4), Fraction(1, 1000)
+    k = short(rng, 50, 1000)
+    taps = [k, *(short(rng, 1, 300) * rng.choice((-1, 1)) for _ in range(rng.randint(0, 2)))]
+    law_told: Document = {
+        "surface": rng.choice(("position", "penetration")), "clamped": rng.random() < 0.5, "taps_N_per_m": texts(taps),
+    }  # fmt: skip
+    if rng.random() < 0.3:
+        law_told["force_limit_N"] = str(short(rng, 0.01, 0.3))
+    if rng.random() < 0.3:
+        law_told["force_step_N"] = str(short(rng, 0.001, 0.1))
+    late = rng.choice((0, 0, 1, Fraction(2, 5)))
+    b, fc = close(rng, k * period / 2) * Fraction(rng.randint(2, 22), 20), close(rng, k * count / 2)
+    loop = _device(rng, period, damping=b, coulomb_friction=fc, resolution=count, delay=late * period)
+    tiny = Fraction(1, 10 ** rng.randint(1, 9))
+    x = [count * (rng.randint(0, 6) - rng.choice((0, tiny))) for _ in range(rng.randint(2, 5))]
+    x = [-count * tiny, *x, x[0]]
+    part = late - -(-late // 1) + 1
+    y = [a + (b - a) * (part + Fraction(rng.randint(-2, 2), 10)) for a, b in zip(x, x[1:], strict=False)]
+    rounds = rng.randint(5, 12)
+    motion, places = unrolled(x, [(1, len(x) - 1, rounds)])
+    turns = [y[at] + motion[i] - x[at] for i, at in enumerate(places)] if part < 1 else motion[1:]
+    taken = board_run(loop, law_told, motion, turns, int(-(-late // 1)), part) or [Fraction(0)]
+    document: Document = {
+        "kind": "contact motion", "loop": loop, "law": law_told, "sample_period_s": str(period),
+        "energy_J": _told(rng, sum(taken, Fraction(0))), "positions_m": texts(x),
+        "repeats": {"first": 1, "last": len(x) - 1, "times": rounds},
+    }  # fmt: skip
+    return {**document, "switch_positions_m": texts(y)} if part < 1 else document
+
+
+def _arm(rng: Random) -> Document:
+    """Two or three joints of any placement, the wall nearly as stiff as some places allow."""
+    joints = []
+    for _ in range(rng.randint(2, 3)):
+        slides = rng.random() < 0.2
+        unit, per = ("m", "N_s_per_m") if slides else ("rad", "N_m_s_per_rad")
+        turn = rng.choice(TURNS)
+        low = Fraction(rng.randint(-20, 20), 10)
+        joints.append({
+            "kind": "prismatic" if slides else "revolute", "rotation": turn,
+            "translation_m": texts([Fraction(rng.randint(-15, 15), 100) for _ in range(3)]),
+            f"low_{unit}": str(low / 10 if slides else low),
+            f"high_{unit}": str(low / 10 + Fraction(1, 20) if slides else low + Fraction(rng.randint(1, 6), 20)),
+            f"damping_{per}": str(short(rng, 1, 9) if slides else short(rng, 0.01, 0.2)),
+        })  # fmt: skip
+    machine = {"geometry": "chain", "joints": joints, "end_m": texts([Fraction(rng.randint(1, 15), 100) for _ in range(3)])}
+    size, chain = rng.randint(1, 3), Chain(machine)
+    most, places = np.inf, np.random.default_rng(rng.randrange(2**31))
+    for k in range(16):
+        share = places.integers(0, 2, len(joints)) if k < 8 else places.random(len(joints))
+        j = chain.jacobian(chain.low + share * (chain.high - chain.low), lambda q: chain.placed(q)[0][:size])
+        load = np.linalg.eigvalsh(j @ np.diag(1 / chain.damping) @ j.T)[-1]
+        most = min(most, 1 / load if load > 0 else np.inf)
+    share = rng.choice((Fraction(1, 2), Fraction(4, 5), Fraction(9, 10), Fraction(51, 50), Fraction(11, 10)))
+    k = share * Fraction(f"{min(2000 * most, 1e6):.9g}")  # nearer to the limit, cells are many
+    rows = [[str(k) if i == j else "0" for j in range(size)] for i in range(size)]
+    none = [["0"] * size for _ in range(size)]
+    wall = {"stiffness_N_per_m": rows, "virtual_damping_N_s_per_m": none, "damping_bound_N_s_per_m": none}
+    loop = {"sample_period_s": "0.001", "delay_samples": 0, "encoder": "ideal", "torque": "follows the arm"}
+    return {"kind": "arm", "arm": machine, "wall": wall, "loop": loop}
+
+
+TURNS = (
+    [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]],
+    [["1", "0", "0"], ["0", "0", "-1"], ["0", "1", "0"]],
+    [["0", "0", "1"], ["0", "1", "0"], ["-1", "0", "0"]],
+    [["3/5", "-4/5", "0"], ["4/5", "3/5", "0"], ["0", "0", "1"]],
+    [["3/5", "0", "4/5"], ["0", "1", "0"], ["-4/5", "0", "3/5"]],
+)
+
+
 _FRESH: dict[str, Callable[[Random], Document]] = {
     "spring": _spring,
     "linear": _linear,
@@ -586,7 +784,13 @@ _FRESH: dict[str, Callable[[Random], Document]] = {
     "row motion": _row_motion,
     "vibration": _vibration,
     "absolute stability": _absolute,
+    "stability": _known_hand,
     "instability": _known_hand,
+    "arm": _arm,
+    "positive real matrix": _matrix_port,
+    "matrix extraction": _matrix_extraction,
+    "touching motion": _touching,
+    "contact motion": _contact_motion,
     "positive real": _positive_real,
     "extraction": _extraction,
 }

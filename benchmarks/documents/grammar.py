@@ -23,9 +23,9 @@ Path = tuple[Any, ...]
 SHARES = {
     "spring": 7, "linear": 7, "quantized": 7, "delays": 4, "contact": 7, "relaxing contact": 6,
     "multiplier contact": 3, "nonlinear spring": 6, "endless pull": 4, "slow hands": 5, "force bounding": 4,
-    "active hand": 5, "violation": 8, "motion": 6, "touching motion": 2, "contact motion": 3, "row motion": 3,
-    "storage": 0.8, "coarse storage": 0.5, "row storage": 0.8, "stability": 0.8, "instability": 1,
-    "absolute stability": 0.8, "vibration": 4, "arm": 1.5, "positive real": 6, "positive real matrix": 3,
+    "active hand": 5, "violation": 8, "motion": 5, "touching motion": 3, "contact motion": 3, "row motion": 3,
+    "storage": 0.8, "coarse storage": 0.5, "row storage": 0.8, "stability": 1, "instability": 1,
+    "absolute stability": 0.8, "vibration": 4, "arm": 0.8, "positive real": 6, "positive real matrix": 3,
     "extraction": 5, "matrix extraction": 4, "corners": 2,
 }  # fmt: skip
 """How often each kind is written, rare where a check or a judge takes long."""
@@ -81,15 +81,6 @@ def write(seed: int, seeds: Mapping[str, list[Document]], only: str | None = Non
         words = _spoilt(rng, document)
         return Written(kind, document, f"{how}, {words}", bool(words))
     return Written(kind, document, how, False)
-
-
-def by_kind(groups: Mapping[str, list[Document]]) -> dict[str, list[Document]]:
-    """The seeds of every kind."""
-    found: dict[str, list[Document]] = {}
-    for documents in groups.values():
-        for document in documents:
-            found.setdefault(document["kind"], []).append(document)
-    return found
 
 
 _ROTARY = {
@@ -158,8 +149,8 @@ def _changed(rng: Random, document: Document, others: list[Document]) -> str:
     packed = [path for path, v in leaves(document) if isinstance(v, str) and len(v) > 30 and path[-1] != "format"]
     if packed and rng.random() < 0.35:
         return _repacked(rng, document, rng.choice(packed))
-    changes = (_nudged, _strengthened, _listed, _flipped, _grafted)
-    return rng.choices(changes, (8, 9, 3, 2, 3))[0](rng, document, others)
+    changes = (_nudged, _strengthened, _listed, _flipped, _grafted, _retyped)
+    return rng.choices(changes, (8, 9, 3, 2, 3, 1))[0](rng, document, others)
 
 
 def _numbers(document: Document) -> list[Path]:
@@ -270,6 +261,24 @@ def _grafted(rng: Random, document: Document, others: list[Document]) -> str:
         return "nothing"
     _inner(document, path[:-1])[path[-1]] = part
     return f"{'.'.join(path)} of another"
+
+
+def _retyped(rng: Random, document: Document, others: list[Document]) -> str:
+    """A list or an object is something else."""
+    ways = [path for path, _ in _objects(document) if path]
+    ways += [path for path, value in _entries(document) if isinstance(value, list)]
+    if not ways:
+        return _nudged(rng, document, others)
+    path = rng.choice(ways)
+    _inner(document, path[:-1])[path[-1]] = rng.choice((None, [], {}, "x", 1, True, [[1]], {"kind": "spring"}))
+    return f"{'.'.join(map(str, path))} of another type"
+
+
+def _entries(value: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, inner in items:
+        yield (*path, key), inner
+        yield from _entries(inner, (*path, key))
 
 
 def _repacked(rng: Random, document: Document, path: Path) -> str:

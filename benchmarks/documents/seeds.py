@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from hashlib import sha256
 from pathlib import Path
@@ -22,20 +22,28 @@ from zwidth.passivity.worst_hand.hand import game_of
 
 Document = dict[str, Any]
 
-LARGEST = 40_000
+LARGEST = 9_000
 """Characters of a document that is kept."""
 
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 
 
 def read(path: Path) -> dict[str, list[Document]]:
-    """The seeds by name, from a file, which is written first if it is missing."""
+    """Valid documents by their kind, from a file, which is written first if it is missing."""
     if not path.exists():
-        made = {name: list(_small(make())) for name, make in MAKERS.items()}
         beside = path.with_suffix(".part")
-        beside.write_text(json.dumps(made), encoding="utf-8")
+        beside.write_text(json.dumps(made(MAKERS)), encoding="utf-8")
         beside.replace(path)
     found: dict[str, list[Document]] = json.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
+def made(names: Iterable[str]) -> dict[str, list[Document]]:
+    """What some of the makers make, by its kind."""
+    found: dict[str, list[Document]] = {}
+    for name in names:
+        for document in _small(MAKERS[name]()):
+            found.setdefault(document["kind"], []).append(document)
     return found
 
 
@@ -187,6 +195,9 @@ def _game(device: zw.Device, law: Any, **more: Any) -> Iterator[Any]:
 
 def _storage() -> Iterator[Any]:
     yield from _game(_device(), zw.Wall(300))
+
+
+def _more_storage() -> Iterator[Any]:
     yield from _game(_device(damping="0.26"), zw.Wall(200, "0.05", clamped=True))
     yield from _game(_device(), _TWO_SIDED.replace(numerator=["180"], denominator=["1"]))
     yield from _game(_device(damping="0.5", delay="0.001"), zw.Wall(200))
@@ -400,6 +411,7 @@ MAKERS: dict[str, Callable[[], Iterator[Any]]] = {
     "motions": _motions,
     "touching": _touching,
     "storage": _storage,
+    "more storage": _more_storage,
     "contact motions": _contact_motions,
     "rows": _rows,
     "coarse": _coarse,

@@ -51,7 +51,7 @@ def _arm(document: Document, rng: Rng) -> Opinion:
     return _chain(document, need, period, rng)
 
 
-class _Chain:
+class Chain:
     """Joints as in the document."""
 
     def __init__(self, arm: Document) -> None:
@@ -87,7 +87,7 @@ class _Chain:
 
 
 def _chain(document: Document, need: Array, period: float, rng: Rng) -> Opinion:
-    arm, wall, loop = _Chain(document["arm"]), document["wall"], document["loop"]
+    arm, wall, loop = Chain(document["arm"]), document["wall"], document["loop"]
     turns = int(_number(wall["turns"])) if "turns" in wall else 0
     held, counted = loop["torque"] == "held", loop["encoder"] == "counted"
     limits = [_number(loop.get(n, 0)) for n in ("largest_force_N", "largest_moment_N_m")]
@@ -122,7 +122,7 @@ def _place(low: Array, high: Array, place: int, rng: Rng) -> Array:
     return low + share * (high - low)
 
 
-def _pose(arm: _Chain, wall: Document, document: Document, rng: Rng) -> Callable[[Array], Array]:
+def _pose(arm: Chain, wall: Document, document: Document, rng: Rng) -> Callable[[Array], Array]:
     """Position, and twice the vector of the quaternion from the orientation of rest."""
     if wall["rest"] == "given":
         rest = np.array([_number(j.get("rest_rad", 0)) for j in document["arm"]["joints"]])
@@ -139,7 +139,7 @@ def _pose(arm: _Chain, wall: Document, document: Document, rng: Rng) -> Callable
     return of
 
 
-def _price(arm: _Chain, q: Array, limits: list[float], period: float, turns: int) -> float:
+def _price(arm: Chain, q: Array, limits: list[float], period: float, turns: int) -> float:
     """What a torque that is held costs at least here: second derivatives along random directions."""
     if turns:
         return 0.0
@@ -153,7 +153,7 @@ def _price(arm: _Chain, q: Array, limits: list[float], period: float, turns: int
 
 
 def _friction(
-    document: Document, arm: _Chain, limits: list[float], period: float, turns: int, rng: Rng
+    document: Document, arm: Chain, limits: list[float], period: float, turns: int, rng: Rng
 ) -> Opinion:
     """Columns as long as they are at random places, and the friction that the steps ask for with these."""
     if turns:
@@ -181,6 +181,10 @@ def _friction(
 def _legs(arm: Document, need: Array, rng: Rng) -> Opinion:
     low, high = (np.array([_number(x) for x in arm[n]]) for n in ("low_m", "high_m"))
     damping = np.array([_number(leg["damping_N_m_s_per_rad"]) for leg in arm["legs"]])
+    for leg in arm["legs"]:
+        axes = np.array([[_number(x) for x in leg[n]] for n in ("out", "up")])
+        if np.abs(axes @ axes.T - np.eye(2)).max() > SLACK:
+            return false("the plane of a leg has axes that are no unit vectors at right angles")
     for place in range(PLACES):
         p = _place(low, high, place, rng)
         steps = np.eye(len(p)) * STEP

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
+from mpmath import expm as mp_expm
+from mpmath import matrix, mpf, nstr, polyroots, workdps
+from mpmath.libmp.libhyper import NoConvergence
 from scipy.linalg import expm
 
 from ..opinion import Opinion, agrees, cannot_say, false
@@ -72,10 +76,15 @@ def radius(plant: Plant, above: np.ndarray, below: np.ndarray) -> float:
     return float(np.abs(np.linalg.eigvals(out)).max())
 
 
-def _law(loop: Document) -> tuple[np.ndarray, np.ndarray]:
+def _exact_law(loop: Document) -> tuple[list[Fraction], list[Fraction]]:
     above, below = exacts(loop["numerator"]), exacts(loop["denominator"])
-    above = [0 * below[0]] * (len(below) - len(above)) + above
-    return tuple(np.array([float(c / below[0]) for c in side]) for side in (above, below))  # type: ignore[return-value]
+    above = [Fraction(0)] * (len(below) - len(above)) + above
+    return [c / below[0] for c in above], [c / below[0] for c in below]
+
+
+def _law(loop: Document) -> tuple[np.ndarray, np.ndarray]:
+    above, below = (np.array([float(c) for c in side]) for side in _exact_law(loop))
+    return above, below
 
 
 def _ends(loop: Document, name: str) -> list[float]:
@@ -102,9 +111,63 @@ def _stability(document: Document, rng: Rng) -> Opinion:
         if mass <= 0 or min(damping, stiffness, delay) < 0:
             return false("no device has such numbers")
         largest = max(largest, radius(held(mass, damping, stiffness, period, delay), *law))
+    if abs(largest - 1) < CLOSE:
+        return _closely(document)
     if document["kind"] == "instability":
         return _said(largest > 1 + CLOSE, largest < 1 - CLOSE, largest)
     return _said(largest < 1 - CLOSE, largest > 1 + CLOSE, largest)
+
+
+def _closely(document: Document) -> Opinion:
+    """With 50 digits, of a loop without intervals."""
+    loop = document["loop"]
+    if any(isinstance(entry(loop, n), list) for n in ("mass", "damping", "stiffness")):
+        return cannot_say("a root is close to the circle within the intervals")
+    with workdps(50):
+        try:
+            largest = _radius_closely(loop)
+        except NoConvergence:
+            return cannot_say("a root is close to the circle")
+    if abs(largest - 1) < mpf(10) ** -15:
+        return cannot_say(f"a root of the size {nstr(largest, 20)} is too close to the circle")
+    unstable = document["kind"] == "instability"
+    return agrees() if (largest > 1) == unstable else false(f"the largest root has the size {nstr(largest, 20)}")
+
+
+def _radius_closely(loop: Document) -> Any:
+    """By the roots of the determinant of the loop, from the plant's two coefficients of each part."""
+    m, b, k, period = (_mp(quantity(loop, n)) for n in ("mass", "damping", "stiffness", "sample_period"))
+    late = quantity(loop, "delay") / quantity(loop, "sample_period")
+    whole, part = int(late), _mp(late % 1)
+    a = matrix([[0, 1, 0], [-k * period**2 / m, -b * period / m, period**2 / m], [0, 0, 0]])
+    step, rest, early = (mp_expm(a * share) for share in (mpf(1), 1 - part, part))
+    phi = step[0:2, 0:2]
+    now = rest[0:2, 2]
+    before = rest[0:2, 0:2] * early[0:2, 2]
+    trace, determinant = phi[0, 0] + phi[1, 1], phi[0, 0] * phi[1, 1] - phi[0, 1] * phi[1, 0]
+    # x/f = −(C adj(z − Φ) (now + before/z))/(z^d det(z − Φ)), C = (1, 0)
+    rows = [[g[0], phi[0, 1] * g[1] - phi[1, 1] * g[0]] for g in (now, before)]
+    top = [rows[0][0], rows[0][1] + rows[1][0], rows[1][1]]
+    above, below = ([_mp(c) for c in side] for side in _exact_law(loop))
+    free = _mp_times([1, -trace, determinant], below) + [mpf(0)] * (whole + 1)
+    force = _mp_times(top, above)
+    ahead = len(free) - len(force)
+    total = [c + (force[i - ahead] if i >= ahead else 0) for i, c in enumerate(free)]
+    while len(total) > 1 and abs(total[-1]) < mpf(10) ** -45:
+        total.pop()
+    return max((abs(z) for z in polyroots(total, maxsteps=400, extraprec=400)), default=mpf(0))
+
+
+def _mp(x: Any) -> Any:
+    return mpf(x.numerator) / mpf(x.denominator)
+
+
+def _mp_times(a: list[Any], b: list[Any]) -> list[Any]:
+    out = [mpf(0)] * (len(a) + len(b) - 1)
+    for i, x in enumerate(a):
+        for j, y in enumerate(b):
+            out[i + j] += x * y
+    return out
 
 
 def _said(right: bool, wrong: bool, largest: float) -> Opinion:

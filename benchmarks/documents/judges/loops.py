@@ -225,7 +225,9 @@ def _violated_at(loop: PlainLoop, cosine: Fraction) -> Opinion:
     if abs(cosine) > 1:
         return false("no frequency has this cosine")
     if cosine == 1:
-        asked = needed_at(loop, 1e-9)
+        asked = needed_at(loop, 1e-40, digits=250)  # nearer to 0 than any pole of a document is to 1
+        if not sum(loop.denominator):  # what is asked for grows beyond any number
+            return agrees() if asked > 0 else cannot_say("H(z) has a pole at the frequency 0")
         close = abs(float(asked.mid()) - float(loop.damping)) < 1e-6 * (float(loop.damping) + 1e-300)
         if close:
             return cannot_say("at the frequency 0 the limit is too close")

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from flint import arb, ctx, fmpq
+from scipy.signal import lfilter
 
 from ..opinion import Opinion, agrees, cannot_say, false
 from ..plain import entry, exact, exacts, law_of, poles_of, quantity
@@ -24,6 +25,9 @@ Part = tuple[int, int, int]
 
 LONGEST = 6000
 """Samples that are run."""
+
+MOST = 2_000_000
+"""Samples that are run in long doubles."""
 
 DIGITS = 120
 SLACK = Fraction(1, 10**9)
@@ -118,7 +122,7 @@ def kept_forces(loop: Document, x: Sequence[Fraction]) -> Iterator[Any]:
         yield law.force(q)
 
 
-def _touched(loop: Document, fed: str, never_pulls: bool, x: Sequence[Fraction]) -> Iterator[Any]:
+def touched_forces(loop: Document, fed: str, never_pulls: bool, x: Sequence[Fraction]) -> Iterator[Any]:
     """The forces of a law that is touched and left; it has rested at its first reading for ever."""
     above, below = law_of(loop)
     law, first = Law(above, below), None
@@ -156,19 +160,46 @@ def energy(
     if size <= LONGEST:
         return _run(loop, x, y, parts, run)
     if len(parts) != 1:
-        return None
+        return _in_long_doubles(loop, x, y, parts, size)
     first, last, times = parts[0]
     most = (LONGEST - len(x)) // (last - first)
     counts = [most - 3 * k for k in range(4)]
     if counts[-1] < 4:
-        return None
+        return _in_long_doubles(loop, x, y, parts, size)
     found = [_run(loop, x, y, _fewer(parts, n), run) for n in counts]
     e0, e1, e2, e3 = (_ball(Fraction(v)) if not isinstance(v, arb) else v for v in found)
     second, other = e0 - 2 * e1 + e2, e1 - 2 * e2 + e3
     if not (abs(second - other) <= abs(e0 - e1) * _ball(Fraction(1, 10**40))):
-        return None  # the law has not settled
+        return _in_long_doubles(loop, x, y, parts, size)  # the law has not settled
     n = _ball(Fraction(times - counts[0], 3))
     return e0 + n * (e0 - e1) + n * (n + 1) / 2 * second
+
+
+def _in_long_doubles(loop: Document, x: list[Fraction], y: Any, parts: list[Part], size: int) -> arb | None:
+    """Of an ideal encoder and whole samples of delay, as a ball of what rounding may have done."""
+    if y is not None or quantity(loop, "resolution") or size > MOST:
+        return None
+    long, positions = np.longdouble, np.array([float(v) for v in x], dtype=np.longdouble)
+    motion, ahead, after = [positions[:1]], long(0), 0
+    for first, last, times in [*parts, (len(x) - 1, len(x) - 1, 1)]:
+        motion.append(positions[after + 1 : first + 1] + ahead)
+        advance, one = positions[last] - positions[first], positions[first + 1 : last + 1]
+        motion.append((one[None, :] + advance * np.arange(times, dtype=long)[:, None] + ahead).ravel())
+        ahead, after = ahead + (times - 1) * advance, last
+    path = np.concatenate(motion)
+    if loop["unilateral"] and len(law_of(loop)[0]) > 1 and path[1:-1].min() <= 0:
+        return None
+    above, below = (np.array([float(c) for c in side], dtype=long) for side in law_of(loop))
+    force = lfilter(above, below, np.maximum(path, 0) if loop["unilateral"] else path)
+    whole = int(quantity(loop, "delay") / quantity(loop, "sample_period"))
+    held = np.concatenate([np.zeros(whole, dtype=long), force])[: len(path) - 1]
+    moves = np.diff(path)
+    b, fc, period = (long(float(quantity(loop, n))) for n in ("damping", "coulomb_friction", "sample_period"))
+    terms = -held * moves - fc * np.abs(moves) - b / period * moves**2
+    if not np.isfinite(terms).all():
+        return None
+    total, off = float(terms.sum()), float(np.abs(held * moves).sum() + np.abs(terms).sum()) * 1e-14
+    return arb(total, off)
 
 
 def _run(loop: Document, x: list[Fraction], y: Any, parts: list[Part], run: Callable[..., Any]) -> Any:
@@ -184,6 +215,8 @@ def compared(found: Any, told: Fraction, stored: Fraction = Fraction(0)) -> Opin
         return cannot_say("the motion is too long to be run again")
     value = found if isinstance(found, arb) else _ball(Fraction(found))
     off = abs(value - _ball(told))
+    if value.rad() > abs(value) * _ball(SLACK):
+        return cannot_say("rounding hides the energy")
     if off > abs(value) * _ball(SLACK * (1 + SLACK)):
         return false(f"the motion takes out {float(value.mid()):.12g} J, not {float(told):.12g} J")
     if value > _ball(stored):
@@ -232,7 +265,7 @@ def _touching(document: Document, rng: Rng) -> Opinion:
     if len(x) > LONGEST:
         return cannot_say("the motion is too long to be run again")
     with ctx.workdps(DIGITS):
-        found = taken_out(loop, x, y, _touched(loop, law["fed_with"], law["never_pulls"], x))
+        found = taken_out(loop, x, y, touched_forces(loop, law["fed_with"], law["never_pulls"], x))
         return compared(found, exact(document["energy_J"]))
 
 
@@ -304,7 +337,7 @@ def _contact(document: Document, rng: Rng) -> Opinion:
     if (rounds + 2) * (last - first) > LONGEST:
         return cannot_say("the rounds are too long")
     motion, places = unrolled(x, [(first, last, rounds)])
-    taken = _board_run(loop, law, motion, [y[k] + motion[i] - x[k] for i, k in enumerate(places)], int(late), part)
+    taken = board_run(loop, law, motion, [y[k] + motion[i] - x[k] for i, k in enumerate(places)], int(late), part)
     if taken is None:
         return false("it does not begin where the law gives no force")
     span = last - first
@@ -334,7 +367,7 @@ def _out_of_bounds(document: Document, x: list[Fraction], y: list[Fraction] | No
     return ""
 
 
-def _board_run(
+def board_run(
     loop: Document, law: Document, x: list[Fraction], y: list[Fraction], late: int, part: Fraction
 ) -> list[Fraction] | None:
     """What each interval takes out, averages kept to 2⁻⁹⁰ of a count."""
