@@ -1,15 +1,16 @@
 """Does the checker accept a false document?  Random ones of every kind, judged a second time by other roads.
 
-Each seed is one document: a valid one with some numbers, terms or choices changed and its claim strengthened by
-a little, or one from nothing in the right shape, or one that is ill-formed.  What the checker accepts is judged in
-`documents/`, which shares no code with it.
+Each seed is one document: a valid one with some numbers, terms or choices changed and its claim strengthened
+by a little, or one from nothing in the right shape, or one that is ill-formed.  What the checker accepts is
+judged in `documents/`, which shares no code with it.
 
     python benchmarks/random_documents.py --documents 1000000 --first 0 --processes 2 --ledger FILE.csv
 
-runs the seeds that the ledger does not have yet.  When it is stopped, chunks that were not finished are run again;
-what is false is made smaller and saved beside the ledger, with the reason.  --only N judges one seed alone.
+runs the seeds that the ledger does not have yet.  When it is stopped, chunks that were not finished are run
+again; what is false is made smaller and saved beside the ledger, with the reason.  --only N judges one seed.
 """
 
+# ruff: noqa: E402 (threads are told before numpy is loaded)
 from __future__ import annotations
 
 import os
@@ -91,7 +92,10 @@ def _tell(told: list[Found], folder: Path) -> int:
         wrong = found.word in FINDINGS
         findings += wrong
         spent = f"{found.seconds:.1f} s, {found.room:.0f} MB"
-        print(f"seed {seed}, {found.written.kind}, {found.word}: {found.why}; {found.written.how}; {spent}", flush=True)
+        print(
+            f"seed {seed}, {found.written.kind}, {found.word}: {found.why}; {found.written.how}; {spent}",
+            flush=True,
+        )
         if wrong and findings <= SAVED:
             save(folder, seed, found)
     return findings
@@ -130,8 +134,12 @@ def main() -> int:
     parser.add_argument("--chunk", type=int, default=500, help="seeds that are written down together")
     parser.add_argument("--ledger", type=Path, default=HERE / "random_documents.csv")
     parser.add_argument("--kind", choices=list(SHARES), help="one kind only; needs a ledger of its own")
-    parser.add_argument("--only", type=int, metavar="SEED", help="judge this document alone, and write nothing")
-    parser.add_argument("--seeds", type=Path, default=seeds.default_path(), help="the valid documents, kept here")
+    parser.add_argument(
+        "--only", type=int, metavar="SEED", help="judge this document alone, and write nothing"
+    )
+    parser.add_argument(
+        "--seeds", type=Path, default=seeds.default_path(), help="the valid documents, kept here"
+    )
     parser.add_argument("--write-readme", action="store_true")
     parser.add_argument("--self-test", action="store_true", help="can every judge say no?")
     given = parser.parse_args()

@@ -1,4 +1,4 @@
-"""One seed: its document is written, checked, and judged if it was accepted; what is false is made smaller."""
+"""One seed: its document is written, checked, judged if it was accepted, and made smaller if it is false."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ WORDS = (REFUSED, AGREES, OPEN, FALSE, ILL_FORMED, ERROR)
 FINDINGS = (FALSE, ILL_FORMED, ERROR)
 
 PATIENCE = 60
-"""Seconds of the processor after which a document is given up: an error of the checker, or open of a judge."""
+"""Seconds of the processor after which a document is given up: an error of the checker, open for a judge."""
 
 SHRINK_S = 3.0
 
 
 class Examined(NamedTuple):
-    """What came out: one of `WORDS`, why, and what the checker took [s], and the process has taken at most [MB]."""
+    """One of `WORDS`, why, the processor's time of the check [s], and the room of the process where it grew [MB]."""
 
     written: Written
     word: str
@@ -51,9 +51,9 @@ def examine(seed: int, seeds: Mapping[str, list[Document]], only: str | None = N
     """The document of a seed, judged."""
     written = write(seed, seeds, only)
     before = _room()
-    start = time.perf_counter()
+    start = time.process_time()
     valid, reason = _asked(written.document)
-    seconds = time.perf_counter() - start
+    seconds = time.process_time() - start
     room = _room()
     opinion = Opinion(REFUSED, reason) if valid is False else Opinion(ERROR, reason)
     if valid:

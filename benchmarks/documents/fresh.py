@@ -5,6 +5,7 @@ The polynomials of a proof are multiplied out from the definition, whether they 
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from random import Random
@@ -35,7 +36,9 @@ def close(rng: Random, value: Fraction) -> Fraction:
     """At a limit, or a little to either side of it."""
     if rng.random() < 0.15:
         return value
-    return value * (1 + rng.choice((-1, 1)) * Fraction(rng.randint(1, 99), 10 ** rng.choice((2, 3, 5, 8, 11, 14))))
+    return value * (
+        1 + rng.choice((-1, 1)) * Fraction(rng.randint(1, 99), 10 ** rng.choice((2, 3, 5, 8, 11, 14)))
+    )
 
 
 def texts(values: Sequence[Fraction]) -> list[str]:
@@ -129,8 +132,14 @@ def damp(rng: Random, loop: Document) -> None:
 
 def law(rng: Random) -> tuple[Polynomial, Polynomial, Modes, Polynomial]:
     """N, D ascending in 1/z, and the modes and the rest that sum up to it."""
-    modes = [(Fraction(rng.randint(-9, 9), 10), short(rng, 1, 100) * rng.choice((-1, 1))) for _ in range(rng.randint(0, 2))]
-    rest = [short(rng, 10, 500), *(short(rng, 1, 200) * rng.choice((-1, 1)) for _ in range(rng.randint(0, 2)))]
+    modes = [
+        (Fraction(rng.randint(-9, 9), 10), short(rng, 1, 100) * rng.choice((-1, 1)))
+        for _ in range(rng.randint(0, 2))
+    ]
+    rest = [
+        short(rng, 10, 500),
+        *(short(rng, 1, 200) * rng.choice((-1, 1)) for _ in range(rng.randint(0, 2))),
+    ]
     above, below = rest, [Fraction(1)]
     for pole, residue in modes:
         line = [Fraction(1), -pole]
@@ -242,7 +251,8 @@ def _contact(rng: Random) -> Document:
     whole, step = rng.choice((0, 0, 1, 2)), short(rng, 1e-6, 1e-3)
     loop = loop_of(
         rng, above, bottom, unilateral=True, sample_period_s=str(period), delay_s=str(whole * period),
-        resolution_m=str(step), coulomb_friction_N=str(close(rng, (k + abs(b) * variation / period) * step / 2)),
+        resolution_m=str(step),
+        coulomb_friction_N=str(close(rng, (k + abs(b) * variation / period) * step / 2)),
         damping_N_s_per_m=str(close(rng, (2 * whole + 1) * k * period / 2 + abs(b) * gain)),
     )  # fmt: skip
     told = {"stiffness_N_per_m": str(k), "virtual_damping_N_s_per_m": str(b), "weights": weights}
@@ -253,7 +263,8 @@ def _relaxing(rng: Random) -> Document:
     """Parts of either sign, near what either theorem asks for."""
     k = short(rng, 1, 500)
     parts = [
-        (Fraction(rng.randint(-9, 9), 10), short(rng, 1, 300) * rng.choice((1, 1, 1, -1))) for _ in range(rng.randint(1, 2))
+        (Fraction(rng.randint(-9, 9), 10), short(rng, 1, 300) * rng.choice((1, 1, 1, -1)))
+        for _ in range(rng.randint(1, 2))
     ]
     above, below = [k], [Fraction(1)]
     for pole, g in parts:
@@ -280,7 +291,11 @@ def _relaxing(rng: Random) -> Document:
 
 def _multiplier(rng: Random) -> Document:
     """4 λ κ |D|² − |D − λ ζ^{d+1} N_G|² of one pole, at a random λ, its sign as it comes."""
-    k, g, pole = short(rng, 1, 50), short(rng, 1, 300) * rng.choice((1, 1, -1)), Fraction(rng.randint(-9, 9), 10)
+    k, g, pole = (
+        short(rng, 1, 50),
+        short(rng, 1, 300) * rng.choice((1, 1, -1)),
+        Fraction(rng.randint(-9, 9), 10),
+    )
     above, below = [k + g, -k * pole - g], [Fraction(1), -pole]
     period, whole = Fraction(rng.choice(PERIODS)), rng.choice((0, 0, 1))
     damping = period * ((2 * whole + 1) * k / 2 + abs(g) * Fraction(rng.randint(10, 300), 100))
@@ -322,13 +337,18 @@ def _device(rng: Random, period: Fraction, **numbers: Fraction) -> Document:
 
 
 def _nonlinear(rng: Random) -> Document:
-    points, period, whole = _points(rng, rng.random() < 0.9), Fraction(rng.choice(PERIODS)), rng.choice((0, 0, 1, 2))
+    points, period, whole = (
+        _points(rng, rng.random() < 0.9),
+        Fraction(rng.choice(PERIODS)),
+        rng.choice((0, 0, 1, 2)),
+    )
     slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in zip(points, points[1:], strict=False)]
     largest, steepest = max(0, *slopes), max(map(abs, slopes))
     step = short(rng, 1e-6, 1e-3)
     loop = _device(
         rng, period, delay=whole * period, resolution=step,
-        damping=close(rng, (largest / 2 + whole * steepest) * period), coulomb_friction=close(rng, steepest * step / 2),
+        damping=close(rng, (largest / 2 + whole * steepest) * period),
+        coulomb_friction=close(rng, steepest * step / 2),
     )  # fmt: skip
     return {"kind": "nonlinear spring", "loop": loop, "law": {"points_m_N": [texts(p) for p in points]}}
 
@@ -353,9 +373,13 @@ def _slow(rng: Random) -> Document:
 
 def _bounding(rng: Random) -> Document:
     period, b, fc, step, rounded = (
-        Fraction(rng.choice(PERIODS)), short(rng, 0.01, 1), short(rng, 0.01, 1), short(rng, 1e-6, 1e-3), short(rng, 1e-4, 0.1),
+        Fraction(rng.choice(PERIODS)), short(rng, 0.01, 1), short(rng, 0.01, 1), short(rng, 1e-6, 1e-3),
+        short(rng, 1e-4, 0.1),
     )  # fmt: skip
-    loop = {**_device(rng, period, damping=b, coulomb_friction=fc, resolution=step), "force_resolution_N": str(rounded)}
+    loop = {
+        **_device(rng, period, damping=b, coulomb_friction=fc, resolution=step),
+        "force_resolution_N": str(rounded),
+    }
     u = Fraction(1, 2**53)
     told = {
         "credit_N_per_m": str(close(rng, b / period)),
@@ -372,16 +396,27 @@ def _active(rng: Random) -> Document:
     """In a band, or everywhere, nearly as active as it may be."""
     above, below, _, _ = law(rng)
     period = Fraction(rng.choice(PERIODS))
-    loop = loop_of(rng, above, below, delay_s=str(period * rng.choice((0, 0, 1))), sample_period_s=str(period))
+    loop = loop_of(
+        rng, above, below, delay_s=str(period * rng.choice((0, 0, 1))), sample_period_s=str(period)
+    )
     damp(rng, loop)
     b = quantity(loop, "damping") * (1 + Fraction(rng.randint(0, 100), 100))
     loop["damping_N_s_per_m"] = str(b)
-    activity = close(rng, b - quantity(loop, "damping")) if rng.random() < 0.3 else b * Fraction(rng.randint(1, 130), 100)
+    activity = (
+        close(rng, b - quantity(loop, "damping"))
+        if rng.random() < 0.3
+        else b * Fraction(rng.randint(1, 130), 100)
+    )
     if rng.random() < 0.4:
         reduced = {**loop, "damping_N_s_per_m": str(b - activity)}
         inner = {"kind": "linear", "loop": reduced, "proof": {"stability": {"kind": "open loop"}}}
         inner["proof"]["positivity"] = positivity(criterion(reduced))  # type: ignore[index]
-        return {"kind": "active hand", "loop": loop, "activity_N_s_per_m": str(activity), "proof": {"reduced": inner}}
+        return {
+            "kind": "active hand",
+            "loop": loop,
+            "activity_N_s_per_m": str(activity),
+            "proof": {"reduced": inner},
+        }
     angle = Fraction(rng.randint(1, 300), 100)
     cosine = Fraction(f"{np.cos(float(angle)) - 1e-9:.12f}")
     below_hz = Fraction(f"{float(angle / period) / 6.283185307179587 * (1 - 1e-9):.9g}")
@@ -441,10 +476,18 @@ def _motion(rng: Random) -> Document:
     unit = quantity(loop, "resolution") or Fraction(1, 1000)
     size = rng.randint(2, 7)
     loop["unilateral"] = loop["unilateral"] and len(above) == 1  # a law with memory must not be left
-    x = [Fraction(0), *(unit * (rng.randint(1, 4) - Fraction(1, rng.choice((1, 10**6)))) for _ in range(size)), Fraction(0)]
+    x = [
+        Fraction(0),
+        *(unit * (rng.randint(1, 4) - Fraction(1, rng.choice((1, 10**6)))) for _ in range(size)),
+        Fraction(0),
+    ]
     document: Document = {"kind": "motion", "loop": loop, "positions_m": texts(x)}
     late = quantity(loop, "delay") / quantity(loop, "sample_period") % 1
-    y = [a + (b - a) * Fraction(rng.randint(-2, 12), 10) for a, b in zip(x, x[1:], strict=False)] if late else None
+    y = (
+        [a + (b - a) * Fraction(rng.randint(-2, 12), 10) for a, b in zip(x, x[1:], strict=False)]
+        if late
+        else None
+    )
     if y is not None:
         document["switch_positions_m"] = texts(y)
     parts = []
@@ -479,7 +522,10 @@ def _absolute(rng: Random) -> Document:
     above = [Fraction(rng.randint(-20, 20), 10), Fraction(rng.randint(-9, 9), 10)]
     first, second = (Fraction(rng.randint(-9, 9), 10) for _ in range(2))
     below = times([Fraction(1), -first], [Fraction(1), -second])
-    taps = [{"place": p, "weight": str(Fraction(rng.randint(-3, 9), 20))} for p in rng.sample((-2, -1, 1, 2), rng.randint(0, 2))]
+    taps = [
+        {"place": p, "weight": str(Fraction(rng.randint(-3, 9), 20))}
+        for p in rng.sample((-2, -1, 1, 2), rng.randint(0, 2))
+    ]
     return {
         "kind": "absolute stability",
         "plant": {"numerator": texts(above), "denominator": texts(below)},
@@ -532,7 +578,11 @@ def _positive_real(rng: Random) -> Document:
     q = _on_axis(m, d, order) if continuous else in_cosine(m, d)
     return {
         "kind": "positive real",
-        "system": {"time": "continuous" if continuous else "discrete", "numerator": texts(above), "denominator": texts(below)},
+        "system": {
+            "time": "continuous" if continuous else "discrete",
+            "numerator": texts(above),
+            "denominator": texts(below),
+        },
         "index": "input",
         "level": str(level),
         "proof": {"offset": str(short(rng, 0.01, 10)), "positivity": positivity(q)},
@@ -562,7 +612,13 @@ def _extraction(rng: Random) -> Document:
 
 
 def _row_motion(rng: Random) -> Document:
-    loop = _device(rng, Fraction(1, 1000), damping=short(rng, 0.01, 1), coulomb_friction=short(rng, 1e-3, 0.1), resolution=Fraction(1, 10**4))
+    loop = _device(
+        rng,
+        Fraction(1, 1000),
+        damping=short(rng, 0.01, 1),
+        coulomb_friction=short(rng, 1e-3, 0.1),
+        resolution=Fraction(1, 10**4),
+    )
     x = [Fraction(rng.randint(-3, 30), 10**5) for _ in range(rng.randint(2, 5))]
     x.append(x[0])
     forces = [short(rng, 1e-3, 1) * rng.choice((-1, 1)) for _ in x[1:]]
@@ -614,9 +670,15 @@ def _symmetric_in_cosine(p: dict[int, Fraction]) -> Polynomial:
 
 
 def _matrix_port(rng: Random) -> Document:
-    """Two axes in discrete time, at a level near the least eigenvalue, minors and resolvent multiplied out."""
+    """Two axes in discrete time near the least eigenvalue, minors and resolvent multiplied out."""
     below = [Fraction(1), Fraction(rng.randint(-9, 9), 10)]
-    rows = [[[Fraction(rng.randint(-9, 9), 10) + (3 if i == j and not k else 0) for k in range(2)] for j in range(2)] for i in range(2)]
+    rows = [
+        [
+            [Fraction(rng.randint(-9, 9), 10) + (3 if i == j and not k else 0) for k in range(2)]
+            for j in range(2)
+        ]
+        for i in range(2)
+    ]
     z = np.exp(1j * np.linspace(0, np.pi, 80))
     g = np.array([[np.polyval([float(c) for c in q], z) for q in row] for row in rows])
     g = np.moveaxis(g / np.polyval([float(c) for c in below], z), 2, 0)
@@ -641,18 +703,27 @@ def _matrix_port(rng: Random) -> Document:
         (Fraction(1), _laurent_times(p[0][0], p[1][1])), (Fraction(-1), _laurent_times(p[0][1], p[1][0]))
     )
     offset = short(rng, 0.1, 10)
-    m = [[plus(rows[i][j], below, offset - level) if i == j else rows[i][j] for j in range(2)] for i in range(2)]
+    m = [
+        [plus(rows[i][j], below, offset - level) if i == j else rows[i][j] for j in range(2)]
+        for i in range(2)
+    ]
     whole = plus(times(m[0][0], m[1][1]), times(m[0][1], m[1][0]), -1)
     minus = [[[-c for c in q] for q in row] for row in m]
     resolvent = [[m[1][1], minus[0][1]], [minus[1][0], m[0][0]]]
     return {
         "kind": "positive real matrix",
-        "system": {"time": "discrete", "numerators": [[texts(q) for q in row] for row in rows], "denominator": texts(below)},
+        "system": {
+            "time": "discrete",
+            "numerators": [[texts(q) for q in row] for row in rows],
+            "denominator": texts(below),
+        },
         "index": "input",
         "level": str(level),
         "proof": {
             "offset": str(offset),
-            "minors": [{"power": 0, "positivity": positivity(_symmetric_in_cosine(e))} for e in (trace, determinant)],
+            "minors": [
+                {"power": 0, "positivity": positivity(_symmetric_in_cosine(e))} for e in (trace, determinant)
+            ],
             "resolvent": {
                 "numerators": [[texts(times(below, q)) for q in row] for row in resolvent],
                 "denominator": texts(whole),
@@ -681,7 +752,11 @@ def _touching(rng: Random) -> Document:
     told = {"fed_with": rng.choice(("penetration", "position")), "never_pulls": rng.random() < 0.5}
     document: Document = {"kind": "touching motion", "loop": loop, "law": told, "positions_m": texts(x)}
     late = quantity(loop, "delay") / quantity(loop, "sample_period") % 1
-    y = [a + (b - a) * Fraction(rng.randint(-2, 12), 10) for a, b in zip(x, x[1:], strict=False)] if late else None
+    y = (
+        [a + (b - a) * Fraction(rng.randint(-2, 12), 10) for a, b in zip(x, x[1:], strict=False)]
+        if late
+        else None
+    )
     if y is not None:
         document["switch_positions_m"] = texts(y)
     out = taken_out(loop, x, y, touched_forces(loop, told["fed_with"], told["never_pulls"], x))
@@ -699,7 +774,8 @@ def _contact_motion(rng: Random) -> Document:
     k = short(rng, 50, 1000)
     taps = [k, *(short(rng, 1, 300) * rng.choice((-1, 1)) for _ in range(rng.randint(0, 2)))]
     law_told: Document = {
-        "surface": rng.choice(("position", "penetration")), "clamped": rng.random() < 0.5, "taps_N_per_m": texts(taps),
+        "surface": rng.choice(("position", "penetration")), "clamped": rng.random() < 0.5,
+        "taps_N_per_m": texts(taps),
     }  # fmt: skip
     if rng.random() < 0.3:
         law_told["force_limit_N"] = str(short(rng, 0.01, 0.3))
@@ -732,15 +808,19 @@ def _arm(rng: Random) -> Document:
         slides = rng.random() < 0.2
         unit, per = ("m", "N_s_per_m") if slides else ("rad", "N_m_s_per_rad")
         turn = rng.choice(TURNS)
-        low = Fraction(rng.randint(-20, 20), 10)
+        low = Fraction(rng.randint(-20, 20), 100 if slides else 10)
         joints.append({
             "kind": "prismatic" if slides else "revolute", "rotation": turn,
             "translation_m": texts([Fraction(rng.randint(-15, 15), 100) for _ in range(3)]),
-            f"low_{unit}": str(low / 10 if slides else low),
-            f"high_{unit}": str(low / 10 + Fraction(1, 20) if slides else low + Fraction(rng.randint(1, 6), 20)),
+            f"low_{unit}": str(low),
+            f"high_{unit}": str(low + Fraction(rng.randint(1, 6), 20)),
             f"damping_{per}": str(short(rng, 1, 9) if slides else short(rng, 0.01, 0.2)),
         })  # fmt: skip
-    machine = {"geometry": "chain", "joints": joints, "end_m": texts([Fraction(rng.randint(1, 15), 100) for _ in range(3)])}
+    machine = {
+        "geometry": "chain",
+        "joints": joints,
+        "end_m": texts([Fraction(rng.randint(1, 15), 100) for _ in range(3)]),
+    }
     size, chain = rng.randint(1, 3), Chain(machine)
     most, places = np.inf, np.random.default_rng(rng.randrange(2**31))
     for k in range(16):
@@ -799,5 +879,5 @@ KINDS = tuple(_FRESH)
 
 
 def fresh(kind: str, rng: Random) -> Document:
-    """A document of one of the kinds."""
-    return {"format": "zwidth certificate 1", **_FRESH[kind](rng)}
+    """A document of one of the kinds, with no part that belongs to another."""
+    return {"format": "zwidth certificate 1", **copy.deepcopy(_FRESH[kind](rng))}

@@ -1,4 +1,4 @@
-"""Documents that are nearly valid: changed ones, grafted ones, ones written from nothing, and ill-formed ones.
+"""Documents that are nearly valid: changed, grafted, written from nothing, and ill-formed.
 
 Each is written from one seed and can be written again from it alone.
 """
@@ -35,7 +35,8 @@ ILL_FORMED, FROM_NOTHING, ROTARY = 0.12, 0.4, 0.1
 
 FLIPS = {
     True: False, False: True, "open loop": "closed loop", "closed loop": "open loop",
-    "position": "penetration", "penetration": "none", "none": "position", "input": "output", "output": "input",
+    "position": "penetration", "penetration": "none", "none": "position", "input": "output",
+    "output": "input",
     "continuous": "discrete", "discrete": "continuous", "ideal": "counted", "counted": "ideal",
     "held": "follows the arm", "follows the arm": "held", "follows the readings": "held",
     "monotone": "odd monotone", "odd monotone": "monotone", "revolute": "prismatic",
@@ -85,7 +86,8 @@ def write(seed: int, seeds: Mapping[str, list[Document]], only: str | None = Non
 
 _ROTARY = {
     "N_s_per_m": "N_m_s_per_rad", "N_per_m": "N_m_per_rad", "N_N_s_per_m": "N_m_N_m_s_per_rad", "kg": "kg_m2",
-    "m_per_s_N": "rad_per_s_N_m", "m_per_s": "rad_per_s", "per_m": "per_rad", "m_N": "rad_N_m", "m": "rad", "N": "N_m",
+    "m_per_s_N": "rad_per_s_N_m", "m_per_s": "rad_per_s", "per_m": "per_rad", "m_N": "rad_N_m", "m": "rad",
+    "N": "N_m",
 }  # fmt: skip
 """Units that metres and newtons become of a wheel, the longer ones first."""
 
@@ -113,7 +115,9 @@ def _corners(rng: Random, seeds: Mapping[str, list[Document]]) -> Written:
             _changed(rng, part, seeds[kind])
         parts.append(part)
     if rng.random() < 0.2:
-        return Written("corners", {"kind": "corners", "corners": [*parts, parts[0]]}, "the same corner twice", True)
+        return Written(
+            "corners", {"kind": "corners", "corners": [*parts, parts[0]]}, "the same corner twice", True
+        )
     return Written("corners", {"kind": "corners", "corners": parts}, "several corners", False)
 
 
@@ -146,7 +150,9 @@ def is_number(value: Any) -> bool:
 
 def _changed(rng: Random, document: Document, others: list[Document]) -> str:
     """Change one thing in place; in words."""
-    packed = [path for path, v in leaves(document) if isinstance(v, str) and len(v) > 30 and path[-1] != "format"]
+    packed = [
+        path for path, v in leaves(document) if isinstance(v, str) and len(v) > 30 and path[-1] != "format"
+    ]
     if packed and rng.random() < 0.35:
         return _repacked(rng, document, rng.choice(packed))
     changes = (_nudged, _strengthened, _listed, _flipped, _grafted, _retyped)
@@ -159,7 +165,9 @@ def _numbers(document: Document) -> list[Path]:
 
 def near_one(rng: Random) -> Fraction:
     """1 ± ε, of any size."""
-    return 1 + rng.choice((-1, 1)) * Fraction(rng.randint(1, 99), 10 ** rng.choice((2, 3, 3, 5, 8, 11, 14, 17)))
+    return 1 + rng.choice((-1, 1)) * Fraction(
+        rng.randint(1, 99), 10 ** rng.choice((2, 3, 3, 5, 8, 11, 14, 17))
+    )
 
 
 def _nudged(rng: Random, document: Document, others: list[Document]) -> str:
@@ -169,12 +177,15 @@ def _nudged(rng: Random, document: Document, others: list[Document]) -> str:
     path = rng.choice(paths)
     inner, key = _inner(document, path[:-1]), path[-1]
     old = Fraction(str(inner[key]))
-    kind = rng.choices(("near", "sign", "zero", "other", "scale", "exact", "whole"), (12, 2, 2, 3, 3, 2, 3))[0]
+    kind = rng.choices(("near", "sign", "zero", "other", "scale", "exact", "whole"), (12, 2, 2, 3, 3, 2, 3))[
+        0
+    ]
     if kind == "other":
         old = Fraction(str(_inner(document, rng.choice(paths))))
     new = {
         "near": old * near_one(rng), "sign": -old, "zero": Fraction(0), "other": old,
-        "scale": old * Fraction(10) ** rng.randint(-9, 9), "exact": old + Fraction(rng.randint(-3, 3), rng.choice((3, 7, 997))),
+        "scale": old * Fraction(10) ** rng.randint(-9, 9),
+        "exact": old + Fraction(rng.randint(-3, 3), rng.choice((3, 7, 997))),
         "whole": old + rng.choice((-1, 1)),
     }[kind]  # fmt: skip
     inner[key] = _as_written(new, inner[key])
@@ -270,7 +281,9 @@ def _retyped(rng: Random, document: Document, others: list[Document]) -> str:
     if not ways:
         return _nudged(rng, document, others)
     path = rng.choice(ways)
-    _inner(document, path[:-1])[path[-1]] = rng.choice((None, [], {}, "x", 1, True, [[1]], {"kind": "spring"}))
+    _inner(document, path[:-1])[path[-1]] = rng.choice(
+        (None, [], {}, "x", 1, True, [[1]], {"kind": "spring"})
+    )
     return f"{'.'.join(map(str, path))} of another type"
 
 
@@ -305,13 +318,13 @@ def _repacked(rng: Random, document: Document, path: Path) -> str:
 
 
 NO_NUMBERS: tuple[Any, ...] = (
-    "٣", "１２", "NaN", "nan", "inf", "-Infinity", " 1", "1 ", "1_000", "0x10", "1/0", "1//2", "", "one", "−1",
-    None, True, {}, "1e", "e5", "+", "²", "1,5", "1.5.2", float("inf"), float("nan"), [[[[]]]],
+    "٣", "１２", "NaN", "nan", "inf", "-Infinity", " 1", "1 ", "1_000", "0x10", "1/0", "1//2", "", "one",
+    "−1", None, True, {}, "1e", "e5", "+", "²", "1,5", "1.5.2", float("inf"), float("nan"), [[[[]]]],
 )  # fmt: skip
 
 UNITS = (
-    ("_N_s_per_m", "_N_m_s_per_rad"), ("_N_per_m", "_N_m_per_rad"), ("_m", "_rad"), ("_N", "_N_m"), ("_s", "_ms"),
-    ("_kg", "_g"), ("_Hz", "_rad_per_s"),
+    ("_N_s_per_m", "_N_m_s_per_rad"), ("_N_per_m", "_N_m_per_rad"), ("_m", "_rad"), ("_N", "_N_m"),
+    ("_s", "_ms"), ("_kg", "_g"), ("_Hz", "_rad_per_s"),
 )  # fmt: skip
 
 

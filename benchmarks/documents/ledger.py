@@ -10,7 +10,15 @@ from pathlib import Path
 
 from .examine import WORDS, Examined
 
-COLUMNS = ("first_seed", "last_seed", "kind", *(w.replace(" ", "_") for w in WORDS), "slowest_ms", "slowest_seed", "most_MB")
+COLUMNS = (
+    "first_seed",
+    "last_seed",
+    "kind",
+    *(w.replace(" ", "_") for w in WORDS),
+    "slowest_ms",
+    "slowest_seed",
+    "most_MB",
+)
 START, END = "<!-- random_documents: start -->", "<!-- random_documents: end -->"
 
 
@@ -59,7 +67,9 @@ def read(path: Path) -> list[Stretch]:
             ends = int(row["first_seed"]), int(row["last_seed"])
             words = Counter({word: int(row[word.replace(" ", "_")]) for word in WORDS})
             slowest = float(row["slowest_ms"]) / 1000, int(row["slowest_seed"])
-            found.setdefault(ends, Stretch(*ends)).kinds[row["kind"]] = Tally(words, slowest, float(row["most_MB"]))
+            found.setdefault(ends, Stretch(*ends)).kinds[row["kind"]] = Tally(
+                words, slowest, float(row["most_MB"])
+            )
     return sorted(found.values(), key=lambda s: s.first)
 
 
@@ -112,7 +122,8 @@ def total(stretches: list[Stretch]) -> dict[str, Tally]:
 def table(stretches: list[Stretch]) -> str:
     """The totals as a Markdown table."""
     rows = [
-        "| kind | written | accepted | agreed | cannot say | false | ill-formed accepted | errors | slowest, s | seed | most, MB |",
+        "| kind | written | accepted | agreed | cannot say | false | ill-formed accepted | errors "
+        "| slowest, s | seed | most, MB |",
         "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|",
     ]
     everything = Tally()
@@ -126,8 +137,8 @@ def _row(kind: str, tally: Tally) -> str:
     written = sum(tally.words.values())
     refused, agreed, opened, wrong, ill, errors = (tally.words[word] for word in WORDS)
     cells = (
-        kind, written, written - refused - errors, agreed, opened, wrong, ill, errors, f"{tally.slowest[0]:.2f}",
-        tally.slowest[1], f"{tally.room:.0f}" if tally.room else "",
+        kind, written, written - refused - errors, agreed, opened, wrong, ill, errors,
+        f"{tally.slowest[0]:.2f}", tally.slowest[1], f"{tally.room:.0f}" if tally.room else "",
     )  # fmt: skip
     return "| " + " | ".join(str(c) for c in cells) + " |"
 

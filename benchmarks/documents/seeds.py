@@ -155,7 +155,9 @@ def _bounding() -> Iterator[Any]:
 
 def _active_hand() -> Iterator[Any]:
     for wall in (zw.Wall(100, "0.05"), zw.Wall(20, "0.12"), zw.Wall(300)):
-        found = zw.tolerated_activity(_device(damping="0.15", coulomb_friction="0.12", resolution="2e-5"), wall)
+        found = zw.tolerated_activity(
+            _device(damping="0.15", coulomb_friction="0.12", resolution="2e-5"), wall
+        )
         plain = found.to_dict()
         yield from (plain[key]["certificate"] for key in ("contact_kept", "contact_broken"))
 
@@ -301,7 +303,9 @@ def _matrix(rows: list[list[float]]) -> list[list[str]]:
     return [[repr(x) for x in row] for row in rows]
 
 
-def _wall(rows: list[list[float]], units: tuple[str, str, str] = ("N_per_m", "N_s_per_m", "N_s_per_m")) -> Any:
+def _wall(
+    rows: list[list[float]], units: tuple[str, str, str] = ("N_per_m", "N_s_per_m", "N_s_per_m")
+) -> Any:
     none = _matrix([[0.0] * len(rows) for _ in rows])
     names = ("stiffness", "virtual_damping", "damping_bound")
     return {f"{n}_{u}": m for n, u, m in zip(names, units, (_matrix(rows), none, none), strict=True)}
@@ -390,7 +394,9 @@ def _in_pose() -> Iterator[Any]:
     joints = [_joint("0.05", "0", "0.2", "0.05", rest_rad="0.1") for _ in range(3)]
     joints[1]["rotation"] = tilted
     for rest in ("given", "every orientation"):
-        kept = [dict(j) if rest == "given" else {k: v for k, v in j.items() if k != "rest_rad"} for j in joints]
+        kept = [
+            dict(j) if rest == "given" else {k: v for k, v in j.items() if k != "rest_rad"} for j in joints
+        ]
         yield _arm(_chain(*kept), {**_wall(rows, units), "turns": 3, "rest": rest}, _FOLLOWS)
 
 

@@ -37,7 +37,7 @@ def _wall(document: Document) -> tuple[Array, Array, Array]:
 
 
 def _arm(document: Document, rng: Rng) -> Opinion:
-    """The damping of the joints less what the wall takes, at random joints, and what else the proof asks for."""
+    """The joints' damping less what the wall takes, at random places, and what else the proof asks for."""
     k, b, a = _wall(document)
     loop = document["loop"]
     size = np.abs(k).max() + np.abs(a).max() + 1e-300
@@ -190,7 +190,10 @@ def _legs(arm: Document, need: Array, rng: Rng) -> Opinion:
         steps = np.eye(len(p)) * STEP
         try:
             gradients = np.array(
-                [[(_angle(leg, p + h) - _angle(leg, p - h)) / (2 * STEP) for h in steps] for leg in arm["legs"]]
+                [
+                    [(_angle(leg, p + h) - _angle(leg, p - h)) / (2 * STEP) for h in steps]
+                    for leg in arm["legs"]
+                ]
             )
         except ValueError:
             return false(f"the arm does not reach {np.round(p, 6).tolist()}")

@@ -1,8 +1,8 @@
 """Storage functions: single moves between any positions, and motions of hands that keep to the bounds.
 
-Lengths are in counts, energies in J.  A move from state s at x takes out −f d less the true loss, and V, linear
-between its knots, must fall by no less; no motion from rest may take out more than V was there, and no round
-anything.  That is the claim itself, at random places, and none of the rules by which it is proved.
+Lengths are in counts, energies in J.  A move from state s at x takes out −f d less the true loss, and V,
+linear between its knots, must fall by no less; no motion from rest may take out more than V was there, and no
+round anything.  That is the claim itself, at random places, and none of the rules by which it is proved.
 """
 
 from __future__ import annotations
@@ -231,7 +231,9 @@ def _places(rng: Rng, size: int, steps: int) -> Array:
     return np.where(rng.random(size) < 0.5, rng.integers(0, steps + 1, size) / steps, rng.random(size))
 
 
-def _best_way(board: Board, x: Array, goal: Array, early: float, late: float, rng: Rng) -> tuple[Array, Array]:
+def _best_way(
+    board: Board, x: Array, goal: Array, early: float, late: float, rng: Rng
+) -> tuple[Array, Array]:
     """What a move takes out, and whether it is slow enough; with two forces by way of a random place."""
     d = goal - x
     if board.part == 1:
@@ -254,7 +256,9 @@ def _attacked(wall: Any, board: Board, law: Document, rng: Rng) -> Opinion:
     over = sums.max(axis=1) - start
     worst = int(np.argmax(over / (lost.sum(axis=1) + start + 1e-300)))
     if over[worst] > SLACK * (lost[worst].sum() + start[worst]):
-        return false(f"a motion from rest takes out {sums[worst].max():.6g} J, V is {start[worst]:.6g} J there")
+        return false(
+            f"a motion from rest takes out {sums[worst].max():.6g} J, V is {start[worst]:.6g} J there"
+        )
     if law.get("relaxing"):
         return agrees()
     gain, cost = taken[:, -period:].sum(axis=1), lost[:, -period:].sum(axis=1)
@@ -273,7 +277,9 @@ def _hands(board: Board, law: Document, rng: Rng) -> tuple[Array, int]:
     edges = np.round(shape) - 10.0 ** -rng.uniform(1, 8, shape.shape) * (rng.random(shape.shape) < 0.6)
     middle = shape.mean(axis=1, keepdims=True)
     near = np.clip(shape, middle - board.fastest / 2, middle + board.fastest / 2)
-    shape = np.where(rng.random((MOTIONS, 1)) < 0.7, np.where(rng.random((MOTIONS, 1)) < 0.6, edges, shape), near)
+    shape = np.where(
+        rng.random((MOTIONS, 1)) < 0.7, np.where(rng.random((MOTIONS, 1)) < 0.6, edges, shape), near
+    )
     shape = np.clip(shape, lowest, board.high * (1 - 1e-12) if board.high > 0 else board.high)
     if law["surface"] == "none":
         start = rng.uniform(board.low, board.high, MOTIONS)
@@ -313,11 +319,17 @@ def _run(board: Board, law: Document, x: Array) -> tuple[Array, Array]:
     last = moves.shape[1]
     held = force[:, now - board.late : now - board.late + last]
     taken, lost = 0.0, 0.0
-    for acting, share in ((held, board.part), (force[:, now - board.late + 1 : now - board.late + 1 + last], 1 - board.part)):
+    for acting, share in (
+        (held, board.part),
+        (force[:, now - board.late + 1 : now - board.late + 1 + last], 1 - board.part),
+    ):
         if share > 0:
             way = share * moves
             cost = board.lost(way, share)
-            taken, lost = taken - acting * way * board.count - cost, lost + cost + 1e-14 * np.abs(acting * way) * board.count
+            taken, lost = (
+                taken - acting * way * board.count - cost,
+                lost + cost + 1e-14 * np.abs(acting * way) * board.count,
+            )
     return taken, lost
 
 
@@ -372,7 +384,12 @@ def _coarse(document: Document, rng: Rng) -> Opinion:
     sheets = law["surface"] != "none"
     memory, reach = memory_of(law) + board.late, ceil(exact(domain["largest_move_cells"])) + sheets
     width = 2 * reach + 1
-    value = _decoded(document["storage"]).astype(float) * float(exact(document["force_unit"])) * cell * board.count
+    value = (
+        _decoded(document["storage"]).astype(float)
+        * float(exact(document["force_unit"]))
+        * cell
+        * board.count
+    )
     value = value.reshape(-1, width**memory)
     if value.min() < 0:
         return false("V is below 0")
@@ -398,7 +415,9 @@ def _row(document: Document, rng: Rng) -> Opinion:
     move = rng.integers(0, 2 * reach + 1, MOVES)
     goal = then[s, move]
     on_board = (counts[s] + move - reach >= low) & (counts[s] + move - reach <= high)
-    if (on_board != (goal >= 0)).any() or (counts[goal[on_board]] != (counts[s] + move - reach)[on_board]).any():
+    if (on_board != (goal >= 0)).any() or (
+        counts[goal[on_board]] != (counts[s] + move - reach)[on_board]
+    ).any():
         return false("a reading leads to a state of another one")
     x, y = _places(rng, MOVES, steps), _places(rng, MOVES, steps)
     d = move - reach + y - x
@@ -408,7 +427,9 @@ def _row(document: Document, rng: Rng) -> Opinion:
     over = np.where(on_board & (np.abs(d) <= board.fastest), (gained - fall) / size, -1.0)
     worst = int(np.argmax(over))
     if over[worst] > SLACK:
-        return false(f"from state {s[worst]} a move takes out {gained[worst]:.6g} J, V falls by {fall[worst]:.6g} J")
+        return false(
+            f"from state {s[worst]} a move takes out {gained[worst]:.6g} J, V falls by {fall[worst]:.6g} J"
+        )
     return agrees()
 
 

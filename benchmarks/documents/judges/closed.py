@@ -23,13 +23,14 @@ def _profile(law: Document) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _spring(document: Document, rng: Rng) -> Opinion:
-    """Rounds of random hands gain nothing, also behind the edges of counts; the potential has a lowest value."""
+    """Rounds of random hands gain nothing, at the edges of counts too; the potential has a lowest value."""
     loop = document["loop"]
     x, f = _profile(document["law"])
     if f[0] > 0 or f[-1] < 0:
         return false("the spring pulls away beyond an end")
     b, fc, step, period, delay = (
-        float(quantity(loop, n)) for n in ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
+        float(quantity(loop, n))
+        for n in ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
     )
     late = round(delay / period)
     if late > SAMPLES:
@@ -96,7 +97,11 @@ def _bounding(document: Document, rng: Rng) -> Opinion:
     if phi * (1 + u) > fc:
         return false("a rounding of the friction credited is more than there is")
     terms = 9 * u
-    return agrees() if hair >= terms * (1 - hair) else false(f"{float(hair):.6g} taken off, {float(terms):.6g} rounded")
+    return (
+        agrees()
+        if hair >= terms * (1 - hair)
+        else false(f"{float(hair):.6g} taken off, {float(terms):.6g} rounded")
+    )
 
 
 JUDGES: dict[str, Callable[[Document, Rng], Opinion]] = {

@@ -1,4 +1,4 @@
-"""Loops with a known hand: the matrix exponential of scipy, eigenvalues, and periodic motions by discrete Fourier."""
+"""Loops with a known hand: matrix exponentials, eigenvalues, periodic motions by Fourier's transform."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
+from flint import acb, acb_poly, arb, ctx
 from mpmath import expm as mp_expm
-from mpmath import matrix, mpf, nstr, polyroots, workdps
-from mpmath.libmp.libhyper import NoConvergence
+from mpmath import matrix, mpf, nstr, workdps
 from scipy.linalg import expm
 
 from ..opinion import Opinion, agrees, cannot_say, false
@@ -126,12 +126,14 @@ def _closely(document: Document) -> Opinion:
     with workdps(50):
         try:
             largest = _radius_closely(loop)
-        except NoConvergence:
+        except ValueError:  # roots that are not told apart
             return cannot_say("a root is close to the circle")
     if abs(largest - 1) < mpf(10) ** -15:
         return cannot_say(f"a root of the size {nstr(largest, 20)} is too close to the circle")
     unstable = document["kind"] == "instability"
-    return agrees() if (largest > 1) == unstable else false(f"the largest root has the size {nstr(largest, 20)}")
+    return (
+        agrees() if (largest > 1) == unstable else false(f"the largest root has the size {nstr(largest, 20)}")
+    )
 
 
 def _radius_closely(loop: Document) -> Any:
@@ -155,7 +157,9 @@ def _radius_closely(loop: Document) -> Any:
     total = [c + (force[i - ahead] if i >= ahead else 0) for i, c in enumerate(free)]
     while len(total) > 1 and abs(total[-1]) < mpf(10) ** -45:
         total.pop()
-    return max((abs(z) for z in polyroots(total, maxsteps=400, extraprec=400)), default=mpf(0))
+    with ctx.workdps(60):
+        roots = acb_poly([acb(arb(nstr(c, 55))) for c in reversed(total)]).roots(1e-25)
+        return max((mpf(abs(z).mid().str(45, radius=False)) for z in roots), default=mpf(0))
 
 
 def _mp(x: Any) -> Any:
@@ -250,7 +254,9 @@ def _vibration(document: Document, rng: Rng) -> Opinion:
     size = np.abs(off).max() + abs(gap)
     wrong = np.where(inside > 0, -off, off)
     if wrong.max() > 1e-6 * size:
-        return false(f"sample {int(wrong.argmax())} is on the other side by {wrong.max() / size:.3g} of the motion")
+        return false(
+            f"sample {int(wrong.argmax())} is on the other side by {wrong.max() / size:.3g} of the motion"
+        )
     return agrees() if wrong.max() < -1e-9 * size else cannot_say("a sample is too close to the surface")
 
 

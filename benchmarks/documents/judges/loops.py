@@ -1,7 +1,7 @@
-"""Proofs about linear laws: the criterion at every frequency in floats and balls, roots, and motions that try.
+"""Proofs about linear laws: the criterion in floats and balls, roots, and motions that try.
 
-The loop as it is programmed and the motions are those of `attack`, which shares no code with zwidth.  A premise
-of a theorem that does not hold, such as too little friction for ‖h‖₁ Δ/2, counts as false as well.
+The loop as it is programmed and the motions are those of `attack`, which shares no code with zwidth.  A
+premise of a theorem that does not hold, such as too little friction for ‖h‖₁ Δ/2, counts as false as well.
 """
 
 from __future__ import annotations
@@ -41,7 +41,9 @@ def passive(loop: PlainLoop, rng: Rng, *, kept: bool = False) -> Opinion:
         return false(wrong)
     found = attack(loop, rng, 48, 100, kept=kept, angle=needed(loop)[1])
     if found.score > ROUNDING and refutes(loop, found, kept=kept):
-        return false(f"a motion of {len(found.positions)} samples takes out {found.score:.3g} of what is lost")
+        return false(
+            f"a motion of {len(found.positions)} samples takes out {found.score:.3g} of what is lost"
+        )
     return agrees()
 
 
@@ -163,7 +165,9 @@ def _relaxing(document: Document, rng: Rng) -> Opinion:
 
 def _multiplier(document: Document, rng: Rng) -> Opinion:
     loop = plain_loop(document["loop"], "position", clamped=document["law"]["never_pulls"])
-    return first(friction_covers(loop, parted=True), passive(replace(loop, clamped=False), rng), passive(loop, rng))
+    return first(
+        friction_covers(loop, parted=True), passive(replace(loop, clamped=False), rng), passive(loop, rng)
+    )
 
 
 def _slow_hands(document: Document, rng: Rng) -> Opinion:
@@ -198,7 +202,9 @@ def _active_hand(document: Document, rng: Rng) -> Opinion:
 
 def _needed(loop: PlainLoop, theta: float) -> float:
     late = complex(cos(theta), -sin(theta))
-    top, bottom = (sum(float(c) * late**k for k, c in enumerate(s)) for s in (loop.numerator, loop.denominator))
+    top, bottom = (
+        sum(float(c) * late**k for k, c in enumerate(s)) for s in (loop.numerator, loop.denominator)
+    )
     h = top / bottom * late**loop.whole
     half = complex(cos(theta / 2), -sin(theta / 2))
     return -float(loop.period) / 2 * (half * h).imag / sin(theta / 2)
@@ -264,7 +270,7 @@ def _asked(loop: PlainLoop, theta: arb, late: acb) -> arb:
 
 def _not_passive(loop: PlainLoop) -> Opinion:
     """An unstable environment: a pole that shows it, or with whole samples of delay any violation."""
-    above, below = in_lowest_terms(list(loop.numerator), list(loop.denominator))
+    _, below = in_lowest_terms(list(loop.numerator), list(loop.denominator))
     sizes = [abs(pole) for pole, _ in poles_of(below)]
     if any(size > 1 for size in sizes) or (any(size.overlaps(arb(1)) for size in sizes) and loop.part):
         return agrees()

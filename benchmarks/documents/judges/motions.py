@@ -1,7 +1,7 @@
 """Motions run again, sample by sample: positions and readings in fractions, forces in fractions or balls.
 
-A motion with rounds is run with fewer of them, three times, and what more rounds take out is extrapolated: once
-the law has settled the energy is a quadratic in their number.
+A motion with rounds is run with fewer of them, four times, and what more rounds take out is extrapolated:
+once the law has settled the energy is a quadratic in their number.
 """
 
 from __future__ import annotations
@@ -65,7 +65,10 @@ class Law:
     def force(self, reading: Fraction) -> Any:
         """Of the newest reading."""
         self.given.append(_ball(reading) if self.recursive else reading)
-        f = sum((c * self.given[-1 - i] for i, c in enumerate(self.above) if i < len(self.given)), 0 * self.given[-1])
+        f = sum(
+            (c * self.given[-1 - i] for i, c in enumerate(self.above) if i < len(self.given)),
+            0 * self.given[-1],
+        )
         if self.recursive:
             f -= sum((c * self.out[-i] for i, c in enumerate(self.below) if 0 < i <= len(self.out)), arb(0))
         self.out.append(f)
@@ -73,12 +76,14 @@ class Law:
 
 
 def taken_out(
-    loop: Document, x: Sequence[Fraction], y: Sequence[Fraction] | None, forces: Iterator[Any], start: Any = 0
+    loop: Document, x: Sequence[Fraction], y: Sequence[Fraction] | None, forces: Iterator[Any]
 ) -> Any:
-    """−Σ f Δx − f_c Σ|Δx| − b Σ Δx²/t, the forces late by the delay; `start` acts before the first of them."""
-    b, fc, period, delay = (quantity(loop, n) for n in ("damping", "coulomb_friction", "sample_period", "delay"))
+    """−Σ f Δx − f_c Σ|Δx| − b Σ Δx²/t, the forces late by the delay, none before the first of them."""
+    b, fc, period, delay = (
+        quantity(loop, n) for n in ("damping", "coulomb_friction", "sample_period", "delay")
+    )
     whole, part = int(delay // period), delay / period % 1
-    line = [start] * (whole + 2)
+    line: list[Any] = [Fraction(0)] * (whole + 2)
     total = None
     for k in range(len(x) - 1):
         line = [next(forces), *line[:-1]]
@@ -229,7 +234,9 @@ def compared(found: Any, told: Fraction, stored: Fraction = Fraction(0)) -> Opin
 def _told(document: Document) -> str:
     """The sample period beside the motion is that of the loop."""
     own = entry(document, "sample_period")
-    return "" if own is None or exact(own) == quantity(document["loop"], "sample_period") else "another period"
+    return (
+        "" if own is None or exact(own) == quantity(document["loop"], "sample_period") else "another period"
+    )
 
 
 def _motion(document: Document, rng: Rng) -> Opinion:
@@ -244,7 +251,11 @@ def _motion(document: Document, rng: Rng) -> Opinion:
     above, below = law_of(loop)
     spring = not any(above[1:]) and not any(below[1:])
     static = sum(above) / sum(below) if sum(below) else Fraction(0)
-    stored = Fraction(0) if spring and loop["unilateral"] else max(static, Fraction(0)) * quantity(loop, "resolution") ** 2 / 8
+    stored = (
+        Fraction(0)
+        if spring and loop["unilateral"]
+        else max(static, Fraction(0)) * quantity(loop, "resolution") ** 2 / 8
+    )
     with ctx.workdps(DIGITS):
         try:
             found = energy(loop, x, y, parts, lambda motion: kept_forces(loop, motion))
@@ -337,7 +348,9 @@ def _contact(document: Document, rng: Rng) -> Opinion:
     if (rounds + 2) * (last - first) > LONGEST:
         return cannot_say("the rounds are too long")
     motion, places = unrolled(x, [(first, last, rounds)])
-    taken = board_run(loop, law, motion, [y[k] + motion[i] - x[k] for i, k in enumerate(places)], int(late), part)
+    taken = board_run(
+        loop, law, motion, [y[k] + motion[i] - x[k] for i, k in enumerate(places)], int(late), part
+    )
     if taken is None:
         return false("it does not begin where the law gives no force")
     span = last - first
@@ -382,7 +395,9 @@ def board_run(
     fine, out = step / 2**90, list[Fraction]()
     for k in range(len(x) - 1):
         readings = [step * (x[k] // step), *readings[:-1]]
-        forces = [board_force(law, readings[a : a + memory + 1], averages[a]) for a in (late, max(late - 1, 0))]
+        forces = [
+            board_force(law, readings[a : a + memory + 1], averages[a]) for a in (late, max(late - 1, 0))
+        ]
         legs = [(forces[0], y[k] - x[k], part), (forces[1], x[k + 1] - y[k], 1 - part)]
         out.append(-sum(f * d + _lost(loop, d, share) for f, d, share in legs if share))
         u = max(readings[0], Fraction(0)) if law["surface"] == "penetration" else readings[0]
@@ -407,7 +422,10 @@ def _row(document: Document, rng: Rng) -> Opinion:
     wrong = _out_of_bounds(document, x, None, Fraction(1))
     if wrong:
         return false(wrong)
-    taken = [-g * (b - a) - _lost(document["loop"], b - a, Fraction(1)) for g, a, b in zip(f, x, x[1:], strict=False)]
+    taken = [
+        -g * (b - a) - _lost(document["loop"], b - a, Fraction(1))
+        for g, a, b in zip(f, x, x[1:], strict=False)
+    ]
     gain = sum(taken[first:last], Fraction(0))
     if gain <= 0:
         return false(f"a round more takes out {float(gain):.6g} J")

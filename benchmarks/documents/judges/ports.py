@@ -1,4 +1,4 @@
-"""Ports: the Hermitian part on a sweep and at random places of the right half plane, motions in the time domain."""
+"""Ports: the Hermitian part on a sweep and in the right half plane, motions in the time domain."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ POINTS = 400
 
 
 def _system(document: Document) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Numerators (m, m, n) and the denominator in descending powers, as floats; whether time is continuous."""
+    """Numerators (m, m, n) and denominator in descending powers, and whether time is continuous."""
     system = document["system"]
     rows = system.get("numerators") or [[system["numerator"]]]
     below = [float(c) for c in exacts(system["denominator"])]
@@ -47,7 +47,9 @@ def _places(document: Document, rng: Rng) -> np.ndarray:
         theta = np.concatenate([np.linspace(0, np.pi, POINTS // 2), rng.uniform(0, np.pi, POINTS // 2)])
         theta = np.concatenate([theta, np.abs(np.angle(roots))])
         out = 1 + 10.0 ** rng.uniform(-9, 1, len(theta))
-        return np.concatenate([np.exp(1j * theta), out * np.exp(1j * theta), roots[np.abs(roots) > 1] * 1.0001])
+        return np.concatenate(
+            [np.exp(1j * theta), out * np.exp(1j * theta), roots[np.abs(roots) > 1] * 1.0001]
+        )
     scale = np.abs(roots) if len(roots) else np.ones(1)
     omega = np.geomspace(scale.min() * 1e-4, scale.max() * 1e4, POINTS)
     omega = np.concatenate([[0.0], omega, np.abs(roots.imag), scale])
@@ -108,7 +110,10 @@ def _taken(document: Document, rng: Rng) -> Opinion:
 def _burst(motion: Document, sides: Any, level: float, matrix: bool) -> tuple[float, float]:
     """∫ uᵀy − σ uᵀu over one period, summed over samples: its lines are fewer than these."""
     step, cycles, power = (float(exact(motion[k])) for k in ("step_rad_per_s", "cycles", "power"))
-    alpha, beta = ((np.array([float(exact(v)) for v in motion[k]]) if matrix else w) for k, w in (("cosine", np.ones(1)), ("sine", np.zeros(1))))
+    alpha, beta = (
+        (np.array([float(exact(v)) for v in motion[k]]) if matrix else w)
+        for k, w in (("cosine", np.ones(1)), ("sine", np.zeros(1)))
+    )
     lines = int(cycles + power) + 1
     count = 4 * lines
     t = 2 * np.pi * np.arange(count) / count
@@ -117,12 +122,22 @@ def _burst(motion: Document, sides: Any, level: float, matrix: bool) -> tuple[fl
     spectrum, omega = np.fft.rfft(phi), 1j * step * np.arange(count // 2 + 1)
     u, y = (
         np.fft.irfft(
-            np.array([sum(np.polyval([float(c) for c in q[::-1]], omega) * s for q, s in zip(row, spectrum, strict=True)) for row in side]),
+            np.array(
+                [
+                    sum(
+                        np.polyval([float(c) for c in q[::-1]], omega) * s
+                        for q, s in zip(row, spectrum, strict=True)
+                    )
+                    for row in side
+                ]
+            ),
             count,
         )
         for side in sides
     )
-    return float((u * y - level * u * u).sum()), float((np.abs(u * y) + abs(level) * u * u).sum()) + 1e-6 * float(np.abs(u).max() * np.abs(y).max())
+    return float((u * y - level * u * u).sum()), float(
+        (np.abs(u * y) + abs(level) * u * u).sum()
+    ) + 1e-6 * float(np.abs(u).max() * np.abs(y).max())
 
 
 def _derived(a: list[Fraction]) -> list[Fraction]:
@@ -138,7 +153,9 @@ def _polynomial(phi: Any, tau: Fraction, lowest: int, sides: Any, level: Fractio
         u, y = (_summed(signals) for signals in (u, y))
         for i, a in enumerate(u):
             if a:
-                total += sum(a * (b - level * c) * tau / (i + j + 1) for j, (b, c) in enumerate(_paired(y, u)))
+                total += sum(
+                    a * (b - level * c) * tau / (i + j + 1) for j, (b, c) in enumerate(_paired(y, u))
+                )
     return total
 
 
@@ -172,7 +189,9 @@ def _sequence(phi: Any, sides: Any, level: Fraction) -> Fraction:
                     for k, v in enumerate(a):
                         if c and v:
                             signal[k + order - i] += c * v
-        total += sum((a * b - level * a * a for a, b in zip(u[:length], y[:length], strict=True)), Fraction(0))
+        total += sum(
+            (a * b - level * a * a for a, b in zip(u[:length], y[:length], strict=True)), Fraction(0)
+        )
     return total
 
 
