@@ -30,7 +30,7 @@ SHRINK_S = 3.0
 
 
 class Examined(NamedTuple):
-    """One of `WORDS`, why, the processor's time of the check [s], and the room of the process where it grew [MB]."""
+    """One of `WORDS`, why, the check's time [s of processor], the process's room where it grew [MB]."""
 
     written: Written
     word: str
