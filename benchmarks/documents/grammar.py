@@ -51,6 +51,7 @@ STRONGER = {
     "largest_speed": 1, "largest_move": 1, "highest_count": 1, "energy": 1, "times": -1, "force_limit": 1,
     "slope": 1, "level": 1, "activity": 1, "below": 1, "largest_force": 1, "high_": 1, "low_": -1,
     "sample_period": 1, "taps": 1, "points": 1, "credit": 1, "mass": 1, "gap": -1, "curvature": -1,
+    "out": 1, "up": 1,
 }  # fmt: skip
 """The way in which an entry moves for the claim to say more."""
 
@@ -202,7 +203,7 @@ def _strengthened(rng: Random, document: Document, others: list[Document]) -> st
     """The claim says more, by a little; its proof stays."""
     found = []
     for path in _numbers(document):
-        names = [str(key) for key in path if isinstance(key, str)]
+        names = [key for key in path if isinstance(key, str)]
         way = next((w for n, w in STRONGER.items() if names and names[-1].startswith(n)), 0)
         if way and "proof" not in names:
             found.append((path, way, names[-1]))

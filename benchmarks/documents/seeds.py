@@ -337,7 +337,8 @@ def _arms() -> Iterator[Any]:
     yield _arm(planar, wall, held)
     yield _counted_arm(wall)
     yield _slider(wall)
-    yield _arm(_pantograph(), _wall([[500.0, 0.0], [0.0, 500.0]]), _FOLLOWS)
+    for stiffness in (500.0, 735.0):
+        yield _arm(_pantograph(), _wall([[stiffness, 0.0], [0.0, stiffness]]), _FOLLOWS)
     yield from _in_pose()
 
 

@@ -16,8 +16,8 @@ KINDS = (
     "spring", "linear", "quantized", "delays", "contact", "relaxing contact", "multiplier contact",
     "nonlinear spring", "endless pull", "slow hands", "force bounding", "active hand", "violation", "motion",
     "touching motion", "contact motion", "row motion", "storage", "coarse storage", "row storage",
-    "stability", "instability", "absolute stability", "vibration", "arm", "positive real", "positive real matrix",
-    "extraction", "matrix extraction", "corners",
+    "stability", "instability", "absolute stability", "vibration", "arm", "positive real",
+    "positive real matrix", "extraction", "matrix extraction", "corners",
 )  # fmt: skip
 SLOW = ("absolute", "known hands")
 """Makers of valid documents that take seconds; the tests write some themselves."""
