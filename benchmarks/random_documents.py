@@ -27,11 +27,11 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from attack.ledger import alone
 from documents import ledger, seeds
-from documents.examine import FINDINGS, Examined, examine, save, shrunken
+from documents.examine import FINDINGS, Examined, examine, told
 from documents.grammar import SHARES
 from documents.self_test import self_test
 from rich.progress import track
@@ -44,21 +44,37 @@ SLOW_S, LARGE_MB = 10.0, 1000.0
 SAVED = 20
 """Findings of each chunk that are made smaller and saved."""
 
-Found = tuple[int, Examined]
+
+class Told(NamedTuple):
+    """What is to be told of a seed: a line, and of a finding its text and the name of its file."""
+
+    line: str
+    name: str = ""
+    text: str = ""
 
 
 def chunk(
     work: tuple[int, int], given: Mapping[str, list[dict[str, Any]]], only: str | None
-) -> tuple[ledger.Stretch, list[Found], float]:
-    """A stretch of seeds: the counts, what is to be told of some, and how long it took [s]."""
+) -> tuple[ledger.Stretch, list[Told]]:
+    """A stretch of seeds: the counts, and what is to be told of some."""
     warnings.simplefilter("ignore")
-    stretch, told, start = ledger.Stretch(*work), list[Found](), time.perf_counter()
+    stretch, noticed = ledger.Stretch(*work), list[Told]()
     for seed in range(work[0], work[1] + 1):
         found = examine(seed, given, only)
         stretch.add(seed, found)
         if found.word in FINDINGS or found.seconds > SLOW_S or found.room > LARGE_MB:
-            told.append((seed, found))
-    return stretch, told, time.perf_counter() - start
+            noticed.append(_noticed(seed, found, small=len(noticed) < SAVED))
+    return stretch, noticed
+
+
+def _noticed(seed: int, found: Examined, *, small: bool) -> Told:
+    """As text: a document may be nested too deep to be handed from process to process."""
+    kind, spent = found.written.kind, f"{found.seconds:.1f} s, {found.room:.0f} MB"
+    line = f"seed {seed}, {kind}, {found.word}: {found.why}; {found.written.how}; {spent}"
+    if found.word not in FINDINGS:
+        return Told(line)
+    name = f"{kind.replace(' ', '-')}-{seed}.json"
+    return Told(line, name, told(found, seed) if small else "")
 
 
 def campaign(given: argparse.Namespace, known: Mapping[str, list[dict[str, Any]]]) -> int:
@@ -73,11 +89,11 @@ def campaign(given: argparse.Namespace, known: Mapping[str, list[dict[str, Any]]
         work = ledger.still_to_run(done, given.first, given.documents, given.chunk)
         run = partial(chunk, given=known, only=given.kind)
         try:
-            for stretch, told, _ in track(_results(run, work, given.processes), "documents", total=len(work)):
+            for stretch, noticed in track(_results(run, work, given.processes), "documents", total=len(work)):
                 done = ledger.joined([*done, stretch])
                 ledger.write(given.ledger, done)
                 ran += stretch.last - stretch.first + 1
-                findings += _tell(told, folder)
+                findings += _tell(noticed, folder)
         except KeyboardInterrupt:
             print("stopped: chunks that were not finished are run again next time")
     spent = time.perf_counter() - start
@@ -85,20 +101,14 @@ def campaign(given: argparse.Namespace, known: Mapping[str, list[dict[str, Any]]
     return findings
 
 
-def _tell(told: list[Found], folder: Path) -> int:
+def _tell(noticed: list[Told], folder: Path) -> int:
     """Print what was noticed, save what was found; how many findings."""
-    findings = 0
-    for seed, found in told:
-        wrong = found.word in FINDINGS
-        findings += wrong
-        spent = f"{found.seconds:.1f} s, {found.room:.0f} MB"
-        print(
-            f"seed {seed}, {found.written.kind}, {found.word}: {found.why}; {found.written.how}; {spent}",
-            flush=True,
-        )
-        if wrong and findings <= SAVED:
-            save(folder, seed, found)
-    return findings
+    for one in noticed:
+        print(one.line, flush=True)
+        if one.text:
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / one.name).write_text(one.text, encoding="utf-8")
+    return sum(bool(one.name) for one in noticed)
 
 
 def _results(run: Any, work: list[tuple[int, int]], processes: int) -> Iterator[Any]:
@@ -120,7 +130,7 @@ def _alone(seed: int, known: Mapping[str, list[dict[str, Any]]], only: str | Non
     print(f"{found.written.kind}, {found.written.how}: {found.word}, {found.why}")
     print(f"{found.seconds:.3f} s, {found.room:.0f} MB")
     if found.word in FINDINGS:
-        print("smaller:", json.dumps(shrunken(found, seed), default=str))
+        print(told(found, seed))
     return int(found.word in FINDINGS)
 
 

@@ -9,7 +9,6 @@ import signal
 import time
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -162,16 +161,10 @@ def _with(document: Any, path: tuple[Any, ...], value: Any) -> Any:
     return changed
 
 
-def save(folder: Path, seed: int, found: Examined) -> Path:
-    """A finding: its smallest form, what it was made of, and the reason."""
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{found.written.kind.replace(' ', '-')}-{seed}.json"
-    told = {
-        "seed": seed,
-        "word": found.word,
-        "why": found.why,
-        "how": found.written.how,
-        "document": shrunken(found, seed),
-    }
-    path.write_text(json.dumps(told, indent=1, default=str), encoding="utf-8")
-    return path
+def told(found: Examined, seed: int) -> str:
+    """A finding as text: its smallest form, what it was made of, and the reason."""
+    words = {"seed": seed, "word": found.word, "why": found.why, "how": found.written.how}
+    try:
+        return json.dumps({**words, "document": shrunken(found, seed)}, indent=1, default=str)
+    except RecursionError:  # lists too deep for any text
+        return json.dumps(words, indent=1)
