@@ -1,0 +1,170 @@
+"""One seed: its document is written, checked, judged if it was accepted, and made smaller if it is false."""
+
+from __future__ import annotations
+
+import copy
+import json
+import resource
+import signal
+import time
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .checked import ask
+from .grammar import Document, Written, is_number, leaves, write
+from .judges import judge
+from .opinion import AGREES, FALSE, OPEN, Opinion
+
+REFUSED, ILL_FORMED, ERROR = "refused", "ill-formed accepted", "error"
+WORDS = (REFUSED, AGREES, OPEN, FALSE, ILL_FORMED, ERROR)
+FINDINGS = (FALSE, ILL_FORMED, ERROR)
+
+PATIENCE = 60
+"""Seconds of the processor after which a document is given up: an error of the checker, open for a judge."""
+
+SHRINK_S = 3.0
+
+
+class Examined(NamedTuple):
+    """One of `WORDS`, why, the check's time [s of processor], the process's room where it grew [MB]."""
+
+    written: Written
+    word: str
+    why: str
+    seconds: float
+    room: float
+
+
+class _TooLong(Exception):
+    """Longer than anybody would wait."""
+
+
+def _stop(*_: object) -> None:
+    raise _TooLong
+
+
+def examine(seed: int, seeds: Mapping[str, list[Document]], only: str | None = None) -> Examined:
+    """The document of a seed, judged."""
+    written = write(seed, seeds, only)
+    before = _room()
+    start = time.process_time()
+    valid, reason = _asked(written.document)
+    seconds = time.process_time() - start
+    room = _room()
+    opinion = Opinion(REFUSED, reason) if valid is False else Opinion(ERROR, reason)
+    if valid:
+        opinion = Opinion(ILL_FORMED, reason) if written.ill_formed else judged(written.document, seed)
+    return Examined(written, *opinion, seconds, room if room > before else 0.0)
+
+
+def _room() -> float:
+    """The most that the process has taken so far [MB]."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+
+
+def _asked(document: Any) -> tuple[bool | None, str]:
+    """Whether it is accepted, None where the checker failed, and why."""
+    _begin()
+    try:
+        answer = ask(document)
+    except _TooLong:
+        return None, f"not checked in {PATIENCE} s"
+    except Exception as error:  # what a user would see as a traceback
+        return None, f"{type(error).__name__}: {error}"[:200]
+    finally:
+        _end()
+    return answer.valid, answer.reason
+
+
+def judged(document: Document, seed: int) -> Opinion:
+    """The judge's opinion, or that it cannot say: of numbers that no double holds, or after too long."""
+    _begin()
+    try:
+        with np.errstate(all="ignore"):
+            return judge(document, np.random.default_rng(seed))
+    except _TooLong:
+        return Opinion(OPEN, f"not judged in {PATIENCE} s")
+    except (OverflowError, FloatingPointError, np.linalg.LinAlgError) as error:
+        return Opinion(OPEN, f"numbers that no double holds: {error}")
+    except Exception as error:  # a judge that fails says nothing, and must be mended
+        return Opinion(ERROR, f"the judge failed: {type(error).__name__}: {error}"[:200])
+    finally:
+        _end()
+
+
+def _begin() -> None:
+    signal.signal(signal.SIGPROF, _stop)
+    signal.setitimer(signal.ITIMER_PROF, PATIENCE)
+
+
+def _end() -> None:
+    signal.setitimer(signal.ITIMER_PROF, 0)
+
+
+def shrunken(found: Examined, seed: int) -> Any:
+    """A smaller document of which the same is said, as far as a few seconds reach."""
+    best, until = found.written.document, time.perf_counter() + SHRINK_S
+    if found.word != FALSE:
+        return best
+    again = True
+    while again:
+        again = False
+        for smaller in _smaller(best):
+            if time.perf_counter() > until:
+                return best
+            if len(json.dumps(smaller)) < len(json.dumps(best)) and _still_false(smaller, seed):
+                best, again = smaller, True
+                break
+    return best
+
+
+def _still_false(document: Any, seed: int) -> bool:
+    return bool(_asked(document)[0]) and judged(document, seed).word == FALSE
+
+
+def _smaller(document: Any) -> Iterator[Any]:
+    """Without an entry, or with a shorter number."""
+    for path, inner in list(_places(document)):
+        if isinstance(inner, list):
+            for at in range(len(inner)):
+                yield _with(document, path, [*inner[:at], *inner[at + 1 :]])
+        elif isinstance(inner, dict):
+            for key in inner:
+                yield _with(document, path, {k: v for k, v in inner.items() if k != key})
+    for path, value in leaves(document):
+        if is_number(value) and isinstance(value, str):
+            exact = Fraction(value)
+            for text in ("0", "1", *(f"{float(exact):.{n}g}" for n in (1, 2, 4) if abs(exact) < 10**300)):
+                if len(text) < len(value):
+                    yield _with(document, path, text)
+
+
+def _places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[tuple[Any, ...], Any]]:
+    yield path, value
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, inner in items:
+        if isinstance(inner, (dict, list)):
+            yield from _places(inner, (*path, key))
+
+
+def _with(document: Any, path: tuple[Any, ...], value: Any) -> Any:
+    if not path:
+        return value
+    changed = copy.deepcopy(document)
+    inner = changed
+    for key in path[:-1]:
+        inner = inner[key]
+    inner[path[-1]] = value
+    return changed
+
+
+def told(found: Examined, seed: int) -> str:
+    """A finding as text: its smallest form, what it was made of, and the reason."""
+    words = {"seed": seed, "word": found.word, "why": found.why, "how": found.written.how}
+    try:
+        return json.dumps({**words, "document": shrunken(found, seed)}, indent=1, default=str)
+    except RecursionError:  # lists too deep for any text
+        return json.dumps(words, indent=1)

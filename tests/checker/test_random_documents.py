@@ -1,0 +1,163 @@
+"""The fuzzer of proof documents: nothing false is accepted, judges can say no, a seed is a document."""
+
+from __future__ import annotations
+
+import copy
+import json
+from fractions import Fraction
+from math import cos
+from pathlib import Path
+from random import Random
+
+import numpy as np
+import pytest
+
+KINDS = (
+    "spring", "linear", "quantized", "delays", "contact", "relaxing contact", "multiplier contact",
+    "nonlinear spring", "endless pull", "slow hands", "force bounding", "active hand", "violation", "motion",
+    "touching motion", "contact motion", "row motion", "storage", "coarse storage", "row storage",
+    "stability", "instability", "absolute stability", "vibration", "arm", "positive real",
+    "positive real matrix", "extraction", "matrix extraction", "corners",
+)  # fmt: skip
+SLOW = ("absolute", "known hands")
+"""Makers of valid documents that take seconds; the tests write some themselves."""
+
+HAND = {
+    "mass_kg": "0.05", "damping_N_s_per_m": "0.7", "stiffness_N_per_m": "350", "sample_period_s": "0.001",
+    "delay_s": "0.0004", "numerator": ["1200", "-400"], "denominator": ["1", "0"],
+}  # fmt: skip
+WRITTEN = {
+    "stability": [
+        {"kind": "stability", "loop": HAND},
+        {"kind": "stability", "loop": {**HAND, "mass_kg": ["0.05", "0.06"]}},
+    ],
+    "instability": [{"kind": "instability", "loop": {**HAND, "numerator": ["99000", "-400"]}}],
+    "absolute stability": [
+        {
+            "kind": "absolute stability",
+            "plant": {"numerator": ["2", "0.92"], "denominator": ["1", "-0.5", "0"]},
+            "nonlinearity": "monotone", "slope": "0.6", "center": "1", "taps": [], "convexity": "0",
+            "smoothness": "0",
+        }
+    ],
+    "vibration": [
+        {
+            "kind": "vibration",
+            "plant": {"numerator": ["2", "0.92"], "denominator": ["1", "-0.5", "0"]},
+            "slope": "0.92", "gap": "-1", "inside": [True, False, False],
+        }
+    ],
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def seeds():
+    """Valid documents of every kind."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(Path(__file__).parents[2] / "benchmarks"))
+        from documents import seeds
+
+        made = seeds.made(name for name in seeds.MAKERS if name not in SLOW)
+        for kind, documents in WRITTEN.items():
+            made[kind] = [*made.get(kind, []), *copy.deepcopy(documents)]
+        yield made
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_nothing_false_is_accepted(seeds, kind):
+    """Nor anything ill-formed, and nothing makes the checker fail."""
+    from documents.examine import FINDINGS, examine
+
+    for seed in range(12):
+        found = examine(seed, seeds, kind)
+        assert found.word not in FINDINGS, f"seed {seed}: {found.word}, {found.why}; {found.written.how}"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_judge_can_say_no(seeds, kind):
+    """Where the checker is not asked, falsehoods are found among what the grammar writes."""
+    from documents.opinion import FALSE
+    from documents.self_test import blind
+
+    assert any(blind(kind, seeds, number)[FALSE] for number in (10, 30, 90))
+
+
+def test_nothing_is_found_against_valid_documents(seeds):
+    """Each is accepted by the checker, and no judge fails or says that it is false."""
+    from documents.checked import ask
+    from documents.examine import judged
+    from documents.opinion import AGREES, OPEN
+
+    assert {*seeds, "corners"} == set(KINDS)
+    for kind, documents in seeds.items():
+        for document in documents:
+            assert ask(document).valid, kind
+            assert judged(document, 0).word in (AGREES, OPEN), kind
+        assert judged(documents[0], 0).word == AGREES, kind
+
+
+def test_a_false_document_is_made_smaller(seeds, monkeypatch):
+    """If everything is accepted, what is left over after that is false as well, and shorter."""
+    from documents import examine
+    from documents.checked import Answer
+
+    monkeypatch.setattr(examine, "ask", lambda document: Answer(True, "whatever it is"))
+    document = copy.deepcopy(seeds["quantized"][0])
+    document["loop"]["damping_N_s_per_m"] = "0.001234567"
+    opinion = examine.judged(document, 3)
+    assert opinion.word == examine.FALSE
+    assert "the criterion asks for" in opinion.why
+    found = examine.Examined(examine.Written("quantized", document, "by hand", False), *opinion, 0.0, 0.0)
+    smaller = examine.shrunken(found, 3)
+    assert len(json.dumps(smaller)) < len(json.dumps(document))
+    assert examine.judged(smaller, 3).word == examine.FALSE
+
+
+def test_a_seed_is_a_document(seeds):
+    """Written twice it is the same, and the valid ones are left as they were."""
+    from documents.grammar import write
+
+    before = copy.deepcopy(seeds)
+    for seed in range(100):
+        assert repr(write(seed, seeds)) == repr(write(seed, seeds))
+    assert seeds == before
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_criterion_of_a_document_from_nothing_is_the_one_of_its_loop(seeds, seed):
+    """q is 0 at the damping that is needed, by the referee's formula in balls, at any frequency."""
+    from attack.referee import needed_at
+    from documents import fresh
+    from documents.plain import plain_loop
+
+    rng = Random(seed)
+    above, below, _, _ = fresh.law(rng)
+    loop = fresh.loop_of(rng, above, below)
+    for theta in (0.1, 1.0, 2.5, 3.1):
+        asked = Fraction(float(needed_at(plain_loop(loop), theta).mid()))
+        if asked > 0:
+            loop["damping_N_s_per_m"] = str(asked)
+            q = [float(c) for c in fresh.criterion(loop)]
+            size = np.polyval(np.abs(q[::-1]), 1.0)
+            assert np.polyval(q[::-1], cos(theta)) == pytest.approx(0, abs=1e-12 * size)
+
+
+def test_a_ledger_says_what_is_left_to_run(tmp_path):
+    """Stretches that touch become one; seeds between them are run, in pieces."""
+    from documents import ledger
+    from documents.examine import Examined
+    from documents.grammar import Written
+
+    done = []
+    for first, last in ((0, 4), (5, 9), (20, 29)):
+        stretch = ledger.Stretch(first, last)
+        for word, spent in (("refused", 0.5), ("agrees", 0.25)):
+            stretch.add(first, Examined(Written("spring", {}, "", False), word, "", spent, 100.0))
+        done = ledger.joined([*done, stretch])
+    path = tmp_path / "ledger.csv"
+    ledger.write(path, done)
+    read = ledger.read(path)
+    assert [(s.first, s.last) for s in read] == [(0, 9), (20, 29)]
+    assert ledger.still_to_run(read, 0, 35, 6) == [(10, 15), (16, 19), (30, 34)]
+    assert ledger.still_to_run(read, 3, 5, 6) == []
+    assert "| spring | 6 | 3 | 3 | 0 | 0 | 0 | 0 | 0.50 | 20 | 100 |" in ledger.table(read)
