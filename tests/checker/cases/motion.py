@@ -115,6 +115,13 @@ CASES = [
     taken("more than what half a count stores", "1.004", put(HALF, {"positions_m": [0, "-1/1000", "1/4"]}), encoder="counted"),
     refused("twice the stiffness stores twice as much", put(HALF, {"loop.numerator": [4], "positions_m": [0, "-1/1000", "1/4"],
             "loop.coulomb_friction_N": 1}), "no more than the 2 J"),
+    refused("what half a count stores, D scaled", put(HALF, {"loop.numerator": [4], "loop.denominator": [2], "energy_J": 1}), "no more than the 1 J", 1),
+    # the force 2 of 1 acts for a quarter of the next sample: 3/2 + 2 · 1/4
+    taken("a quarter late, the old force at first", 2, put(QUARTER, {"positions_m": [0, 1, 0, "-1/2"],
+          "switch_positions_m": ["1/4", "3/4", "-1/4"], "loop.damping_N_s_per_m": 0}), contact="made and broken"),
+    # 1/(1 − ζ/2 − ζ²/4): the forces 0, 1, 3/2, 2
+    taken("a filter of two poles", 1, put(FILTER, {"positions_m": [0, 1, 1, 1, 0], "loop.numerator": [1, 0, 0], "loop.denominator": [1, "-1/2", "-1/4"]})),
+    taken("a filter of two zeros", 1, put(FILTER, {"positions_m": [0, 1, 1, 1, 0], "loop.numerator": [1, "1/2", "1/2"], "loop.denominator": [1, 0, 0]})),
     # spring behind a surface, touched from outside: nothing is stored; with a law of memory it is
     refused("a law with memory behind a surface", motion([0, 2, "39/20"], "3/20", [1, 1], [1, 0], resolution_m=2,
             damping_N_s_per_m=0), "no more than the 1 J"),
