@@ -120,6 +120,8 @@ def _of_expression(root: ast.AST, returned: bool) -> Iterator[Mutant]:
         return
     if isinstance(root, ast.Call) and ast.unparse(root.func) in _SILENT:
         return
+    if isinstance(root, ast.Subscript) and ast.unparse(root.value) == "Literal":
+        return
     for mutant in _FOUND.get(type(root), lambda _: iter(()))(root):  # type: ignore[arg-type, return-value]
         yield mutant
     for field, value in ast.iter_fields(root):
@@ -196,7 +198,7 @@ def _called(node: ast.Call) -> Iterator[Mutant]:
         yield _changed(node, _set(node.func, place, _FUNCTIONS[name]))
     if name in ("min", "max") and len(node.args) > 1:
         for at in range(len(node.args)):
-            yield _changed(node, _drop(node, "args", at, [ast.Constant(0)] if len(node.args) == 2 else []))
+            yield _changed(node, _drop(node, "args", at))
     if name in ("abs", "reversed", "bool") and len(node.args) == 1:
         yield _changed(node, lambda: _become(node, node.args[0]))
 
@@ -288,14 +290,13 @@ def _set(node: Any, field: str, value: Any) -> Callable[[], None]:
     return lambda: setattr(node, field, value)
 
 
-def _drop(node: Any, field: str, at: int, more: list[Any] | None = None) -> Callable[[], None]:
+def _drop(node: Any, field: str, at: int) -> Callable[[], None]:
     """One of several left out; of two that are joined the other is all."""
 
     def make() -> None:
         left = [v for i, v in enumerate(getattr(node, field)) if i != at]
-        if isinstance(node, ast.BoolOp) and len(left) == 1:
-            _become(node, left[0])
-        elif isinstance(node, ast.Call) and len(left) == 1 and more is not None:
+        joined = isinstance(node, (ast.BoolOp, ast.Call))
+        if joined and len(left) == 1 and not isinstance(left[0], ast.Starred):
             _become(node, left[0])
         else:
             setattr(node, field, left)

@@ -67,6 +67,12 @@ CASES = [
     refused("a band, less damping", put(LATE, {"loop.damping_N_s_per_m": 4 - TINY}), WRONG),
     refused("a wider band", put(LATE, {"below_Hz": "0.1250000001"}), NARROW),
     refused("a smaller angle", put(LATE, {"proof.angle": ANGLE - Fraction(1, 10**15)}), NARROW),
+    refused("an angle of π from below", put(LATE, {"proof.angle": 2 * Fraction(31415926535897932384, 10**19) / 8}), NARROW),
+    # cos 3.1 = −0.99913515027327946449…
+    accepted("c₀ just below cos 3.1", put(FULL, {"proof.angle": "3.1", "proof.cosine": "-0.9991351502732794646", "below_Hz": "0.49",
+             "proof.in_band": signs(square=())})),
+    refused("c₀ just above cos 3.1", put(FULL, {"proof.angle": "3.1", "proof.cosine": "-0.9991351502732794644", "below_Hz": "0.49",
+            "proof.in_band": signs(square=())}), NARROW),
     accepted("a larger angle", put(LATE, {"proof.angle": "0.78539817", "proof.cosine": "0.70710677"})),
     accepted("c₀ just below cos θ", put(LATE, {"proof.cosine": "0.7071067811"})),
     refused("c₀ just above cos θ", put(LATE, {"proof.cosine": "0.7071067812"}), NARROW),

@@ -60,6 +60,15 @@ TURNS = damped("turns", 1 + TINY)
 SWEEP = put(TURNS, {"arm.end_m": ["0.1", "0", "0"], "arm.joints.0.low_rad": "0.2", "arm.joints.0.high_rad": "0.9",
                     "arm.joints.0.damping_N_m_s_per_rad": "0.0061367"})
 # K = 1000, B = 0.1, T = 1/500: ‖K‖ + 2 ‖B‖/T = 1100
+# N = [[r, 1], [1, 0]], r = 0.3 + 0.2 + 0.1: the larger eigenvalue 0.3 + √1.09 = 1.344031 (times a millionth more)
+SLIDES = put(TURNS, {
+    "loop.torque": "held", "loop.largest_force_N": 1, "arm.end_m": ["0.1", "0", "0"],
+    "arm.joints": [
+        {**TURNS["arm"]["joints"][0], "damping_N_m_s_per_rad": 9},
+        {**ARMS["mixed"]["document"]["arm"]["joints"][1], "translation_m": ["0.3", "0", "0"], "low_m": "-0.2", "high_m": "0.1",
+         "damping_N_s_per_m": 9},
+    ],
+})  # fmt: skip
 COLUMN, STEP = Fraction("0.1000002"), Fraction(1, 1000)
 FRICTION = (1100 * STEP * COLUMN**2 + 2 * LONGER * COLUMN * STEP) / 2
 COUNTED = put(SWEEP, {
@@ -128,6 +137,11 @@ CASES = [
     refused("a joint of another kind", put(MIXED, {f"{JOINT}kind": "ball"}), "revolute or prismatic"),
     refused("no rotation", put(MIXED, {f"{JOINT}rotation": [["0.6", "-0.8", "0"], ["0.8", "0.6", "0"], ["0", "0", "1.1"]]}), "is not one"),
     refused("a rotation that is off a little", put(MIXED, {f"{JOINT}rotation": [["0.6", "-0.8", "0"], ["0.8", "0.60000001", "0"], ["0", "0", "1"]]}), "is not one"),
+    *(case(f"a rotation longer by {by}", put(TURNS, {f"{JOINT}rotation": [["1", "0", "0"], ["0", "1", "0"], ["0", "0", f"1.000000000{by}"]]}), words)
+      for case, by, words in ((accepted, 4, ""), (refused, 6, "is not one"))),
+    # what is beyond the first joint slides with the second: N = [[r, 1], [1, 0]] of r = 0.3 + 0.2 + 0.1
+    *(case(f"a joint that slides beyond one that turns, a curvature of {curvature}", put(SLIDES, {"loop.curvature_m_per_rad2": curvature}), words)
+      for case, curvature, words in ((accepted, "1.3441", ""), (refused, "1.3439", "can bend more"))),
     refused("a rotation of two rows", put(MIXED, {f"{JOINT}rotation": ROTATION[:2]}), "three rows"),
     refused("low above high", put(TURNS, {f"{JOINT}low_rad": "0.61"}), "low ≤ high"),
     refused("damping below 0", put(MIXED, {f"{JOINT}damping_N_m_s_per_rad": "-1"}), "damping ≥ 0"),
