@@ -290,7 +290,9 @@ def read_ledger(path: Path, of: str) -> dict[tuple[str, ...], dict[str, str]]:
     if not path.exists():
         return {}
     with path.open(newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if row["checker"] == of and row["outcome"] in OUTCOMES[:2]]
+        rows = [
+            row for row in csv.DictReader(file) if row["checker"] == of and row["outcome"] in OUTCOMES[:2]
+        ]
     return {(row["file"], row["line"], row["column"], row["change"]): row for row in rows}
 
 
@@ -299,7 +301,9 @@ def write_ledger(path: Path, rows: Iterable[Mapping[str, str]]) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
-        writer.writerows(sorted(rows, key=lambda r: (r["file"], int(r["line"]), int(r["column"]), r["change"])))
+        writer.writerows(
+            sorted(rows, key=lambda r: (r["file"], int(r["line"]), int(r["column"]), r["change"]))
+        )
 
 
 def main() -> int:
@@ -341,7 +345,9 @@ def main() -> int:
 
 
 def _options() -> Any:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--sample", type=int, default=1500, help="so many mutants at most")
     parser.add_argument("--seed", type=int, default=1, help="which of them")
     parser.add_argument("--processes", type=int, default=2)
@@ -361,7 +367,9 @@ def _show(console: Console, rows: Sequence[Mapping[str, str]], run: int, seconds
     console.print(table)
     for row in rows:
         if row["outcome"] == "alive":
-            told = f"{row['file']}:{row['line']}: {row['change']}   [{row['by'] or 'alive'}]   {row['source']}"
+            told = (
+                f"{row['file']}:{row['line']}: {row['change']}   [{row['by'] or 'alive'}]   {row['source']}"
+            )
             console.print(told, markup=False, highlight=False, soft_wrap=True)
     if run:
         console.print(f"{seconds / run:.2f} s a mutant")

@@ -94,7 +94,9 @@ def _of_statement(statement: ast.stmt, block: list[ast.stmt], at: int, owner: as
     if isinstance(statement, ast.AugAssign):
         yield from _operators(statement)
     if isinstance(statement, (ast.If, ast.While)):
-        yield from _conditions(statement, "test", (False,) if isinstance(statement, ast.While) else (True, False))
+        yield from _conditions(
+            statement, "test", (False,) if isinstance(statement, ast.While) else (True, False)
+        )
     for field, value in ast.iter_fields(statement):
         if field in ("body", "orelse", "finalbody", "handlers", "decorator_list", "annotation", "returns"):
             continue
@@ -171,7 +173,9 @@ def _signed(node: ast.UnaryOp) -> Iterator[Mutant]:
     if isinstance(node.op, ast.USub):
         yield _changed(node, _set(node, "op", ast.UAdd()))
     elif isinstance(node.op, ast.Not):
-        yield _changed(node, lambda: _become(node, ast.Call(ast.Name("bool", ast.Load()), [node.operand], [])))
+        yield _changed(
+            node, lambda: _become(node, ast.Call(ast.Name("bool", ast.Load()), [node.operand], []))
+        )
 
 
 def _constant(node: ast.Constant) -> Iterator[Mutant]:

@@ -24,7 +24,15 @@ FAST = {
 }  # fmt: skip
 
 
-def wall(slope: Any, center: Any = 1, taps: Any = None, convex: Any = 0, smooth: Any = 0, kind: str = "monotone", **of: Any) -> Any:
+def wall(
+    slope: Any,
+    center: Any = 1,
+    taps: Any = None,
+    convex: Any = 0,
+    smooth: Any = 0,
+    kind: str = "monotone",
+    **of: Any,
+) -> Any:
     """A document of a plant or of a loop, a first-order plant if neither is given."""
     return {
         "kind": "absolute stability",
@@ -53,25 +61,51 @@ WORDED = wall("0.3", 1, {2: "0.3", -1: "0.2"}, plant=SIX)
 HAND = wall(1, 1, loop=TOUCHED)
 
 CASES = [
-    accepted("one pole", POLE, "every monotone wall with slopes between 0 and 1.5 brings the loop to rest", shows="stable",
-             hands="known", contact="made and broken", encoder="ideal", force_limit=False, force_steps=False, fed_with=""),
+    accepted(
+        "one pole",
+        POLE,
+        "every monotone wall with slopes between 0 and 1.5 brings the loop to rest",
+        shows="stable",
+        hands="known",
+        contact="made and broken",
+        encoder="ideal",
+        force_limit=False,
+        force_steps=False,
+        fed_with="",
+    ),
     refused("one pole, K = 3/2", put(POLE, {"slope": "3/2"}), NOT),
     refused("one pole, more than 3/2", put(POLE, {"slope": "1.51"}), NOT),
     accepted("q₁ = 1, K = ½", wall(Fraction(1, 2) - TINY, convex=1)),
     refused("q₁ = 1, K = ½ and no less", wall("1/2", convex=1), NOT),
     accepted("D is scaled", put(POLE, {"plant.numerator": [2], "plant.denominator": [2, -1]})),
     refused("D is scaled alone", put(POLE, {"plant.denominator": ["1/2", "-1/4"]}), NOT),
-    *(case for center, told in CENTERS.items() for case in (
-        accepted(f"m₀ = {center}", put(told, {"center": Fraction(center) * (1 + TINY)})),
-        refused(f"m₀ = {center}, less", put(told, {"center": Fraction(center) * (1 - TINY)}), NOT),
-    )),
+    *(
+        case
+        for center, told in CENTERS.items()
+        for case in (
+            accepted(f"m₀ = {center}", put(told, {"center": Fraction(center) * (1 + TINY)})),
+            refused(f"m₀ = {center}, less", put(told, {"center": Fraction(center) * (1 - TINY)}), NOT),
+        )
+    ),
     accepted("taps", WORDED),
-    accepted("negative taps of an odd wall", wall("0.2", 1, {2: "-0.3", -1: "0.2"}, kind="odd monotone", plant=SIX), "every odd monotone wall"),
-    refused("negative taps of a wall that is not odd", wall("0.2", 1, {2: "-0.3", -1: "0.2"}, plant=SIX), "no negative tap"),
+    accepted(
+        "negative taps of an odd wall",
+        wall("0.2", 1, {2: "-0.3", -1: "0.2"}, kind="odd monotone", plant=SIX),
+        "every odd monotone wall",
+    ),
+    refused(
+        "negative taps of a wall that is not odd",
+        wall("0.2", 1, {2: "-0.3", -1: "0.2"}, plant=SIX),
+        "no negative tap",
+    ),
     accepted("a tap of 0", wall("0.2", 1, {2: 0}, plant=SIX)),
     refused("the taps weigh as much as the center", put(WORDED, {"center": "1/2"}), "outweigh"),
     accepted("the taps weigh just less", put(WORDED, {"center": "0.500000001", "slope": "0.01"})),
-    refused("negative taps weigh, too", wall("0.01", "0.5", {2: "-0.3", -1: "0.2"}, kind="odd monotone", plant=SIX), "outweigh"),
+    refused(
+        "negative taps weigh, too",
+        wall("0.01", "0.5", {2: "-0.3", -1: "0.2"}, kind="odd monotone", plant=SIX),
+        "outweigh",
+    ),
     refused("another nonlinearity", put(POLE, {"nonlinearity": "any"}), "must be"),
     refused("slope 0", put(POLE, {"slope": 0}), "slope must be > 0"),
     refused("slope below 0", put(POLE, {"slope": "-1/10"}), "slope must be > 0"),
@@ -87,19 +121,50 @@ CASES = [
     refused("neither plant nor loop", without(POLE, "plant"), "loop is missing"),
     refused("a plant that is not strictly proper", put(POLE, {"plant.numerator": [1, 1]}), "strictly proper"),
     refused("a plant without N", put(POLE, {"plant.numerator": []}), "strictly proper"),
-    refused("a plant that begins with 0", put(POLE, {"plant.denominator": [0, 1, "-1/2"]}), "strictly proper"),
+    refused(
+        "a plant that begins with 0", put(POLE, {"plant.denominator": [0, 1, "-1/2"]}), "strictly proper"
+    ),
     refused("a pole at 1", wall("1/10", plant={"numerator": [1], "denominator": [1, -1]}), "pole outside"),
     refused("a pole at 2", wall("1/10", plant={"numerator": [1], "denominator": [1, -2]}), "pole outside"),
     # G = z⁻² … of 1/(z² + 1/4)
     accepted("N = 0", wall(99, plant={"numerator": [0], "denominator": [1, "1/2"]})),
-    *(refused(f"{key} is {value}", put(HAND, {f"loop.{key}": value}), "must be > 0") for key, value in (
-        ("mass_kg", 0), ("mass_kg", "-1/10"), ("hand_mass_kg", "-1/10"), ("damping_N_s_per_m", "-1/10"),
-        ("hand_damping_N_s_per_m", "-1/10"), ("hand_stiffness_N_per_m", 0), ("hand_stiffness_N_per_m", -1),
-        ("sample_period_s", 0), ("sample_period_s", "-1/10"), ("delay_s", "-1/10"))),
-    refused("no damping at all", put(HAND, {"loop.damping_N_s_per_m": 0, "loop.hand_damping_N_s_per_m": 0}), "must be > 0"),
-    accepted("the hand's damping is enough", put(HAND, {"loop.damping_N_s_per_m": 0, "loop.hand_damping_N_s_per_m": 5, "slope": "1/10"})),
+    *(
+        refused(f"{key} is {value}", put(HAND, {f"loop.{key}": value}), "must be > 0")
+        for key, value in (
+            ("mass_kg", 0),
+            ("mass_kg", "-1/10"),
+            ("hand_mass_kg", "-1/10"),
+            ("damping_N_s_per_m", "-1/10"),
+            ("hand_damping_N_s_per_m", "-1/10"),
+            ("hand_stiffness_N_per_m", 0),
+            ("hand_stiffness_N_per_m", -1),
+            ("sample_period_s", 0),
+            ("sample_period_s", "-1/10"),
+            ("delay_s", "-1/10"),
+        )
+    ),
+    refused(
+        "no damping at all",
+        put(HAND, {"loop.damping_N_s_per_m": 0, "loop.hand_damping_N_s_per_m": 0}),
+        "must be > 0",
+    ),
+    accepted(
+        "the hand's damping is enough",
+        put(HAND, {"loop.damping_N_s_per_m": 0, "loop.hand_damping_N_s_per_m": 5, "slope": "1/10"}),
+    ),
     refused("an entry of the loop that no proof has", put(HAND, {"loop.numerator": [1]}), "entries"),
     refused("too fast for the series", put(HAND, {"loop.sample_period_s": 20}), "too far within one sample"),
-    *(refused(f"without {key}", without(WORDED, key), "is missing")
-      for key in ("nonlinearity", "slope", "center", "taps", "convexity", "smoothness", "taps.0.place", "taps.0.weight")),
+    *(
+        refused(f"without {key}", without(WORDED, key), "is missing")
+        for key in (
+            "nonlinearity",
+            "slope",
+            "center",
+            "taps",
+            "convexity",
+            "smoothness",
+            "taps.0.place",
+            "taps.0.weight",
+        )
+    ),
 ]

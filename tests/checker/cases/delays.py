@@ -41,7 +41,10 @@ def delays(b: Any, *ends: Any, delay: Any = 0, high: Any = None) -> Any:
     return {
         "kind": "delays",
         "loop": loop([1], damping_N_s_per_m=b, delay_s=delay),
-        "proof": {"stability": OPEN, "pieces": [piece(b, x, y) for x, y in zip(ends, ends[1:], strict=False)]},
+        "proof": {
+            "stability": OPEN,
+            "pieces": [piece(b, x, y) for x, y in zip(ends, ends[1:], strict=False)],
+        },
         "delay_high_s": ends[-1] if high is None else high,
     }
 
@@ -52,33 +55,81 @@ COUNTED = put(WIDE, {"loop.resolution_m": 2, "loop.coulomb_friction_N": 1, "proo
 SHIFTED = put(delays(4, 0, "1/2"), {"loop.delay_s": "1/4"})
 
 CASES = [
-    *edge("a piece of a quarter of a sample", EDGE, put(EDGE, {"loop.damping_N_s_per_m": LEAST - TINY}), "do not multiply",
-          "for every delay", shows="passive", hands="every", contact="kept", encoder="ideal", force_limit=False,
-          force_steps=False, fed_with=""),
-    refused("a piece longer than its proof", put(EDGE, {"proof.pieces.0.high": "0.251", "delay_high_s": "0.251"}), "do not multiply"),
-    refused("its first end has the sign of the last", put(EDGE, {"proof.pieces.0.at_low": AT_ONE}), "do not multiply"),
+    *edge(
+        "a piece of a quarter of a sample",
+        EDGE,
+        put(EDGE, {"loop.damping_N_s_per_m": LEAST - TINY}),
+        "do not multiply",
+        "for every delay",
+        shows="passive",
+        hands="every",
+        contact="kept",
+        encoder="ideal",
+        force_limit=False,
+        force_steps=False,
+        fed_with="",
+    ),
+    refused(
+        "a piece longer than its proof",
+        put(EDGE, {"proof.pieces.0.high": "0.251", "delay_high_s": "0.251"}),
+        "do not multiply",
+    ),
+    refused(
+        "its first end has the sign of the last",
+        put(EDGE, {"proof.pieces.0.at_low": AT_ONE}),
+        "do not multiply",
+    ),
     accepted("three pieces, one in the second sample", WIDE),
     accepted("it begins at the delay of the loop", delays(4, "1/4", "1/2", delay="1/4")),
-    accepted("T = 2 s", put(WIDE, {"loop.sample_period_s": 2, "loop.numerator": ["1/2"], "delay_high_s": "5/2"})),
-    refused("it begins past the delay of the loop", put(delays(4, "1/4", "1/2"), {"loop.delay_s": 0}), "do not follow"),
+    accepted(
+        "T = 2 s", put(WIDE, {"loop.sample_period_s": 2, "loop.numerator": ["1/2"], "delay_high_s": "5/2"})
+    ),
+    refused(
+        "it begins past the delay of the loop",
+        put(delays(4, "1/4", "1/2"), {"loop.delay_s": 0}),
+        "do not follow",
+    ),
     refused("it begins before the delay of the loop", SHIFTED, "do not follow"),
     refused("a gap between two pieces", put(WIDE, {"proof.pieces.1": piece(4, "5/8", 1)}), "do not follow"),
     refused("two pieces that overlap", put(WIDE, {"proof.pieces.1": piece(4, "3/8", 1)}), "do not follow"),
     refused("it ends before the last delay", put(WIDE, {"delay_high_s": "11/8"}), "do not cover"),
     refused("it ends past the last delay", put(WIDE, {"delay_high_s": "9/8"}), "do not cover"),
     refused("no piece for an interval", put(WIDE, {"proof.pieces": []}), "do not cover"),
-    refused("a piece past a sample", put(delays(4, 0, "1/2"), {"proof.pieces.0": piece(4, 0, "5/4"), "delay_high_s": "5/4"}),
-            "within one sample"),
+    refused(
+        "a piece past a sample",
+        put(delays(4, 0, "1/2"), {"proof.pieces.0": piece(4, 0, "5/4"), "delay_high_s": "5/4"}),
+        "within one sample",
+    ),
     accepted("a piece up to a sample", delays(4, 0, 1)),
     refused("a piece of no length", put(WIDE, {"proof.pieces.0.high": 0}), "within one sample"),
     refused("a piece that goes back", put(WIDE, {"proof.pieces.0.high": "-1/2"}), "within one sample"),
     refused("at_low is false", put(WIDE, {"proof.pieces.1.at_low": signs([1])}), "do not multiply"),
     refused("at_high is false", put(WIDE, {"proof.pieces.1.at_high": signs([1])}), "do not multiply"),
-    *edge("an encoder", COUNTED, put(COUNTED, {"loop.coulomb_friction_N": 1 - TINY}), "below ‖h‖₁ Δ/2", encoder="counted"),
+    *edge(
+        "an encoder",
+        COUNTED,
+        put(COUNTED, {"loop.coulomb_friction_N": 1 - TINY}),
+        "below ‖h‖₁ Δ/2",
+        encoder="counted",
+    ),
     refused("an encoder and no norm", without(COUNTED, "proof.norm"), "norm is missing"),
-    refused("no damping", put(delays(0, 0, "1/2"), {"loop.numerator": [0], "proof.pieces.0.at_low": signs(square=()),
-            "proof.pieces.0.at_high": signs(square=())}), "need damping"),
-    refused("a closed loop", put(WIDE, {"proof.stability": {"kind": "closed loop", "offset": 1}}), "stable by itself"),
+    refused(
+        "no damping",
+        put(
+            delays(0, 0, "1/2"),
+            {
+                "loop.numerator": [0],
+                "proof.pieces.0.at_low": signs(square=()),
+                "proof.pieces.0.at_high": signs(square=()),
+            },
+        ),
+        "need damping",
+    ),
+    refused(
+        "a closed loop",
+        put(WIDE, {"proof.stability": {"kind": "closed loop", "offset": 1}}),
+        "stable by itself",
+    ),
     refused("H(1) < 0", put(WIDE, {"loop.numerator": [-1]}), "H(1) is negative"),
     refused("pieces that are no list", put(WIDE, {"proof.pieces": {}}), "must be a list"),
     refused("without delay_high_s", without(WIDE, "delay_high_s"), "delay_high_s is missing"),

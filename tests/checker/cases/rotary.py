@@ -72,11 +72,17 @@ DOCUMENTS = {
     "a motion": energy(THERE, 1),
     "a motion, part of a sample late": energy(QUARTER, "1/2"),
     "a motion that touches": energy(TOUCHING, "1/2"),
-    "a motion with rounds": {**energy(PUSHED, 6), "bounds": {"depth_m": 1, "outside_m": 0, "speed_m_per_s": 1}},
+    "a motion with rounds": {
+        **energy(PUSHED, 6),
+        "bounds": {"depth_m": 1, "outside_m": 0, "speed_m_per_s": 1},
+    },
     "a motion with rounds, part of a sample late": energy(PUSHED_LATE, "3/2"),
     "a motion with a friction curve": energy(curved([0, 1], [1, "1/2"], [2, 1]), 3),
     "a motion of laws in a row": energy(ROW, 3),
-    **{f"storage, {name}": STORAGES[name]["document"] for name in ("limited", "stepped", "grows", "points", "solid", "curve", "row", "coarse")},
+    **{
+        f"storage, {name}": STORAGES[name]["document"]
+        for name in ("limited", "stepped", "grows", "points", "solid", "curve", "row", "coarse")
+    },
 }
 
 CASES: list[Case] = [accepted(name, turned(told)) for name, told in DOCUMENTS.items()]

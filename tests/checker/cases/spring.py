@@ -27,11 +27,25 @@ PARTS = {  # samples of delay: b/(KT), where the root above is rational
 
 CASES = [
     *edge(
-        "b is KT/2", spring(4), spring(4 - TINY), "damping is below", "admit this stiffness",
-        shows="passive", hands="every", contact="made and broken", encoder="ideal",
-        force_limit=False, force_steps=False, fed_with="",
+        "b is KT/2",
+        spring(4),
+        spring(4 - TINY),
+        "damping is below",
+        "admit this stiffness",
+        shows="passive",
+        hands="every",
+        contact="made and broken",
+        encoder="ideal",
+        force_limit=False,
+        force_steps=False,
+        fed_with="",
     ),
-    *edge("T is ½", spring(2, sample_period_s="1/2"), spring(2 - TINY, sample_period_s="1/2"), "damping is below"),
+    *edge(
+        "T is ½",
+        spring(2, sample_period_s="1/2"),
+        spring(2 - TINY, sample_period_s="1/2"),
+        "damping is below",
+    ),
     *edge("K is N/D", spring(2, ["8"], ["2"]), spring(2 - TINY, ["8"], ["2"]), "damping is below"),
     *edge("two samples late", spring(20, delay_s=2), spring(20 - TINY, delay_s=2), "damping is below"),
     *(
@@ -91,6 +105,8 @@ CASES = [
     accepted("2000 samples late", spring("32004", delay_s=2000)),
     refused("2001 samples late", spring("99999", delay_s=2001), "the delay is"),
     refused("an entry of the loop that no proof has", put(spring(4), {"loop.force_limit_N": "1"}), "entries"),
-    refused("an entry of the document that no proof has", {**spring(4), "remark": "1"}, "no proof of this kind"),
+    refused(
+        "an entry of the document that no proof has", {**spring(4), "remark": "1"}, "no proof of this kind"
+    ),
     accepted("a format", {**spring(4), "format": "zwidth certificate 1"}),
 ]

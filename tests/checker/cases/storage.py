@@ -27,7 +27,9 @@ def unpacked(text: str) -> list[int]:
 
 
 def packed(values: list[int]) -> str:
-    return base64.b64encode(zlib.compress(b"".join(v.to_bytes(8, "little", signed=True) for v in values))).decode()
+    return base64.b64encode(
+        zlib.compress(b"".join(v.to_bytes(8, "little", signed=True) for v in values))
+    ).decode()
 
 
 def lowered(document: Any, state: int) -> Any:
@@ -42,10 +44,16 @@ def of(name: str) -> list[Case]:
     tight, worse = STORAGES[name]["tight"], STORAGES[name]["worse"]
     step = max(1, len(tight) // AT_MOST)
     return [
-        accepted(name, told, "no move takes out more than the storage function falls", **STORAGES[name]["scope"]),
+        accepted(
+            name, told, "no move takes out more than the storage function falls", **STORAGES[name]["scope"]
+        ),
         *(refused(f"{name}, a unit less at {state}", lowered(told, state), TAKES) for state in tight[::step]),
         *(
-            refused(f"{name}, {key} × {factor}", put(told, {f"loop.{key}": Fraction(loop[key]) * Fraction(factor)}), TAKES)
+            refused(
+                f"{name}, {key} × {factor}",
+                put(told, {f"loop.{key}": Fraction(loop[key]) * Fraction(factor)}),
+                TAKES,
+            )
             for key, factor in worse.items()
         ),
     ]
@@ -70,25 +78,77 @@ CASES = [
     refused("a value below 0", put(SPRING, {"storage": packed(BELOW)}), "bounded below by 0"),
     refused("a value too few", put(SPRING, {"storage": SHORT}), "one value for each state"),
     refused("a value too many", put(SPRING, {"storage": LONG}), "one value for each state"),
-    *(refused(f"laws in a row that begin {what}", put(ROW, {"table.starts": starts}), phrase) for what, starts, phrase in (
-        ("nowhere", [], "where a hand may begin"), ("in a list of one word", "0", "where a hand may begin"),
-        ("in more states than there are", [0] * (ROW["table"]["states"] + 1), "where a hand may begin"),
-        ("past the last state", [ROW["table"]["states"]], "not in the table"))),
+    *(
+        refused(f"laws in a row that begin {what}", put(ROW, {"table.starts": starts}), phrase)
+        for what, starts, phrase in (
+            ("nowhere", [], "where a hand may begin"),
+            ("in a list of one word", "0", "where a hand may begin"),
+            ("in more states than there are", [0] * (ROW["table"]["states"] + 1), "where a hand may begin"),
+            ("past the last state", [ROW["table"]["states"]], "not in the table"),
+        )
+    ),
     refused("laws in a row, a board of less", put(ROW, {"domain.lowest_count": -1}), "not on the board"),
     refused("laws in a row, a board of more", put(ROW, {"domain.lowest_count": -3}), "is not closed"),
     refused("laws in a row, a board of more inside", put(ROW, {"domain.highest_count": 2}), "is not closed"),
-    refused("laws in a row, a state less", put(ROW, {"table.states": ROW["table"]["states"] - 1}), "one value for each state"),
+    refused(
+        "laws in a row, a state less",
+        put(ROW, {"table.states": ROW["table"]["states"] - 1}),
+        "one value for each state",
+    ),
     refused("laws in a row, part of a sample late", put(ROW, {"loop.delay_s": "0.0005"}), "whole samples"),
-    refused("a board that ends too near", put(STORAGES["damped"]["document"], {"domain.lowest_count": -2}), "must reach so far out"),
-    refused("a board of a late force that ends too near", put(STORAGES["late"]["document"], {"domain.lowest_count": 0}), "must reach so far out"),
-    refused("a board of a law that relaxes that ends too near", put(STORAGES["solid late"]["document"], {"domain.lowest_count": 0}), "must reach so far out"),
-    refused("cells that end too near", put(STORAGES["coarse damped"]["document"], {"domain.lowest_cell": -3}), "must reach so far out"),
-    refused("cells of two sides, one nearer", put(STORAGES["coarse two sides"]["document"], {"domain.lowest_cell": -20}), "as far on the one side"),
-    refused("cells that remember less", put(STORAGES["coarse damped"]["document"], {"domain.remembered": 0}), "another number of readings"),
-    *(refused(f"cells of a law with {key}", put(STORAGES["coarse"]["document"], {f"law.{key}": value}), "linear inside") for key, value in (
-        ("clamped", True), ("force_limit_N", 1), ("force_step_N", 1), ("relaxing", {"pole": 0, "stiffness_N_per_m": 1}))),
-    refused("a law that relaxes with a force limit", put(STORAGES["solid"]["document"], {"law.force_limit_N": 1}), "force limit together"),
-    refused("a law that relaxes, part of a sample late", put(STORAGES["solid"]["document"], {"loop.delay_s": "0.0005"}), "whole samples"),
+    refused(
+        "a board that ends too near",
+        put(STORAGES["damped"]["document"], {"domain.lowest_count": -2}),
+        "must reach so far out",
+    ),
+    refused(
+        "a board of a late force that ends too near",
+        put(STORAGES["late"]["document"], {"domain.lowest_count": 0}),
+        "must reach so far out",
+    ),
+    refused(
+        "a board of a law that relaxes that ends too near",
+        put(STORAGES["solid late"]["document"], {"domain.lowest_count": 0}),
+        "must reach so far out",
+    ),
+    refused(
+        "cells that end too near",
+        put(STORAGES["coarse damped"]["document"], {"domain.lowest_cell": -3}),
+        "must reach so far out",
+    ),
+    refused(
+        "cells of two sides, one nearer",
+        put(STORAGES["coarse two sides"]["document"], {"domain.lowest_cell": -20}),
+        "as far on the one side",
+    ),
+    refused(
+        "cells that remember less",
+        put(STORAGES["coarse damped"]["document"], {"domain.remembered": 0}),
+        "another number of readings",
+    ),
+    *(
+        refused(
+            f"cells of a law with {key}",
+            put(STORAGES["coarse"]["document"], {f"law.{key}": value}),
+            "linear inside",
+        )
+        for key, value in (
+            ("clamped", True),
+            ("force_limit_N", 1),
+            ("force_step_N", 1),
+            ("relaxing", {"pole": 0, "stiffness_N_per_m": 1}),
+        )
+    ),
+    refused(
+        "a law that relaxes with a force limit",
+        put(STORAGES["solid"]["document"], {"law.force_limit_N": 1}),
+        "force limit together",
+    ),
+    refused(
+        "a law that relaxes, part of a sample late",
+        put(STORAGES["solid"]["document"], {"loop.delay_s": "0.0005"}),
+        "whole samples",
+    ),
     refused("no base64", put(SPRING, {"storage": "?"}), "cannot be unpacked"),
     refused("nothing packed", put(SPRING, {"storage": "AAAA"}), "cannot be unpacked"),
     refused("a list for a text", put(SPRING, {"storage": [1]}), "must be text"),
@@ -106,12 +166,18 @@ CASES = [
         )
     ),
     *(
-        refused(f"{name}, the force unit is {unit}", put(STORAGES[name]["document"], {"force_unit": unit}), phrase)
+        refused(
+            f"{name}, the force unit is {unit}", put(STORAGES[name]["document"], {"force_unit": unit}), phrase
+        )
         for name, phrase in (("spring", EMPTY), ("solid", EMPTY), ("row", EMPTY), ("coarse", "must be > 0"))
         for unit in (0, "-1/1000000")
     ),
     *(
-        refused(f"{name}, units too small", put(STORAGES[name]["document"], {"force_unit": "1e-30"}), "too large to be compared")
+        refused(
+            f"{name}, units too small",
+            put(STORAGES[name]["document"], {"force_unit": "1e-30"}),
+            "too large to be compared",
+        )
         for name in ("spring", "row", "coarse", "points", "limited", "grows")
     ),
     *(

@@ -30,10 +30,24 @@ STATIC = {"kind": "negative static stiffness"}
 SPRING = violation(Fraction(3, 2) + LESS, [3], cosine=-1)
 
 CASES = [
-    accepted("a spring", SPRING, "is violated at 0.5 Hz", shows="active", hands="every", contact="kept", encoder="ideal",
-             force_limit=False, force_steps=False, fed_with=""),
+    accepted(
+        "a spring",
+        SPRING,
+        "is violated at 0.5 Hz",
+        shows="active",
+        hands="every",
+        contact="kept",
+        encoder="ideal",
+        force_limit=False,
+        force_steps=False,
+        fed_with="",
+    ),
     accepted("T = 2 s", violation("2.999", [3], cosine=-1, sample_period_s=2), "is violated at 0.25 Hz"),
-    accepted("an encoder and friction change nothing", put(SPRING, {"loop.resolution_m": 1, "loop.coulomb_friction_N": 9}), encoder="counted"),
+    accepted(
+        "an encoder and friction change nothing",
+        put(SPRING, {"loop.resolution_m": 1, "loop.coulomb_friction_N": 9}),
+        encoder="counted",
+    ),
     accepted("no surface", put(SPRING, {"loop.unilateral": False}), contact="both sides"),
     *pair("K: 2b − K", "3/2", [3], cosine=-1),
     *pair("K, any frequency", "3/2", [3], cosine="1/3"),
@@ -50,7 +64,11 @@ CASES = [
     *pair("α = 3/8, T = 2, K = 3", "45/8", [3], cosine=1, delay_s="3/4", sample_period_s=2),
     # 2b² − b (1 + 2α c) − α (1 − α)/2 with α = ½, c = −¾: 2b² − b/4 − 1/8 = 0 has b = 5/16 + …: (1 + √17)/16
     accepted("α = ½ at c = −¾", violation("0.32", [1], cosine="-3/4", delay_s="1/2")),
-    refused("α = ½ at c = −¾, damped enough", violation("0.3202", [1], cosine="-3/4", delay_s="1/2"), "not violated"),
+    refused(
+        "α = ½ at c = −¾, damped enough",
+        violation("0.3202", [1], cosine="-3/4", delay_s="1/2"),
+        "not violated",
+    ),
     # α = ½, 1/(1 − ζ/2): 2b² (5/4 − c) + b (…) − 1/8: by M D̄ = ½ (1 + ζ)(1 − ζ̄/2)
     accepted("at c = 1", violation(0, [1], cosine=1, delay_s="1/2")),
     refused("c is above 1", violation(0, [1], cosine=1 + TINY), "no frequency"),
@@ -62,7 +80,11 @@ CASES = [
     refused("H(1) > 0, both signs turned", violation(0, [-1], [-1], proof=STATIC), "not negative"),
     # −1/(1 − 2ζ) with τ = b + g: z² − (3 + 1/τ) z + 2
     accepted("a pole at 2", violation(9, [-1, 0], [1, -2], proof=POLE), "is not positive real"),
-    refused("a spring with little damping: z = 1 − K/(b + g)", violation(0, [1], proof=POLE), "may be positive real"),
+    refused(
+        "a spring with little damping: z = 1 − K/(b + g)",
+        violation(0, [1], proof=POLE),
+        "may be positive real",
+    ),
     # K = 2, b + g = 1: z = −1
     accepted("its root on the circle", violation(0, [2], proof=POLE)),
     refused("its root just inside", violation(0, [2 - TINY], proof=POLE), "may be positive real"),
@@ -73,11 +95,25 @@ CASES = [
     refused("N(1) = 0: z = −1/3", violation("1/2", [-1, 1], [1, 1], proof=POLE), "may be positive real"),
     accepted("N(1) = 0, its sign turned", violation("1/2", [1, -1], [1, 1], proof=POLE)),
     refused("common factors", violation(9, [-2, 4], [1, -2], proof=POLE), "common factor"),
-    accepted("part of a sample, a pole at 2", violation(9, [1, 0], [1, -2], delay_s="1/2", proof=UNSTABLE), "pole on or outside"),
+    accepted(
+        "part of a sample, a pole at 2",
+        violation(9, [1, 0], [1, -2], delay_s="1/2", proof=UNSTABLE),
+        "pole on or outside",
+    ),
     accepted("part of a sample, a pole at 1", violation(9, [1, 0], [1, -1], delay_s="1/2", proof=UNSTABLE)),
-    refused("part of a sample, a pole just inside", violation(0, [1, 0], [1, -1 + TINY], delay_s="1/2", proof=UNSTABLE), "every pole of H(z) lies inside"),
-    refused("part of a sample, common factors", violation(9, [2, -4], [1, -2], delay_s="1/2", proof=UNSTABLE), "common factor"),
-    refused("part of a sample with an offset", violation(9, [1, 0], [1, -2], delay_s="1/2", proof=POLE), "entries"),
+    refused(
+        "part of a sample, a pole just inside",
+        violation(0, [1, 0], [1, -1 + TINY], delay_s="1/2", proof=UNSTABLE),
+        "every pole of H(z) lies inside",
+    ),
+    refused(
+        "part of a sample, common factors",
+        violation(9, [2, -4], [1, -2], delay_s="1/2", proof=UNSTABLE),
+        "common factor",
+    ),
+    refused(
+        "part of a sample with an offset", violation(9, [1, 0], [1, -2], delay_s="1/2", proof=POLE), "entries"
+    ),
     refused("whole samples without an offset", violation(9, [-1, 0], [1, -2], proof=UNSTABLE), "entries"),
     refused("another kind", violation(9, [-1], proof={"kind": "by eye"}), "unknown kind of violation"),
     refused("no cosine", violation(0, [3], proof={"kind": "criterion"}), "entries"),
