@@ -7,7 +7,8 @@ than the checker takes.  Each runs in a process forked from one that has everyth
 that reach its line are run, the quickest first.  What lives is a case to be added in `cases/`, or a line in
 `equivalent.toml` that says why nothing false can be accepted because of it and nothing true refused.
 
-A ledger that is there is gone on with, as long as the checker is the same: what is in it is not run again, but
+A ledger that is there is gone on with, as long as the checker is the same: what is in it is not run again,
+but
 for mutants that lived, which a new case may kill.
 """
 
@@ -137,7 +138,9 @@ class Reached(NamedTuple):
 
 
 def reached(cases: Sequence[Case], verify: Any) -> list[Reached]:
-    """Every case run with the checker as it is, once for the time and once for the lines; the quickest first."""
+    """Every case run with the checker as it is, once for the time and once for the lines; the
+    quickest first.
+    """
     found = []
     for case in cases:
         start = time.perf_counter()

@@ -124,8 +124,7 @@ def _of_expression(root: ast.AST, returned: bool) -> Iterator[Mutant]:
         return
     if isinstance(root, ast.Subscript) and ast.unparse(root.value) == "Literal":
         return
-    for mutant in _FOUND.get(type(root), lambda _: iter(()))(root):  # type: ignore[arg-type, return-value]
-        yield mutant
+    yield from _FOUND.get(type(root), lambda _: iter(()))(root)  # type: ignore[arg-type, return-value]
     for field, value in ast.iter_fields(root):
         if field == "annotation" or (isinstance(root, ast.keyword) and root.arg in _NO_CONDITION):
             continue

@@ -1,4 +1,5 @@
-"""Documents at the edge of what they prove, as plain data: true ones that must be accepted, false ones refused.
+"""Documents at the edge of what they prove, as plain data: true ones that must be accepted, false ones
+refused.
 
 One file for each kind of document, each with its `CASES`.  Most are true by equality, or false by a part in
 10⁹; the bound stands beside them, worked out by hand where it has a closed form.
@@ -31,7 +32,9 @@ class Case(NamedTuple):
 
 
 def accepted(name: str, document: Any, words: str = "", energy: Any = None, **scope: Any) -> Case:
-    """A true document: `scope` are the fields of its scope that matter, `energy` what the motion takes out."""
+    """A true document: `scope` are the fields of its scope that matter, `energy` what the motion
+    takes out.
+    """
     return Case(name, document, "", words, None if energy is None else Fraction(energy), scope)
 
 

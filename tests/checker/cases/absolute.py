@@ -1,7 +1,10 @@
-"""Absolute stability:  Re{M (1 + K G)} + q₁ K Re{(1 − 1/z) G} + q₂ K [Re{(z − 1) G} − (K/2) |(z − 1) G|²] > 0.
+"""Absolute stability:  Re{M (1 + K G)} + q₁ K Re{(1 − 1/z) G} + q₂ K [Re{(z − 1) G} − (K/2) |(z − 1) G|²]
+> 0.
 
-G = 1/(z − ½) has Re G = (c − ½)/(5/4 − c), least −2/3 at z = −1: K < 3/2; with q₁ = 1 the left side times |D|² is
-9/4 − 9K/2 there: K < ½.  Of the others the least m₀ was found from the frequency response, in 30 digits; a touched
+G = 1/(z − ½) has Re G = (c − ½)/(5/4 − c), least −2/3 at z = −1: K < 3/2; with q₁ = 1 the left side times
+|D|² is
+9/4 − 9K/2 there: K < ½.  Of the others the least m₀ was found from the frequency response, in 30 digits; a
+touched
 device has (M, B, k, T) and its force is late.
 """
 

@@ -1,7 +1,9 @@
-"""A hand of activity a: the loop with b − a is passive, or the criterion holds with b everywhere and b_in in a band.
+"""A hand of activity a: the loop with b − a is passive, or the criterion holds with b everywhere and b_in
+in a band.
 
 b_in = b − a, or b (b − a)/(b − a θ²/12) for a > b; the band ends at f₀, 2π f₀ T ≤ θ, and cos θ ≥ c₀.
-K = 2 a sample late: 4 (1 − c) with b_in = 3.  3 − ζ: 2b − 2 + 2c, which is 2c − 1 with b_in = ½, ≥ 0 from c₀ = ½ on.
+K = 2 a sample late: 4 (1 − c) with b_in = 3.  3 − ζ: 2b − 2 + 2c, which is 2c − 1 with b_in = ½, ≥ 0 from
+c₀ = ½ on.
 """
 
 from __future__ import annotations

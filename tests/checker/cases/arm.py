@@ -1,6 +1,7 @@
 """Arms: δ − JᵀRJ ≻ 0 at one place or in a region, R = (2d + 1) KT/2 + A.
 
-`arms.json` has arms at one place, with the damping of the first joint or leg at which the matrix is singular there:
+`arms.json` has arms at one place, with the damping of the first joint or leg at which the matrix is
+singular there:
 from Jacobians by differences in 40 digits, of homogeneous matrices, and of a leg's angle by arcs.
 """
 
@@ -66,7 +67,8 @@ def of(name: str) -> list[Case]:
 
 
 TURNS = damped("turns", 1 + TINY)
-# a link of 0.1 m before a wall along x: J = −0.1 sin q, b = R (0.1 sin 0.9)², R = 1000/1000; sin² 0.9 = 0.613601047…
+# a link of 0.1 m before a wall along x: J = −0.1 sin q, b = R (0.1 sin 0.9)², R = 1000/1000; sin² 0.9 =
+# 0.613601047…
 SWEEP = put(
     TURNS,
     {
@@ -77,12 +79,14 @@ SWEEP = put(
     },
 )
 # K = 1000, B = 0.1, T = 1/500: ‖K‖ + 2 ‖B‖/T = 1100
-# N = [[r, 1], [1, 0]], r = 0.3 + 0.2 + 0.1: the larger eigenvalue 0.3 + √1.09 = 1.344031 (times a millionth more)
+# N = [[r, 1], [1, 0]], r = 0.3 + 0.2 + 0.1: the larger eigenvalue 0.3 + √1.09 = 1.344031 (times a
+# millionth more)
 SLIDES = put(TURNS, {
     "loop.torque": "held", "loop.largest_force_N": 1, "arm.end_m": ["0.1", "0", "0"],
     "arm.joints": [
         {**TURNS["arm"]["joints"][0], "damping_N_m_s_per_rad": 9},
-        {**ARMS["mixed"]["document"]["arm"]["joints"][1], "translation_m": ["0.3", "0", "0"], "low_m": "-0.2", "high_m": "0.1",
+        {**ARMS["mixed"]["document"]["arm"]["joints"][1], "translation_m": ["0.3", "0", "0"],
+         "low_m": "-0.2", "high_m": "0.1",
          "damping_N_s_per_m": 9},
     ],
 })  # fmt: skip

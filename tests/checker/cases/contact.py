@@ -1,6 +1,7 @@
 """A damped wall touched and left: b ≥ (2d + 1) K T/2 + |B| Σ|w|  and  2 f_c ≥ (K + |B| ‖h_v‖₁) Δ.
 
-H = K + B W(ζ) (1 − ζ)/T.  The weights (2, −1) have Σ|w| = 3 and ‖h_v‖₁ T = |2| + |−3| + |1| = 6; a pole p has 1
+H = K + B W(ζ) (1 − ζ)/T.  The weights (2, −1) have Σ|w| = 3 and ‖h_v‖₁ T = |2| + |−3| + |1| = 6; a pole p
+has 1
 and 2 (1 − p).
 """
 
@@ -8,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import TINY, Fraction, accepted, edge, loop, put, refused, without
+from . import TINY, accepted, edge, loop, put, refused, without
 
 
 def contact(k: Any, b: Any, weights: Any, numerator: Any, denominator: Any, **device: Any) -> Any:

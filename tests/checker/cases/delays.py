@@ -1,4 +1,5 @@
-"""Every delay of an interval: on a piece α (1 − α) is below its tangent in the middle m, τ = m (1 − m) ± (1 − 2m) h/2.
+"""Every delay of an interval: on a piece α (1 − α) is below its tangent in the middle m, τ = m (1 − m) ±
+(1 − 2m) h/2.
 
 K = T = 1:  2b² − b (1 + 2α c) − τ/2 for d = 0, and 2b² + b (2α − 1 − 2c − 4α c²) − τ/2 for a sample more.
 From 0 to ¼ the tangent at the end is 2m − 3m² with m = ⅛, and b = 13/16 leaves (13/32)(1 − c).

@@ -7,7 +7,7 @@ With u = 1/100 that is ε ≥ (1.01⁹ − 1)/0.99¹³.
 
 from __future__ import annotations
 
-from . import TINY, Fraction, accepted, edge, put, refused, without
+from . import TINY, Fraction, accepted, put, refused, without
 
 U = Fraction(1, 100)
 HAIR = ((1 + U) ** 9 - 1) / (1 - U) ** 13

@@ -1,7 +1,8 @@
 """A law fed with the position, touched and left: 4 λ κ |D|² ≥ |D − λ ζ^{d+1} N_G|², κ = b/T − (2d + 1) K/2,
 H = K + (1 − ζ) N_G/D with K = H(1);  2 f_c ≥ (K + ‖H − K‖₁) Δ.
 
-N_G = g, D = 1, λ = 1/g:  |1 − ζ|² = 2 − 2c, so that 4κ/g − 2 + 2c ≥ 0 takes κ = g;  a sample late |1 − ζ²|² = 4 − 4c².
+N_G = g, D = 1, λ = 1/g:  |1 − ζ|² = 2 − 2c, so that 4κ/g − 2 + 2c ≥ 0 takes κ = g;  a sample late |1 −
+ζ²|² = 4 − 4c².
 """
 
 from __future__ import annotations
@@ -40,7 +41,8 @@ STIFF = multiplier(
 )  # fmt: skip
 # a sample late: κ = b − 3, and 4κ − 4 + 4c² is 4c²
 LATE = put(WALL, {"loop.delay_s": 1, "loop.damping_N_s_per_m": 4, "proof.positivity": signs(square=[0, 1])})
-# D = 1 − ζ/2, N_G = 1: |1 − 3ζ/2|² = 13/4 − 3c ≤ 4κ (5/4 − c); at c = −1 κ ≥ 25/36: there 2/9 (1 + c) is left over
+# D = 1 − ζ/2, N_G = 1: |1 − 3ζ/2|² = 13/4 − 3c ≤ 4κ (5/4 − c); at c = −1 κ ≥ 25/36: there 2/9 (1 + c) is
+# left over
 FILTER = multiplier(
     [3, -2], [1, "-1/2"], signs(at_minus_one=1), norm([("1/2", -1)], [2]),
     damping_N_s_per_m="61/36", coulomb_friction_N=3, resolution_m=1,

@@ -1,6 +1,7 @@
 """Ports of one axis, Re F ≥ σ, and motions that take out more.
 
-(s + 2)/(s + 1): Re = (2 + ω²)/(1 + ω²), least 1 at high frequencies; its inverse (2 + ω²)/(4 + ω²), least ½ at 0.
+(s + 2)/(s + 1): Re = (2 + ω²)/(1 + ω²), least 1 at high frequencies; its inverse (2 + ω²)/(4 + ω²), least
+½ at 0.
 z/(z − ½): Re = (1 − c/2)/(5/4 − c), least 2/3 at z = −1; its inverse 1 − c/2, least ½.
 (s² + 1)/(s² + s + 1), by x = ω²: (1 − x)²/((1 − x)² + x), which is 0 at x = 1, c = 0.
 """

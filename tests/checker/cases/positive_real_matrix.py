@@ -38,26 +38,30 @@ def proved(minors: Any, resolvent: Any, offset: Any, *of: Any, **more: Any) -> A
 
 NONE = signs(square=())
 ONE = signs()
-# [[2, 1], [1, 2]] at σ = 1: Π = [[1, 1], [1, 1]], e₁ = 2, e₂ = 0; M = Π + g: g = 1 gives [[2, 1], [1, 2]], inverse [[2, −1], [−1, 2]]/3
+# [[2, 1], [1, 2]] at σ = 1: Π = [[1, 1], [1, 1]], e₁ = 2, e₂ = 0; M = Π + g: g = 1 gives [[2, 1], [1, 2]],
+# inverse [[2, −1], [−1, 2]]/3
 CONSTANT = proved(
     [(0, ONE), (0, NONE)], ([[[2], [-1]], [[-1], [2]]], [3]), 1, [[[2], [1]], [[1], [2]]], [1], 1
 )
 # [[2, 3], [1, 2]]: only the mean of 3 and 1 counts, 2: least 0
 SKEW = proved([(0, ONE), (0, NONE)], ([[[3], [-3]], [[-1], [3]]], [6]), 1, [[[2], [3]], [[1], [2]]], [1], 0)
-# (s + 2)/(s + 1) and (s + 3)/(s + 1), σ = 1: N − D = 1 and 2: Π = diag(1, 2) for D = s + 1: Re(1 · (1 − jω)) = 1: e₁ = 3, e₂ = 2,
+# (s + 2)/(s + 1) and (s + 3)/(s + 1), σ = 1: N − D = 1 and 2: Π = diag(1, 2) for D = s + 1: Re(1 · (1 −
+# jω)) = 1: e₁ = 3, e₂ = 2,
 # times (1 + c), and its square; M = diag(s + 2, s + 3) with g = 1: D M⁻¹ = (s + 1)/(s + 2), (s + 1)/(s + 3)
 DIAGONAL = proved(
     [(0, signs(at_minus_one=1)), (0, signs(at_minus_one=2))],
     ([[[1, 4, 3], []], [[], [1, 3, 2]]], [1, 5, 6]), 1,
     [[[1, 2], []], [[], [1, 3]]], [1, 1], 1,
 )  # fmt: skip
-# z/(z − ½) on both axes, σ = 2/3: (1 + c)/6 on each: e₁ = (1 + c)/3, e₂ = (1 + c)²/36; g = 1: M = z + (z − ½)/3 = (4z − ½)/3
+# z/(z − ½) on both axes, σ = 2/3: (1 + c)/6 on each: e₁ = (1 + c)/3, e₂ = (1 + c)²/36; g = 1: M = z + (z −
+# ½)/3 = (4z − ½)/3
 STEPS = proved(
     [(0, signs(at_minus_one=1)), (0, signs(at_minus_one=2))],
     ([[[3, "-3/2"], []], [[], [3, "-3/2"]]], [4, "-1/2"]), 1,
     [[[1, 0], []], [[], [1, 0]]], [1, "-1/2"], "2/3", **DISCRETE,
 )  # fmt: skip
-# the same, turned: F = (z − ½)/z on both axes, least ½ at 1; N = z − ½, D = z: z − ½ − z/2 = (z − 1)/2; (1 − c)/2 each
+# the same, turned: F = (z − ½)/z on both axes, least ½ at 1; N = z − ½, D = z: z − ½ − z/2 = (z − 1)/2; (1
+# − c)/2 each
 TURNED = proved(
     [(0, signs(at_one=1)), (0, signs(at_one=2))],
     ([[[2, 0], []], [[], [2, 0]]], [3, -1]), 1,

@@ -36,7 +36,8 @@ SWINGS = relaxing(
 SOFTENS = relaxing(
     [("1/2", -3)], [1, 1], [1, "-1/2"], damping_N_s_per_m=4, coulomb_friction_N=5, resolution_m=1
 )
-# p = ½ and 0, g = 3 and 2: 4 + 3 (1 − ζ)/(1 − ζ/2) + 2 (1 − ζ) = (9 − 8ζ + ζ²)/(1 − ζ/2); b ≥ 1 + 1 + 1, else 1 + 3 + 1
+# p = ½ and 0, g = 3 and 2: 4 + 3 (1 − ζ)/(1 − ζ/2) + 2 (1 − ζ) = (9 − 8ζ + ζ²)/(1 − ζ/2); b ≥ 1 + 1 + 1,
+# else 1 + 3 + 1
 TWO = relaxing(
     [("1/2", 3), (0, 2)],
     [9, -8, 1],

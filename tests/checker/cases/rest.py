@@ -1,6 +1,7 @@
 """Device, known hand and wall: does a disturbance die out?  `stability` and `instability`.
 
-A free mass M = 1, T = 1, under K + B (1 − 1/z):  z³ + ((K + B)/2 − 2) z² + (1 + K/2) z − B/2,  which has all roots inside
+A free mass M = 1, T = 1, under K + B (1 − 1/z):  z³ + ((K + B)/2 − 2) z² + (1 + K/2) z − B/2,  which has
+all roots inside
 exactly if 0 < K < 2B (2 − B)/(2 + B) and B < 2: K = 2/3 for B = 1.
 A damper alone, force B (x(j) − x(j−1)) and a free mass that drifts: the root at z = 1 stays.
 With a hand of spring and damper the limits were bisected on the poles of the exact hold, in 30 digits.
@@ -27,7 +28,9 @@ def hand(kind: str, numerator: Any, denominator: Any, **motion: Any) -> Any:
 
 
 def both(name: str, stable: Any, unstable: Any, **motion: Any) -> Any:
-    """N and D of a law just inside the limit and of one just outside: each holds, and the other's claim does not."""
+    """N and D of a law just inside the limit and of one just outside: each holds, and the other's
+    claim does not.
+    """
     rests, moves = (hand("stability", *law, **motion) for law in (stable, unstable))
     return [
         accepted(f"{name}, inside", rests, "come to rest after every disturbance"),

@@ -1,4 +1,6 @@
-"""A motion against laws in a row: the forces as they are listed, T = 1 s.  0 → 1 → 0 under 2 N gains 2 − 2b − 2 f_c."""
+"""A motion against laws in a row: the forces as they are listed, T = 1 s.  0 → 1 → 0 under 2 N
+gains 2 − 2b − 2 f_c.
+"""
 
 from __future__ import annotations
 

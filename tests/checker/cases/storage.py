@@ -1,6 +1,8 @@
-"""Storage functions: every one a smallest, or nearly, so that one unit less at a state is less than a move takes out.
+"""Storage functions: every one a smallest, or nearly, so that one unit less at a state is less than a move
+takes out.
 
-They stand in `storages.json`, on boards of a few counts or cells.  The prover found them; each was then lowered state
+They stand in `storages.json`, on boards of a few counts or cells.  The prover found them; each was then
+lowered state
 by state as far as it holds.
 """
 
@@ -68,7 +70,7 @@ def board(name: str, phrase: str, **entries: Any) -> Case:
 
 ROW = STORAGES["row"]["document"]
 SPRING = STORAGES["spring"]["document"]
-BELOW = [-1] + unpacked(SPRING["storage"])[1:]
+BELOW = [-1, *unpacked(SPRING["storage"])[1:]]
 SHORT = packed(unpacked(SPRING["storage"])[1:])
 LONG = packed([*unpacked(SPRING["storage"]), 0])
 EMPTY = "is empty"

@@ -1,6 +1,7 @@
 """A motion that touches and leaves, the energy by hand; T = 1 s, each at rest outside first.
 
-K = 2: 0 → 1 → 0 takes out 2 − 2b − 2 f_c.  K + B (1 − ζ) with K = 1, B = 2, from −1: fed with the penetration 1
+K = 2: 0 → 1 → 0 takes out 2 − 2b − 2 f_c.  K + B (1 − ζ) with K = 1, B = 2, from −1: fed with the
+penetration 1
 after 0 the force is 3, fed with the position, 1 after −1, it is 5.
 """
 

@@ -1,6 +1,7 @@
 """A violated criterion, at one frequency:  2b²/T |D|² + b (−R + (1 + c) S) − T α (1 − α)/2 |N|² < 0.
 
-The closed forms are those of `linear` and `delays`; for α = 3/8, K = T = 1 it is 45/64 (1 − c) with b = 15/16.
+The closed forms are those of `linear` and `delays`; for α = 3/8, K = T = 1 it is 45/64 (1 − c) with b =
+15/16.
 """
 
 from __future__ import annotations
@@ -91,7 +92,8 @@ CASES = [
     accepted("H(1) < 0, z = 1 + K/(b + g)", violation(9, [-1], proof=POLE)),
     refused("offset 0", violation(0, [3], proof={**POLE, "offset": 0}), "offset must be positive"),
     refused("offset below 0", violation(0, [3], proof={**POLE, "offset": -1}), "offset must be positive"),
-    # −(1 − ζ)/(1 + ζ) with b = ½ is positive real; without the common 1 − ζ taken out it would have a root at 1
+    # −(1 − ζ)/(1 + ζ) with b = ½ is positive real; without the common 1 − ζ taken out it would have a root
+    # at 1
     refused("N(1) = 0: z = −1/3", violation("1/2", [-1, 1], [1, 1], proof=POLE), "may be positive real"),
     accepted("N(1) = 0, its sign turned", violation("1/2", [1, -1], [1, 1], proof=POLE)),
     refused("common factors", violation(9, [-2, 4], [1, -2], proof=POLE), "common factor"),
