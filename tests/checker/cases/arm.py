@@ -148,7 +148,9 @@ CASES = [
         ),
     ),
     # encoders
-    accepted("an encoder", COUNTED, "its encoder steps counted", encoder="counted"),
+    accepted(
+        "an encoder", COUNTED, "and the torque follows the readings, for forces up to 2 N", encoder="counted"
+    ),
     refused(
         "less friction for its encoder",
         put(COUNTED, {f"{JOINT}coulomb_friction_N_m": FRICTION - TINY}),

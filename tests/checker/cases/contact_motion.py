@@ -344,6 +344,11 @@ CASES = [
     refused("a model below 0", curved([0, 1], [1, 1], models=[[-1, 0]]), "must be > 0"),
     # where it begins, and the rounds
     refused("it begins inside", motion([1, 2, 1], (0, 2, 3)), "begin at rest"),
+    refused(
+        "it begins inside, where there is no force",
+        law(motion([1, 2, 1], (0, 2, 3)), taps_N_per_m=[], points_m_N=[[1, 0], [2, 4]]),
+        "begin at rest",
+    ),
     refused("it begins where the law pulls", law(motion([-1, 0, -1], (0, 2, 3)), **BOTH), "begin at rest"),
     taken(
         "it begins outside", 3, put(motion([0, 1, 0, -1, 0], (0, 4, 3)), {"loop.damping_N_s_per_m": "1/4"})

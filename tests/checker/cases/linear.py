@@ -177,6 +177,20 @@ CASES = [
         linear(0, NOTHING, [0] * 6, [1, -1, "0.74", "-0.706", "-0.5687", "0.60984"]),
         "pole outside",
     ),
+    refused("real poles at 2 and ½", linear(0, NOTHING, [0] * 3, [1, "-5/2", 1]), "pole outside"),
+    refused("real poles at −2 and −½", linear(0, NOTHING, [0] * 3, [1, "5/2", 1]), "pole outside"),
+    refused("real poles at 2 and −½", linear(0, NOTHING, [0] * 3, [1, "-3/2", -1]), "pole outside"),
+    # (z − 2)(z − ½)(z² + ¼), and with −2
+    refused(
+        "one of four poles at 2",
+        linear(0, NOTHING, [0] * 5, [1, "-5/2", "5/4", "-5/8", "1/4"]),
+        "pole outside",
+    ),
+    refused(
+        "one of four poles at −2",
+        linear(0, NOTHING, [0] * 5, [1, "5/2", "5/4", "5/8", "1/4"]),
+        "pole outside",
+    ),
     accepted("a pole on the circle, in the closed loop", ON_CIRCLE),
     refused("its damping less", put(ON_CIRCLE, {"loop.damping_N_s_per_m": "0.499"}), WRONG),
     # (1 − ζ)/(1 + ζ): q = (2b + 1)(2 + 2c), with the root of n + g d at −(1 + 1/(b + g))

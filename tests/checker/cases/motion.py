@@ -119,6 +119,8 @@ CASES = [
     *(taken(f"{n} rounds that go on", Fraction(n * n + n, 2), climb(n)) for n in (1, 2, 3, 1000, 10**6)),
     taken("rounds that go on, friction", 1250, put(climb(100), {"loop.coulomb_friction_N": 19})),
     taken("rounds that go on, inside", 5050, put(climb(100), {"loop.unilateral": True})),
+    # 198 · 100 − 2 Σ (k − 1) − b (100 + 10 000)
+    taken("rounds that go on, a sample late", 5048, put(climb(100), {"loop.delay_s": 1})),
     taken("an encoder, rounds that go on", 5050, put(climb(100), {"loop.resolution_m": "1/2"})),
     taken(
         "an encoder coarser than a round",

@@ -189,6 +189,10 @@ CASES = [
         put(GROWS, {"motion.duration_s": "3/2", "motion.coefficients": ["3/2"]}),
         "none comes out",
     ),
+    # Σ (C(6, 3 + j)/8)² = C(12, 6)/64
+    taken(
+        "a burst of power 3", Fraction(924, 64) * WORK, drawn({**BURST, "cycles": 4, "power": 3}, [-1], [1])
+    ),
     refused("a burst of order 2", SMOOTH, "none comes out"),
     taken("a burst of order 2, a higher level", smooth(2), put(SMOOTH, {"level": 2})),
     refused("a burst that is not smooth", put(SMOOTH, {"motion.power": 0}), "not smooth enough"),

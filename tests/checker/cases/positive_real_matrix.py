@@ -228,6 +228,15 @@ CASES = [
     # at ω: u = jω (1, −j), y = (1 − 3j, −3 − j): Re uᴴy = −6ω, |u|² = 2ω²
     taken("a burst", 18 * WORK, CIRCLE),
     taken("a burst, a level", Fraction(193, 10) * WORK, put(CIRCLE, {"level": "1/10"})),
+    taken(
+        "a burst of power 3",
+        Fraction(5 * 924, 64) * WORK,
+        drawn(
+            {**BURST, "cycles": 4, "power": 3, "cosine": [1, 0], "sine": [0, 2]},
+            [[[-1], []], [[], [-1]]],
+            [1],
+        ),
+    ),
     # twice the port of order 2 of one axis, weights 1 and 2² of φ
     taken(
         "a burst of order 2",

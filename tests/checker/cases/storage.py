@@ -70,14 +70,23 @@ def board(name: str, phrase: str, **entries: Any) -> Case:
 
 ROW = STORAGES["row"]["document"]
 SPRING = STORAGES["spring"]["document"]
-BELOW = [-1, *unpacked(SPRING["storage"])[1:]]
 SHORT = packed(unpacked(SPRING["storage"])[1:])
 LONG = packed([*unpacked(SPRING["storage"]), 0])
 EMPTY = "is empty"
 
 CASES = [
     *(case for name in STORAGES for case in of(name)),
-    refused("a value below 0", put(SPRING, {"storage": packed(BELOW)}), "bounded below by 0"),
+    *(
+        refused(
+            f"{name}, a value below 0",
+            put(
+                STORAGES[name]["document"],
+                {"storage": packed([-1, *unpacked(STORAGES[name]["document"]["storage"])[1:]])},
+            ),
+            "bounded below by 0",
+        )
+        for name in ("spring", "solid", "row", "coarse")
+    ),
     refused("a value too few", put(SPRING, {"storage": SHORT}), "one value for each state"),
     refused("a value too many", put(SPRING, {"storage": LONG}), "one value for each state"),
     *(

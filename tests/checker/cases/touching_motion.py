@@ -90,6 +90,15 @@ CASES = [
     ),
     taken("a filter", "1/2", FILTER),
     taken("a filter that is left", "1/4", put(AGAIN, {"loop.damping_N_s_per_m": "3/10"})),
+    # H(1) = 2: at −1 it rests with −2; u = 2, 2 adds 2, 3
+    taken(
+        "a filter fed with the position, from outside",
+        1,
+        put(
+            FILTER,
+            {"law.fed_with": "position", "positions_m": [-1, 1, 1, -1], "loop.damping_N_s_per_m": "1/8"},
+        ),
+    ),
     taken("a filter that divides", "1/2", HALF),
     taken(
         "a filter that divides, left",
