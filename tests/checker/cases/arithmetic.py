@@ -114,7 +114,8 @@ def signs_are_certain() -> str:
     """Of a number that reaches 0, that does not, and of 0."""
     enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
     for middle, slopes, radius, sign in (
-        (3, (1, -1), 0, 1), (-3, (1, -1), 0, -1), (3, (1, -1), 1, None), (-3, (1, 1), 1, None), (0, (), 0, 0), (0, (), 1, None),
+        (3, (1, -1), 0, 1), (-3, (1, -1), 0, -1), (3, (1, -1), 1, None), (-3, (1, 1), 1, None),
+        (0, (), 0, 0), (0, (), 1, None),
         (1, (), 0, 1), (-1, (), 0, -1), (1, (1,), 0, None), (0, (0, 1), 0, None),
     ):  # fmt: skip
         if enclosed(8, middle, slopes, radius).sign != sign:

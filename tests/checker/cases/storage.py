@@ -160,6 +160,23 @@ CASES = [
         put(STORAGES["solid"]["document"], {"loop.delay_s": "0.0005"}),
         "whole samples",
     ),
+    accepted(
+        "without a surface a board may lie to one side",
+        put(
+            SPRING,
+            {
+                "law": {"surface": "none", "clamped": False, "taps_N_per_m": [0]},
+                "domain": {
+                    "lowest_count": 1,
+                    "highest_count": 2,
+                    "largest_move_counts": 1,
+                    "steps_per_count": 1,
+                },
+                "storage": packed([0] * 4),
+            },
+        ),
+        contact="both sides",
+    ),
     refused("no base64", put(SPRING, {"storage": "?"}), "cannot be unpacked"),
     refused("nothing packed", put(SPRING, {"storage": "AAAA"}), "cannot be unpacked"),
     refused("a list for a text", put(SPRING, {"storage": [1]}), "must be text"),
