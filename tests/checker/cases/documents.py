@@ -6,9 +6,30 @@ from . import accepted, put, refused
 from .spring import spring
 
 SPRING = spring(4)
-NUMBERS = {"4": True, "+4": True, "4.": True, "0.4e1": True, "40E-1": True, "8/2": True, ".4e+1": True, "8/-2": False,
-           "1/0": False, "0/0": False, "": False, " 4": False, "4 ": False, "4_0": False, "0x4": False, "nan": False,
-           "inf": False, "four": False, "4e": False, "4/": False, "4,0": False, "٤": False}  # fmt: skip
+NUMBERS = {
+    "4": True,
+    "+4": True,
+    "4.": True,
+    "0.4e1": True,
+    "40E-1": True,
+    "8/2": True,
+    ".4e+1": True,
+    "8/-2": False,
+    "1/0": False,
+    "0/0": False,
+    "": False,
+    " 4": False,
+    "4 ": False,
+    "4_0": False,
+    "0x4": False,
+    "nan": False,
+    "inf": False,
+    "four": False,
+    "4e": False,
+    "4/": False,
+    "4,0": False,
+    "٤": False,
+}
 
 CASES = [
     *(
@@ -34,11 +55,20 @@ CASES = [
     refused("N is too long", put(SPRING, {"loop.numerator": [0] * 2001}), "more than 2000"),
     accepted("N is long", spring(0, [0] * 2000, [1] + [0] * 1999)),
     refused("damping twice", put(SPRING, {"loop.damping_N_m_s_per_rad": 4}), "once"),
-    refused("damping in another unit", {"kind": "spring", "loop": {
-        **{k: v for k, v in SPRING["loop"].items() if k != "damping_N_s_per_m"}, "damping_N_per_m": 4}}, "unit of damping"),
+    refused(
+        "damping in another unit",
+        {
+            "kind": "spring",
+            "loop": {
+                **{k: v for k, v in SPRING["loop"].items() if k != "damping_N_s_per_m"},
+                "damping_N_per_m": 4,
+            },
+        },
+        "unit of damping",
+    ),
     refused("no kind", {"loop": SPRING["loop"]}, "kind is missing"),
     refused("another kind", {**SPRING, "kind": "springs"}, "kind must be"),
     refused("a kind that is a list", {**SPRING, "kind": ["spring"]}, "kind must be"),
     refused("an unread entry below", put(SPRING, {"loop.remark": {"by": "hand"}}), "entries"),
     refused("an unread entry in a list", {**SPRING, "remarks": [{"by": "hand"}]}, "no proof of this kind"),
-]  # fmt: skip
+]

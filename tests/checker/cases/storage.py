@@ -70,6 +70,9 @@ def board(name: str, phrase: str, **entries: Any) -> Case:
 
 ROW = STORAGES["row"]["document"]
 SPRING = STORAGES["spring"]["document"]
+STORED = {
+    name: unpacked(STORAGES[name]["document"]["storage"]) for name in ("spring", "solid", "row", "coarse")
+}
 SHORT = packed(unpacked(SPRING["storage"])[1:])
 LONG = packed([*unpacked(SPRING["storage"]), 0])
 EMPTY = "is empty"
@@ -159,6 +162,14 @@ CASES = [
         "a law that relaxes, part of a sample late",
         put(STORAGES["solid"]["document"], {"loop.delay_s": "0.0005"}),
         "whole samples",
+    ),
+    *(
+        refused(
+            f"{name}, too little at the first state alone",
+            put(STORAGES[name]["document"], {"storage": packed([0] + [10**13] * (len(STORED[name]) - 1))}),
+            "from state 0 a move",
+        )
+        for name in STORED
     ),
     accepted(
         "without a surface a board may lie to one side",
