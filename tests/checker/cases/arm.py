@@ -1,0 +1,390 @@
+"""Arms: δ − JᵀRJ ≻ 0 at one place or in a region, R = (2d + 1) KT/2 + A.
+
+`arms.json` has arms at one place, with the damping of the first joint or leg at which the matrix is
+singular there:
+from Jacobians by differences in 40 digits, of homogeneous matrices, and of a leg's angle by arcs.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from . import TINY, Case, Fraction, accepted, put, refused, without
+
+ARMS = json.loads(Path(__file__).with_name("arms.json").read_text(encoding="utf-8"))
+LESS = "the damping is not enough"
+LONGER = 1 + Fraction(1, 10**6)
+
+
+def first_damping(document: Any) -> str:
+    """Where the damping of the first joint or leg stands."""
+    arm = document["arm"]
+    part = "joints" if "joints" in arm else "legs"
+    key = next(key for key in arm[part][0] if key.startswith("damping"))
+    return f"arm.{part}.0.{key}"
+
+
+def damped(name: str, by: Any = 1) -> Any:
+    """An arm of the file with its damping, times a factor."""
+    document = ARMS[name]["document"]
+    return put(document, {first_damping(document): Fraction(ARMS[name]["needed"]) * Fraction(by)})
+
+
+def widened(document: Any, by: str) -> Any:
+    """With so much to either side of every coordinate."""
+    arm, entries = document["arm"], dict[str, Any]()
+    for i, joint in enumerate(arm.get("joints", [])):
+        for side, sign in (("low", -1), ("high", 1)):
+            key = next(key for key in joint if key.startswith(side))
+            entries[f"arm.joints.{i}.{key}"] = Fraction(joint[key]) + sign * Fraction(by)
+    if "legs" in arm:
+        for side, sign in (("low_m", -1), ("high_m", 1)):
+            entries[f"arm.{side}"] = [Fraction(x) + sign * Fraction(by) for x in arm[side]]
+    return put(document, entries)
+
+
+def of(name: str) -> list[Case]:
+    """At one place, and in a small box around it."""
+    return [
+        accepted(
+            name,
+            damped(name, 1 + TINY),
+            "no motion of the hand",
+            shows="passive",
+            hands="every",
+            contact="both sides",
+            encoder="ideal",
+            force_limit=False,
+            force_steps=False,
+            fed_with="",
+        ),
+        refused(f"{name}, but for a hair", damped(name, 1 - TINY), LESS),
+        accepted(f"{name}, around it", widened(damped(name, "1.5"), "0.001")),
+        refused(f"{name}, around it with less", widened(damped(name, "0.995"), "0.001"), LESS),
+    ]
+
+
+TURNS = damped("turns", 1 + TINY)
+# a link of 0.1 m before a wall along x: J = −0.1 sin q, b = R (0.1 sin 0.9)², R = 1000/1000; sin² 0.9 =
+# 0.613601047…
+SWEEP = put(
+    TURNS,
+    {
+        "arm.end_m": ["0.1", "0", "0"],
+        "arm.joints.0.low_rad": "0.2",
+        "arm.joints.0.high_rad": "0.9",
+        "arm.joints.0.damping_N_m_s_per_rad": "0.0061367",
+    },
+)
+# K = 1000, B = 0.1, T = 1/500: ‖K‖ + 2 ‖B‖/T = 1100
+# N = [[r, 1], [1, 0]], r = 0.3 + 0.2 + 0.1: the larger eigenvalue 0.3 + √1.09 = 1.344031 (times a
+# millionth more)
+SLIDES = put(TURNS, {
+    "loop.torque": "held", "loop.largest_force_N": 1, "arm.end_m": ["0.1", "0", "0"],
+    "arm.joints": [
+        {**TURNS["arm"]["joints"][0], "damping_N_m_s_per_rad": 9},
+        {**ARMS["mixed"]["document"]["arm"]["joints"][1], "translation_m": ["0.3", "0", "0"],
+         "low_m": "-0.2", "high_m": "0.1",
+         "damping_N_s_per_m": 9},
+    ],
+})  # fmt: skip
+COLUMN, STEP = Fraction("0.1000002"), Fraction(1, 1000)
+FRICTION = (1100 * STEP * COLUMN**2 + 2 * LONGER * COLUMN * STEP) / 2
+COUNTED = put(SWEEP, {
+    "loop.encoder": "counted", "loop.torque": "follows the readings", "loop.largest_force_N": "2",
+    "wall.virtual_damping_N_s_per_m": [["0.1"]], "wall.damping_bound_N_s_per_m": [["0.1"]],
+    "arm.joints.0.resolution_rad": STEP, "arm.joints.0.coulomb_friction_N_m": FRICTION,
+    "arm.joints.0.largest_column_m_per_rad": COLUMN, "arm.joints.0.damping_N_m_s_per_rad": "1",
+})  # fmt: skip
+# a curvature of 1 and 2 N for half of T: 0.002 more than 1.1 · 0.01 · sin² 0.901 = 0.0067604…
+HELD_COUNTED = put(COUNTED, {"loop.torque": "held", "loop.curvature_m_per_rad2": "1"})
+HELD = damped("held", 1 + TINY)
+MIXED, PLANE, EVERY, GIVEN = (
+    damped(name, 1 + TINY) for name in ("mixed", "plane pose", "every rest", "given rest")
+)
+TWO, THREE = damped("two legs", 1 + TINY), damped("three legs", 1 + TINY)
+JOINT, LEG = "arm.joints.0.", "arm.legs.0."
+ROTATION = [["0.6", "-0.8", "0"], ["0.8", "0.6", "0"], ["0", "0", "1"]]
+
+CASES = [
+    *(case for name in ARMS for case in of(name)),
+    # a region
+    accepted("a sweep", SWEEP, "in its range"),
+    refused("a sweep with less", put(SWEEP, {f"{JOINT}damping_N_m_s_per_rad": "0.0061355"}), LESS),
+    accepted("a sweep to the other side", put(SWEEP, {f"{JOINT}low_rad": "-0.9", f"{JOINT}high_rad": "0.2"})),
+    refused(
+        "a sweep to the other side with less",
+        put(
+            SWEEP,
+            {
+                f"{JOINT}low_rad": "-0.9",
+                f"{JOINT}high_rad": "0.2",
+                f"{JOINT}damping_N_m_s_per_rad": "0.0061355",
+            },
+        ),
+        LESS,
+    ),
+    accepted(
+        "a sweep past where it is most",
+        put(SWEEP, {f"{JOINT}high_rad": "2.9", f"{JOINT}damping_N_m_s_per_rad": "0.010001"}),
+    ),
+    refused(
+        "a sweep past where it is most, with less",
+        put(SWEEP, {f"{JOINT}high_rad": "2.9", f"{JOINT}damping_N_m_s_per_rad": "0.009999"}),
+        LESS,
+    ),
+    refused(
+        "an angle too many turns from 0",
+        put(SWEEP, {f"{JOINT}low_rad": "64", f"{JOINT}high_rad": "64.1"}),
+        "too many turns",
+    ),
+    accepted(
+        "an angle of ten turns",
+        put(
+            TURNS,
+            {f"{JOINT}low_rad": "63.9", f"{JOINT}high_rad": "63.9", f"{JOINT}damping_N_m_s_per_rad": "1"},
+        ),
+    ),
+    # encoders
+    accepted(
+        "an encoder", COUNTED, "and the torque follows the readings, for forces up to 2 N", encoder="counted"
+    ),
+    refused(
+        "less friction for its encoder",
+        put(COUNTED, {f"{JOINT}coulomb_friction_N_m": FRICTION - TINY}),
+        "Coulomb friction of joint 1",
+    ),
+    refused("larger forces", put(COUNTED, {"loop.largest_force_N": "2.001"}), "Coulomb friction of joint 1"),
+    refused(
+        "larger steps", put(COUNTED, {f"{JOINT}resolution_rad": "0.00100001"}), "Coulomb friction of joint 1"
+    ),
+    refused(
+        "a longer column than it is said",
+        put(COUNTED, {f"{JOINT}largest_column_m_per_rad": "0.1"}),
+        "longer than it is said",
+    ),
+    accepted(
+        "no range, no steps",
+        put(
+            COUNTED, {f"{JOINT}low_rad": "0.5", f"{JOINT}high_rad": "0.5", f"{JOINT}coulomb_friction_N_m": 0}
+        ),
+    ),
+    accepted("an encoder, held", HELD_COUNTED, "is held over a period"),
+    refused(
+        "an encoder, held, with less damping",
+        put(HELD_COUNTED, {f"{JOINT}damping_N_m_s_per_rad": "0.0087"}),
+        LESS,
+    ),
+    *(
+        refused(f"an encoder, {key} below 0", put(COUNTED, {f"{JOINT}{key}": "-0.001"}), "are ≥ 0")
+        for key in ("resolution_rad", "coulomb_friction_N_m", "largest_column_m_per_rad")
+    ),
+    # held
+    refused("a held torque and a delay", put(HELD, {"loop.delay_samples": 1}), "needs no delay"),
+    refused(
+        "a curvature that is less than the bends",
+        put(HELD, {"loop.curvature_m_per_rad2": "0.1"}),
+        "can bend more",
+    ),
+    *(
+        case
+        for length, link in (("0.1019804", ["0.1", "0.02", "0"]), ("0.25", ["0.15", "0.2", "0"]))
+        for told in [
+            put(
+                TURNS,
+                {
+                    "loop.torque": "held",
+                    "loop.largest_force_N": 1,
+                    "arm.end_m": link,
+                    f"{JOINT}damping_N_m_s_per_rad": 9,
+                },
+            )
+        ]
+        for case in (
+            accepted(
+                f"a curvature of {length}",
+                put(told, {"loop.curvature_m_per_rad2": Fraction(length) * (1 + 2 * (LONGER - 1))}),
+            ),
+            refused(
+                f"a curvature of less than {length}",
+                put(told, {"loop.curvature_m_per_rad2": Fraction(length) * (1 - (LONGER - 1))}),
+                "can bend more",
+            ),
+        )
+    ),
+    refused("forces below 0", put(HELD, {"loop.largest_force_N": "-1"}), "largest force ≥ 0"),
+    # the wall and the loop
+    refused(
+        "a stiffness with a negative eigenvalue",
+        put(MIXED, {"wall.stiffness_N_per_m": [["1", "2", "0"], ["2", "1", "0"], ["0", "0", "1"]]}),
+        "negative eigenvalue",
+    ),
+    accepted(
+        "a stiffness of rank 1",
+        put(MIXED, {"wall.stiffness_N_per_m": [["4", "2", "0"], ["2", "1", "0"], ["0", "0", "0"]]}),
+    ),
+    refused(
+        "a stiffness of zero and more beside it",
+        put(MIXED, {"wall.stiffness_N_per_m": [["0", "1", "0"], ["1", "9", "0"], ["0", "0", "1"]]}),
+        "negative eigenvalue",
+    ),
+    refused(
+        "a stiffness that is not symmetric",
+        put(MIXED, {"wall.stiffness_N_per_m": [["4", "2", "0"], ["1", "4", "0"], ["0", "0", "1"]]}),
+        "not symmetric",
+    ),
+    refused(
+        "a bound below the damping",
+        put(
+            MIXED, {"wall.virtual_damping_N_s_per_m": [["0.25", "0", "0"], ["0", "0", "0"], ["0", "0", "0"]]}
+        ),
+        "is no bound",
+    ),
+    refused(
+        "a bound below the negative damping",
+        put(
+            MIXED, {"wall.virtual_damping_N_s_per_m": [["-0.25", "0", "0"], ["0", "0", "0"], ["0", "0", "0"]]}
+        ),
+        "is no bound",
+    ),
+    refused(
+        "matrices of two sizes", put(MIXED, {"wall.virtual_damping_N_s_per_m": [["0"]]}), "differ in size"
+    ),
+    refused("a matrix of four rows", put(MIXED, {"wall.stiffness_N_per_m": [["0"] * 4] * 4}), "rows"),
+    refused("T is 0", put(MIXED, {"loop.sample_period_s": 0}), "T must be > 0"),
+    refused("T is below 0", put(MIXED, {"loop.sample_period_s": -1}), "T must be > 0"),
+    refused("part of a sample", put(MIXED, {"loop.delay_samples": "1/2"}), "whole number"),
+    refused("another encoder", put(MIXED, {"loop.encoder": "coarse"}), "ideal, or counted"),
+    refused("another torque", put(MIXED, {"loop.torque": "follows the readings"}), "or is held"),
+    refused(
+        "the torque follows the arm, its readings counted",
+        put(COUNTED, {"loop.torque": "follows the arm"}),
+        "or is held",
+    ),
+    # chains
+    refused("another geometry", put(MIXED, {"arm.geometry": "tree"}), "chain or legs"),
+    refused("a joint of another kind", put(MIXED, {f"{JOINT}kind": "ball"}), "revolute or prismatic"),
+    refused(
+        "no rotation",
+        put(MIXED, {f"{JOINT}rotation": [["0.6", "-0.8", "0"], ["0.8", "0.6", "0"], ["0", "0", "1.1"]]}),
+        "is not one",
+    ),
+    refused(
+        "a rotation that is off a little",
+        put(MIXED, {f"{JOINT}rotation": [["0.6", "-0.8", "0"], ["0.8", "0.60000001", "0"], ["0", "0", "1"]]}),
+        "is not one",
+    ),
+    *(
+        case(
+            f"a rotation longer by {by}",
+            put(
+                TURNS,
+                {f"{JOINT}rotation": [["1", "0", "0"], ["0", "1", "0"], ["0", "0", f"1.000000000{by}"]]},
+            ),
+            words,
+        )
+        for case, by, words in ((accepted, 4, ""), (refused, 6, "is not one"))
+    ),
+    # what is beyond the first joint slides with the second: N = [[r, 1], [1, 0]] of r = 0.3 + 0.2 + 0.1
+    *(
+        case(
+            f"a joint that slides beyond one that turns, a curvature of {curvature}",
+            put(SLIDES, {"loop.curvature_m_per_rad2": curvature}),
+            words,
+        )
+        for case, curvature, words in ((accepted, "1.3441", ""), (refused, "1.3439", "can bend more"))
+    ),
+    refused("a rotation of two rows", put(MIXED, {f"{JOINT}rotation": ROTATION[:2]}), "three rows"),
+    refused("low above high", put(TURNS, {f"{JOINT}low_rad": "0.61"}), "low ≤ high"),
+    refused("damping below 0", put(MIXED, {f"{JOINT}damping_N_m_s_per_rad": "-1"}), "damping ≥ 0"),
+    refused("no joints", put(MIXED, {"arm.joints": []}), "from 1 to 16 joints"),
+    refused("17 joints", put(TURNS, {"arm.joints": TURNS["arm"]["joints"] * 17}), "from 1 to 16 joints"),
+    refused("an end of two coordinates", put(MIXED, {"arm.end_m": ["0", "0"]}), "expected 3 coordinates"),
+    # pose
+    refused(
+        "a mirror",
+        put(EVERY, {f"{JOINT}rotation": [["0.6", "0.8", "0"], ["0.8", "-0.6", "0"], ["0", "0", "1"]]}),
+        "mirrors",
+    ),
+    refused("two rotations", put(EVERY, {"wall.turns": 2}), "three rotations, or one"),
+    refused("another rest", put(EVERY, {"wall.rest": "any"}), "rests in every orientation"),
+    refused("a rest in the plane", put(PLANE, {"wall.rest": "given"}), "rests in every orientation"),
+    refused(
+        "forces and turns coupled, in every rest",
+        put(GIVEN, {"wall.rest": "every orientation"}),
+        "one orientation of rest",
+    ),
+    refused(
+        "a joint that slides, in the plane",
+        put(PLANE, {"arm.joints.0": MIXED["arm"]["joints"][1]}),
+        "about the same axis",
+    ),
+    refused(
+        "an axis that is turned, in the plane",
+        put(PLANE, {"arm.joints.0.rotation": [["1", "0", "0"], ["0", "0", "-1"], ["0", "1", "0"]]}),
+        "about the same axis",
+    ),
+    refused("no rest", without(GIVEN, f"{JOINT}rest_rad"), "rest_rad is missing"),
+    # legs
+    refused("legs in pose", {**TWO, "wall": PLANE["wall"]}, "no pose"),
+    refused("a wall of three coordinates, two legs", {**TWO, "wall": MIXED["wall"]}, "as many coordinates"),
+    refused(
+        "legs, held",
+        put(
+            TWO,
+            {
+                "loop.torque": "held",
+                "loop.largest_force_N": 1,
+                "loop.curvature_m_per_rad2": 9,
+                "loop.delay_samples": 0,
+            },
+        ),
+        "are not bounded",
+    ),
+    refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "two legs in the plane"),
+    refused("a region turned round", put(TWO, {"arm.low_m": ["0.03", "0.09"]}), "low ≤ high"),
+    *(
+        refused(f"a leg, {key} is {value}", put(TWO, {f"{LEG}{key}": value}), "a leg needs")
+        for key, value in (
+            ("link_m", 0),
+            ("rod_m", 0),
+            ("link_m", "-0.1"),
+            ("rod_m", "-0.1"),
+            ("offset_m", "-0.01"),
+            ("damping_N_m_s_per_rad", "-1"),
+            ("bend", 0),
+            ("bend", True),
+            ("bend", 2),
+        )
+    ),
+    refused(
+        "out of reach",
+        put(TWO, {"arm.low_m": ["0.02", "0.3"], "arm.high_m": ["0.02", "0.3"]}),
+        "does not reach",
+    ),
+    refused(
+        "too near",
+        put(THREE, {"arm.low_m": ["0.3", "0.02", "0.15"], "arm.high_m": ["0.3", "0.02", "0.15"]}),
+        "does not reach",
+    ),
+    *(
+        refused(f"without {key}", without(told, key), "is missing")
+        for told, key in (
+            (MIXED, "arm"),
+            (MIXED, "wall"),
+            (MIXED, "loop"),
+            (MIXED, "loop.encoder"),
+            (MIXED, "loop.torque"),
+            (MIXED, "loop.delay_samples"),
+            (MIXED, "arm.geometry"),
+            (MIXED, "arm.end_m"),
+            (TWO, "arm.legs"),
+            (TWO, "arm.low_m"),
+            (HELD, "loop.largest_force_N"),
+            (HELD, "loop.curvature_m_per_rad2"),
+            (COUNTED, f"{JOINT}largest_column_m_per_rad"),
+        )
+    ),
+]

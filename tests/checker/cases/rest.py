@@ -1,0 +1,155 @@
+"""Device, known hand and wall: does a disturbance die out?  `stability` and `instability`.
+
+A free mass M = 1, T = 1, under K + B (1 − 1/z):  z³ + ((K + B)/2 − 2) z² + (1 + K/2) z − B/2,  which has
+all roots inside
+exactly if 0 < K < 2B (2 − B)/(2 + B) and B < 2: K = 2/3 for B = 1.
+A damper alone, force B (x(j) − x(j−1)) and a free mass that drifts: the root at z = 1 stays.
+With a hand of spring and damper the limits were bisected on the poles of the exact hold, in 30 digits.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import TINY, Fraction, accepted, put, refused, without
+
+
+def hand(kind: str, numerator: Any, denominator: Any, **motion: Any) -> Any:
+    """M = T = 1 without spring and damper if nothing else is said."""
+    loop = {
+        "mass_kg": 1,
+        "damping_N_s_per_m": 0,
+        "stiffness_N_per_m": 0,
+        "sample_period_s": 1,
+        "delay_s": 0,
+        **motion,
+    }
+    return {"kind": kind, "loop": {**loop, "numerator": list(numerator), "denominator": list(denominator)}}
+
+
+def both(name: str, stable: Any, unstable: Any, **motion: Any) -> Any:
+    """N and D of a law just inside the limit and of one just outside: each holds, and the other's
+    claim does not.
+    """
+    rests, moves = (hand("stability", *law, **motion) for law in (stable, unstable))
+    return [
+        accepted(f"{name}, inside", rests, "come to rest after every disturbance"),
+        refused(f"{name}, outside", moves, "could not be confirmed"),
+        accepted(f"{name}, outside and said so", {**moves, "kind": "instability"}, "do not come to rest"),
+        refused(f"{name}, inside and said not", {**rests, "kind": "instability"}, "could not be confirmed"),
+    ]
+
+
+def law(k: Any, b: Any) -> Any:
+    return [Fraction(k) + Fraction(b), -Fraction(b)], [1, 0]
+
+
+def spring(k: Any) -> Any:
+    return [k], [1]
+
+
+EDGE = Fraction(2, 3)
+LAW = law(EDGE - TINY, 1)
+RESTS, MOVES = hand("stability", *LAW), hand("instability", *law(EDGE, 1))
+HELD = {"damping_N_s_per_m": "1/2", "stiffness_N_per_m": 1}
+# M, D, k, T and the delay: the K at which a pole of the exact hold meets the circle
+LIMITS = {
+    (1, "1/2", 1, 1, 0): Fraction("1.189370146557"),
+    (1, "1/2", 1, 1, 1): Fraction("0.529608069249"),
+    (1, "1/2", 1, 1, "1/4"): Fraction("0.819805574943"),
+    (1, "1/2", 1, 1, "5/4"): Fraction("0.510244196816"),
+    (2, "1/4", 3, "1/2", "1/8"): Fraction("0.708571182600"),
+    (1, 1, 0, 1, 0): Fraction("2.392211191177"),
+    (1, 1, 0, 1, "1/3"): Fraction("1.387849461396"),
+    (1, 3, 12, 1, 0): Fraction("7.655791537445"),
+}
+BOX = hand("stability", *spring("0.4"), damping_N_s_per_m=["1/2", "3/5"], stiffness_N_per_m=[1, "6/5"])
+
+CASES = [
+    accepted(
+        "a free mass",
+        RESTS,
+        "come to rest after every disturbance, contact kept",
+        shows="stable",
+        hands="known",
+        contact="kept",
+        encoder="ideal",
+        force_limit=False,
+        force_steps=False,
+        fed_with="",
+    ),
+    accepted("on the circle", MOVES, "do not come to rest", shows="unstable", hands="known", contact="kept"),
+    refused("on the circle is not at rest", {**MOVES, "kind": "stability"}, "could not be confirmed"),
+    *both("K of a free mass", law(EDGE - TINY, 1), law(EDGE + TINY, 1)),
+    *both("B = 1/6", law(Fraction(11, 39) - TINY, "1/6"), law(Fraction(11, 39) + TINY, "1/6")),
+    *both("B = 3/2", law(Fraction(3, 7) - TINY, "3/2"), law(Fraction(3, 7) + TINY, "3/2")),
+    *(
+        case
+        for (m, d, k, t, late), limit in LIMITS.items()
+        for case in both(
+            f"M, D, k, T, delay = {m}, {d}, {k}, {t}, {late}",
+            spring(limit - TINY),
+            spring(limit + TINY),
+            mass_kg=m,
+            damping_N_s_per_m=d,
+            stiffness_N_per_m=k,
+            sample_period_s=t,
+            delay_s=late,
+        )
+    ),
+    *both("K > 0", law(TINY, 1), law(0, 1)),
+    *both("K < 0", law(TINY, 1), law(-TINY, 1)),
+    *both("M = 2 kg takes twice as much", law(2 * EDGE - TINY, 2), law(2 * EDGE + TINY, 2), mass_kg=2),
+    *both(
+        "T = 2 s takes a quarter", law(EDGE / 4 - TINY, "1/4"), law(EDGE / 4 + TINY, "1/4"), sample_period_s=2
+    ),
+    *both(
+        "D turned with N", ([-x for x in LAW[0]], [-1, 0]), ([-x for x in law(EDGE + TINY, 1)[0]], [-1, 0])
+    ),
+    *both("a law that has a pole at 2", law(EDGE - TINY, 1), ([1, -1], [1, -2])),
+    # P(1) = 0 with K = 0, whatever the delay: the exact numbers say it
+    *both("K > 0, part of a sample late", law(TINY, "1/2"), law(0, "1/2"), delay_s="1/2"),
+    *both("K > 0, one and a half late", law(TINY, "1/4"), law(0, "1/4"), delay_s="3/2"),
+    refused(
+        "uncertain numbers do not show that it moves",
+        put(MOVES, {"loop.mass_kg": [1, "1.1"]}),
+        "must be certain",
+    ),
+    accepted("every value of a box", BOX, "for every value in the intervals"),
+    accepted("an interval of one number", put(RESTS, {"loop.mass_kg": [1, 1]}), "after every disturbance"),
+    refused(
+        "an interval turned round",
+        put(BOX, {"loop.stiffness_N_per_m": ["6/5", 1]}),
+        "smaller and the larger end",
+    ),
+    refused(
+        "an interval of three", put(BOX, {"loop.stiffness_N_per_m": [1, 1, 1]}), "smaller and the larger end"
+    ),
+    refused("T is uncertain", put(BOX, {"loop.sample_period_s": [1, "1.1"]}), "must be certain"),
+    refused("the delay is uncertain", put(BOX, {"loop.delay_s": [0, "0.1"]}), "must be certain"),
+    *(
+        refused(f"{key} is {value}", put(RESTS, {f"loop.{key}": value}), "must be > 0")
+        for key, value in (
+            ("mass_kg", 0),
+            ("mass_kg", -1),
+            ("sample_period_s", 0),
+            ("sample_period_s", -1),
+            ("damping_N_s_per_m", -1),
+            ("stiffness_N_per_m", -1),
+            ("delay_s", -1),
+        )
+    ),
+    refused("301 samples late", put(RESTS, {"loop.delay_s": 301}), "more than 300 samples"),
+    refused("N is longer than D", hand("stability", [1, 1, 1], [1, 0]), "must be proper"),
+    refused("no N", hand("stability", [], [1, 0]), "must be proper"),
+    refused("no D", hand("stability", [1], []), "must be proper"),
+    refused("D begins with 0", hand("stability", [1, 1], [0, 1]), "must be proper"),
+    *(
+        refused(f"without {key}", without(RESTS, f"loop.{key}"), phrase)
+        for key, phrase in (
+            ("mass_kg", "mass must be given once"),
+            ("numerator", "numerator is missing"),
+            ("delay_s", "delay must be given once"),
+        )
+    ),
+]

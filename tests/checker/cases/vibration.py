@@ -1,0 +1,137 @@
+"""A motion that a one-sided wall keeps up for ever.
+
+G = (2z + 0.92)/(z² − z/2), gap −1: from K = 175/192 on there are motions of three samples, one or two of them
+inside; at 175/192 a sample stands on the surface.  A hand of spring and damper: where a sample comes
+to the surface was bisected on the positions of the exact hold, in 30 digits.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import TINY, Fraction, accepted, put, refused, without
+from .absolute import SIX
+
+LIMIT, HAIR = Fraction(175, 192), Fraction(1, 10**60)
+
+
+def six(slope: Any, *inside: bool, **more: Any) -> Any:
+    """The plant of two poles."""
+    return {"kind": "vibration", "plant": SIX, "slope": slope, "gap": "-1", "inside": list(inside), **more}
+
+
+def hand(slope: Any, gap: Any, inside: int, samples: int, **loop: Any) -> Any:
+    """Device and hand, the first samples inside."""
+    pattern = [True] * inside + [False] * (samples - inside)
+    return {"kind": "vibration", "loop": loop, "slope": slope, "gap": gap, "inside": pattern}
+
+
+HEAVY = {
+    "mass_kg": "3/2", "damping_N_s_per_m": "0.1", "hand_mass_kg": "1/2", "hand_damping_N_s_per_m": "0.15",
+    "hand_stiffness_N_per_m": 3, "sample_period_s": 1, "delay_s": "1/4",
+}  # fmt: skip
+LIGHT = {
+    **HEAVY,
+    "mass_kg": 1,
+    "hand_mass_kg": 0,
+    "damping_N_s_per_m": "0.1",
+    "hand_damping_N_s_per_m": 0,
+    "hand_stiffness_N_per_m": 1,
+    "delay_s": 0,
+}
+LATE = {**LIGHT, "hand_damping_N_s_per_m": "0.1", "hand_stiffness_N_per_m": 2, "delay_s": "3/2"}
+LIMITS = {  # the slope from which on the pattern is one of the wall
+    "1.81627437453474": (1, 1, 5, HEAVY),
+    "1.650652264572836": (1, 1, 6, LIGHT),
+    "2.239682460506923": (1, 1, 5, LATE),
+    "0.9308975163864071": (-1, 2, 5, LATE),
+}
+NOT = "is not one of the wall"
+ONE, TWO = six("0.92", True, False, False), six("0.92", True, True, False)
+
+CASES = [
+    accepted(
+        "one sample inside",
+        ONE,
+        "slope 0.92, -1 off the hand's rest, vibrates for ever: rounds of 3 samples, 1 inside",
+        shows="unstable",
+        hands="known",
+        contact="kept",
+        encoder="ideal",
+        force_limit=False,
+        force_steps=False,
+        fed_with="",
+    ),
+    accepted("two samples inside", TWO, "rounds of 3 samples, 2 inside"),
+    *(
+        case
+        for name, pattern in (("one", (True, False, False)), ("two", (True, True, False)))
+        for case in (
+            accepted(f"just above the limit, {name}", six(LIMIT + HAIR, *pattern)),
+            refused(f"at the limit, {name}", six(LIMIT, *pattern), NOT),
+            refused(f"just below the limit, {name}", six(LIMIT - HAIR, *pattern), NOT),
+        )
+    ),
+    accepted("begun a sample later", six("0.92", False, False, True)),
+    accepted("twice round", six("0.92", *[True, False, False] * 2)),
+    accepted("another gap", put(ONE, {"gap": "-0.0371"})),
+    refused("off the wall", put(ONE, {"gap": "0.0371"}), NOT),
+    refused("at the surface", put(ONE, {"gap": 0}), NOT),
+    accepted("D is scaled", put(ONE, {"plant": {"numerator": [4, "1.84"], "denominator": [2, -1, 0]}})),
+    refused("D is scaled alone", put(ONE, {"plant.denominator": [2, -1, 0]}), NOT),
+    refused("another pattern", six("0.92", True, False), NOT),
+    refused("a longer pattern", six("0.92", True, False, False, False), NOT),
+    *(
+        case
+        for slope, (gap, inside, samples, loop) in LIMITS.items()
+        for case in (
+            accepted(
+                f"a hand, from {slope} on", hand(Fraction(slope) * (1 + TINY), gap, inside, samples, **loop)
+            ),
+            refused(
+                f"a hand, below {slope}",
+                hand(Fraction(slope) * (1 - TINY), gap, inside, samples, **loop),
+                NOT,
+            ),
+        )
+    ),
+    *(
+        refused(f"a hand, {key} is {value}", put(hand(2, 1, 1, 5, **HEAVY), {f"loop.{key}": value}), phrase)
+        for key, value, phrase in (
+            ("mass_kg", "-1/2", "must be > 0"),
+            ("hand_mass_kg", "-1/10", "must be ≥ 0"),
+            ("damping_N_s_per_m", "-0.01", "must be ≥ 0"),
+            ("hand_damping_N_s_per_m", "-0.01", "must be ≥ 0"),
+            ("hand_stiffness_N_per_m", -1, "must be > 0"),
+            ("mass_kg", ["1.5", "1.6"], "certain numbers"),
+            ("sample_period_s", [1, 2], "must be certain"),
+        )
+    ),
+    refused(
+        "a hand, an entry that no proof has",
+        put(hand(2, 1, 1, 5, **HEAVY), {"loop.numerator": [1]}),
+        "entries",
+    ),
+    refused("a hand and a plant", {**hand(2, 1, 1, 5, **HEAVY), "plant": SIX}, "only one can be meant"),
+    refused("all inside", six("0.92", True, True, True), "some samples must"),
+    refused("none inside", six("0.92", False, False, False), "some samples must"),
+    refused("numbers for true and false", {**ONE, "inside": [1, 0, 0]}, "some samples must"),
+    refused("one sample", six("0.92", True), "2 … 1000 samples"),
+    refused("no list", {**ONE, "inside": "100"}, "2 … 1000 samples"),
+    refused("1001 samples", six("0.92", *[True, False, False] * 333, True, False), "2 … 1000 samples"),
+    refused("slope 0", put(ONE, {"slope": 0}), "slope must be > 0"),
+    refused("slope below 0", put(ONE, {"slope": -1}), "slope must be > 0"),
+    refused(
+        "a plant that is not strictly proper", put(ONE, {"plant.numerator": [1, 2, 3]}), "strictly proper"
+    ),
+    refused("a plant without N", put(ONE, {"plant.numerator": []}), "strictly proper"),
+    refused("a plant without D", put(ONE, {"plant.denominator": []}), "strictly proper"),
+    refused(
+        "a plant that begins with 0", put(ONE, {"plant.denominator": [0, 1, "-1/2", 0]}), "strictly proper"
+    ),
+    refused("neither plant nor loop", without(ONE, "plant"), "loop is missing"),
+    *(
+        refused(f"without {key}", without(ONE, key), "is missing")
+        for key in ("slope", "gap", "inside", "plant.numerator", "plant.denominator")
+    ),
+]
