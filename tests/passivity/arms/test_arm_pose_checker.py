@@ -326,7 +326,7 @@ MIRROR = texts(np.diag([1.0, 1, -1]))
         (True, "wall/turns", 0, "turns must be 1 or 3"),
         (True, "wall/turns", 2, "turns must be 1 or 3"),
         (True, "wall/rest", None, "rest is missing"),
-        (True, "wall/rest", "anywhere", "rests in every orientation"),
+        (True, "wall/rest", "anywhere", "rest must be every orientation or given"),
         (False, "wall/rest", "every orientation", "one orientation of rest"),
         (False, "arm/joints/1/rest_rad", None, "rest_rad is missing"),
         (False, "arm/joints/1/rest_rad", "1e9", "too many turns"),
@@ -336,7 +336,7 @@ MIRROR = texts(np.diag([1.0, 1, -1]))
         (True, "arm/joints/0/high_rad", "100", "too many turns"),
         (True, "arm/joints/2/damping_N_m_s_per_rad", "0.0001", "not enough"),
         (True, "loop/delay_samples", 200, "not enough"),
-        (True, "arm/geometry", "legs", "no pose"),
+        (True, "arm/geometry", "legs", "no proof of this kind has"),
     ],
 )  # fmt: skip
 def test_what_does_not_hold_is_refused(every: bool, path: str, value: Any, reason: str) -> None:
