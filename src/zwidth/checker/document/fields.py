@@ -486,11 +486,12 @@ def _told(value: Any, depth: int = 12) -> Iterator[str]:
 
 def _exactly(value: Fraction) -> str:
     """As a decimal where one ends soon, else as it is written."""
-    rest = value.denominator
-    for prime in (2, 5):
-        while rest % prime == 0:
-            rest //= prime
-    if rest == 1 and max(value.denominator, abs(value.numerator)).bit_length() <= 200:
-        return about(value, 200)
-    text = str(value)
-    return text if len(text) <= 40 else f"about {about(value, 12)}"
+    if max(value.denominator, abs(value.numerator)).bit_length() <= 200:
+        rest = value.denominator
+        for prime in (2, 5):
+            while rest % prime == 0:
+                rest //= prime
+        if rest == 1:
+            return about(value, 200)
+    short = value.numerator.bit_length() + value.denominator.bit_length() <= 128
+    return str(value) if short else f"about {about(value, 12)}"

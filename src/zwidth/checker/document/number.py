@@ -39,10 +39,10 @@ def number(value: Any) -> Fraction:
 
 
 def _fraction(text: str) -> Fraction:
-    top, _, bottom = text.partition("/")
-    if int(bottom) == 0:
+    top, bottom = (int(Decimal(part)) for part in text.split("/"))  # int() alone stops at 4300 digits
+    if bottom == 0:
         raise Invalid(f"expected a number, got {text[:40]!r}")
-    return Fraction(int(top), int(bottom))
+    return Fraction(top, bottom)
 
 
 def _decimal(text: str) -> Fraction:

@@ -44,9 +44,10 @@ def sine_cosine(x: Enclosed) -> tuple[Enclosed, Enclosed]:
     """sin x and cos x, x in radians."""
     if abs(x.middle) + x.reach > MOST_TURNS << x.bits:
         raise Invalid("an angle is too many turns from 0")
-    sine, cosine = (_series(Enclosed(x.bits, x.middle), first) for first in (1, 0))
-    minus_sine = -sine
-    return _curved(x, sine, cosine), _curved(x, cosine, minus_sine)
+    fine = x.bits + 3 * (abs(x.middle) >> x.bits) + 8  # the terms of the series are as large as e^x
+    middle = Enclosed(x.bits, x.middle).in_bits(fine)
+    sine, cosine = (_series(middle, first).in_bits(x.bits) for first in (1, 0))
+    return _curved(x, sine, cosine), _curved(x, cosine, -sine)
 
 
 def _curved(x: Enclosed, value: Enclosed, rate: Enclosed) -> Enclosed:

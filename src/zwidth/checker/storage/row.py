@@ -62,7 +62,7 @@ def storage_of_row(told: Read) -> str:
     counts = values_of(table.counts, (states,))
     successors = values_of(table.successors, (states, 2 * reach + 1))
     _require_closed(counts, successors, low, high, reach)
-    if max(table.starts) >= states:
+    if len(table.starts) > states or max(table.starts) >= states:
         raise Invalid("the hand begins in a state that is not in the table")
     forces = _in_units(values_of(table.forces, (states,), DOUBLE), unit)
     value = storage_of(told.storage, (states, steps + 1))
