@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
+import trust
+
 from zwidth import catalogue
 from zwidth.cli.environments import TYPES, Key, all_keys
 from zwidth.cli.laws import ESTIMATORS, LAWS, LawType
@@ -145,6 +147,12 @@ def _pretty(text: str) -> str:
     return text.replace("*", "·").replace("^2", "²")
 
 
+def lines_to_trust() -> str:
+    """How many lines of the checker stand behind each kind of document."""
+    head = ("kind of document", "files", "lines", "needs")
+    return markdown(head, [*trust.rows(), ("all of them", "", str(trust.total()), "")])
+
+
 TABLES: dict[str, Callable[[], str]] = {
     "device_keys": device_keys,
     "device_options": device_options,
@@ -153,6 +161,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "environment_options": environment_options,
     "law_keys": law_keys,
     "law_types": law_types,
+    "lines_to_trust": lines_to_trust,
     "operator_options": operator_options,
     "simulation_options": simulation_options,
     "environment_types": environment_types,

@@ -3,6 +3,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from zwidth.checker import Verified, verify
 from zwidth.device import Device, FrictionCurve, FrictionModel, catalogue
 from zwidth.device.rotary import rotary
 from zwidth.environment import (
@@ -117,6 +118,7 @@ __all__ = [
     "TransformedCondition",
     "VelocityFilter",
     "Verdict",
+    "Verified",
     "Violation",
     "VirtualBody",
     "VirtualCoupling",
@@ -169,6 +171,7 @@ __all__ = [
     "transformed_blocks",
     "transformed_condition",
     "two_port",
+    "verify",
     "workspace",
     "worst_hand",
     "z_width",

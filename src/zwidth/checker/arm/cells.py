@@ -21,8 +21,8 @@ from ..exact.enclosed import Enclosed
 from ..exact.functions import NotPositive
 
 BITS = 80
-MOST_WORK = 200_000
-"""Cells, times entries of S, times a value and the slopes of each: some ten seconds."""
+MOST_WORK = 80_000
+"""Cells, times entries of S, times a value and the slopes of each: some six seconds."""
 MOST_MOVING = 8
 
 Range = tuple[int, int]

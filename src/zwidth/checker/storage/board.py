@@ -33,6 +33,8 @@ from .packed import storage_of
 MOST_VALUES = 60_000_000
 MOST_MOVES = 10_000_000
 _EXACT = 2**53
+PAIR = 1 / 30
+"""What a move from one knot to one other costs, in steps of work: 300 million take a second."""
 AT_ONCE = 10**6
 """Forces computed at once in whole numbers of any size, which take room."""
 
@@ -83,6 +85,7 @@ def storage(told: Read) -> str:
         raise Invalid("the board is larger than can be checked")
     reserve(16 * states * (steps + 1) + 8 * (states + width**memory) * (memory + 3))
     spend(0.05 * states * (memory + 2))
+    spend(PAIR * states * width * (steps + 1) ** 2 * (2 if losses.part < 1 else 1))
     _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
         raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")

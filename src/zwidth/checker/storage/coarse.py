@@ -20,10 +20,11 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from ..contact.law import LAW, LOSSES, MOST_TAPS, Law, Losses, law_of, losses_of
+from ..document.effort import reserve, spend
 from ..document.fields import Number, Packed, Read, Record, Whole, document
 from ..document.number import down
 from ..document.refusal import Invalid
-from .board import histories_of
+from .board import PAIR, histories_of
 from .packed import storage_of
 
 MOST_VALUES = 4_000_000
@@ -74,6 +75,8 @@ def coarse_storage(told: Read) -> str:
     shape = (len(line.places), width**line.memory)
     if shape[0] * shape[1] > MOST_VALUES:
         raise Invalid("the board is larger than can be checked")
+    reserve(60 * shape[0] * shape[1])
+    spend(PAIR * shape[0] * shape[1] * (2 * width + 1) * (2 if losses.part < 1 else 1))
     value = storage_of(told.storage, shape)
     moves = []
     for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):

@@ -13,13 +13,16 @@ from math import ceil
 from typing import Any
 
 from ..contact.law import Law, Losses
+from ..document.effort import reserve, spend
 from ..document.fields import Read
 from ..document.number import down
 from ..document.refusal import Invalid
-from .board import MOST_MOVES, MOST_VALUES, costs_of, histories_of
+from .board import MOST_MOVES, MOST_VALUES, PAIR, costs_of, histories_of
 from .packed import storage_of
 
 PART = 2**16
+SLOWER = 3
+"""Than a move without levels."""
 _MOST = 2**61
 
 
@@ -43,6 +46,9 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
         raise Invalid("the moves are longer than can be checked")
     if high < low or (high - low + 1) * columns * levels * (steps + 1) > MOST_VALUES:
         raise Invalid("the board is empty, or larger than can be checked")
+    states = (high - low + 1) * columns * levels * (steps + 1)
+    reserve(24 * states)
+    spend(SLOWER * PAIR * states * (2 * reach + 1) * (steps + 1))
     if law.surface == "penetration" and low > 1 - (losses.delay + 1) * reach:
         raise Invalid("the board must reach so far out that a hand beyond it feels no force")
     value = storage_of(told.storage, (high - low + 1, columns, levels, steps + 1))

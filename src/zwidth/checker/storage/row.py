@@ -14,10 +14,11 @@ from typing import Any
 
 from ..contact.law import LOSSES, losses_of
 from ..contact.row_motion import TOLD_LAW
+from ..document.effort import reserve, spend
 from ..document.fields import List, Number, Packed, Read, Record, Whole, document
 from ..document.number import down
 from ..document.refusal import Invalid
-from .board import DOMAIN, MOST_MOVES, MOST_VALUES, costs_of
+from .board import DOMAIN, MOST_MOVES, MOST_VALUES, PAIR, costs_of
 from .packed import DOUBLE, storage_of, values_of
 
 _EXACT = 2**53
@@ -59,6 +60,8 @@ def storage_of_row(told: Read) -> str:
         raise Invalid("the board is empty, or its moves are longer than can be checked")
     if states * max(2 * reach + 1, steps + 1) > MOST_VALUES:
         raise Invalid("the table is larger than can be checked")
+    reserve(24 * states * (2 * reach + steps + 2))
+    spend(PAIR * states * (2 * reach + 1) * (steps + 1) ** 2)
     counts = values_of(table.counts, (states,))
     successors = values_of(table.successors, (states, 2 * reach + 1))
     _require_closed(counts, successors, low, high, reach)

@@ -53,6 +53,9 @@ _QUICK = 100_000_000
 _CHECKED_IN_A_SECOND, _SLOWER = 300_000_000, 10
 """Of such pairs, on a slow processor; and by how much laws that relax take longer."""
 
+_MOST_CHECKED = 1_500_000_000
+"""The same: what the checker takes on."""
+
 _STEPS_PER_MOVE = 256
 """Steps in the longest move of a hand, at least, when a motion is sought."""
 
@@ -213,7 +216,7 @@ class Game:
         self, steps: int, deadline: float = float("inf"), tell: Tell | None = None, on: str = "cpu"
     ) -> Storage | None:
         """A storage function on so many steps per count that the checker accepts, or None."""
-        if self.too_large is not None:
+        if self.too_large is not None or self._moves(steps) > _MOST_CHECKED:
             return None
         played = self._play(self.losses, self.domain, steps, "generous", deadline, tell, on)
         if played.value is None:
