@@ -89,3 +89,65 @@ def test_a_motion_that_gets_back_half_a_count() -> None:
     less = {**told, "coulomb_friction_N": str(device["coulomb_friction"] * Fraction(9, 10))}
     gained = energy + (edge + STEP / 2) * device["coulomb_friction"] / 10
     assert checker.verify({**motion, "loop": less, "energy_J": str(gained)}).valid
+
+
+def test_an_interval_of_delays_that_has_no_length() -> None:
+    """Pieces that are none cover it, and nothing is shown of the one delay."""
+    told = loop(K, unilateral=True, damping=K * T / 2 / 1000)
+    proof: dict[str, Any] = {"stability": {"kind": "open loop"}, "pieces": []}
+    document = {"kind": "delays", "loop": told, "delay_high_s": "0", "proof": proof}
+    assert "pieces must have 1" in checker.verify(document).reason
+
+
+@pytest.mark.parametrize(("out", "up"), [(["1.02", "0"], ["0", "1"]), (["1", "0"], ["0.001", "1"])])
+def test_legs_in_a_plane_that_is_stretched(out: list[str], up: list[str]) -> None:
+    """Longer axes, or askew ones, would bear a stiffer wall with the same damping."""
+    legs = [
+        {
+            "base_m": [x, "0"],
+            "out": out,
+            "up": up,
+            "link_m": "0.1",
+            "rod_m": "0.12",
+            "offset_m": "0",
+            "bend": bend,
+            "damping_N_m_s_per_rad": "0.01",
+        }
+        for x, bend in (("-0.02", 1), ("0.02", -1))
+    ]
+    arm = {"geometry": "legs", "legs": legs, "low_m": ["0", "0.1"], "high_m": ["0.001", "0.101"]}
+    clock = {"sample_period_s": "0.001", "delay_samples": 0, "encoder": "ideal", "torque": "follows the arm"}
+    nothing = [["0", "0"], ["0", "0"]]
+    wall = {
+        "stiffness_N_per_m": [["1", "0"], ["0", "1"]],
+        "virtual_damping_N_s_per_m": nothing,
+        "damping_bound_N_s_per_m": nothing,
+    }
+    found = checker.verify({"kind": "arm", "arm": arm, "wall": wall, "loop": clock})
+    assert "out and up must be of length 1, at right angles" in found.reason
+    right = {**arm, "legs": [{**leg, "out": ["1", "0"], "up": ["0", "1"]} for leg in legs]}
+    assert checker.verify({"kind": "arm", "arm": right, "wall": wall, "loop": clock}).valid
+
+
+@pytest.mark.parametrize("key", ["resolution_m", "delay_s"])
+def test_an_endless_pull_of_an_impossible_device(key: str) -> None:
+    """Numbers that its inequality does not read must make sense all the same: they are shown."""
+    device = {k: v for k, v in loop(K, unilateral=True).items() if k.endswith(("_m", "_N", "_s"))}
+    law = {"points_m_N": [["-1", "1"], ["0", "0"]]}
+    document: dict[str, Any] = {
+        "kind": "endless pull",
+        "loop": {**device, "damping_N_s_per_m": "0"},
+        "law": law,
+    }
+    assert checker.verify(document).valid, checker.verify(document).reason
+    wrong = {**document, "loop": {**document["loop"], key: "-1"}}
+    assert f"{key} must be ≥ 0" in checker.verify(wrong).reason
+
+
+def test_lists_in_lists() -> None:
+    """Deeper than any document is: an answer, not an exception."""
+    deep: Any = "1"
+    for _ in range(5000):
+        deep = [deep]
+    told = {**loop(K, unilateral=True), "numerator": deep}
+    assert "not so deep" in checker.verify({"kind": "spring", "loop": told}).reason
