@@ -77,7 +77,7 @@ def test_what_is_saved_is_verified_on_both_sides(run: Run) -> None:
     assert result.status == 0
     assert result.out.count(" VALID ") == 2
     assert "No hand within these bounds" in words(result)
-    assert "up to 23 counts inside and with any memory, for moves of up to 13.3929 counts" in words(result)
+    assert "up to 23 counts inside and with any memory, for moves of up to 13.3928 counts" in words(result)
     assert "is passive, proved" not in words(result)
     document = json.loads(Path("limit.json").read_text(encoding="utf-8"))
     document["certificate"]["loop"]["damping_N_s_per_m"] = "0.1"

@@ -120,6 +120,8 @@ def _head(covered: Scope, kind: str) -> str:
         return "No hand within these bounds takes energy out of the loop below, proved"
     if covered.hands == "activity":
         return f"No hand of this activity goes on gaining energy from the loop below{kept}, proved"
+    if kind == "corners":
+        return f"Every corner, as the one below, is passive{kept}, proved"
     return f"The {'arm' if kind == 'arm' else 'loop'} below is passive{kept}, proved"
 
 
@@ -131,6 +133,8 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
     if not found.valid:
         return
     yield "kind", plain(str(part.evidence.get("kind")))
+    if isinstance(corners := part.evidence.get("corners"), list):
+        yield "corner below", f"1 of {len(corners)}, each with a proof of its own"
     for row in found.rows:
         name = "told, not checked" if row.told else plain(row.name)
         yield name, plain(f"{row.text} {row.unit}".rstrip(), 300)

@@ -308,7 +308,7 @@ def test_a_table_that_is_not_closed_is_rejected():
         assert said in rejected(changed(document, ["table", "successors"], packed(wrong)))
     counts[0] = 9
     assert "not on the board" in rejected(changed(document, ["table", "counts"], packed(counts)))
-    assert "begin" in rejected(changed(document, ["table", "starts"], []))
+    assert "starts must have 1" in rejected(changed(document, ["table", "starts"], []))
     assert "begins" in rejected(changed(document, ["table", "starts"], [len(counts)]))
 
 
