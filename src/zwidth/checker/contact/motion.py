@@ -17,7 +17,7 @@ from .row_motion import MOST_POSITIONS, closed_cycle
 MOST_SAMPLES = 2_000_000
 FINEST = 2**80
 """An average is kept to so many parts of a count; what that may cost in energy is taken off."""
-_SAMPLE = 300
+_SAMPLE = 400
 """Steps of work."""
 
 CONTACT_MOTION = document(
