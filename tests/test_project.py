@@ -118,9 +118,10 @@ def test_version_is_the_one_of_the_distribution() -> None:
 
 
 def test_what_is_shipped_beside_the_code() -> None:
-    """Type checkers find the marker; the catalogue finds its data."""
+    """Type checkers find the marker; the catalogue its data; other checkers the schemas."""
     assert (SOURCE / "py.typed").exists()
     assert (SOURCE / "device" / "catalogue.toml").exists()
+    assert (SOURCE / "checker" / "schemas" / "spring.json").exists()
 
 
 def _tracked() -> list[Path]:

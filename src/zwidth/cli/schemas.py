@@ -1,0 +1,25 @@
+"""The JSON Schemas that are shipped with the checker."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+from zwidth.cli.table import quoted, suggestion
+from zwidth.errors import InputError
+
+
+def schema(kind: str) -> str:
+    """What stands in the file of a kind of document.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind.
+    """
+    shipped = {
+        path.name.removesuffix(".json").replace("-", " "): path
+        for path in files("zwidth.checker").joinpath("schemas").iterdir()
+    }
+    if kind not in shipped:
+        raise InputError(f"there is no kind of document {quoted(kind)}; {suggestion(kind, sorted(shipped))}")
+    return shipped[kind].read_text(encoding="utf-8").rstrip("\n")
