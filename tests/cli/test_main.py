@@ -207,6 +207,8 @@ def test_a_name_is_text_and_never_markup(run: Run) -> None:
         (("devices", "phantom", "falcon"), ("too many",)),
         (("verify",), ("FILE",)),
         (("verify", "missing.json"), ("missing.json",)),
+        (("verify", "--schema", "sprong"), ("no kind of document", 'did you mean "spring"?')),
+        (("verify", "a.json", "--schema", "spring"), ("--schema", "no FILE")),
     ],
 )
 def test_bad_input_is_one_line(run: Run, argv: tuple[str, ...], parts: tuple[str, ...]) -> None:
@@ -243,6 +245,13 @@ def test_a_forged_proof_is_not_valid(run: Run, tmp_path: Path) -> None:
     result = run("verify", str(path))
     assert result.status == 1
     assert "NOT VALID" in result.out
+
+
+@pytest.mark.parametrize("kind", ["spring", "coarse storage", "corners"])
+def test_the_schema_of_a_kind_is_printed(run: Run, kind: str) -> None:
+    result = run("verify", "--schema", kind)
+    assert result.status == 0
+    assert json.loads(result.out)["title"] == kind
 
 
 @pytest.mark.parametrize(

@@ -33,9 +33,10 @@ from .port.matrix import POSITIVE_REAL_MATRIX, positive_real_matrix
 from .port.matrix_motion import MATRIX_EXTRACTION, matrix_extraction
 from .port.motion import EXTRACTION, extraction
 from .scope import ACTIVE, BROKEN, INDEX, KEPT, NO_INDEX, PASSIVE, STABLE, UNSTABLE, Scope
-from .storage.board import STORAGE, storage
-from .storage.coarse import COARSE_STORAGE, coarse_storage
-from .storage.row import ROW_STORAGE, storage_of_row
+from .storage.board import STORAGE
+from .storage.choice import checked
+from .storage.coarse import COARSE_STORAGE
+from .storage.row import ROW_STORAGE
 
 
 class Found(NamedTuple):
@@ -138,9 +139,9 @@ KINDS: dict[str, Kind] = {
     "force bounding": Kind(FORCE_BOUNDING, _proof(force_bounding), scope.of_force_bounding),
     "slow hands": Kind(SLOW_HANDS, _proof(slow_hands), scope.of_slow_hands),
     "active hand": Kind(ACTIVE_HAND, _proof(active_hand), _activity),
-    "storage": Kind(STORAGE, _proof(storage), _on_a_board(PASSIVE)),
-    "coarse storage": Kind(COARSE_STORAGE, _proof(coarse_storage), _on_a_board(PASSIVE)),
-    "row storage": Kind(ROW_STORAGE, _proof(storage_of_row), _of_a_row(PASSIVE)),
+    "storage": Kind(STORAGE, _proof(checked), _on_a_board(PASSIVE)),
+    "coarse storage": Kind(COARSE_STORAGE, _proof(checked), _on_a_board(PASSIVE)),
+    "row storage": Kind(ROW_STORAGE, _proof(checked), _of_a_row(PASSIVE)),
     "arm": Kind(ARM, _arm, scope.of_an_arm),
     "violation": Kind(VIOLATION, _proof(violation), _of_every_hand(KEPT, ACTIVE)),
     "motion": Kind(MOTION, _motion(motion_energy, stored_at_start), scope.of_a_motion),

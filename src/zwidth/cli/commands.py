@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.cli.options import Once, add_contact_option, add_law_option, add_parameters, contact, overrides
 from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.errors import InputError
 
 if TYPE_CHECKING:
     from zwidth.cli.specification import Specification
@@ -169,16 +170,38 @@ def _devices(arguments: argparse.Namespace) -> int:
 
 
 def _configure_verify(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="certificate, witness, verdict or limit saved as JSON")
+    parser.usage = "%(prog)s FILE\n       %(prog)s --schema KIND"
+    parser.add_argument(
+        "file", metavar="FILE", nargs="?", help="certificate, witness, verdict or limit saved as JSON"
+    )
+    parser.add_argument(
+        "--schema",
+        metavar="KIND",
+        action=Once,
+        help="print the JSON Schema of the documents of a kind, such as spring or corners",
+    )
 
 
 def _verify(arguments: argparse.Namespace) -> int:
+    if arguments.schema is not None:
+        return _schema(arguments)
+    if arguments.file is None:
+        raise InputError("which FILE is to be checked? Or --schema KIND for what one must look like")
     from zwidth.cli.verification import print_verifications, verifications
     from zwidth.passivity.certificate import read_document
 
     found = verifications(read_document(arguments.file))
     print_verifications(found)
     return 0 if all(part.verification.valid for part in found) else 1
+
+
+def _schema(arguments: argparse.Namespace) -> int:
+    if arguments.file is not None:
+        raise InputError("--schema prints what a document must look like, and checks no FILE")
+    from zwidth.cli.schemas import schema
+
+    print_json(schema(arguments.schema))
+    return 0
 
 
 def _configure_limit(parser: argparse.ArgumentParser) -> None:
@@ -407,7 +430,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "re-check a saved proof or motion, independently of what made it",
             "Re-prove a saved certificate, or recompute the energy of a saved motion, in exact arithmetic,\n"
             "by a checker that shares no code with the prover.",
-            "exit status: 0 valid, 1 not valid, 2 cannot be read",
+            "exit status: 0 valid or printed, 1 not valid, 2 cannot be read",
             _configure_verify,
             _verify,
         ),

@@ -14,7 +14,7 @@ from operator import ge, gt, le, lt
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
-from .number import PATTERN, about, number
+from .number import LONGEST_NUMBER, PATTERN, about, number
 from .refusal import Invalid
 from .unit import NONE, Unit, in_words
 
@@ -23,6 +23,9 @@ SHOWN_AT_MOST = 12
 """Numbers of a list."""
 MOST_LETTERS = 60
 """Of the words that say what a document is."""
+
+RATIONAL = {"type": "string", "pattern": PATTERN, "maxLength": LONGEST_NUMBER}
+"""A number as text, in JSON Schema: `$defs/rational` of every schema."""
 
 _REQUIRED = object()
 
@@ -135,7 +138,7 @@ class Number(Field):
             "exclusiveMaximum": self.below,
         }
         stated = {name: bound for name, bound in bounds.items() if bound is not None}
-        return {"anyOf": [{"type": "number", **stated}, {"type": "string", "pattern": PATTERN}]}
+        return {"anyOf": [{"type": "number", **stated}, {"$ref": "#/$defs/rational"}]}
 
     def text(self, value: Fraction, motion: str) -> str:
         return _exactly(value)

@@ -109,10 +109,17 @@ def storage(told: Read) -> str:
     at = look(value.astype(np.float64), exists, *tables, reach, steps)
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
-    side = f"up to {high + 1} counts inside" if law.surface != "none" else f"from {low} to {high + 1} counts"
+    return proved(told.domain, losses, law)
+
+
+def proved(domain: Read, losses: Losses, law: Law) -> str:
+    """What is known of a board once every move was tried."""
+    low, high, fastest = domain.lowest_count, domain.highest_count, down(domain.largest_move_counts)
+    inside = law.surface != "none" and law.relaxing is None
+    side = f"up to {high + 1} counts inside" if inside else f"from {low} to {high + 1} counts"
     return (
         "no move takes out more than the storage function falls, "
-        f"at any position {side} and with any memory, for moves of up to {down(fastest)} counts a sample"
+        f"at any position {side} and with any memory, for moves of up to {fastest} counts a sample"
         + ("" if losses.part == 1 else ", as fast in each part of a sample with one force")
     )
 

@@ -95,11 +95,17 @@ def coarse_storage(told: Read) -> str:
     at = look(value.astype(np.float64), _exists(line), *tables, np.array(line.places), line.reach)
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
-    speed = line.fastest * line.length / losses.period
+    return proved(told, losses)
+
+
+def proved(told: Read, losses: Losses) -> str:
+    """What is known of a line once every move was tried."""
+    cell = told.domain.counts_per_cell * losses.resolution
+    farthest, speed = told.domain.highest_cell * cell, told.domain.largest_move_cells * cell / losses.period
     length = "rad" if told.units == "rotary" else "m"
     return (
         "no move takes out more than the storage function falls, at any position up to "
-        f"{down(line.places[-1] * line.length)} {length} and at any count, for hands of up to "
+        f"{down(farthest)} {length} and at any count, for hands of up to "
         f"{down(speed)} {length}/s over each time in which one force is held"
     )
 

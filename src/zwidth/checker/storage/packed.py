@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import zlib
 from math import prod
+from struct import unpack
 from typing import Any
 
 from ..document.effort import reserve
@@ -17,7 +18,16 @@ def values_of(text: str, shape: tuple[int, ...], kind: str = WHOLE) -> Any:
     """An array of that shape, exactly."""
     import numpy as np  # loaded only where a storage function is to be checked
 
-    size = 8 * prod(shape)
+    return np.frombuffer(_unpacked(text, prod(shape)), dtype=kind).reshape(shape)
+
+
+def listed(text: str, count: int, kind: str = WHOLE) -> list[Any]:
+    """The same as a list."""
+    return list(unpack(f"<{count}{'d' if kind == DOUBLE else 'q'}", _unpacked(text, count)))
+
+
+def _unpacked(text: str, count: int) -> bytes:
+    size = 8 * count
     reserve(2 * size)
     try:
         packed = base64.b64decode(text, validate=True)
@@ -26,7 +36,7 @@ def values_of(text: str, shape: tuple[int, ...], kind: str = WHOLE) -> Any:
         raise Invalid(f"a storage function or table cannot be unpacked: {error}") from None
     if len(raw) != size:
         raise Invalid("the storage function has not one value for each state")
-    return np.frombuffer(raw, dtype=kind).reshape(shape)
+    return raw
 
 
 def storage_of(text: str, shape: tuple[int, ...]) -> Any:

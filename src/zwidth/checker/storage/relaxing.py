@@ -15,9 +15,8 @@ from typing import Any
 from ..contact.law import Law, Losses
 from ..document.effort import reserve, spend
 from ..document.fields import Read
-from ..document.number import down
 from ..document.refusal import Invalid
-from .board import MOST_MOVES, MOST_VALUES, PAIR, costs_of, histories_of
+from .board import MOST_MOVES, MOST_VALUES, PAIR, costs_of, histories_of, proved
 from .packed import storage_of
 
 PART = 2**16
@@ -40,7 +39,10 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     fastest, steps = domain.largest_move_counts, domain.steps_per_count
     reach = ceil(fastest)
     least = 0 if law.surface == "penetration" else low
-    levels = (max(high, least + 1) - least) * per_count + 1
+    top = max(high, least + 1)
+    if law.resets and top < 0:
+        raise Invalid("the board must hold 0, where the average begins anew")
+    levels = (top - least) * per_count + 1
     columns = (2 * reach + 1) ** losses.delay
     if reach * steps > MOST_MOVES:
         raise Invalid("the moves are longer than can be checked")
@@ -67,10 +69,7 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     at = first_relaxing_violation(value, *tables, reach, steps)
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
-    return (
-        f"no move takes out more than the storage function falls, at any position from {low} to {high + 1} "
-        f"counts and with any memory, for moves of up to {down(fastest)} counts a sample"
-    )
+    return proved(domain, losses, law)
 
 
 def _forces(

@@ -80,9 +80,15 @@ def storage_of_row(told: Read) -> str:
     )
     if at >= 0:
         raise Invalid(f"from state {at} a move takes out more energy than was stored")
+    return proved(domain, states)
+
+
+def proved(domain: Read, states: int) -> str:
+    """What is known of a table once every move was tried."""
     return (
         f"no move takes out more than the storage function falls, in any of {states} states that the table "
-        f"lists for readings from {low} to {high}, for moves of up to {down(fastest)} counts a sample"
+        f"lists for readings from {domain.lowest_count} to {domain.highest_count}, "
+        f"for moves of up to {down(domain.largest_move_counts)} counts a sample"
     )
 
 

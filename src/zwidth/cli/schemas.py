@@ -1,0 +1,27 @@
+"""The JSON Schemas that are shipped with the checker."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+
+from zwidth.cli.table import quoted, suggestion
+from zwidth.errors import InputError
+
+
+def schema(kind: str) -> str:
+    """What stands in the file of a kind of document, in lines for people.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind.
+    """
+    shipped = {
+        path.name.removesuffix(".json").replace("-", " "): path
+        for path in files("zwidth.checker").joinpath("schemas").iterdir()
+    }
+    if kind not in shipped:
+        raise InputError(f"there is no kind of document {quoted(kind)}; {suggestion(kind, sorted(shipped))}")
+    told = json.loads(shipped[kind].read_text(encoding="utf-8"))
+    return json.dumps(told, indent=2, ensure_ascii=False)
