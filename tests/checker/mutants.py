@@ -7,9 +7,8 @@ than the checker takes.  Each runs in a process forked from one that has everyth
 that reach its line are run, the quickest first.  What lives is a case to be added in `cases/`, or a line in
 `equivalent.toml` that says why nothing false can be accepted because of it and nothing true refused.
 
-A ledger that is there is gone on with, as long as the checker is the same: what is in it is not run again,
-but
-for mutants that lived, which a new case may kill.
+A ledger that is there is gone on with, as long as the checker is the same: what is in it is not run
+again, but for mutants that lived, which a new case may kill.
 """
 
 from __future__ import annotations

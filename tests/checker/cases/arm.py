@@ -178,7 +178,7 @@ CASES = [
         LESS,
     ),
     *(
-        refused(f"an encoder, {key} below 0", put(COUNTED, {f"{JOINT}{key}": "-0.001"}), "are ≥ 0")
+        refused(f"an encoder, {key} below 0", put(COUNTED, {f"{JOINT}{key}": "-0.001"}), "must be ≥ 0")
         for key in ("resolution_rad", "coulomb_friction_N_m", "largest_column_m_per_rad")
     ),
     # held
@@ -214,7 +214,7 @@ CASES = [
             ),
         )
     ),
-    refused("forces below 0", put(HELD, {"loop.largest_force_N": "-1"}), "largest force ≥ 0"),
+    refused("forces below 0", put(HELD, {"loop.largest_force_N": "-1"}), "largest_force_N must be ≥ 0"),
     # the wall and the loop
     refused(
         "a stiffness with a negative eigenvalue",
@@ -252,11 +252,15 @@ CASES = [
     refused(
         "matrices of two sizes", put(MIXED, {"wall.virtual_damping_N_s_per_m": [["0"]]}), "differ in size"
     ),
-    refused("a matrix of four rows", put(MIXED, {"wall.stiffness_N_per_m": [["0"] * 4] * 4}), "rows"),
-    refused("T is 0", put(MIXED, {"loop.sample_period_s": 0}), "T must be > 0"),
-    refused("T is below 0", put(MIXED, {"loop.sample_period_s": -1}), "T must be > 0"),
+    refused(
+        "a matrix of four rows",
+        put(MIXED, {"wall.stiffness_N_per_m": [["0"] * 4] * 4}),
+        "wall.stiffness_N_per_m must have 1 to 3 entries",
+    ),
+    refused("T is 0", put(MIXED, {"loop.sample_period_s": 0}), "sample_period_s must be > 0"),
+    refused("T is below 0", put(MIXED, {"loop.sample_period_s": -1}), "sample_period_s must be > 0"),
     refused("part of a sample", put(MIXED, {"loop.delay_samples": "1/2"}), "whole number"),
-    refused("another encoder", put(MIXED, {"loop.encoder": "coarse"}), "ideal, or counted"),
+    refused("another encoder", put(MIXED, {"loop.encoder": "coarse"}), "encoder must be ideal or counted"),
     refused("another torque", put(MIXED, {"loop.torque": "follows the readings"}), "or is held"),
     refused(
         "the torque follows the arm, its readings counted",
@@ -296,20 +300,36 @@ CASES = [
         )
         for case, curvature, words in ((accepted, "1.3441", ""), (refused, "1.3439", "can bend more"))
     ),
-    refused("a rotation of two rows", put(MIXED, {f"{JOINT}rotation": ROTATION[:2]}), "three rows"),
+    refused(
+        "a rotation of two rows",
+        put(MIXED, {f"{JOINT}rotation": ROTATION[:2]}),
+        "rotation must have 3 to 3 entries",
+    ),
     refused("low above high", put(TURNS, {f"{JOINT}low_rad": "0.61"}), "low ≤ high"),
-    refused("damping below 0", put(MIXED, {f"{JOINT}damping_N_m_s_per_rad": "-1"}), "damping ≥ 0"),
-    refused("no joints", put(MIXED, {"arm.joints": []}), "from 1 to 16 joints"),
-    refused("17 joints", put(TURNS, {"arm.joints": TURNS["arm"]["joints"] * 17}), "from 1 to 16 joints"),
-    refused("an end of two coordinates", put(MIXED, {"arm.end_m": ["0", "0"]}), "expected 3 coordinates"),
+    refused(
+        "damping below 0",
+        put(MIXED, {f"{JOINT}damping_N_m_s_per_rad": "-1"}),
+        "damping_N_m_s_per_rad must be ≥ 0",
+    ),
+    refused("no joints", put(MIXED, {"arm.joints": []}), "arm.joints must have 1 to 16 entries"),
+    refused(
+        "17 joints",
+        put(TURNS, {"arm.joints": TURNS["arm"]["joints"] * 17}),
+        "arm.joints must have 1 to 16 entries",
+    ),
+    refused(
+        "an end of two coordinates",
+        put(MIXED, {"arm.end_m": ["0", "0"]}),
+        "arm.end_m must have 3 to 3 entries",
+    ),
     # pose
     refused(
         "a mirror",
         put(EVERY, {f"{JOINT}rotation": [["0.6", "0.8", "0"], ["0.8", "-0.6", "0"], ["0", "0", "1"]]}),
         "mirrors",
     ),
-    refused("two rotations", put(EVERY, {"wall.turns": 2}), "three rotations, or one"),
-    refused("another rest", put(EVERY, {"wall.rest": "any"}), "rests in every orientation"),
+    refused("two rotations", put(EVERY, {"wall.turns": 2}), "wall.turns must be 1 or 3"),
+    refused("another rest", put(EVERY, {"wall.rest": "any"}), "must be every orientation or given"),
     refused("a rest in the plane", put(PLANE, {"wall.rest": "given"}), "rests in every orientation"),
     refused(
         "forces and turns coupled, in every rest",
@@ -343,10 +363,10 @@ CASES = [
         ),
         "are not bounded",
     ),
-    refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "two legs in the plane"),
+    refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "arm.legs must have 2 to 3 entries"),
     refused("a region turned round", put(TWO, {"arm.low_m": ["0.03", "0.09"]}), "low ≤ high"),
     *(
-        refused(f"a leg, {key} is {value}", put(TWO, {f"{LEG}{key}": value}), "a leg needs")
+        refused(f"a leg, {key} is {value}", put(TWO, {f"{LEG}{key}": value}), f"{key} must be")
         for key, value in (
             ("link_m", 0),
             ("rod_m", 0),
@@ -364,6 +384,7 @@ CASES = [
         put(TWO, {"arm.low_m": ["0.02", "0.3"], "arm.high_m": ["0.02", "0.3"]}),
         "does not reach",
     ),
+    refused("without arm.geometry", without(MIXED, "arm.geometry"), "an object with geometry"),
     refused(
         "too near",
         put(THREE, {"arm.low_m": ["0.3", "0.02", "0.15"], "arm.high_m": ["0.3", "0.02", "0.15"]}),
@@ -378,7 +399,6 @@ CASES = [
             (MIXED, "loop.encoder"),
             (MIXED, "loop.torque"),
             (MIXED, "loop.delay_samples"),
-            (MIXED, "arm.geometry"),
             (MIXED, "arm.end_m"),
             (TWO, "arm.legs"),
             (TWO, "arm.low_m"),

@@ -152,7 +152,7 @@ CASES = [
         put(STEPS, {"positions_m": ["1/2", 1, 2, 0], "loop.resolution_m": "1/2"}),
         "start at rest at x = 0",
     ),
-    refused("one position", put(THERE, {"positions_m": [0]}), "at least two positions"),
+    refused("one position", put(THERE, {"positions_m": [0]}), "positions_m must have 2 to 4000000 entries"),
     refused(
         "a law with memory is left",
         put(FILTER, {"loop.unilateral": True, "positions_m": [0, 1, 0, 1, 0]}),
@@ -169,7 +169,7 @@ CASES = [
         put(QUARTER, {"switch_positions_m": ["1/4"]}),
         "one switch position in each",
     ),
-    refused("no switch positions", without(QUARTER, "switch_positions_m"), "switch_positions_m is missing"),
+    refused("no switch positions", without(QUARTER, "switch_positions_m"), "switch_positions is missing"),
     refused("no positions", without(THERE, "positions_m"), "positions_m is missing"),
     refused("repeats that are no list", put(THERE, {"repeats": {}}), "repeats must be a list"),
     *(
@@ -186,7 +186,7 @@ CASES = [
         put(repeated(put(THERE, {"positions_m": [0, 1, 0, 1, 0]}), (0, 2, 2), (2, 4, 2)), {"energy_J": 4}),
         energy=4,
     ),
-    refused("no round", repeated(THERE, (0, 2, 0)), "whole number of at least 1"),
+    refused("no round", repeated(THERE, (0, 2, 0)), "repeats[0].times must be ≥ 1"),
     # stored: H(1) Δ²/8 with Δ = 2, K = 2: 1 J.  From the edge of a count, −ε → 1: at −ε the reading is −2
     refused("no more than what half a count stores", put(HALF, {"energy_J": 1}), "no more than the 1 J", 1),
     taken(

@@ -95,9 +95,13 @@ CASES = [
     *(
         refused(f"laws in a row that begin {what}", put(ROW, {"table.starts": starts}), phrase)
         for what, starts, phrase in (
-            ("nowhere", [], "where a hand may begin"),
-            ("in a list of one word", "0", "where a hand may begin"),
-            ("in more states than there are", [0] * (ROW["table"]["states"] + 1), "where a hand may begin"),
+            ("nowhere", [], "starts must have 1"),
+            ("in a list of one word", "0", "starts must be a list"),
+            (
+                "in more states than there are",
+                [0] * (ROW["table"]["states"] + 1),
+                "a state that is not in the table",
+            ),
             ("past the last state", [ROW["table"]["states"]], "not in the table"),
         )
     ),
@@ -195,20 +199,22 @@ CASES = [
         board(f"{name}: {what}", phrase, **{f"domain__{key}": value})
         for name in ("spring", "solid", "row")
         for what, key, value, phrase in (
-            ("moves of no length", "largest_move_counts", 0, "longest move must be > 0"),
-            ("moves back", "largest_move_counts", -1, "longest move must be > 0"),
-            ("moves without end", "largest_move_counts", 10_000_001, "longest move must be > 0"),
-            ("no step", "steps_per_count", 0, "whole number of at least 1"),
+            ("moves of no length", "largest_move_counts", 0, "domain.largest_move_counts must be"),
+            ("moves back", "largest_move_counts", -1, "domain.largest_move_counts must be"),
+            ("moves without end", "largest_move_counts", 10_000_001, "domain.largest_move_counts must be"),
+            ("no step", "steps_per_count", 0, "domain.steps_per_count must be ≥ 1"),
             ("a board turned round", "highest_count", -9, EMPTY),
-            ("a count that is none", "lowest_count", "-1/2", "whole number of ordinary size"),
-            ("a count far off", "lowest_count", -(10**7) - 1, "whole number of ordinary size"),
+            ("a count that is none", "lowest_count", "-1/2", "domain.lowest_count must be"),
+            ("a count far off", "lowest_count", -(10**7) - 1, "domain.lowest_count must be"),
         )
     ),
     *(
         refused(
-            f"{name}, the force unit is {unit}", put(STORAGES[name]["document"], {"force_unit": unit}), phrase
+            f"{name}, the force unit is {unit}",
+            put(STORAGES[name]["document"], {"force_unit": unit}),
+            "force_unit must be > 0",
         )
-        for name, phrase in (("spring", EMPTY), ("solid", EMPTY), ("row", EMPTY), ("coarse", "must be > 0"))
+        for name in ("spring", "solid", "row", "coarse")
         for unit in (0, "-1/1000000")
     ),
     *(
