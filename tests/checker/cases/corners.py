@@ -10,7 +10,7 @@ from typing import Any
 from . import accepted, put, refused, without
 from .active_hand import REDUCED
 from .contact import DAMPED
-from .linear import CONSTANT, SPRING, linear
+from .linear import CONSTANT, FILTER, SPRING, linear, signs
 from .motion import THERE
 from .nonlinear_spring import RISING
 from .quantized import norm, quantized
@@ -31,9 +31,10 @@ def corners(*listed: Any, **more: Any) -> dict[str, Any]:
 MIXED, APART = "and every mix of their laws", "nothing is said of what lies between"
 EIGHT, SIX = spring(4), spring(4, [6])
 COUNTED = {"coulomb_friction_N": 9, "resolution_m": 1}
-# N = 3 and 2.  8/(1 − ζ/2) is no spring: a longer denominator, or another, is another law
 PLAIN, LESS = SPRING, linear(2, CONSTANT, [2])
 SOFTER = put(DAMPED, {"law.stiffness_N_per_m": 3, "loop.numerator": [15, -18, 6]})
+# 2b (17/16 − c/2) − 5/4
+QUARTER = linear(3, signs(["41/8", -3]), [1, 0], [1, "-1/4"])
 OTHER_WEIGHTS = put(DAMPED, {"law.weights": [1], "loop.numerator": [10, -6, 0]})
 BY_NORM = [quantized(told, norm(top=[k]), 2, 3) for told, k in ((PLAIN, 3), (LESS, 2))]
 LIMITED, STEPPED = STORAGES["limited"]["document"], STORAGES["stepped"]["document"]
@@ -67,7 +68,7 @@ CASES = [
             ("another period", (EIGHT, spring(4, [6], sample_period_s="1/2"))),
             ("another delay", (spring(9), spring(9, [3], delay_s="1/10"))),
             ("a surface and none", (PLAIN, put(LESS, {"loop.unilateral": False}))),
-            ("another denominator", (spring(4, [8, -4], [1, "-1/2"]), spring(4, [6, "-3/2"], [1, "-1/4"]))),
+            ("another denominator", (FILTER, QUARTER)),
             ("a longer denominator", (EIGHT, spring(4, [6, 0], [1, 0]))),
             ("another weight", (DAMPED, OTHER_WEIGHTS)),
             ("two kinds", (EIGHT, PLAIN)),
