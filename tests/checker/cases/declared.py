@@ -1,7 +1,7 @@
 """Every entry of every kind as it is declared, and how it is shown: `declared.txt` and `shown.txt`.
 
 A line of the first is an entry: its key, of a slide and of a turn, ? where it may be left out, and what
-it may be.  The second has the rows of one accepted document of each kind.  Both change only where documents do.
+it may be.  The second has the rows of one accepted document of each kind.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from . import Case, plain
 
 HERE = Path(__file__).parent
 FILES = (
-    "absolute", "active_hand", "arm", "contact", "contact_motion", "delays", "force_bounding", "linear", "motion",
-    "multiplier_contact", "nonlinear_spring", "positive_real", "positive_real_matrix", "quantized",
-    "relaxing_contact", "rest", "rotary", "row_motion", "slow_hands", "spring", "storage", "touching_motion",
-    "vibration", "violation",
+    "absolute", "active_hand", "arm", "contact", "contact_motion", "delays", "force_bounding", "linear",
+    "motion", "multiplier_contact", "nonlinear_spring", "positive_real", "positive_real_matrix", "quantized",
+    "relaxing_contact", "rest", "rotary", "row_motion", "slow_hands", "spring", "storage",
+    "touching_motion", "vibration", "violation",
 )  # fmt: skip
 
 

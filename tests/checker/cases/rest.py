@@ -65,6 +65,24 @@ LIMITS = {
 }
 BOX = hand("stability", *spring("0.4"), damping_N_s_per_m=["1/2", "3/5"], stiffness_N_per_m=[1, "6/5"])
 
+# unit T²/M = ⅓: a pair of roots at 3/5 ± 4j/5, 4/5 ± 3j/5 or 12/13 ± 5j/13, by the linear equations for
+# N = h₁ z + h₀; the others lie inside.  The pole of H(z) is −d
+ON_CIRCLE = {
+    ("0", 0): ("33/10", "-3/2"),
+    ("0", "-1/3"): ("14/5", -2),
+    ("1/3", 0): ("13527/4090", "-1917/818"),
+    ("1/3", "1/3"): ("8361/2045", "-891/409"),
+    ("1/7", "-1/3"): ("163366/60205", "-27146/12041"),
+    ("1", "1/3"): ("604/225", "-88/45"),
+    ("5/3", 0): ("5167098/4450277", "-316062/342329"),
+}
+
+
+def within(k: Any, wide: Any) -> Any:
+    """A spring before a held device, some of it within bounds."""
+    return hand("stability", *spring(k), **{**HELD, **wide})
+
+
 CASES = [
     accepted(
         "a free mass",
@@ -110,6 +128,46 @@ CASES = [
     # P(1) = 0 with K = 0, whatever the delay: the exact numbers say it
     *both("K > 0, part of a sample late", law(TINY, "1/2"), law(0, "1/2"), delay_s="1/2"),
     *both("K > 0, one and a half late", law(TINY, "1/4"), law(0, "1/4"), delay_s="3/2"),
+    *(
+        case(
+            f"a pair just on the circle, {late} samples late, a pole at {pole}, {words}",
+            {**told, "kind": kind},
+            words,
+        )
+        for (late, pole), law_ in ON_CIRCLE.items()
+        for told in [hand("", law_, [1, pole], mass_kg=12, sample_period_s=2, delay_s=2 * Fraction(late))]
+        for case, kind, words in (
+            (accepted, "instability", "do not come to rest"),
+            (refused, "stability", "could not be confirmed"),
+        )
+    ),
+    *(
+        case
+        for name, wide, less, more in (
+            ("the mass", {"mass_kg": ["4/5", "6/5"]}, "1.12", "1.18"),
+            ("the damping", {"damping_N_s_per_m": ["2/5", 1]}, "0.85", "0.97"),
+            ("the stiffness", {"stiffness_N_per_m": ["1/2", 2]}, "1.1", "1.16"),
+            (
+                "all, late",
+                {
+                    "mass_kg": [1, "6/5"],
+                    "damping_N_s_per_m": ["2/5", "1/2"],
+                    "stiffness_N_per_m": [1, "7/5"],
+                    "delay_s": "1/4",
+                },
+                "0.55",
+                "0.65",
+            ),
+        )
+        for case in (
+            accepted(f"wide bounds of {name}", within(less, wide), "for every value in the intervals"),
+            refused(
+                f"wider than it rests, {name}",
+                within(more, wide),
+                "every value comes to rest was not confirmed",
+            ),
+        )
+    ),
     refused(
         "uncertain numbers do not show that it moves",
         put(MOVES, {"loop.mass_kg": [1, "1.1"]}),
