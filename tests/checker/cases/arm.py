@@ -130,7 +130,8 @@ def several(turns: int = 0, **entries: Any) -> Any:
     ]
     loop = {
         "sample_period_s": "0.002", "delay_samples": 0, "encoder": "counted",
-        "torque": "follows the readings", "largest_force_N": 2, **({"largest_moment_N_m": 3} if turns else {}),
+        "torque": "follows the readings", "largest_force_N": 2,
+        **({"largest_moment_N_m": 3} if turns else {}),
     }  # fmt: skip
     arm = {"geometry": "chain", "joints": joints, "end_m": ["0.1", "0", "0"]}
     return put({"kind": "arm", "arm": arm, "wall": {**wall, **more}, "loop": loop}, entries)
@@ -167,7 +168,8 @@ def link(kind: str, needs: Fraction, rest: bool) -> dict[str, Any]:
                 "coulomb_friction_N": needs}  # fmt: skip
     place = len([k for k in (0, 2) if needs == friction(rest)[k] and k]) * 2
     return {**told, "low_rad": "-0.2", "high_rad": "0.3", "damping_N_m_s_per_rad": 99,
-            "resolution_rad": STEPS[place], "coulomb_friction_N_m": needs, "largest_column_m_per_rad": COLUMNS[place],
+            "resolution_rad": STEPS[place], "coulomb_friction_N_m": needs,
+            "largest_column_m_per_rad": COLUMNS[place],
             **({"rest_rad": "0.1"} if rest else {})}  # fmt: skip
 
 
