@@ -8,7 +8,7 @@ that reach its line are run, the quickest first.  What lives is a case to be add
 `equivalent.toml` that says why nothing false can be accepted because of it and nothing true refused.
 
 A ledger that is there is gone on with, as long as the checker is the same: what is in it is not run
-again, but for mutants that lived, which a new case may kill.
+again, but for mutants that lived and are not listed, which a new case may kill.
 """
 
 from __future__ import annotations
@@ -266,8 +266,7 @@ class Equivalent(NamedTuple):
     change: str
     reason: str
 
-    def covers(self, tried: Tried) -> bool:
-        named = tried.source.file, tried.text, tried.mutant.change
+    def covers(self, named: tuple[str, str, str]) -> bool:
         return all(
             fnmatchcase(own, said.replace("[", "[[]"))
             for own, said in zip(named, (self.file, self.source, self.change), strict=True)
@@ -281,6 +280,11 @@ def equivalents() -> list[Equivalent]:
     return [Equivalent(e["file"], e["source"], e.get("change", "*"), e["reason"]) for e in listed]
 
 
+def reason_for(named: tuple[str, str, str], excused: Sequence[Equivalent]) -> str:
+    """Why a mutant of a file, source and change proves nothing else; "" if that is not known."""
+    return next((e.reason for e in excused if e.covers(named)), "")
+
+
 def digest(all_sources: Sequence[Source]) -> str:
     """Which checker a ledger is of."""
     text = "\n".join("\n".join((s.file, *s.lines)) for s in all_sources)
@@ -288,14 +292,23 @@ def digest(all_sources: Sequence[Source]) -> str:
 
 
 def read_ledger(path: Path, of: str) -> dict[tuple[str, ...], dict[str, str]]:
-    """The rows of an earlier run with the same checker, but for what lived."""
+    """The rows of an earlier run with the same checker."""
     if not path.exists():
         return {}
     with path.open(newline="", encoding="utf-8") as file:
-        rows = [
-            row for row in csv.DictReader(file) if row["checker"] == of and row["outcome"] in OUTCOMES[:2]
-        ]
+        rows = [row for row in csv.DictReader(file) if row["checker"] == of and row["outcome"] in OUTCOMES]
     return {(row["file"], row["line"], row["column"], row["change"]): row for row in rows}
+
+
+def settled(rows: Mapping[tuple[str, ...], dict[str, str]], excused: Sequence[Equivalent]) -> dict[Any, Any]:
+    """What need not be run again: all but those that lived and are not listed as equivalent."""
+    found = {}
+    for key, row in rows.items():
+        if row["outcome"] in OUTCOMES[:2]:
+            found[key] = row
+        elif reason := reason_for((row["file"], row["source"], row["change"]), excused):
+            found[key] = {**row, "outcome": "equivalent", "by": reason}
+    return found
 
 
 def write_ledger(path: Path, rows: Iterable[Mapping[str, str]]) -> None:
@@ -319,8 +332,8 @@ def main() -> int:
     if options.sample < len(mutants):
         mutants = random.Random(options.seed).sample(mutants, options.sample)
     of = digest(all_sources)
-    rows = read_ledger(options.ledger, of)
     excused = equivalents()
+    rows = settled(read_ledger(options.ledger, of), excused)
     left = [m for m in mutants if m.key not in rows]
     console.print(f"{total} mutants of the checker, {len(mutants)} in the sample, {len(left)} to be run")
     cases = reached(all_cases(), loaded_anew(all_sources))
@@ -333,7 +346,8 @@ def main() -> int:
             writer.writeheader()
         task = bar.add_task("mutants", total=len(left))
         for tried, outcome, by, seconds in run_all(left, all_sources, cases, options.processes):
-            reason = next((e.reason for e in excused if e.covers(tried)), "") if outcome == "alive" else ""
+            named = tried.source.file, tried.text, tried.mutant.change
+            reason = reason_for(named, excused) if outcome == "alive" else ""
             told = ("equivalent", reason) if reason else (outcome, by)
             entry = (of, *tried.key, tried.text, *told, f"{seconds:.2f}")
             rows[tried.key] = dict(zip(COLUMNS, entry, strict=True))

@@ -70,6 +70,7 @@ CASES = [
             ("a surface and none", (PLAIN, put(LESS, {"loop.unilateral": False}))),
             ("another denominator", (FILTER, QUARTER)),
             ("a longer denominator", (EIGHT, spring(4, [6, 0], [1, 0]))),
+            ("a shorter denominator", (spring(4, [6, 0], [1, 0]), EIGHT)),
             ("another weight", (DAMPED, OTHER_WEIGHTS)),
             ("two kinds", (EIGHT, PLAIN)),
             ("another in the third place", (EIGHT, SIX, spring(5, [4]))),

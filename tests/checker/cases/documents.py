@@ -71,6 +71,12 @@ CASES = [
     refused("no kind", {"loop": SPRING["loop"]}, "kind must be corners"),
     refused("another kind", {**SPRING, "kind": "springs"}, "kind must be"),
     refused("a kind that is a list", {**SPRING, "kind": ["spring"]}, "kind must be"),
+    refused(
+        "a number that is a truth",
+        put(SPRING, {"loop.damping_N_s_per_m": True}),
+        "expected a number, got bool",
+    ),
+    refused("an entry more beside", put(SPRING, {"remark": 1}), "has: remark"),
     refused("an unread entry below", put(SPRING, {"loop.remark": {"by": "hand"}}), "entries"),
     refused("an unread entry in a list", {**SPRING, "remarks": [{"by": "hand"}]}, "no proof of this kind"),
 ]

@@ -160,6 +160,7 @@ CASES = [
     *bad("points that are no list", {}, "points_m_N must be a list"),
     *bad("a point of three", [[0, 0, 0], [1, 1, 1]], "must have 2 to 2 entries"),
     *bad("a point that is a word", ["00", "12"], "points_m_N[0] must be a list"),
+    *bad("the last two of three points at one place", [[0, 0], [1, 1], [1, 2]], "must increase"),
     *bad("two points at one place", [[0, 0], [0, -9]], "must increase"),
     *bad("points that go back", [[1, 0], [0, -9]], "must increase"),
     *bad("10 001 points", [[k, 0] for k in range(10_001)], "points_m_N must have 2 to 10000 entries"),

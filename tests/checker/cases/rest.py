@@ -197,6 +197,18 @@ CASES = [
             ("delay_s", -1),
         )
     ),
+    accepted(
+        "a pair just on the circle, N and D turned",
+        put(
+            hand("instability", [-Fraction(x) for x in ON_CIRCLE["0", "-1/3"]], [-1, "1/3"]),
+            {"loop.mass_kg": 12, "loop.sample_period_s": 2},
+        ),
+    ),
+    refused(
+        "what moves too far within a sample where it is damped most",
+        hand("stability", *spring("0.1"), damping_N_s_per_m=[1, 900], stiffness_N_per_m=1),
+        "move too far within one sample",
+    ),
     refused("301 samples late", put(RESTS, {"loop.delay_s": 301}), "more than 300 samples"),
     refused("N is longer than D", hand("stability", [1, 1, 1], [1, 0]), "must be proper"),
     refused("no N", hand("stability", [], [1, 0]), "numerator must have 1"),
