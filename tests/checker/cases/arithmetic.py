@@ -97,6 +97,8 @@ def what_may_be_0_has_no_inverse() -> str:
         for x in (enclosed(8, 1), enclosed(8, 4, (2, -1)), enclosed(8, 4, (2,), 1)):
             if refuses(function, x, functions.NotPositive):
                 return f"no {function.__name__} of {x.middle} ± {x.reach}"
+    if enclosed(8, 5).widened(Fraction(3, 100)).radius != 8:
+        return "3/100 more"
     return "" if refuses(functions.root, enclosed(8, -5), functions.NotPositive) else "a root of −5"
 
 
@@ -245,7 +247,7 @@ def coprime_polynomials_are_told() -> str:
 
 def no_root_crosses_unseen() -> str:
     """A factor whose root meets the circle at the end of what varies; none where that is far away."""
-    for rest in ([[1, 0]], [[2, -1]], [[3, 2], [2, -1]], [[5, -6, 4]], [[25, 30, 20], [2, 1]]):
+    for rest in ([], [[1, 0]], [[2, -1]], [[3, 2], [2, -1]], [[5, -6, 4]], [[25, 30, 20], [2, 1]]):
         for moving, reaches in (
             (([9, -8], [0, 1]), 17), (([9, -8], [0, -1]), 1), (([9, 8], [0, 1]), 1), (([2, -1], [0, -1]), 1),
             (([10, -12, 8], [0, 0, 1]), 2), (([10, 12, 8], [0, 0, 1]), 2), (([10, 0, 9], [0, 0, 1]), 1),

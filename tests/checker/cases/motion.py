@@ -106,6 +106,12 @@ COARSE = motion([0, 3, 0], 2, resolution_m=3, **FREE)
 CASES = [
     Case("rounds are what they are one by one", rounds_are_what_they_are_one_by_one, ""),
     refused(
+        "nothing is stored where H(1) < 0",
+        put(motion([0, 0], 0, [-2], resolution_m=3, **FREE), {}),
+        "no more than the 0 J stored",
+        0,
+    ),
+    refused(
         "what half a count has stored",
         put(COARSE, {"loop.damping_N_s_per_m": "8/9"}),
         "no more than the 2.25 J stored",

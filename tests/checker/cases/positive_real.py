@@ -79,7 +79,11 @@ def smooth(level: int) -> Fraction:
     return -2 * WORK * sum(w * (x * x - 1 - level * ((1 - x) ** 2 + x)) for w, x in squares)
 
 
+# −1/(s + 1) ≥ −1: N + D = s, and with g = 1 2s + 1; N − σ D = ω² on the axis
+BELOW = proved(AT_ONE, [-1], [1, 1], -1)
+
 CASES = [
+    accepted("a level below 0", BELOW, "the input index is at least -1"),
     accepted(
         "the input index",
         ALL,

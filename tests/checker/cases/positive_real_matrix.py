@@ -85,7 +85,11 @@ LATE = drawn({"kind": "sequence", "latent": [[1, 0], [0, 1]]}, [[[0], [1]], [[-1
 CIRCLE = drawn({**BURST, "cosine": [1, 0], "sine": [0, 1]}, [[[1], [3]], [[-3], [1]]], [1, 0])
 # φ = (t, 2t): D = s + 1: u = (1 + t)(1, 2); y = [[−1, 0], [1, −1]] φ = (−t, −t): −∫ 3 t (1 + t)
 PUSH = drawn({**POLYNOMIAL, "coefficients": [[3], [6]]}, [[[-1], []], [[1], [-1]]], [1, 1])
+# Re G = 1 + 300 (c − 4/5)(c − 1) of a port of one axis, below 0 near c = 9/10; told as the constant 1
+DIPS = proved([(0, ONE)], ([[[1]]], [1]), 1, [[[391, -540, 150]]], [1, 0, 0], 0, **DISCRETE)
+
 CASES = [
+    refused("a minor that agrees at a few points", DIPS, "do not multiply"),
     *(
         case
         for name, told in ALL.items()
@@ -223,6 +227,9 @@ CASES = [
     ),
     refused(
         "no rows", put(CONSTANT, {"system.numerators": []}), "system.numerators must have 1 to 12 entries"
+    ),
+    refused(
+        "a matrix of fewer columns", put(CONSTANT, {"system.numerators": [[[2]], [[1]]]}), "as many columns"
     ),
     refused(
         "a row that is a number", put(CONSTANT, {"system.numerators": [1, 2]}), "numerators[0] must be a list"

@@ -77,7 +77,46 @@ SHORT = packed(unpacked(SPRING["storage"])[1:])
 LONG = packed([*unpacked(SPRING["storage"]), 0])
 EMPTY = "is empty"
 
+# the unit where the largest sum, with V = 0, is just too large for the numbers it is kept in
+SMALLEST_UNITS = {
+    "spring": "7.46902539e-17", "late": "3.99957844e-17", "partly late": "3.37507799e-17",
+    "coarse": "1.66119830e-16",
+    "coarse part": "1.05175262e-16", "coarse damped": "6.62539142e-17", "row": "6.87644385e-17",
+    "solid": "2.98427949e-15", "relaxing": "3.19744231e-15",
+}  # fmt: skip
+MORE, LESS = 1 + Fraction(1, 10**7), 1 - Fraction(1, 10**7)
+
+
+def in_units(name: str, unit: Fraction) -> Any:
+    told = STORAGES[name]["document"]
+    return put(told, {"force_unit": unit, "storage": packed([0] * len(unpacked(told["storage"])))})
+
+
 CASES = [
+    *(
+        refused(
+            f"{name}, a unit just too small", in_units(name, Fraction(u) * LESS), "too large to be compared"
+        )
+        for name, u in SMALLEST_UNITS.items()
+    ),
+    *(
+        refused(f"{name}, a unit just large enough", in_units(name, Fraction(u) * MORE), TAKES)
+        for name, u in SMALLEST_UNITS.items()
+        if name != "relaxing"
+    ),
+    refused(
+        "cells of a law of points",
+        put(
+            STORAGES["coarse"]["document"],
+            {"law.taps_N_per_m": [], "law.points_m_N": [[0, 0], [1, 1]]},
+        ),
+        "linear inside",
+    ),
+    refused(
+        "cells that remember more",
+        put(STORAGES["coarse damped"]["document"], {"domain.remembered": 2}),
+        "another number of readings",
+    ),
     *(case for name in STORAGES for case in of(name)),
     *(
         refused(
