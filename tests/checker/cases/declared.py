@@ -73,7 +73,7 @@ def shown() -> list[str]:
     lines, seen = [], set()
     for name in FILES:
         for case in import_module(f"{__package__}.{name}").CASES:
-            kind = "" if case.refusal else case.document["kind"], name == "rotary"
+            kind = "" if case.refusal or callable(case.document) else case.document["kind"], name == "rotary"
             if kind[0] and kind not in seen:
                 seen.add(kind)
                 rows = verify(plain(case.document)).rows
