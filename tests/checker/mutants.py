@@ -29,7 +29,7 @@ import sys
 import time
 import tomllib
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from fnmatch import fnmatchcase
 from importlib.abc import Loader, MetaPathFinder
@@ -172,12 +172,12 @@ def _lines_run() -> Iterator[set[tuple[str, int]]]:
         sys.settrace(None)
 
 
-def to_be_run(tried: Tried, cases: Sequence[Reached]) -> list[Reached]:
-    """The cases that a mutant may change."""
-    if tried.mutant.everywhere:
-        return list(cases)
+def to_be_run(tried: Tried, cases: Sequence[Reached], at_load: Set[tuple[str, int]]) -> list[Reached]:
+    """The cases that a mutant may change: all, where its line is run when the checker is loaded."""
     first, last = _extent(tried)
     at = str(tried.source.path)
+    if tried.mutant.everywhere or any((at, line) in at_load for line in range(first, last + 1)):
+        return list(cases)
     return [c for c in cases if any((at, line) in c.lines for line in range(first, last + 1))]
 
 
@@ -223,14 +223,18 @@ class Running(NamedTuple):
 
 
 def run_all(
-    mutants: Sequence[Tried], all_sources: Sequence[Source], cases: Sequence[Reached], processes: int
+    mutants: Sequence[Tried],
+    all_sources: Sequence[Source],
+    cases: Sequence[Reached],
+    at_load: Set[tuple[str, int]],
+    processes: int,
 ) -> Iterator[tuple[Tried, str, str, float]]:
     """Each mutant, what became of it, by which case, and the seconds it took."""
     waiting, running = list(reversed(mutants)), dict[int, Running]()
     while waiting or running:
         while waiting and len(running) < processes:
             tried = waiting.pop()
-            pid, started = _forked(tried, all_sources, to_be_run(tried, cases))
+            pid, started = _forked(tried, all_sources, to_be_run(tried, cases, at_load))
             running[pid] = started
         pid, status = os.wait()
         done = running.pop(pid)
@@ -336,7 +340,9 @@ def main() -> int:
     rows = settled(read_ledger(options.ledger, of), excused)
     left = [m for m in mutants if m.key not in rows]
     console.print(f"{total} mutants of the checker, {len(mutants)} in the sample, {len(left)} to be run")
-    cases = reached(all_cases(), loaded_anew(all_sources))
+    with _lines_run() as at_load:
+        verify = loaded_anew(all_sources)
+    cases = reached(all_cases(), verify)
     console.print(f"{len(cases)} cases, {sum(c.seconds for c in cases):.1f} s")
     began = time.perf_counter()
     new = options.ledger.exists()
@@ -345,7 +351,7 @@ def main() -> int:
         if not new:
             writer.writeheader()
         task = bar.add_task("mutants", total=len(left))
-        for tried, outcome, by, seconds in run_all(left, all_sources, cases, options.processes):
+        for tried, outcome, by, seconds in run_all(left, all_sources, cases, at_load, options.processes):
             named = tried.source.file, tried.text, tried.mutant.change
             reason = reason_for(named, excused) if outcome == "alive" else ""
             told = ("equivalent", reason) if reason else (outcome, by)

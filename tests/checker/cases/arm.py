@@ -241,7 +241,7 @@ CASES = [
     accepted("an encoder, held", HELD_COUNTED, "is held over a period"),
     refused(
         "an encoder, held, with less damping",
-        put(HELD_COUNTED, {f"{JOINT}damping_N_m_s_per_rad": "0.0087"}),
+        put(HELD_COUNTED, {f"{JOINT}damping_N_m_s_per_rad": "0.00875"}),
         LESS,
     ),
     *(

@@ -130,12 +130,22 @@ CASES = [
     *both("K > 0, one and a half late", law(TINY, "1/4"), law(0, "1/4"), delay_s="3/2"),
     *(
         case(
-            f"a pair just on the circle, {late} samples late, a pole at {pole}, {words}",
+            f"a pair just on the circle, {late} samples of {period} s late, a pole at {pole}, {words}",
             {**told, "kind": kind},
             words,
         )
         for (late, pole), law_ in ON_CIRCLE.items()
-        for told in [hand("", law_, [1, pole], mass_kg=12, sample_period_s=2, delay_s=2 * Fraction(late))]
+        for period in (2, Fraction(1, 2))
+        for told in [
+            hand(
+                "",
+                law_,
+                [1, pole],
+                mass_kg=3 * period**2,
+                sample_period_s=period,
+                delay_s=period * Fraction(late),
+            )
+        ]
         for case, kind, words in (
             (accepted, "instability", "do not come to rest"),
             (refused, "stability", "could not be confirmed"),

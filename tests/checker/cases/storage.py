@@ -92,6 +92,13 @@ def in_units(name: str, unit: Fraction) -> Any:
     return put(told, {"force_unit": unit, "storage": packed([0] * len(unpacked(told["storage"])))})
 
 
+def leading(place: tuple[int, int], to: int) -> Any:
+    """The laws in a row, of states at −2, −1, 0, 1, where one reading leads elsewhere."""
+    successors = unpacked(ROW["table"]["successors"])
+    successors[3 * place[0] + place[1]] = to
+    return put(ROW, {"table.successors": packed(successors)})
+
+
 CASES = [
     *(
         refused(
@@ -104,6 +111,28 @@ CASES = [
         for name, u in SMALLEST_UNITS.items()
         if name != "relaxing"
     ),
+    *(
+        refused(f"laws in a row, {what}", leading(place, to), phrase)
+        for what, place, to, phrase in (
+            ("a reading that leads to one further in", (0, 1), 1, "another reading"),
+            ("a reading that leads to one further out", (1, 1), 0, "another reading"),
+            ("a reading that leads nowhere", (0, 1), -1, "is not closed"),
+            ("a reading that leads past the last state", (0, 1), 4, "is not closed"),
+            ("a reading off the board that leads somewhere", (0, 0), 0, "is not closed"),
+        )
+    ),
+    refused(
+        "a board of a law that relaxes, that ends too near for long moves",
+        put(STORAGES["solid"]["document"], {"domain.largest_move_counts": 2}),
+        "must reach so far out",
+    ),
+    refused(
+        "a law that relaxes, that stores far more at one level than at the next",
+        put(STORAGES["solid"]["document"], {"storage": packed([(i // 9 % 2) << 47 for i in range(36)])}),
+        "too large to be compared",
+    ),
+    accepted("a board inside a surface", SPRING, "at any position up to 3 counts inside"),
+    accepted("a board of both sides", STORAGES["points"]["document"], "at any position from -3 to 3 counts"),
     refused(
         "cells of a law of points",
         put(
