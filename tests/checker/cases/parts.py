@@ -305,6 +305,15 @@ def turns_are_bounded() -> str:
     if rows != [[1, 2, 3], [3], [6]]:
         return f"{rows}"
     stiffness = [[Fraction(k if i == j else 0) for j in range(6)] for i, k in enumerate((1, 9, 3, 4, 2, 7))]
+    plane = pose.in_words([row[:3] for row in stiffness[:3]], pose.Pose(1, True))
+    if "up to 9 N/m and 3 N·m/rad" not in plane:
+        return plane
+    if not chain.NOTHING.is_zero:
+        return "nothing is something"
+    links = [SimpleNamespace(slides=False, low=0, high=0, translation=[Fraction(k), 0, 0]) for k in (9, 2, 4)]
+    bends = chain.bends(chain.Chain(links, [Fraction(8), 0, 0]))
+    if [row[0] / chain.LONGER for row in bends] != [14, 12, 8]:
+        return f"bends {bends}"
     said = pose.in_words(stiffness, pose.Pose(3, True))
     return (
         ""
