@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import partial
 from importlib import import_module
+from itertools import product
 from math import ceil
 from random import Random
 from typing import Any
@@ -311,6 +312,37 @@ def relaxing() -> str:
     return "" if min(told) > ROUNDS else "nothing was told apart"
 
 
+def a_level_that_is_passed_counts() -> str:
+    """Between two levels whose images lie to either side of a third one, where V is largest."""
+    for pole, start, first, second in product(
+        (Fraction(1, 2), Fraction(3, 4)), (Fraction(5, 8), Fraction(7, 8)), (0, 4000, -4000), (0, 4000, -4000)
+    ):
+        images = [min(start + pole * i, Fraction(2)) for i in range(3)]
+        rows, ends = (
+            np.zeros((1, 1), np.int64),
+            [np.array([[f(x * PART) for x in images]]) for f in (int, ceil)],
+        )
+        value = np.zeros((1, 1, 3, 2), dtype=np.int64)
+        value[0, 0, 1, 1] = 30_000
+        there = (1 - start) / pole  # the part of the way from level 0 to 1 whose image is level 1
+        needed = 30_000 - (1 - there) * first - there * second
+        for inwards, cost, right in ((True, 50, -1), (True, -50, 0), (False, 50, -1)):
+            forces = [
+                np.array([[first, second, 0]]) if inwards == (k == 0) else np.zeros((1, 3), int)
+                for k in (0, 1)
+            ]
+            least = int(needed) + cost if inwards else 30_000 + cost
+            costs = np.array([30_000, least])
+            found = kernel("first_relaxing_violation")(value, rows, *forces, *ends, costs, 1, 1)
+            have = [least + (force if inwards else 0) for force in (first, second, 0)]
+            then = [_at(value[0, 0, :, 1], image) for image in images]
+            if any(h < v for h, v in zip(have, then, strict=True)):
+                right = 0
+            if (found < 0) is not (right < 0):
+                return f"{pole}, {start}, {first}, {second}, {cost}: {found}"
+    return ""
+
+
 def _at(values: Any, level: Fraction) -> Fraction:
     """Between two levels, on a line."""
     below = min(int(level), len(values) - 1)
@@ -318,6 +350,6 @@ def _at(values: Any, level: Fraction) -> Fraction:
     return int(values[below]) + (level - below) * int(values[above] - values[below])
 
 
-CHECKS = (on_a_board, in_two_parts_on_a_board, in_a_table, on_a_line, relaxing)
+CHECKS = (on_a_board, in_two_parts_on_a_board, in_a_table, on_a_line, relaxing, a_level_that_is_passed_counts)
 
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]
