@@ -7,9 +7,8 @@ than the checker takes.  Each runs in a process forked from one that has everyth
 that reach its line are run, the quickest first.  What lives is a case to be added in `cases/`, or a line in
 `equivalent.toml` that says why nothing false can be accepted because of it and nothing true refused.
 
-A ledger that is there is gone on with, as long as the checker is the same: what is in it is not run again,
-but
-for mutants that lived, which a new case may kill.
+A ledger that is there is gone on with, as long as the checker is the same: what is in it is not run
+again, but for mutants that lived and are not listed, which a new case may kill.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ import sys
 import time
 import tomllib
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from fnmatch import fnmatchcase
 from importlib.abc import Loader, MetaPathFinder
@@ -173,12 +172,12 @@ def _lines_run() -> Iterator[set[tuple[str, int]]]:
         sys.settrace(None)
 
 
-def to_be_run(tried: Tried, cases: Sequence[Reached]) -> list[Reached]:
-    """The cases that a mutant may change."""
-    if tried.mutant.everywhere:
-        return list(cases)
+def to_be_run(tried: Tried, cases: Sequence[Reached], at_load: Set[tuple[str, int]]) -> list[Reached]:
+    """The cases that a mutant may change: all, where its line is run when the checker is loaded."""
     first, last = _extent(tried)
     at = str(tried.source.path)
+    if tried.mutant.everywhere or any((at, line) in at_load for line in range(first, last + 1)):
+        return list(cases)
     return [c for c in cases if any((at, line) in c.lines for line in range(first, last + 1))]
 
 
@@ -224,14 +223,18 @@ class Running(NamedTuple):
 
 
 def run_all(
-    mutants: Sequence[Tried], all_sources: Sequence[Source], cases: Sequence[Reached], processes: int
+    mutants: Sequence[Tried],
+    all_sources: Sequence[Source],
+    cases: Sequence[Reached],
+    at_load: Set[tuple[str, int]],
+    processes: int,
 ) -> Iterator[tuple[Tried, str, str, float]]:
     """Each mutant, what became of it, by which case, and the seconds it took."""
     waiting, running = list(reversed(mutants)), dict[int, Running]()
     while waiting or running:
         while waiting and len(running) < processes:
             tried = waiting.pop()
-            pid, started = _forked(tried, all_sources, to_be_run(tried, cases))
+            pid, started = _forked(tried, all_sources, to_be_run(tried, cases, at_load))
             running[pid] = started
         pid, status = os.wait()
         done = running.pop(pid)
@@ -267,8 +270,7 @@ class Equivalent(NamedTuple):
     change: str
     reason: str
 
-    def covers(self, tried: Tried) -> bool:
-        named = tried.source.file, tried.text, tried.mutant.change
+    def covers(self, named: tuple[str, str, str]) -> bool:
         return all(
             fnmatchcase(own, said.replace("[", "[[]"))
             for own, said in zip(named, (self.file, self.source, self.change), strict=True)
@@ -282,6 +284,11 @@ def equivalents() -> list[Equivalent]:
     return [Equivalent(e["file"], e["source"], e.get("change", "*"), e["reason"]) for e in listed]
 
 
+def reason_for(named: tuple[str, str, str], excused: Sequence[Equivalent]) -> str:
+    """Why a mutant of a file, source and change proves nothing else; "" if that is not known."""
+    return next((e.reason for e in excused if e.covers(named)), "")
+
+
 def digest(all_sources: Sequence[Source]) -> str:
     """Which checker a ledger is of."""
     text = "\n".join("\n".join((s.file, *s.lines)) for s in all_sources)
@@ -289,14 +296,23 @@ def digest(all_sources: Sequence[Source]) -> str:
 
 
 def read_ledger(path: Path, of: str) -> dict[tuple[str, ...], dict[str, str]]:
-    """The rows of an earlier run with the same checker, but for what lived."""
+    """The rows of an earlier run with the same checker."""
     if not path.exists():
         return {}
     with path.open(newline="", encoding="utf-8") as file:
-        rows = [
-            row for row in csv.DictReader(file) if row["checker"] == of and row["outcome"] in OUTCOMES[:2]
-        ]
+        rows = [row for row in csv.DictReader(file) if row["checker"] == of and row["outcome"] in OUTCOMES]
     return {(row["file"], row["line"], row["column"], row["change"]): row for row in rows}
+
+
+def settled(rows: Mapping[tuple[str, ...], dict[str, str]], excused: Sequence[Equivalent]) -> dict[Any, Any]:
+    """What need not be run again: all but those that lived and are not listed as equivalent."""
+    found = {}
+    for key, row in rows.items():
+        if row["outcome"] in OUTCOMES[:2]:
+            found[key] = row
+        elif reason := reason_for((row["file"], row["source"], row["change"]), excused):
+            found[key] = {**row, "outcome": "equivalent", "by": reason}
+    return found
 
 
 def write_ledger(path: Path, rows: Iterable[Mapping[str, str]]) -> None:
@@ -320,11 +336,13 @@ def main() -> int:
     if options.sample < len(mutants):
         mutants = random.Random(options.seed).sample(mutants, options.sample)
     of = digest(all_sources)
-    rows = read_ledger(options.ledger, of)
     excused = equivalents()
+    rows = settled(read_ledger(options.ledger, of), excused)
     left = [m for m in mutants if m.key not in rows]
     console.print(f"{total} mutants of the checker, {len(mutants)} in the sample, {len(left)} to be run")
-    cases = reached(all_cases(), loaded_anew(all_sources))
+    with _lines_run() as at_load:
+        verify = loaded_anew(all_sources)
+    cases = reached(all_cases(), verify)
     console.print(f"{len(cases)} cases, {sum(c.seconds for c in cases):.1f} s")
     began = time.perf_counter()
     new = options.ledger.exists()
@@ -333,8 +351,9 @@ def main() -> int:
         if not new:
             writer.writeheader()
         task = bar.add_task("mutants", total=len(left))
-        for tried, outcome, by, seconds in run_all(left, all_sources, cases, options.processes):
-            reason = next((e.reason for e in excused if e.covers(tried)), "") if outcome == "alive" else ""
+        for tried, outcome, by, seconds in run_all(left, all_sources, cases, at_load, options.processes):
+            named = tried.source.file, tried.text, tried.mutant.change
+            reason = reason_for(named, excused) if outcome == "alive" else ""
             told = ("equivalent", reason) if reason else (outcome, by)
             entry = (of, *tried.key, tried.text, *told, f"{seconds:.2f}")
             rows[tried.key] = dict(zip(COLUMNS, entry, strict=True))

@@ -63,7 +63,7 @@ def _is_one_device(first: Read, other: Read) -> bool:
     names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay", "unilateral")
     same = all(getattr(first.loop, name) == getattr(other.loop, name) for name in names)
     weights = [getattr(getattr(read, "law", None), "weights", None) for read in (first, other)]
-    return same and weights[0] == weights[1]
+    return same and weights[0] == weights[1] and first.units == other.units
 
 
 def _is_one_denominator(first: Read, other: Read) -> bool:

@@ -56,17 +56,23 @@ class Scope(NamedTuple):
 
 def weakest(scopes: Sequence[Scope]) -> Scope | None:
     """What proofs claim that cover something only together; None where they show different things."""
-    contacts = {scope.contact for scope in scopes}
+    contacts, hands = {scope.contact for scope in scopes}, {scope.hands for scope in scopes}
+    fed = {scope.fed_with for scope in scopes if scope.fed_with}
     first = scopes[0]
-    if {scope.shows for scope in scopes} != {first.shows}:
+    if {scope.shows for scope in scopes} != {first.shows} or len(fed) > 1:
         return None
     return first._replace(
         contact=next(c for c in (KEPT, BROKEN, BOTH_SIDES) if c in contacts),
-        hands=next((s.hands for s in scopes if s.hands != "every"), "every"),
+        hands=next(h for h in _FEWEST_FIRST if h in hands),
         encoder=COUNTED if any(s.encoder == COUNTED for s in scopes) else IDEAL,
         force_limit=all(s.force_limit for s in scopes),
         force_steps=all(s.force_steps for s in scopes),
+        fed_with=next(iter(fed), ""),
     )
+
+
+_FEWEST_FIRST = ("known", "bounded", "every", "activity")
+"""Each of them is among the hands of the next one: those of an activity may also have none."""
 
 
 def _encoder(told: Read) -> str:

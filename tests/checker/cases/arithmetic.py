@@ -5,56 +5,105 @@ Each case is a check of its own instead of a document; it says what is wrong, or
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
 from importlib import import_module
 from itertools import product
-from math import ceil, floor, isqrt
+from math import floor, isqrt
 from random import Random
 from typing import Any
 
-from . import Case, Fraction
+from . import Case
 
 ROUNDS = 40
+FINE = 400
+"""Bits of what is compared with."""
 
 
-def ranges(random: Random, low: int, high: int) -> Iterator[tuple[int, int]]:
-    """Ranges between two numbers, some of one number, and their ends with few digits or many."""
-    for _ in range(ROUNDS):
-        ends = sorted(random.randrange(low, high) for _ in range(2))
-        yield (ends[0], ends[0]) if random.random() < 0.3 else (ends[0], ends[1])
+def module(name: str) -> Any:
+    """Of the checker, as it is loaded now."""
+    return import_module(f"zwidth.checker.exact.{name}")
 
 
-def ranges_are_rounded_outward() -> str:
-    """Products, squares, inverses, roots and differences, against whole numbers of 2⁻⁸⁰ without rounding."""
-    exact = import_module("zwidth.checker.exact.enclosure")
-    one, random = 1 << 80, Random(1)
-    both = list(ranges(random, -(10**25), 10**25))
-    positive = list(ranges(random, 10**20, 10**26))
-    for a, b in product(both, both[:9]):
-        products = [Fraction(x * y, one) for x, y in product(a, b)]
-        if exact.times(a, b) != (floor(min(products)), ceil(max(products))):
-            return f"{a} times {b}"
-        if exact.minus(a, b) != (a[0] - b[1], a[1] - b[0]) or exact.plus(a, b) != (a[0] + b[0], a[1] + b[1]):
-            return f"{a} and {b}"
-    for a in both:
-        squares = [Fraction(x * x, one) for x in (*a, *([0] if a[0] <= 0 <= a[1] else []))]
-        if exact.square(a) != (floor(min(squares)), ceil(max(squares))):
-            return f"{a} squared"
-    for low, high in positive:
-        if exact.inverse((low, high)) != (floor(Fraction(one * one, high)), ceil(Fraction(one * one, low))):
-            return f"1 over {low, high}"
-        if exact.root((low, high)) != (isqrt(low * one), isqrt(high * one) + 1):
-            return f"the root of {low, high}"
-    for refused in ((0, 5), (-3, 5)):
-        for function in (exact.inverse, exact.root):
-            if not _refuses(function, refused, exact.NotPositive):
-                return f"{function.__name__} of {refused}"
-    if exact.inverse((1, 1)) != (one * one, one * one) or exact.root((1, 1)) != (isqrt(one), isqrt(one) + 1):
-        return "the smallest number"
+def some(random: Random, bits: int, low: int, high: int, part: Fraction) -> Any:
+    """A number with its middle between two, that may be off by a part of it, in slopes and radius."""
+    middle = random.randrange(low, high)
+    reach = int(abs(middle) * part)
+    slopes = tuple(random.randrange(-(reach // 3), reach // 3 + 1) for _ in range(2))
+    return module("enclosed").Enclosed(
+        bits, middle, slopes if random.random() < 0.7 else (), random.randrange(0, reach // 3 + 1)
+    )
+
+
+def corners(x: Any) -> Iterator[tuple[Fraction, list[int]]]:
+    """What the number may be where all that varies is at an end or the middle, and those ends."""
+    for rest, *shared in product((-1, 0, 1), repeat=3):
+        yield at(x, shared, rest), shared
+
+
+def at(x: Any, shared: Sequence[int], rest: int) -> Fraction:
+    """The number where what varies has these values."""
+    slopes = sum(s * e for s, e in zip(x.slopes, shared, strict=False))
+    return Fraction(x.middle + slopes + rest * x.radius, 1 << x.bits)
+
+
+def outside(found: Any, x: Any, function: Callable[[Fraction], Fraction], room: int) -> str:
+    """Where a function of a number is not enclosed, or within far more than there need be."""
+    off = max(abs(function(value) - at(found, shared, 0)) for value, shared in corners(x))
+    off *= 1 << found.bits
+    if off > found.radius:
+        return f"{x.middle} ± {x.slopes} ± {x.radius}: {float(off)} off, {found.radius} said"
+    return f"{x.middle} ± {x.slopes} ± {x.radius}: too wide" if found.radius > 2 * off + room else ""
+
+
+def square_root(x: Fraction) -> Fraction:
+    """To `FINE` bits."""
+    return Fraction(isqrt((x.numerator << 2 * FINE) // x.denominator), 1 << FINE)
+
+
+def sine(x: Fraction, first: int = 1) -> Fraction:
+    """sin x, or with 0 cos x, to some 300 bits."""
+    angle = (x.numerator << FINE) // x.denominator
+    term = total = angle if first else 1 << FINE
+    for n in range(first, 400, 2):
+        term = -(term * angle * angle >> 2 * FINE) // ((n + 1) * (n + 2))
+        total += term
+    return Fraction(total, 1 << FINE)
+
+
+def functions_are_rounded_outward() -> str:
+    """Inverses, roots, sines and cosines at every corner of what varies."""
+    functions, random = module("functions"), Random(1)
+    for part in (Fraction(0), Fraction(1, 100), Fraction(1, 9), Fraction(3, 4)):
+        for bits in (6, 20, 60):
+            for _ in range(ROUNDS):
+                x = some(random, bits, 1 << bits - 2, 8 << bits, part)
+                wide = 8 if part < Fraction(1, 2) else 1 << 4 * bits
+                wrong = outside(functions.root(x), x, square_root, wide)
+                below = x if random.random() < 0.5 else -x
+                wrong = wrong or outside(functions.inverse(below), below, lambda v: 1 / v, 16 * wide)
+                if wrong:
+                    return wrong
     return ""
 
 
-def _refuses(function: Callable[[Any], Any], value: Any, error: type[Exception]) -> bool:
+def what_may_be_0_has_no_inverse() -> str:
+    """Nor a root; the smallest number that is not 0 has both."""
+    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    for function in (functions.inverse, functions.root):
+        for x in (enclosed(8, 0), enclosed(8, 3, (), 3), enclosed(8, 3, (2, -1)), enclosed(8, 3, (2,), 2)):
+            if not refuses(function, x, functions.NotPositive):
+                return f"{function.__name__} of {x.middle} ± {x.reach}"
+        for x in (enclosed(8, 1), enclosed(8, 4, (2, -1)), enclosed(8, 4, (2,), 1)):
+            if refuses(function, x, functions.NotPositive):
+                return f"no {function.__name__} of {x.middle} ± {x.reach}"
+    if enclosed(8, 5).widened(Fraction(3, 100)).radius != 8:
+        return "3/100 more"
+    return "" if refuses(functions.root, enclosed(8, -5), functions.NotPositive) else "a root of −5"
+
+
+def refuses(function: Callable[[Any], Any], value: Any, error: type[Exception]) -> bool:
+    """True where that error is raised."""
     try:
         function(value)
     except error:
@@ -62,17 +111,198 @@ def _refuses(function: Callable[[Any], Any], value: Any, error: type[Exception])
     return False
 
 
+def sines_are_rounded_outward() -> str:
+    """Of angles small and of several turns, in few and in many bits."""
+    functions, random = module("functions"), Random(3)
+    for bits, turns in product((6, 20, 60), (0, 1, 7, 40)):
+        for reach in (0, 3, 1 << bits - 5, 1 << bits - 1):
+            for sign in (-1, 1):
+                middle = sign * random.randrange(turns << bits, (turns + 1) << bits)
+                slopes = (random.randrange(-reach, reach + 1), reach // 2) if reach else ()
+                x = module("enclosed").Enclosed(bits, middle, slopes, reach)
+                for first, found in zip((1, 0), functions.sine_cosine(x), strict=True):
+                    wrong = _not_curved(found, x, first)
+                    if wrong:
+                        return f"{('cos', 'sin')[first]} {middle / (1 << bits)}, {bits} bits: {wrong}"
+    return ""
+
+
+def _not_curved(found: Any, x: Any, first: int) -> str:
+    """The remainder is bounded by the largest curvature, at most 1, within reach."""
+    reach = Fraction(x.reach, 1 << x.bits)
+    bend = min(1, abs(sine(Fraction(x.middle, 1 << x.bits), first)) + reach)
+    slopes = abs(sine(Fraction(x.middle, 1 << x.bits), 1 - first)) * Fraction(x.radius, 1 << x.bits)
+    allowed = (slopes + bend * reach**2 / 2) * (1 << x.bits) + 14 + 4 * reach * 2
+    wrong = outside(found, x, lambda v: sine(v, first), 1 << 2 * x.bits)
+    return wrong or ("too wide" if found.radius > allowed * Fraction(101, 100) else "")
+
+
+def angles_have_few_turns() -> str:
+    """64 rad is the largest."""
+    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    refusal = import_module("zwidth.checker.document.refusal").Invalid
+    most = 64 << 12
+    for x, right in (
+        (enclosed(12, most), False), (enclosed(12, -most), False), (enclosed(12, most + 1), True),
+        (enclosed(12, most, (), 1), True), (enclosed(12, most - 1, (1,)), False),
+        (enclosed(12, -most, (1,)), True),
+    ):  # fmt: skip
+        if refuses(functions.sine_cosine, x, refusal) is not right:
+            return f"{x.middle} ± {x.reach}"
+    return ""
+
+
+def expanded(*factors: Sequence[int]) -> list[int]:
+    """A product of polynomials, descending."""
+    out = [1]
+    for factor in factors:
+        longer = [0] * (len(out) + len(factor) - 1)
+        for (i, x), (j, y) in product(enumerate(out), enumerate(factor)):
+            longer[i + j] += x * y
+        out = longer
+    return out
+
+
+INSIDE = ([2, -1], [3, 2], [1, 0], [9, -8], [9, 8], [5, -6, 4], [25, 30, 24], [100, 0, 99], [4, 0, 0, 1])
+"""Polynomials in z all of whose roots lie inside the unit circle."""
+NOT_INSIDE = (
+    [1, -1], [1, 1], [1, -2], [2, 3], [5, -6, 5], [1, 0, 1], [5, 6, 5], [25, -30, 26],
+    [1, 0, 0, -1], [99, 0, 100],
+)  # fmt: skip
+"""With one on the circle or outside."""
+LEFT = ([1, 1], [1, 1000], [1, 2, 2], [1, 1, 100], [1000, 1])
+NOT_LEFT = ([1, 0], [1, -1], [1, 0, 1], [1, -1, 100], [1, 0, -1])
+
+
+def roots_are_told_inside_from_outside() -> str:
+    """Products of three polynomials whose roots are known; a root on the edge is not inside."""
+    roots = module("roots")
+    for test, good, bad in (
+        (roots.inside_unit_circle, INSIDE, NOT_INSIDE),
+        (roots.in_left_half_plane, LEFT, NOT_LEFT),
+    ):
+        for chosen in product(good, good, (*good, *bad)):
+            for sign in (1, -3):
+                told = [Fraction(sign * c, 7) for c in expanded(*chosen)]
+                if test(told) is not (chosen[2] in good):
+                    return f"{test.__name__} of {chosen}"
+        if test([Fraction(0), *told]) or not test([Fraction(3)]):
+            return f"{test.__name__} of one that begins with 0, or is constant"
+    return ""
+
+
+def whole_numbers_decide_every_root() -> str:
+    """The same without rounding, where no number of bits is enough."""
+    decays, enclosed = module("schur_cohn").decays, module("enclosed").Enclosed
+    for chosen in product(INSIDE, (*INSIDE, *NOT_INSIDE), INSIDE):
+        whole = in_zeta(expanded(*chosen))
+        if decays([enclosed(0, c) for c in whole]) is not (chosen[1] in INSIDE):
+            return f"of {chosen}"
+    return ""
+
+
+def in_zeta(descending: Sequence[int]) -> list[int]:
+    """A polynomial in z in powers of ζ = z − 1."""
+    out: list[int] = []
+    for c in descending:
+        out = [x + y for x, y in zip([*out, 0], [0, *out], strict=True)]
+        out[-1] += c
+    return out
+
+
+def what_is_open_is_not_decided() -> str:
+    """A sign that the bounds leave open, of every condition of the recursion; what one refutes is refuted."""
+    decays, enclosed = module("schur_cohn").decays, module("enclosed").Enclosed
+    one = 1 << 20
+    for told, answer in (
+        ([(one, 0), (one // 2, 0)], True), ([(one, 0), (one // 2, one // 2)], None),
+        ([(one, 0), (0, 0)], False),
+        ([(one, 0), (0, 1)], None), ([(one, 0), (-1, 0)], False), ([(one, 0), (-2, 1)], False),
+        ([(one, 0), (2 * one, 0)], False), ([(one, 0), (2 * one, 1)], None),
+        ([(one, 0), (2 * one + 2, 1)], False),
+        ([(one, 0), (2 * one - 2, 1)], True), ([(one, 0), (one, 2 * one)], None),
+        ([(one, 0), (2 * one, 0), (2 * one, 1)], None), ([(one, 0), (2 * one, 0), (2 * one - 2, 1)], True),
+        ([(one, 0), (2 * one, 0), (2 * one + 2, 1)], False), ([(one, 0), (0, 0), (one, 0)], False),
+    ):  # fmt: skip
+        if decays([enclosed(20, m, (), r) for m, r in told]) is not answer:
+            return f"{told}"
+    return ""
+
+
+def coprime_polynomials_are_told() -> str:
+    """True only of those without a common root, whatever the size of the coefficients."""
+    are_coprime = module("coprime").are_coprime
+    for shared, a, b in product(INSIDE, INSIDE, NOT_INSIDE):
+        n, d = ([10**50 * c for c in expanded(*part)[::-1]] for part in ((shared, a), (shared, b)))
+        if are_coprime(n, d) or are_coprime([*n, 0], [*d, 0]) or are_coprime([], d):
+            return f"{shared} in both"
+    for a, b in product(INSIDE, NOT_INSIDE):
+        if not are_coprime([*a[::-1], 0], [*b[::-1], 0]) or not are_coprime(b[::-1], a[::-1]):
+            return f"{a}, {b}"
+    first = 2**61 - 1
+    if are_coprime([first], [first]) is not True or not are_coprime([1, 1], [1, first]):
+        return "a highest coefficient that one prime divides"
+    return ""
+
+
+def no_root_crosses_unseen() -> str:
+    """A factor whose root meets the circle at the end of what varies; none where that is far away."""
+    for rest in ([], [[1, 0]], [[2, -1]], [[3, 2], [2, -1]], [[5, -6, 4]], [[25, 30, 20], [2, 1]]):
+        for moving, reaches in (
+            (([9, -8], [0, 1]), 17), (([9, -8], [0, -1]), 1), (([9, 8], [0, 1]), 1), (([2, -1], [0, -1]), 1),
+            (([10, -12, 8], [0, 0, 1]), 2), (([10, 12, 8], [0, 0, 1]), 2), (([10, 0, 9], [0, 0, 1]), 1),
+            (([20, -37, 18], [0, -1, 0]), 1),
+        ):  # fmt: skip
+            for part, right in ((Fraction(1), False), (Fraction(101, 100), False), (Fraction(1, 100), True)):
+                if _never(moving, rest, part * reaches) is not right:
+                    return f"{moving} beside {rest}, {float(part)} of what it takes"
+    return ""
+
+
+def _never(moving: Sequence[Sequence[int]], rest: Sequence[Sequence[int]], most: Fraction) -> bool:
+    """(a + ε b) q(z), |ε| ≤ most, to 60 bits."""
+    enclosed, bits = module("enclosed").Enclosed, 60
+    steady, changing = (in_zeta(expanded(part, *rest)) for part in moving)
+    changing = [0] * (len(steady) - len(changing)) + changing
+    told = [
+        enclosed(bits, s << bits, (floor(c * most * (1 << bits)),), 1)
+        for s, c in zip(steady, changing, strict=True)
+    ]
+    found: bool = module("crossing").never_crosses(told)
+    return found
+
+
+def sums_of_products_are_rounded_once() -> str:
+    """As products and their sums are, and no wider."""
+    dot, random = module("enclosed").dot, Random(5)
+    for count in (1, 2, 5):
+        for _ in range(ROUNDS):
+            a = [some(random, 20, -(10**7), 10**7, Fraction(1, 50)) for _ in range(count)]
+            b = [some(random, 20, -(10**7), 10**7, Fraction(1, 50)) for _ in range(count)]
+            if random.random() < 0.3:
+                a[0] = module("enclosed").Enclosed(20, 0)
+            found = dot(a, b)
+            for first, second, *shared in product((-1, 1), repeat=4):
+                value = sum(at(x, shared, first) * at(y, shared, second) for x, y in zip(a, b, strict=True))
+                if abs(value - at(found, shared, 0)) > Fraction(found.radius, 1 << 20):
+                    return f"{count} of them"
+            separate = sum((x * y for x, y in zip(a[1:], b[1:], strict=True)), a[0] * b[0])
+            if found.radius > separate.radius:
+                return f"{count} of them: too wide"
+    return ""
+
+
 def numbers_keep_what_they_share() -> str:
     """Sums, differences, products, shifts and quotients at every corner of what varies, radius and slopes."""
-    module = import_module("zwidth.checker.exact.enclosed")
+    enclosed = module("enclosed")
     random, bits = Random(2), 20
 
-    def some() -> Any:
+    def any_number() -> Any:
         slopes = tuple(random.randrange(-999, 999) for _ in range(2)) if random.random() < 0.7 else ()
-        return module.Enclosed(bits, random.randrange(-(10**7), 10**7), slopes, random.randrange(0, 999))
+        return enclosed.Enclosed(bits, random.randrange(-(10**7), 10**7), slopes, random.randrange(0, 999))
 
     for _ in range(ROUNDS):
-        a, b = some(), some()
+        a, b = any_number(), any_number()
         whole = random.choice((-3, 2, 5))
         for name, found, expected in (
             ("+", a + b, lambda x, y: x + y),
@@ -96,8 +326,8 @@ def _not_enclosed(found: Any, a: Any, b: Any, expected: Callable[[Fraction, Frac
     """Where the result does not reach, or reaches farther than two units and what is of second order."""
     farthest = Fraction(0)
     for first, second, *shared in product((-1, 1), repeat=4):
-        value = expected(_at(a, shared, first), _at(b, shared, second))
-        farthest = max(farthest, abs(value - _at(found, shared, 0)))
+        value = expected(at(a, shared, first), at(b, shared, second))
+        farthest = max(farthest, abs(value - at(found, shared, 0)))
     radius, unit = Fraction(found.radius, 1 << found.bits), Fraction(1, 1 << found.bits)
     second_order = Fraction(2 * a.reach * b.reach, 1 << 2 * a.bits)
     if farthest > radius:
@@ -105,14 +335,9 @@ def _not_enclosed(found: Any, a: Any, b: Any, expected: Callable[[Fraction, Frac
     return "wider than it need be" if radius > farthest + second_order + 5 * unit else ""
 
 
-def _at(x: Any, shared: list[int], rest: int) -> Fraction:
-    slopes = sum(s * e for s, e in zip(x.slopes, shared, strict=False))
-    return Fraction(x.middle + slopes + rest * x.radius, 1 << x.bits)
-
-
 def signs_are_certain() -> str:
     """Of a number that reaches 0, that does not, and of 0."""
-    enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
+    enclosed = module("enclosed").Enclosed
     for middle, slopes, radius, sign in (
         (3, (1, -1), 0, 1), (-3, (1, -1), 0, -1), (3, (1, -1), 1, None), (-3, (1, 1), 1, None),
         (0, (), 0, 0), (0, (), 1, None),
@@ -125,9 +350,9 @@ def signs_are_certain() -> str:
 
 def rational_numbers_are_enclosed() -> str:
     """Quotients that come out and that do not, and both ends of an interval."""
-    module = import_module("zwidth.checker.exact.enclosed")
+    enclosed = module("enclosed")
     for value in (Fraction(3, 8), Fraction(1, 3), Fraction(-1, 3), Fraction(-5, 7)):
-        found = module.known(value, 9)
+        found = enclosed.known(value, 9)
         off = abs(value - Fraction(found.middle, 512))
         if off > Fraction(found.radius, 512) or found.radius != (0 if value.denominator == 8 else 1):
             return f"{value}"
@@ -137,20 +362,29 @@ def rational_numbers_are_enclosed() -> str:
         (Fraction(1, 3), Fraction(1, 3)),
     ):
         for place in range(3):
-            found = module.between(low, high, place, 3, 16)
+            found = enclosed.between(low, high, place, 3, 16)
             if len(found.slopes) != (3 if high > low else 0) or any(
                 s for i, s in enumerate(found.slopes) if i != place
             ):
                 return f"{low} … {high} at {place}"
             for end, sign in ((low, -1), (high, 1)):
-                off = abs(end - _at(found, [sign] * 3, 0)) * (1 << 16)
+                off = abs(end - at(found, [sign] * 3, 0)) * (1 << 16)
                 if not off <= found.radius <= off + 3:
                     return f"{low} … {high}: {end}"
     return ""
 
 
 CHECKS = (
-    ranges_are_rounded_outward,
+    functions_are_rounded_outward,
+    what_may_be_0_has_no_inverse,
+    sines_are_rounded_outward,
+    angles_have_few_turns,
+    roots_are_told_inside_from_outside,
+    whole_numbers_decide_every_root,
+    what_is_open_is_not_decided,
+    coprime_polynomials_are_told,
+    no_root_crosses_unseen,
+    sums_of_products_are_rounded_once,
     numbers_keep_what_they_share,
     signs_are_certain,
     rational_numbers_are_enclosed,

@@ -108,6 +108,73 @@ TWO, THREE = damped("two legs", 1 + TINY), damped("three legs", 1 + TINY)
 JOINT, LEG = "arm.joints.0.", "arm.legs.0."
 ROTATION = [["0.6", "-0.8", "0"], ["0.8", "0.6", "0"], ["0", "0", "1"]]
 
+# two links that turn and a slide between them, in space
+LINKS = ("revolute", "prismatic", "revolute")
+NEAR = 1 + 2 * (LONGER - 1)
+
+
+def several(turns: int = 0, **entries: Any) -> Any:
+    """A chain of three joints with encoders, all of K = 1000 N/m, B = 0.1 N·s/m along every axis:
+    ‖K‖ + 2‖B‖/T is 1100.  In pose 100 N·m/rad as well, coupled by 20 N."""
+    size = 3 + turns
+    point = [[f"{1000 if i < 3 else 100}" if i == j else "0" for j in range(size)] for i in range(size)]
+    if turns:
+        point[0][4] = point[4][0] = "20"
+    damping = [["0.1" if i == j < 3 else "0" for j in range(size)] for i in range(size)]
+    names = ("N_m_rad", "N_m_s_rad", "N_m_s_rad") if turns else ("N_per_m", "N_s_per_m", "N_s_per_m")
+    keys = ("stiffness", "virtual_damping", "damping_bound")
+    wall = {f"{key}_{name}": m for key, name, m in zip(keys, names, (point, damping, damping), strict=True)}
+    more = {"turns": 3, "rest": "given"} if turns else {}
+    joints = [
+        link(kind, needs, bool(turns)) for kind, needs in zip(LINKS, friction(bool(turns)), strict=True)
+    ]
+    loop = {
+        "sample_period_s": "0.002", "delay_samples": 0, "encoder": "counted",
+        "torque": "follows the readings", "largest_force_N": 2,
+        **({"largest_moment_N_m": 3} if turns else {}),
+    }  # fmt: skip
+    arm = {"geometry": "chain", "joints": joints, "end_m": ["0.1", "0", "0"]}
+    return put({"kind": "arm", "arm": arm, "wall": {**wall, **more}, "loop": loop}, entries)
+
+
+STEPS = (Fraction(1, 10**4), Fraction(1, 10**4), Fraction(2, 10**4))
+COLUMNS, TURNING = (Fraction(1), LONGER, Fraction(1, 5)), (1, 0, 1)
+
+
+def friction(pose: bool) -> list[Fraction]:
+    """What each of the joints needs: half of what misread counts do to the force, and of what they turn."""
+    columns = [COLUMNS, tuple(map(Fraction, TURNING))] if pose else [COLUMNS]
+    sizes = [[Fraction(1100), Fraction(20)], [Fraction(20), Fraction(100)]] if pose else [[Fraction(1100)]]
+    misread = [sum((s * c for s, c in zip(STEPS, r, strict=True)), Fraction(0)) for r in columns]
+    wrong = [sum((a * m for a, m in zip(row, misread, strict=True)), Fraction(0)) for row in sizes]
+    bends = [[1, 1, Fraction(1, 5)], [1, 0, 0], [Fraction(1, 5), 0, Fraction(1, 5)]]
+    # a slide beyond a joint that turns moves the column of that joint, and one before it does not
+    bends[1][2] = bends[2][1] = 1
+    out = []
+    for i in range(3):
+        least = sum((c[i] * w for c, w in zip(columns, wrong, strict=True)), Fraction(0))
+        least += 2 * sum((s * LONGER * b for s, b in zip(STEPS, bends[i], strict=True)), Fraction(0))
+        turned = sum((s * t for s, t in zip(STEPS, TURNING, strict=True)), Fraction(0))
+        out.append((least + (3 * Fraction(TURNING[i], 2) * turned if pose else 0)) / 2)
+    return out
+
+
+def link(kind: str, needs: Fraction, rest: bool) -> dict[str, Any]:
+    """About or along its z axis, which stands at right angles to the one before."""
+    turn = [["0", "0", "1"], ["1", "0", "0"], ["0", "1", "0"]]
+    told = {"kind": kind, "rotation": turn, "translation_m": ["0.1", "0.2", "0"]}
+    if kind == "prismatic":
+        return {**told, "low_m": "-0.1", "high_m": "0.1", "damping_N_s_per_m": 99, "resolution_m": STEPS[1],
+                "coulomb_friction_N": needs}  # fmt: skip
+    place = len([k for k in (0, 2) if needs == friction(rest)[k] and k]) * 2
+    return {**told, "low_rad": "-0.2", "high_rad": "0.3", "damping_N_m_s_per_rad": 99,
+            "resolution_rad": STEPS[place], "coulomb_friction_N_m": needs,
+            "largest_column_m_per_rad": COLUMNS[place],
+            **({"rest_rad": "0.1"} if rest else {})}  # fmt: skip
+
+
+CHAIN, POSED = several(), several(3)
+
 CASES = [
     *(case for name in ARMS for case in of(name)),
     # a region
@@ -174,12 +241,87 @@ CASES = [
     accepted("an encoder, held", HELD_COUNTED, "is held over a period"),
     refused(
         "an encoder, held, with less damping",
-        put(HELD_COUNTED, {f"{JOINT}damping_N_m_s_per_rad": "0.0087"}),
+        put(HELD_COUNTED, {f"{JOINT}damping_N_m_s_per_rad": "0.00875"}),
         LESS,
     ),
     *(
-        refused(f"an encoder, {key} below 0", put(COUNTED, {f"{JOINT}{key}": "-0.001"}), "are ≥ 0")
+        refused(f"an encoder, {key} below 0", put(COUNTED, {f"{JOINT}{key}": "-0.001"}), "must be ≥ 0")
         for key in ("resolution_rad", "coulomb_friction_N_m", "largest_column_m_per_rad")
+    ),
+    *(
+        case
+        for name, told in (("three joints", CHAIN), ("three joints, in pose", POSED))
+        for case in (
+            accepted(f"encoders of {name}", told, "follows the readings"),
+            *(
+                refused(
+                    f"encoders of {name}, less friction of {place + 1}",
+                    put(
+                        told,
+                        {f"arm.joints.{place}.{key}": Fraction(told["arm"]["joints"][place][key]) - TINY},
+                    ),
+                    f"Coulomb friction of joint {place + 1}",
+                )
+                for place, key in enumerate(
+                    ("coulomb_friction_N_m", "coulomb_friction_N", "coulomb_friction_N_m")
+                )
+            ),
+        )
+    ),
+    accepted("moments are told", POSED, "moments up to 3 N·m"),
+    refused(
+        "three joints, a longer first column",
+        put(CHAIN, {"arm.joints.0.largest_column_m_per_rad": "0.25", "arm.joints.0.coulomb_friction_N_m": 9}),
+        "longer than it is said",
+    ),
+    refused(
+        "three joints, a longer last column",
+        put(CHAIN, {"arm.joints.2.largest_column_m_per_rad": "0.09", "arm.joints.2.coulomb_friction_N_m": 9}),
+        "longer than it is said",
+    ),
+    *(
+        refused(f"{key} of an arm without steps", put(TURNS, {f"{JOINT}{key}": 0}), "is of no use here")
+        for key in ("resolution_rad", "coulomb_friction_N_m", "largest_column_m_per_rad", "rest_rad")
+    ),
+    refused("a rest in every orientation", put(EVERY, {f"{JOINT}rest_rad": 0}), "is of no use here"),
+    refused("a rest in the plane, of a joint", put(PLANE, {f"{JOINT}rest_rad": 0}), "is of no use here"),
+    refused(
+        "a slide along the axis, in the plane",
+        put(
+            PLANE,
+            {
+                "arm.joints.0": {
+                    **MIXED["arm"]["joints"][1],
+                    "rotation": [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]],
+                }
+            },
+        ),
+        "about the same axis",
+    ),
+    refused(
+        "three rows for a pose in space",
+        put(
+            EVERY,
+            {
+                f"wall.{key}": [row[:3] for row in rows[:3]]
+                for key, rows in EVERY["wall"].items()
+                if isinstance(rows, list)
+            },
+        ),
+        "rows",
+    ),
+    *(
+        case
+        for name, cells, less in (
+            ("mixed", 13, 3),
+            ("every rest", 13, 3),
+            ("given rest", 22, 3),
+            ("plane pose", 63, 1),
+        )
+        for case in (
+            accepted(f"{name}, a wide region", widened(damped(name, 5), "0.3"), f"; {cells} cells"),
+            refused(f"{name}, a wide region with less", widened(damped(name, less), "0.3"), LESS),
+        )
     ),
     # held
     refused("a held torque and a delay", put(HELD, {"loop.delay_samples": 1}), "needs no delay"),
@@ -214,7 +356,7 @@ CASES = [
             ),
         )
     ),
-    refused("forces below 0", put(HELD, {"loop.largest_force_N": "-1"}), "largest force ≥ 0"),
+    refused("forces below 0", put(HELD, {"loop.largest_force_N": "-1"}), "largest_force_N must be ≥ 0"),
     # the wall and the loop
     refused(
         "a stiffness with a negative eigenvalue",
@@ -252,11 +394,15 @@ CASES = [
     refused(
         "matrices of two sizes", put(MIXED, {"wall.virtual_damping_N_s_per_m": [["0"]]}), "differ in size"
     ),
-    refused("a matrix of four rows", put(MIXED, {"wall.stiffness_N_per_m": [["0"] * 4] * 4}), "rows"),
-    refused("T is 0", put(MIXED, {"loop.sample_period_s": 0}), "T must be > 0"),
-    refused("T is below 0", put(MIXED, {"loop.sample_period_s": -1}), "T must be > 0"),
+    refused(
+        "a matrix of four rows",
+        put(MIXED, {"wall.stiffness_N_per_m": [["0"] * 4] * 4}),
+        "wall.stiffness_N_per_m must have 1 to 3 entries",
+    ),
+    refused("T is 0", put(MIXED, {"loop.sample_period_s": 0}), "sample_period_s must be > 0"),
+    refused("T is below 0", put(MIXED, {"loop.sample_period_s": -1}), "sample_period_s must be > 0"),
     refused("part of a sample", put(MIXED, {"loop.delay_samples": "1/2"}), "whole number"),
-    refused("another encoder", put(MIXED, {"loop.encoder": "coarse"}), "ideal, or counted"),
+    refused("another encoder", put(MIXED, {"loop.encoder": "coarse"}), "encoder must be ideal or counted"),
     refused("another torque", put(MIXED, {"loop.torque": "follows the readings"}), "or is held"),
     refused(
         "the torque follows the arm, its readings counted",
@@ -296,20 +442,36 @@ CASES = [
         )
         for case, curvature, words in ((accepted, "1.3441", ""), (refused, "1.3439", "can bend more"))
     ),
-    refused("a rotation of two rows", put(MIXED, {f"{JOINT}rotation": ROTATION[:2]}), "three rows"),
+    refused(
+        "a rotation of two rows",
+        put(MIXED, {f"{JOINT}rotation": ROTATION[:2]}),
+        "rotation must have 3 to 3 entries",
+    ),
     refused("low above high", put(TURNS, {f"{JOINT}low_rad": "0.61"}), "low ≤ high"),
-    refused("damping below 0", put(MIXED, {f"{JOINT}damping_N_m_s_per_rad": "-1"}), "damping ≥ 0"),
-    refused("no joints", put(MIXED, {"arm.joints": []}), "from 1 to 16 joints"),
-    refused("17 joints", put(TURNS, {"arm.joints": TURNS["arm"]["joints"] * 17}), "from 1 to 16 joints"),
-    refused("an end of two coordinates", put(MIXED, {"arm.end_m": ["0", "0"]}), "expected 3 coordinates"),
+    refused(
+        "damping below 0",
+        put(MIXED, {f"{JOINT}damping_N_m_s_per_rad": "-1"}),
+        "damping_N_m_s_per_rad must be ≥ 0",
+    ),
+    refused("no joints", put(MIXED, {"arm.joints": []}), "arm.joints must have 1 to 16 entries"),
+    refused(
+        "17 joints",
+        put(TURNS, {"arm.joints": TURNS["arm"]["joints"] * 17}),
+        "arm.joints must have 1 to 16 entries",
+    ),
+    refused(
+        "an end of two coordinates",
+        put(MIXED, {"arm.end_m": ["0", "0"]}),
+        "arm.end_m must have 3 to 3 entries",
+    ),
     # pose
     refused(
         "a mirror",
         put(EVERY, {f"{JOINT}rotation": [["0.6", "0.8", "0"], ["0.8", "-0.6", "0"], ["0", "0", "1"]]}),
         "mirrors",
     ),
-    refused("two rotations", put(EVERY, {"wall.turns": 2}), "three rotations, or one"),
-    refused("another rest", put(EVERY, {"wall.rest": "any"}), "rests in every orientation"),
+    refused("two rotations", put(EVERY, {"wall.turns": 2}), "wall.turns must be 1 or 3"),
+    refused("another rest", put(EVERY, {"wall.rest": "any"}), "must be every orientation or given"),
     refused("a rest in the plane", put(PLANE, {"wall.rest": "given"}), "rests in every orientation"),
     refused(
         "forces and turns coupled, in every rest",
@@ -343,10 +505,10 @@ CASES = [
         ),
         "are not bounded",
     ),
-    refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "two legs in the plane"),
+    refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "arm.legs must have 2 to 3 entries"),
     refused("a region turned round", put(TWO, {"arm.low_m": ["0.03", "0.09"]}), "low ≤ high"),
     *(
-        refused(f"a leg, {key} is {value}", put(TWO, {f"{LEG}{key}": value}), "a leg needs")
+        refused(f"a leg, {key} is {value}", put(TWO, {f"{LEG}{key}": value}), f"{key} must be")
         for key, value in (
             ("link_m", 0),
             ("rod_m", 0),
@@ -364,6 +526,7 @@ CASES = [
         put(TWO, {"arm.low_m": ["0.02", "0.3"], "arm.high_m": ["0.02", "0.3"]}),
         "does not reach",
     ),
+    refused("without arm.geometry", without(MIXED, "arm.geometry"), "an object with geometry"),
     refused(
         "too near",
         put(THREE, {"arm.low_m": ["0.3", "0.02", "0.15"], "arm.high_m": ["0.3", "0.02", "0.15"]}),
@@ -378,7 +541,6 @@ CASES = [
             (MIXED, "loop.encoder"),
             (MIXED, "loop.torque"),
             (MIXED, "loop.delay_samples"),
-            (MIXED, "arm.geometry"),
             (MIXED, "arm.end_m"),
             (TWO, "arm.legs"),
             (TWO, "arm.low_m"),

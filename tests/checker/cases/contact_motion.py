@@ -216,9 +216,13 @@ CASES = [
         put(law(THERE, resets=True, **RELAXING), {"energy_J": "15.0000001"}),
         "the energy is",
     ),
-    refused("a step of 0", law(THERE, force_step_N=0), "step must be > 0"),
-    refused("a step below 0", law(THERE, force_step_N=-1), "step must be > 0"),
-    refused("a step of a law that relaxes", law(THERE, force_step_N=1, **RELAXING), "none that relaxes"),
+    refused("a step of 0", law(THERE, force_step_N=0), "force_step_N must be > 0"),
+    refused("a step below 0", law(THERE, force_step_N=-1), "force_step_N must be > 0"),
+    refused(
+        "a step of a law that relaxes",
+        law(THERE, force_step_N=1, **RELAXING),
+        "without the steps of a converter",
+    ),
     refused("a limit of 0", law(THERE, force_limit_N=0), "none comes out"),
     # 1 − ρ at 1 after 2, 2 · 1: with ρ = ½ on the way back 1 · 1, and 4 (1 + 1) at 2 after 0
     taken(
@@ -244,33 +248,33 @@ CASES = [
         ),
         contact="both sides",
     ),
-    refused("a limit below 0", law(THERE, force_limit_N=-1), "limit must be ≥ 0"),
+    refused("a limit below 0", law(THERE, force_limit_N=-1), "force_limit_N must be ≥ 0"),
     refused("taps and points", law(THERE, points_m_N=[[0, 0], [1, 1]]), "either taps or points"),
     refused("no taps and no points", law(THERE, taps_N_per_m=[]), "either taps or points"),
     refused("points that go back", law(THERE, taps_N_per_m=[], points_m_N=[[0, 0], [0, 1]]), "must increase"),
     refused("another surface", law(THERE, surface="both"), "surface must be"),
-    refused("clamped is a word", law(THERE, clamped="no"), "surface must be"),
+    refused("clamped is a word", law(THERE, clamped="no"), "clamped must be true or false"),
     refused("resets is a word", law(THERE, resets="no"), "resets must be"),
     refused(
         "a relaxing pole of 1",
         law(THERE, relaxing={"pole": 1, "stiffness_N_per_m": 1}),
-        "stands beside one spring",
+        "relaxing.pole must be < 1",
     ),
     refused(
         "a relaxing pole below 0",
         law(THERE, relaxing={"pole": "-1/2", "stiffness_N_per_m": 1}),
-        "stands beside one spring",
+        "relaxing.pole must be ≥ 0",
     ),
     refused("relaxing beside two taps", law(DAMPED, **RELAXING), "stands beside one spring"),
     refused("relaxing beside points", law(THERE, **POINTS, **RELAXING), "stands beside one spring"),
-    refused("a key that is not understood", law(THERE, remark=1), "not understood"),
-    refused("51 taps", law(THERE, taps_N_per_m=[0] * 51), "more than 50"),
+    refused("a key that is entries", law(THERE, remark=1), "entries"),
+    refused("51 taps", law(THERE, taps_N_per_m=[0] * 51), "taps_N_per_m must have 0 to 50 entries"),
     # the device
     *(
         refused(
             f"{key} is {value}",
             put(put(THERE, {"loop.damping_N_s_per_m": 0, "energy_J": 6}), {f"loop.{key}": value}),
-            "must be > 0",
+            "must be",
         )
         for key, value in (
             ("sample_period_s", 0),
@@ -303,8 +307,8 @@ CASES = [
         "15/4",
         curved([0, "1/4"], ["1/2", "1/4"], ["3/2", "1/2"], [3, 2]),
     ),
-    refused("a friction curve of one point", curved([0, 1]), "two points or more"),
-    refused("a friction curve that goes back", curved([1, 1], [1, 2]), "two points or more"),
+    refused("a friction curve of one point", curved([0, 1]), "must have 2 to 10000"),
+    refused("a friction curve that goes back", curved([1, 1], [1, 2]), "must increase"),
     refused("a friction curve below 0", curved([0, 1], [1, -1]), "are ≥ 0"),
     refused("a speed below 0", curved([-1, 1], [1, 1]), "are ≥ 0"),
     refused(
@@ -340,8 +344,8 @@ CASES = [
         curved([0, 1], [2, "1/2"], models=[[0, "1/1000"]]),
         "not below the friction curve",
     ),
-    refused("no models", curved([0, 1], [1, 1], models=[]), "must be a short list"),
-    refused("a model below 0", curved([0, 1], [1, 1], models=[[-1, 0]]), "must be > 0"),
+    refused("no models", curved([0, 1], [1, 1], models=[]), "must have 1 to 10001 entries"),
+    refused("a model below 0", curved([0, 1], [1, 1], models=[[-1, 0]]), "of a model are ≥ 0"),
     # where it begins, and the rounds
     refused("it begins inside", motion([1, 2, 1], (0, 2, 3)), "begin at rest"),
     refused(
@@ -357,7 +361,7 @@ CASES = [
         refused(f"rounds of {part}", motion([0, 1, 0], part), "return to where it began")
         for part in ((0, 1, 3), (1, 1, 3), (2, 0, 3), (0, 3, 3))
     ),
-    refused("no round", motion([0, 1, 0], (0, 2, 0)), "return to where it began"),
+    refused("no round", motion([0, 1, 0], (0, 2, 0)), "repeats.times must be ≥ 1"),
     refused(
         "a switch position too many",
         put(QUARTER, {"switch_positions_m": [0, "1/4", "3/4", 0]}),
@@ -393,7 +397,7 @@ CASES = [
         put(QUARTER, {"bounds": {"depth_m": 1}, "switch_positions_m": [0, "1/4", "5/4"]}),
         "does not keep to its depth",
     ),
-    refused("a bound that is not understood", put(THERE, {"bounds": {"force_N": 1}}), "not understood"),
-    refused("a speed in a unit of length", put(THERE, {"bounds": {"speed_m": 1}}), "not understood"),
+    refused("a bound that is entries", put(THERE, {"bounds": {"force_N": 1}}), "entries"),
+    refused("a speed in a unit of length", put(THERE, {"bounds": {"speed_m": 1}}), "the unit of speed"),
     refused("bounds that are no object", put(THERE, {"bounds": []}), "must be an object"),
 ]

@@ -95,7 +95,7 @@ CASES = [
     refused("two pieces that overlap", put(WIDE, {"proof.pieces.1": piece(4, "3/8", 1)}), "do not follow"),
     refused("it ends before the last delay", put(WIDE, {"delay_high_s": "11/8"}), "do not cover"),
     refused("it ends past the last delay", put(WIDE, {"delay_high_s": "9/8"}), "do not cover"),
-    refused("no piece for an interval", put(WIDE, {"proof.pieces": []}), "do not cover"),
+    refused("no piece for an interval", put(WIDE, {"proof.pieces": []}), "pieces must have 1"),
     refused(
         "a piece past a sample",
         put(delays(4, 0, "1/2"), {"proof.pieces.0": piece(4, 0, "5/4"), "delay_high_s": "5/4"}),

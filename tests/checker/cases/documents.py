@@ -50,11 +50,13 @@ CASES = [
     accepted("b is 0 with a large exponent", spring("0e9999", [0])),
     accepted("b has many digits", spring("4." + "0" * 19_998)),
     refused("b has too many digits", spring("4." + "0" * 19_999), "too many digits"),
-    refused("N is a text", put(SPRING, {"loop.numerator": "8"}), "list of numbers"),
-    refused("N is a number", put(SPRING, {"loop.numerator": 8}), "list of numbers"),
-    refused("N is too long", put(SPRING, {"loop.numerator": [0] * 2001}), "more than 2000"),
+    refused("N is a text", put(SPRING, {"loop.numerator": "8"}), "numerator must be a list"),
+    refused("N is a number", put(SPRING, {"loop.numerator": 8}), "numerator must be a list"),
+    refused(
+        "N is too long", put(SPRING, {"loop.numerator": [0] * 2001}), "numerator must have 1 to 2000 entries"
+    ),
     accepted("N is long", spring(0, [0] * 2000, [1] + [0] * 1999)),
-    refused("damping twice", put(SPRING, {"loop.damping_N_m_s_per_rad": 4}), "once"),
+    refused("damping twice", put(SPRING, {"loop.damping_N_m_s_per_rad": 4}), "a device slides or turns"),
     refused(
         "damping in another unit",
         {
@@ -66,9 +68,15 @@ CASES = [
         },
         "unit of damping",
     ),
-    refused("no kind", {"loop": SPRING["loop"]}, "kind is missing"),
+    refused("no kind", {"loop": SPRING["loop"]}, "kind must be corners"),
     refused("another kind", {**SPRING, "kind": "springs"}, "kind must be"),
     refused("a kind that is a list", {**SPRING, "kind": ["spring"]}, "kind must be"),
+    refused(
+        "a number that is a truth",
+        put(SPRING, {"loop.damping_N_s_per_m": True}),
+        "expected a number, got bool",
+    ),
+    refused("an entry more beside", put(SPRING, {"remark": 1}), "has: remark"),
     refused("an unread entry below", put(SPRING, {"loop.remark": {"by": "hand"}}), "entries"),
     refused("an unread entry in a list", {**SPRING, "remarks": [{"by": "hand"}]}, "no proof of this kind"),
 ]

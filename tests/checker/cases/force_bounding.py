@@ -88,36 +88,42 @@ CASES = [
         "more than b/T",
     ),
     less("late", "loop.delay_s", TINY, "applied late"),
-    less("early", "loop.delay_s", -TINY, "applied late"),
-    less("T is 0", "loop.sample_period_s", 0, "T must be > 0"),
-    less("T is below 0", "loop.sample_period_s", -1, "T must be > 0"),
-    less("Δ is below 0", "loop.resolution_m", -1, "T must be > 0"),
-    less("ΔF is below 0", "loop.force_resolution_N", -1, "T must be > 0"),
+    less("early", "loop.delay_s", -TINY, "delay_s must be ≥ 0"),
+    less("T is 0", "loop.sample_period_s", 0, "sample_period_s must be > 0"),
+    less("T is below 0", "loop.sample_period_s", -1, "sample_period_s must be > 0"),
+    less("Δ is below 0", "loop.resolution_m", -1, "resolution_m must be ≥ 0"),
+    less("ΔF is below 0", "loop.force_resolution_N", -1, "force_resolution_N must be ≥ 0"),
     refused(
-        "f_c is below 0", put(EXACT, {"loop.coulomb_friction_N": -1, "law.friction_N": -2}), "T must be > 0"
+        "f_c is below 0",
+        put(EXACT, {"loop.coulomb_friction_N": -1, "law.friction_N": -2}),
+        "coulomb_friction_N must be ≥ 0",
     ),
     refused(
-        "b is below 0", put(EXACT, {"loop.damping_N_s_per_m": -2, "law.credit_N_per_m": -4}), "T must be > 0"
+        "b is below 0",
+        put(EXACT, {"loop.damping_N_s_per_m": -2, "law.credit_N_per_m": -4}),
+        "damping_N_s_per_m must be ≥ 0",
     ),
-    less("credit 0", "law.credit_N_per_m", 0, "credit must be > 0"),
-    less("credit below 0", "law.credit_N_per_m", -1, "credit must be > 0"),
-    less("φ below 0", "law.friction_N", -1, "credit must be > 0"),
-    refused("δ below 0", put(BOUND, {"law.count_m": -1, "loop.resolution_m": 0}), "credit must be > 0"),
+    less("credit 0", "law.credit_N_per_m", 0, "credit_N_per_m must be > 0"),
+    less("credit below 0", "law.credit_N_per_m", -1, "credit_N_per_m must be > 0"),
+    less("φ below 0", "law.friction_N", -1, "friction_N must be ≥ 0"),
+    refused("δ below 0", put(BOUND, {"law.count_m": -1, "loop.resolution_m": 0}), "count_m must be ≥ 0"),
     refused(
-        "h below 0", put(BOUND, {"law.half_step_N": -1, "loop.force_resolution_N": 0}), "credit must be > 0"
+        "h below 0",
+        put(BOUND, {"law.half_step_N": -1, "loop.force_resolution_N": 0}),
+        "half_step_N must be ≥ 0",
     ),
-    refused("ε below 0", put(EXACT, {"law.hair": -1}), "credit must be > 0"),
-    refused("u below 0", put(EXACT, {"law.roundoff": -1}), "credit must be > 0"),
-    less("ε is 1", "law.hair", 1, "must be below 1"),
-    refused("u is 1", put(BOUND, {"law.roundoff": 1, "loop.coulomb_friction_N": 9}), "must be below 1"),
+    refused("ε below 0", put(EXACT, {"law.hair": -1}), "hair must be ≥ 0"),
+    refused("u below 0", put(EXACT, {"law.roundoff": -1}), "roundoff must be ≥ 0"),
+    less("ε is 1", "law.hair", 1, "must be < 1"),
+    refused("u is 1", put(BOUND, {"law.roundoff": 1, "loop.coulomb_friction_N": 9}), "must be < 1"),
     *(
         refused(f"without {key}", without(BOUND, key), phrase)
         for key, phrase in (
             ("loop", "loop is missing"),
             ("law", "law is missing"),
-            ("loop.delay_s", "delay must be given once"),
-            ("law.hair", "hair must be given once"),
-            ("law.friction_N", "friction must be given once"),
+            ("loop.delay_s", "delay_s is missing"),
+            ("law.hair", "hair is missing"),
+            ("law.friction_N", "friction_N is missing"),
         )
     ),
 ]

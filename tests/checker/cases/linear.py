@@ -128,9 +128,14 @@ CASES = [
     refused("the square of another root", put(SQUARE, {"proof.positivity.square": [1, 1]}), WRONG),
     refused("1 − c counted twice", put(LATE_SPRING, {"proof.positivity.at_one": 2}), WRONG),
     refused("1 + c for 1 − c", put(LATE_SPRING, {"proof.positivity": AT_MINUS_ONE}), WRONG),
-    refused("no factor", put(SPRING, {"proof.positivity.factor": []}), "are missing"),
+    refused(
+        "no factor",
+        put(SPRING, {"proof.positivity.factor": []}),
+        "proof.positivity.factor must have 1 to 2000 entries",
+    ),
     refused("at_one is not whole", put(LATE_SPRING, {"proof.positivity.at_one": "1/2"}), "whole number"),
-    refused("at_one is below 0", put(LATE_SPRING, {"proof.positivity.at_one": -1}), "whole number"),
+    refused("at_one is below 0", put(LATE_SPRING, {"proof.positivity.at_one": -1}), "at_one must be ≥ 0"),
+    refused("without proof.stability.kind", without(SPRING, "proof.stability.kind"), "an object with kind"),
     refused("another degree", put(SPRING, {"proof.positivity.factor": [1, 1]}), WRONG),
     refused("a far higher degree", put(SPRING, {"proof.positivity.factor": [1] * 9}), "higher degree"),
     refused("an encoder", put(SPRING, {"loop.resolution_m": "1/1000"}), "ideal encoder only"),
@@ -141,7 +146,6 @@ CASES = [
             "proof",
             "proof.positivity",
             "proof.stability",
-            "proof.stability.kind",
             "proof.positivity.factor",
             "proof.positivity.square",
             "proof.positivity.at_one",
@@ -199,8 +203,10 @@ CASES = [
         "H(1) < 0 in the closed loop", linear("1/2", CONSTANT, [-1], stable=closed()), "not positive real"
     ),
     accepted("a spring in the closed loop", put(SPRING, {"proof.stability": closed("1/1000")})),
-    refused("offset 0", put(SPRING, {"proof.stability": closed(0)}), "offset must be positive"),
-    refused("offset below 0", put(SPRING, {"proof.stability": closed(-1)}), "offset must be positive"),
+    refused("offset 0", put(SPRING, {"proof.stability": closed(0)}), "proof.stability.offset must be > 0"),
+    refused(
+        "offset below 0", put(SPRING, {"proof.stability": closed(-1)}), "proof.stability.offset must be > 0"
+    ),
     refused("no offset", put(SPRING, {"proof.stability": {"kind": "closed loop"}}), "offset is missing"),
     refused(
         "part of a sample in the closed loop", put(PARTLY, {"proof.stability": closed()}), "part of a sample"
@@ -214,7 +220,7 @@ CASES = [
     refused(
         "another kind of stability",
         put(SPRING, {"proof.stability.kind": "both"}),
-        "unknown kind of stability",
+        "proof.stability.kind must be open loop or closed loop",
     ),
     refused("no damping, and part of a sample", linear(0, CONSTANT, [1], delay_s="1/2"), WRONG),
     accepted("no damping and no law", linear(0, NOTHING, [0], delay_s="1/2")),

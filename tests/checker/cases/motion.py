@@ -8,9 +8,12 @@ N times 1 further and back at once     N² + N − b (N + N²) − 2 N f_c
 
 from __future__ import annotations
 
+from importlib import import_module
+from itertools import pairwise
+from random import Random
 from typing import Any
 
-from . import Fraction, accepted, loop, put, refused, without
+from . import Case, Fraction, accepted, loop, plain, put, refused, without
 
 
 def motion(positions: Any, energy: Any, numerator: Any = (2,), denominator: Any = (1,), **device: Any) -> Any:
@@ -52,7 +55,69 @@ FILTER = motion([0, 1, 1, 0], "1/2", [1, 0], [1, "-1/2"], **FREE)
 HALF = motion([0, "-1/1000", "249/1000"], 0, resolution_m=2, damping_N_s_per_m=0, unilateral=False)
 NONE = "no more than the"
 
+
+def rounds_are_what_they_are_one_by_one() -> str:
+    """Random motions with parts that are repeated, beside the same motions written out."""
+    verify, random = import_module("zwidth.checker").verify, Random(4)
+    laws = (([2], [1]), ([3, -1], [1, 0]), ([1, 1], [2, -1]), ([2, 0], [1, "-1/2"]), ([1, -1], [1, -1]))
+    for round_ in range(250):
+        (n, d), late = random.choice(laws), random.choice(("0", "0", "1", "1/4"))
+        one_sided = n == [2] and d == [1] and random.random() < 0.8
+        x = [0, *(random.randrange(-1 if one_sided else -3, 5) for _ in range(random.randrange(2, 7)))]
+        first = random.randrange(len(x) - 1)
+        last = random.randrange(first + 1, len(x))
+        if random.random() < 0.3:
+            x[last] = x[first]
+        listed = [(first, last, random.choice((1, 2, 5, 9)))]
+        if last + 1 < len(x) and random.random() < 0.3:
+            listed.append((last, len(x) - 1, 3))
+        entries = {"unilateral": one_sided, "delay_s": late, "resolution_m": random.choice((0, 0, 1, 2))}
+        told = put(motion(x, 0, n, d, coulomb_friction_N="1/3"), {f"loop.{k}": v for k, v in entries.items()})
+        whole = written_out(x, listed)
+        several = [repeated(told, *listed), put(told, {"positions_m": whole})]
+        if late == "1/4":
+            switches = [(3 * a + b) / Fraction(4) for a, b in pairwise(x)]
+            several[0]["switch_positions_m"] = switches
+            several[1]["switch_positions_m"] = [(3 * a + b) / Fraction(4) for a, b in pairwise(whole)]
+        for document in several:
+            del document["energy_J"]
+        energies = [verify(plain(document)).energy for document in several]
+        if energies[0] != energies[1]:
+            return f"{round_}: {x} through {n}/{d}, {listed}, {entries}: {energies}"
+    return ""
+
+
+def written_out(x: Any, parts: Any) -> Any:
+    """The positions of all rounds, one after the other."""
+    out, ahead, before = [], 0, 0
+    for first, last, times in parts:
+        out += [v + ahead for v in x[before:first]]
+        for _ in range(times):
+            out += [v + ahead for v in x[first:last]]
+            ahead += x[last] - x[first]
+        ahead -= x[last] - x[first]
+        before = last
+    return [*out, *(v + ahead for v in x[before:])]
+
+
+COARSE = motion([0, 3, 0], 2, resolution_m=3, **FREE)
+"""Half a count of its spring is 2 · 3²/8; 18 − 18 b comes out."""
+
 CASES = [
+    Case("rounds are what they are one by one", rounds_are_what_they_are_one_by_one, ""),
+    refused(
+        "nothing is stored where H(1) < 0",
+        put(motion([0, 0], 0, [-2], resolution_m=3, **FREE), {}),
+        "no more than the 0 J stored",
+        0,
+    ),
+    refused(
+        "what half a count has stored",
+        put(COARSE, {"loop.damping_N_s_per_m": "8/9"}),
+        "no more than the 2.25 J stored",
+        2,
+    ),
+    taken("more than half a count has stored", "5/2", put(COARSE, {"loop.damping_N_s_per_m": "31/36"})),
     taken(
         "in and out",
         1,
@@ -152,7 +217,7 @@ CASES = [
         put(STEPS, {"positions_m": ["1/2", 1, 2, 0], "loop.resolution_m": "1/2"}),
         "start at rest at x = 0",
     ),
-    refused("one position", put(THERE, {"positions_m": [0]}), "at least two positions"),
+    refused("one position", put(THERE, {"positions_m": [0]}), "positions_m must have 2 to 4000000 entries"),
     refused(
         "a law with memory is left",
         put(FILTER, {"loop.unilateral": True, "positions_m": [0, 1, 0, 1, 0]}),
@@ -169,7 +234,7 @@ CASES = [
         put(QUARTER, {"switch_positions_m": ["1/4"]}),
         "one switch position in each",
     ),
-    refused("no switch positions", without(QUARTER, "switch_positions_m"), "switch_positions_m is missing"),
+    refused("no switch positions", without(QUARTER, "switch_positions_m"), "switch_positions is missing"),
     refused("no positions", without(THERE, "positions_m"), "positions_m is missing"),
     refused("repeats that are no list", put(THERE, {"repeats": {}}), "repeats must be a list"),
     *(
@@ -186,7 +251,7 @@ CASES = [
         put(repeated(put(THERE, {"positions_m": [0, 1, 0, 1, 0]}), (0, 2, 2), (2, 4, 2)), {"energy_J": 4}),
         energy=4,
     ),
-    refused("no round", repeated(THERE, (0, 2, 0)), "whole number of at least 1"),
+    refused("no round", repeated(THERE, (0, 2, 0)), "repeats[0].times must be ≥ 1"),
     # stored: H(1) Δ²/8 with Δ = 2, K = 2: 1 J.  From the edge of a count, −ε → 1: at −ε the reading is −2
     refused("no more than what half a count stores", put(HALF, {"energy_J": 1}), "no more than the 1 J", 1),
     taken(

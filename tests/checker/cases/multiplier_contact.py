@@ -97,8 +97,12 @@ CASES = [
     ),
     refused("no less than the spring needs, and no more", put(WALL, {"loop.damping_N_s_per_m": 1}), WRONG),
     refused("the norm of another law", put(WALL, {"proof.norm": norm(top=[3, -1])}), "do not sum"),
-    refused("fed with the penetration", put(WALL, {"law.fed_with": "penetration"}), "fed with the position"),
-    refused("never_pulls is a word", put(WALL, {"law.never_pulls": "no"}), "never_pulls true or false"),
+    refused(
+        "fed with the penetration", put(WALL, {"law.fed_with": "penetration"}), "fed_with must be position"
+    ),
+    refused(
+        "never_pulls is a word", put(WALL, {"law.never_pulls": "no"}), "never_pulls must be true or false"
+    ),
     refused("an entry of the law that no proof has", put(WALL, {"law.remark": 1}), "entries"),
     refused("no surface", put(WALL, {"loop.unilateral": False}), "acts inside only"),
     refused(

@@ -106,7 +106,7 @@ CASES = [
         refused(
             f"{key} is {value}",
             put(put(RISING, {"loop.damping_N_s_per_m": 99}), {f"loop.{key}": value}),
-            "T must be > 0",
+            f"{key} must be",
         )
         for key, value in (
             ("sample_period_s", 0),
@@ -116,7 +116,11 @@ CASES = [
             ("delay_s", -1),
         )
     ),
-    refused("damping is below 0", put(ONLY_FALLING, {"loop.damping_N_s_per_m": -1}), "T must be > 0"),
+    refused(
+        "damping is below 0",
+        put(ONLY_FALLING, {"loop.damping_N_s_per_m": -1}),
+        "damping_N_s_per_m must be ≥ 0",
+    ),
     accepted(
         "an endless pull beyond the upper end",
         RUNS_AWAY,
@@ -144,7 +148,7 @@ CASES = [
     accepted("an endless pull, an ideal encoder", put(RUNS_AWAY, {"loop.resolution_m": 0}), encoder="ideal"),
     refused("a spring that pushes back", pull([[-1, -1], [1, 1]], 0), "friction holds"),
     *(
-        refused(f"a pull whose {key} is {value}", put(RUNS_AWAY, {f"loop.{key}": value}), "T must be > 0")
+        refused(f"a pull whose {key} is {value}", put(RUNS_AWAY, {f"loop.{key}": value}), f"{key} must be")
         for key, value in (
             ("sample_period_s", 0),
             ("sample_period_s", -1),
@@ -152,13 +156,14 @@ CASES = [
             ("damping_N_s_per_m", -1),
         )
     ),
-    *bad("one point", [[0, 0]], "two points or more"),
-    *bad("points that are no list", {}, "two points or more"),
-    *bad("a point of three", [[0, 0, 0], [1, 1, 1]], "a position and a force"),
-    *bad("a point that is a word", ["00", "12"], "a position and a force"),
+    *bad("one point", [[0, 0]], "must have 2 to 10000"),
+    *bad("points that are no list", {}, "points_m_N must be a list"),
+    *bad("a point of three", [[0, 0, 0], [1, 1, 1]], "must have 2 to 2 entries"),
+    *bad("a point that is a word", ["00", "12"], "points_m_N[0] must be a list"),
+    *bad("the last two of three points at one place", [[0, 0], [1, 1], [1, 2]], "must increase"),
     *bad("two points at one place", [[0, 0], [0, -9]], "must increase"),
     *bad("points that go back", [[1, 0], [0, -9]], "must increase"),
-    *bad("10 001 points", [[k, 0] for k in range(10_001)], "not too many"),
+    *bad("10 001 points", [[k, 0] for k in range(10_001)], "points_m_N must have 2 to 10000 entries"),
     accepted("10 000 points", put(ONLY_FALLING, {"law.points_m_N": [[k, 0] for k in range(10_000)]})),
     *(
         refused(f"without {key}, {kind}", without(told, key), phrase)
@@ -166,8 +171,8 @@ CASES = [
         for key, phrase in (
             ("law", "law is missing"),
             ("loop", "loop is missing"),
-            ("law.points_m_N", "entries"),
-            ("loop.damping_N_s_per_m", "damping must be given once"),
+            ("law.points_m_N", "points_m_N is missing"),
+            ("loop.damping_N_s_per_m", "damping_N_s_per_m is missing"),
         )
     ),
     accepted("two points are enough", spring([[0, 0], [1, 2]])),

@@ -79,7 +79,11 @@ def smooth(level: int) -> Fraction:
     return -2 * WORK * sum(w * (x * x - 1 - level * ((1 - x) ** 2 + x)) for w, x in squares)
 
 
+# −1/(s + 1) ≥ −1: N + D = s, and with g = 1 2s + 1; N − σ D = ω² on the axis
+BELOW = proved(AT_ONE, [-1], [1, 1], -1)
+
 CASES = [
+    accepted("a level below 0", BELOW, "the input index is at least -1"),
     accepted(
         "the input index",
         ALL,
@@ -116,14 +120,14 @@ CASES = [
         proved(signs([2, -1]), [0, -1], [1, -2], **DISCRETE),
         "a root lies outside",
     ),
-    refused("offset 0", put(ALL, {"proof.offset": 0}), "offset must be positive"),
-    refused("offset below 0", put(ALL, {"proof.offset": -1}), "offset must be positive"),
+    refused("offset 0", put(ALL, {"proof.offset": 0}), "proof.offset must be > 0"),
+    refused("offset below 0", put(ALL, {"proof.offset": -1}), "proof.offset must be > 0"),
     accepted("a small offset", put(ALL, {"proof.offset": "1/1000"})),
     refused("D is 0", proved(CONSTANT, [1], [0]), "denominator is zero"),
     refused("G is 0 and inverted", proved(CONSTANT, [0], [1], **OUTPUT), "has no inverse"),
     refused("more zeros than poles", proved(CONSTANT, [1, 0], [1], **DISCRETE), "more zeros than poles"),
     refused("another time", put(ALL, {"system.time": "both"}), "time must be"),
-    refused("another index", put(ALL, {"index": "both"}), "time must be"),
+    refused("another index", put(ALL, {"index": "both"}), "index must be input or output"),
     *(
         refused(f"without {key}", without(ALL, key), "is missing")
         for key in (
@@ -195,16 +199,20 @@ CASES = [
     ),
     refused("a burst of order 2", SMOOTH, "none comes out"),
     taken("a burst of order 2, a higher level", smooth(2), put(SMOOTH, {"level": 2})),
-    refused("a burst that is not smooth", put(SMOOTH, {"motion.power": 0}), "not smooth enough"),
+    refused("a burst that is not smooth", put(SMOOTH, {"motion.power": 0}), "more cycles than its power"),
     refused("fewer cycles than its power", put(FAST, {"motion.cycles": 1}), "more cycles than its power"),
-    refused("no pace", put(FAST, {"motion.step_rad_per_s": 0}), "a burst needs Ω > 0"),
-    refused("a pace below 0", put(FAST, {"motion.step_rad_per_s": -1}), "a burst needs Ω > 0"),
-    refused("a power of 401", put(FAST, {"motion.power": 401, "motion.cycles": 402}), "a burst needs Ω > 0"),
+    refused("no pace", put(FAST, {"motion.step_rad_per_s": 0}), "step_rad_per_s must be > 0"),
+    refused("a pace below 0", put(FAST, {"motion.step_rad_per_s": -1}), "step_rad_per_s must be > 0"),
+    refused("a power of 401", put(FAST, {"motion.power": 401, "motion.cycles": 402}), "power must be ≤ 400"),
     refused(
         "a polynomial that does not begin at rest", put(GROWS, {"motion.lowest_power": 0}), "begin at rest"
     ),
-    refused("a polynomial of no time", put(GROWS, {"motion.duration_s": 0}), "must last"),
-    refused("a polynomial of less than no time", put(GROWS, {"motion.duration_s": -3}), "must last"),
+    refused("a polynomial of no time", put(GROWS, {"motion.duration_s": 0}), "motion.duration_s must be > 0"),
+    refused(
+        "a polynomial of less than no time",
+        put(GROWS, {"motion.duration_s": -3}),
+        "motion.duration_s must be > 0",
+    ),
     refused("a burst in steps", put(DELAY, {"motion": BURST}), "motion in this time"),
     refused("a polynomial in steps", put(DELAY, {"motion": POLYNOMIAL}), "motion in this time"),
     refused("a sequence in time", put(FAST, {"motion": SEQUENCE}), "motion in this time"),

@@ -85,7 +85,11 @@ LATE = drawn({"kind": "sequence", "latent": [[1, 0], [0, 1]]}, [[[0], [1]], [[-1
 CIRCLE = drawn({**BURST, "cosine": [1, 0], "sine": [0, 1]}, [[[1], [3]], [[-3], [1]]], [1, 0])
 # φ = (t, 2t): D = s + 1: u = (1 + t)(1, 2); y = [[−1, 0], [1, −1]] φ = (−t, −t): −∫ 3 t (1 + t)
 PUSH = drawn({**POLYNOMIAL, "coefficients": [[3], [6]]}, [[[-1], []], [[1], [-1]]], [1, 1])
+# Re G = 1 + 300 (c − 4/5)(c − 1) of a port of one axis, below 0 near c = 9/10; told as the constant 1
+DIPS = proved([(0, ONE)], ([[[1]]], [1]), 1, [[[391, -540, 150]]], [1, 0, 0], 0, **DISCRETE)
+
 CASES = [
+    refused("a minor that agrees at a few points", DIPS, "do not multiply"),
     *(
         case
         for name, told in ALL.items()
@@ -151,7 +155,11 @@ CASES = [
         put(DIAGONAL, {"proof.minors.0.positivity": signs([1, 1])}),
         "is not positive where",
     ),
-    refused("no factor", put(DIAGONAL, {"proof.minors.0.positivity": signs([])}), "are missing"),
+    refused(
+        "no factor",
+        put(DIAGONAL, {"proof.minors.0.positivity": signs([])}),
+        "positivity.factor must have 1 to 2000 entries",
+    ),
     refused("one minor", put(CONSTANT, {"proof.minors": CONSTANT["proof"]["minors"][:1]}), "every size"),
     # −1/s on both axes: Π = 0, M = −1 + g s: D M⁻¹ = s/(g s − 1)
     refused(
@@ -197,8 +205,8 @@ CASES = [
         proved([(0, ONE), (0, ONE)], ([[[0], []], [[], [0]]], [1]), 1, [[[-1], []], [[], [-1]]], [1], 0),
         MINORS,
     ),
-    refused("offset 0", put(CONSTANT, {"proof.offset": 0}), "offset must be positive"),
-    refused("offset below 0", put(CONSTANT, {"proof.offset": -1}), "offset must be positive"),
+    refused("offset 0", put(CONSTANT, {"proof.offset": 0}), "proof.offset must be > 0"),
+    refused("offset below 0", put(CONSTANT, {"proof.offset": -1}), "proof.offset must be > 0"),
     refused(
         "a resolvent that is not proper",
         put(CONSTANT, {"proof.resolvent.numerators": [[[2, 2], [-1]], [[-1], [2]]]}),
@@ -217,8 +225,15 @@ CASES = [
     refused(
         "a matrix that is not square", put(CONSTANT, {"system.numerators": [[[2], [1]]]}), "as many columns"
     ),
-    refused("no rows", put(CONSTANT, {"system.numerators": []}), "1 to 12 rows"),
-    refused("a row that is a number", put(CONSTANT, {"system.numerators": [1, 2]}), "as many columns"),
+    refused(
+        "no rows", put(CONSTANT, {"system.numerators": []}), "system.numerators must have 1 to 12 entries"
+    ),
+    refused(
+        "a matrix of fewer columns", put(CONSTANT, {"system.numerators": [[[2]], [[1]]]}), "as many columns"
+    ),
+    refused(
+        "a row that is a number", put(CONSTANT, {"system.numerators": [1, 2]}), "numerators[0] must be a list"
+    ),
     refused("a sequence at its level", put(LATE, {"level": "-1/2"}), "none comes out"),
     taken("a sequence, a level", 3, put(LATE, {"level": 1})),
     taken("a sequence, fractions", "3/4", put(LATE, {"level": 1, "motion.latent": [["1/2", 0], [0, "1/2"]]})),
@@ -262,16 +277,16 @@ CASES = [
     refused("axes of two lengths", put(LATE, {"motion.latent": [[1, 0], [1]]}), "of one length"),
     refused("a burst of one axis", put(CIRCLE, {"motion.cosine": [1]}), "two numbers for every axis"),
     refused("a burst of one axis, its sine", put(CIRCLE, {"motion.sine": [1]}), "two numbers for every axis"),
-    refused("no pace", put(CIRCLE, {"motion.step_rad_per_s": 0}), "a burst needs Ω > 0"),
-    refused("fewer cycles than its power", put(CIRCLE, {"motion.cycles": 1}), "a burst needs Ω > 0"),
+    refused("no pace", put(CIRCLE, {"motion.step_rad_per_s": 0}), "step_rad_per_s must be > 0"),
+    refused("fewer cycles than its power", put(CIRCLE, {"motion.cycles": 1}), "more cycles than its power"),
     refused(
-        "a power of 401", put(CIRCLE, {"motion.power": 401, "motion.cycles": 402}), "a burst needs Ω > 0"
+        "a power of 401", put(CIRCLE, {"motion.power": 401, "motion.cycles": 402}), "power must be ≤ 400"
     ),
-    refused("a burst that is not smooth", put(CIRCLE, {"motion.power": 0}), "not smooth enough"),
+    refused("a burst that is not smooth", put(CIRCLE, {"motion.power": 0}), "more cycles than its power"),
     refused(
         "a polynomial that does not begin at rest", put(PUSH, {"motion.lowest_power": 0}), "begin at rest"
     ),
-    refused("a polynomial of no time", put(PUSH, {"motion.duration_s": 0}), "must last"),
+    refused("a polynomial of no time", put(PUSH, {"motion.duration_s": 0}), "motion.duration_s must be > 0"),
     refused(
         "a sequence in time",
         put(CIRCLE, {"motion": {"kind": "sequence", "latent": [[1], [1]]}}),

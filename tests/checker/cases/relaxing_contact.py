@@ -116,16 +116,24 @@ CASES = [
     refused(
         "K < 0",
         put(relaxing([], [-4], [1], damping_N_s_per_m=99), {"law.stiffness_N_per_m": -4}),
-        "stiffness is negative",
+        "stiffness_N_per_m must be ≥ 0",
     ),
     accepted("K = 0", put(relaxing([], [0], [1]), {"law.stiffness_N_per_m": 0})),
-    refused("a pole at 1", relaxing([(1, 3)], [7, -7], [1, -1], damping_N_s_per_m=99), "does not relax"),
-    refused("a pole at −1", relaxing([(-1, 3)], [7, 1], [1, 1], damping_N_s_per_m=99), "does not relax"),
-    refused("a pole at 2", relaxing([(2, 3)], [7, -11], [1, -2], damping_N_s_per_m=99), "does not relax"),
+    refused(
+        "a pole at 1", relaxing([(1, 3)], [7, -7], [1, -1], damping_N_s_per_m=99), "parts[0].pole must be"
+    ),
+    refused(
+        "a pole at −1", relaxing([(-1, 3)], [7, 1], [1, 1], damping_N_s_per_m=99), "parts[0].pole must be"
+    ),
+    refused(
+        "a pole at 2", relaxing([(2, 3)], [7, -11], [1, -2], damping_N_s_per_m=99), "parts[0].pole must be"
+    ),
     refused("fed with something else", put(ONE, {"law.fed_with": "force"}), "fed_with must be"),
-    refused("never_pulls is a word", put(ONE, {"law.never_pulls": "no"}), "never_pulls true or false"),
-    refused("parts that are no list", put(ONE, {"law.parts": {}}), "short list"),
-    refused("61 parts", relaxing([(0, 0)] * 61, [4], [1], damping_N_s_per_m=99), "short list"),
+    refused(
+        "never_pulls is a word", put(ONE, {"law.never_pulls": "no"}), "never_pulls must be true or false"
+    ),
+    refused("parts that are no list", put(ONE, {"law.parts": {}}), "parts must be a list"),
+    refused("61 parts", relaxing([(0, 0)] * 61, [4], [1], damping_N_s_per_m=99), "must have 0 to 60"),
     accepted("60 parts", relaxing([(0, 0)] * 60, [4], [1], damping_N_s_per_m=99)),
     refused("an entry of the law that no proof has", put(ONE, {"law.remark": 1}), "entries"),
     refused("an entry of a part that no proof has", put(ONE, {"law.parts.0.remark": 1}), "entries"),
@@ -136,9 +144,9 @@ CASES = [
             ("law.parts", "parts is missing"),
             ("law.fed_with", "fed_with is missing"),
             ("law.never_pulls", "never_pulls is missing"),
-            ("law.stiffness_N_per_m", "entries"),
+            ("law.stiffness_N_per_m", "stiffness_N_per_m is missing"),
             ("law.parts.0.pole", "pole is missing"),
-            ("law.parts.0.stiffness_N_per_m", "entries"),
+            ("law.parts.0.stiffness_N_per_m", "parts[0].stiffness_N_per_m is missing"),
         )
     ),
 ]

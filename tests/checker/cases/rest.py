@@ -65,6 +65,24 @@ LIMITS = {
 }
 BOX = hand("stability", *spring("0.4"), damping_N_s_per_m=["1/2", "3/5"], stiffness_N_per_m=[1, "6/5"])
 
+# unit T²/M = ⅓: a pair of roots at 3/5 ± 4j/5, 4/5 ± 3j/5 or 12/13 ± 5j/13, by the linear equations for
+# N = h₁ z + h₀; the others lie inside.  The pole of H(z) is −d
+ON_CIRCLE = {
+    ("0", 0): ("33/10", "-3/2"),
+    ("0", "-1/3"): ("14/5", -2),
+    ("1/3", 0): ("13527/4090", "-1917/818"),
+    ("1/3", "1/3"): ("8361/2045", "-891/409"),
+    ("1/7", "-1/3"): ("163366/60205", "-27146/12041"),
+    ("1", "1/3"): ("604/225", "-88/45"),
+    ("5/3", 0): ("5167098/4450277", "-316062/342329"),
+}
+
+
+def within(k: Any, wide: Any) -> Any:
+    """A spring before a held device, some of it within bounds."""
+    return hand("stability", *spring(k), **{**HELD, **wide})
+
+
 CASES = [
     accepted(
         "a free mass",
@@ -110,6 +128,56 @@ CASES = [
     # P(1) = 0 with K = 0, whatever the delay: the exact numbers say it
     *both("K > 0, part of a sample late", law(TINY, "1/2"), law(0, "1/2"), delay_s="1/2"),
     *both("K > 0, one and a half late", law(TINY, "1/4"), law(0, "1/4"), delay_s="3/2"),
+    *(
+        case(
+            f"a pair just on the circle, {late} samples of {period} s late, a pole at {pole}, {words}",
+            {**told, "kind": kind},
+            words,
+        )
+        for (late, pole), law_ in ON_CIRCLE.items()
+        for period in (2, Fraction(1, 2))
+        for told in [
+            hand(
+                "",
+                law_,
+                [1, pole],
+                mass_kg=3 * period**2,
+                sample_period_s=period,
+                delay_s=period * Fraction(late),
+            )
+        ]
+        for case, kind, words in (
+            (accepted, "instability", "do not come to rest"),
+            (refused, "stability", "could not be confirmed"),
+        )
+    ),
+    *(
+        case
+        for name, wide, less, more in (
+            ("the mass", {"mass_kg": ["4/5", "6/5"]}, "1.12", "1.18"),
+            ("the damping", {"damping_N_s_per_m": ["2/5", 1]}, "0.85", "0.97"),
+            ("the stiffness", {"stiffness_N_per_m": ["1/2", 2]}, "1.1", "1.16"),
+            (
+                "all, late",
+                {
+                    "mass_kg": [1, "6/5"],
+                    "damping_N_s_per_m": ["2/5", "1/2"],
+                    "stiffness_N_per_m": [1, "7/5"],
+                    "delay_s": "1/4",
+                },
+                "0.55",
+                "0.65",
+            ),
+        )
+        for case in (
+            accepted(f"wide bounds of {name}", within(less, wide), "for every value in the intervals"),
+            refused(
+                f"wider than it rests, {name}",
+                within(more, wide),
+                "every value comes to rest was not confirmed",
+            ),
+        )
+    ),
     refused(
         "uncertain numbers do not show that it moves",
         put(MOVES, {"loop.mass_kg": [1, "1.1"]}),
@@ -120,15 +188,15 @@ CASES = [
     refused(
         "an interval turned round",
         put(BOX, {"loop.stiffness_N_per_m": ["6/5", 1]}),
-        "smaller and the larger end",
+        "stiffness_N_per_m must be",
     ),
     refused(
-        "an interval of three", put(BOX, {"loop.stiffness_N_per_m": [1, 1, 1]}), "smaller and the larger end"
+        "an interval of three", put(BOX, {"loop.stiffness_N_per_m": [1, 1, 1]}), "stiffness_N_per_m must be"
     ),
-    refused("T is uncertain", put(BOX, {"loop.sample_period_s": [1, "1.1"]}), "must be certain"),
-    refused("the delay is uncertain", put(BOX, {"loop.delay_s": [0, "0.1"]}), "must be certain"),
+    refused("T is uncertain", put(BOX, {"loop.sample_period_s": [1, "1.1"]}), "expected a number"),
+    refused("the delay is uncertain", put(BOX, {"loop.delay_s": [0, "0.1"]}), "expected a number"),
     *(
-        refused(f"{key} is {value}", put(RESTS, {f"loop.{key}": value}), "must be > 0")
+        refused(f"{key} is {value}", put(RESTS, {f"loop.{key}": value}), "must be")
         for key, value in (
             ("mass_kg", 0),
             ("mass_kg", -1),
@@ -139,17 +207,29 @@ CASES = [
             ("delay_s", -1),
         )
     ),
+    accepted(
+        "a pair just on the circle, N and D turned",
+        put(
+            hand("instability", [-Fraction(x) for x in ON_CIRCLE["0", "-1/3"]], [-1, "1/3"]),
+            {"loop.mass_kg": 12, "loop.sample_period_s": 2},
+        ),
+    ),
+    refused(
+        "what moves too far within a sample where it is damped most",
+        hand("stability", *spring("0.1"), damping_N_s_per_m=[1, 900], stiffness_N_per_m=1),
+        "move too far within one sample",
+    ),
     refused("301 samples late", put(RESTS, {"loop.delay_s": 301}), "more than 300 samples"),
     refused("N is longer than D", hand("stability", [1, 1, 1], [1, 0]), "must be proper"),
-    refused("no N", hand("stability", [], [1, 0]), "must be proper"),
-    refused("no D", hand("stability", [1], []), "must be proper"),
+    refused("no N", hand("stability", [], [1, 0]), "numerator must have 1"),
+    refused("no D", hand("stability", [1], []), "denominator must have 1"),
     refused("D begins with 0", hand("stability", [1, 1], [0, 1]), "must be proper"),
     *(
         refused(f"without {key}", without(RESTS, f"loop.{key}"), phrase)
         for key, phrase in (
-            ("mass_kg", "mass must be given once"),
+            ("mass_kg", "mass_kg is missing"),
             ("numerator", "numerator is missing"),
-            ("delay_s", "delay must be given once"),
+            ("delay_s", "delay_s is missing"),
         )
     ),
 ]

@@ -66,8 +66,9 @@ CASES = [
     refused("a force too few", put(THERE, {"forces_N": [0]}), "one force for each move"),
     *(
         refused(f"rounds of {part}", motion([0, 1, 0], [0, 2], part), "return to where it began")
-        for part in ((0, 1, 3), (1, 1, 3), (2, 0, 3), (0, 3, 3), (0, 2, 0))
+        for part in ((0, 1, 3), (1, 1, 3), (2, 0, 3), (0, 3, 3))
     ),
+    refused("no round", motion([0, 1, 0], [0, 2], (0, 2, 0)), "repeats.times must be ≥ 1"),
     refused("part of a sample", put(THERE, {"loop.delay_s": "1/4"}), "whole samples"),
     refused(
         "deeper than its bound", put(THERE, {"bounds": {"depth_m": "1/2"}}), "does not keep to its depth"
@@ -77,7 +78,11 @@ CASES = [
         put(THERE, {"bounds": {"speed_m_per_s": "1/2"}}),
         "does not keep to its speed",
     ),
-    refused("a description that is none", put(THERE, {"law.description": 1}), "described in words"),
+    refused(
+        "a description that is none",
+        put(THERE, {"law.description": 1}),
+        "description must be text of at most 10000 letters",
+    ),
     refused("counts_force_limit is a word", put(THERE, {"law.counts_force_limit": "no"}), "true or false"),
     refused(
         "counts_force_resolution is a word",
@@ -87,8 +92,8 @@ CASES = [
     *(
         refused(f"without {key}", without(THERE, key), phrase)
         for key, phrase in (
-            ("positions_m", "positions must be given once"),
-            ("forces_N", "forces must be given once"),
+            ("positions_m", "positions_m is missing"),
+            ("forces_N", "forces_N is missing"),
             ("repeats", "repeats is missing"),
             ("law", "law is missing"),
             ("law.description", "description is missing"),

@@ -8,7 +8,6 @@ from .spring import spring
 
 # K = 8, Δ = ½, T = 1: b_0 = 4 and f_0 = 2 cover every hand; b = 3, f_c = 5: (4 − 3) v ≤ 5 − 2
 SPRING = {
-    "format": "zwidth certificate 1",
     "kind": "slow hands",
     "loop": spring(3, coulomb_friction_N=5, resolution_m="1/2")["loop"],
     "largest_speed_m_per_s": 3,
@@ -16,7 +15,6 @@ SPRING = {
 }
 # b_0 = 10 and f_0 = 20; b = 8, f_c = 21
 CONTACT = {
-    "format": "zwidth certificate 1",
     "kind": "slow hands",
     "loop": {**DAMPED["loop"], "damping_N_s_per_m": 8, "coulomb_friction_N": 21},
     "law": DAMPED["law"],
@@ -76,7 +74,7 @@ CASES = [
     ),
     accepted("hands at rest", put(SPRING, {"largest_speed_m_per_s": 0, "loop.damping_N_s_per_m": 0})),
     refused("a speed below 0", put(SPRING, {"largest_speed_m_per_s": -1}), "must be ≥ 0"),
-    refused("another proof", put(SPRING, {"enough.kind": "linear"}), "is shown by"),
+    refused("another proof", put(SPRING, {"enough.kind": "linear"}), "enough.kind must be spring or contact"),
     refused(
         "a speed in km/h",
         {**without(SPRING, "largest_speed_m_per_s"), "largest_speed_km_per_h": 3},
@@ -85,7 +83,11 @@ CASES = [
     refused("no speed", without(SPRING, "largest_speed_m_per_s"), "largest_speed"),
     refused("no enough", without(SPRING, "enough"), "enough is missing"),
     refused("enough is a list", put(SPRING, {"enough": []}), "must be an object"),
-    refused("enough without damping", without(SPRING, "enough.damping_N_s_per_m"), "entries"),
+    refused(
+        "enough without damping",
+        without(SPRING, "enough.damping_N_s_per_m"),
+        "enough.damping_N_s_per_m is missing",
+    ),
     refused("enough with more", put(SPRING, {"enough.delay_s": 0}), "entries"),
-    refused("a damped wall without its law", without(CONTACT, "law"), "entries"),
+    refused("a damped wall without its law", without(CONTACT, "law"), "law is missing"),
 ]

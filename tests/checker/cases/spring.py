@@ -78,11 +78,11 @@ CASES = [
     *(
         refused(f"without {key}", without(spring(4), f"loop.{key}"), phrase)
         for key, phrase in (
-            ("damping_N_s_per_m", "damping must be given once"),
-            ("coulomb_friction_N", "coulomb_friction must be given once"),
-            ("resolution_m", "resolution must be given once"),
-            ("sample_period_s", "sample_period must be given once"),
-            ("delay_s", "delay must be given once"),
+            ("damping_N_s_per_m", "damping_N_s_per_m is missing"),
+            ("coulomb_friction_N", "coulomb_friction_N is missing"),
+            ("resolution_m", "resolution_m is missing"),
+            ("sample_period_s", "sample_period_s is missing"),
+            ("delay_s", "delay_s is missing"),
             ("numerator", "numerator is missing"),
             ("denominator", "denominator is missing"),
             ("unilateral", "unilateral is missing"),
@@ -93,12 +93,12 @@ CASES = [
         for key in ("coulomb_friction_N", "resolution_m", "delay_s")
     ),
     refused("b below 0", spring("-1/1000", [0]), "≥ 0"),
-    refused("T is 0", spring(4, sample_period_s=0), "T must be > 0"),
-    refused("T is below 0", spring(4, sample_period_s=-1), "T must be > 0"),
+    refused("T is 0", spring(4, sample_period_s=0), "sample_period_s must be > 0"),
+    refused("T is below 0", spring(4, sample_period_s=-1), "sample_period_s must be > 0"),
     refused("more of N than of D", spring(99, [8, 0], [1]), "must be proper"),
     accepted("less of N than of D is led by zeros, K = 0", spring(0, [0], [1, 0])),
     refused("less of N than of D is led by zeros, H = 8/z", spring(99, [8], [1, 0]), "not a spring"),
-    refused("no D", spring(4, [], []), "must be proper"),
+    refused("no D", spring(4, [], []), "numerator must have 1"),
     refused("D begins with 0", spring(4, [8, 0], [0, 1]), "must be proper"),
     refused("unilateral is a number", put(spring(4), {"loop.unilateral": 1}), "true or false"),
     refused("unilateral is a word", put(spring(4), {"loop.unilateral": "true"}), "true or false"),

@@ -77,7 +77,75 @@ SHORT = packed(unpacked(SPRING["storage"])[1:])
 LONG = packed([*unpacked(SPRING["storage"]), 0])
 EMPTY = "is empty"
 
+# the unit where the largest sum, with V = 0, is just too large for the numbers it is kept in
+SMALLEST_UNITS = {
+    "spring": "7.46902539e-17", "late": "3.99957844e-17", "partly late": "3.37507799e-17",
+    "coarse": "1.66119830e-16",
+    "coarse part": "1.05175262e-16", "coarse damped": "6.62539142e-17", "row": "6.87644385e-17",
+    "solid": "2.98427949e-15", "relaxing": "3.19744231e-15",
+}  # fmt: skip
+MORE, LESS = 1 + Fraction(1, 10**7), 1 - Fraction(1, 10**7)
+
+
+def in_units(name: str, unit: Fraction) -> Any:
+    told = STORAGES[name]["document"]
+    return put(told, {"force_unit": unit, "storage": packed([0] * len(unpacked(told["storage"])))})
+
+
+def leading(place: tuple[int, int], to: int) -> Any:
+    """The laws in a row, of states at −2, −1, 0, 1, where one reading leads elsewhere."""
+    successors = unpacked(ROW["table"]["successors"])
+    successors[3 * place[0] + place[1]] = to
+    return put(ROW, {"table.successors": packed(successors)})
+
+
 CASES = [
+    *(
+        refused(
+            f"{name}, a unit just too small", in_units(name, Fraction(u) * LESS), "too large to be compared"
+        )
+        for name, u in SMALLEST_UNITS.items()
+    ),
+    *(
+        refused(f"{name}, a unit just large enough", in_units(name, Fraction(u) * MORE), TAKES)
+        for name, u in SMALLEST_UNITS.items()
+        if name != "relaxing"
+    ),
+    *(
+        refused(f"laws in a row, {what}", leading(place, to), phrase)
+        for what, place, to, phrase in (
+            ("a reading that leads to one further in", (0, 1), 1, "another reading"),
+            ("a reading that leads to one further out", (1, 1), 0, "another reading"),
+            ("a reading that leads nowhere", (0, 1), -1, "is not closed"),
+            ("a reading that leads past the last state", (0, 1), 4, "is not closed"),
+            ("a reading off the board that leads somewhere", (0, 0), 0, "is not closed"),
+        )
+    ),
+    refused(
+        "a board of a law that relaxes, that ends too near for long moves",
+        put(STORAGES["solid"]["document"], {"domain.largest_move_counts": 2}),
+        "must reach so far out",
+    ),
+    refused(
+        "a law that relaxes, that stores far more at one level than at the next",
+        put(STORAGES["solid"]["document"], {"storage": packed([(i // 9 % 2) << 47 for i in range(36)])}),
+        "too large to be compared",
+    ),
+    accepted("a board inside a surface", SPRING, "at any position up to 3 counts inside"),
+    accepted("a board of both sides", STORAGES["points"]["document"], "at any position from -3 to 3 counts"),
+    refused(
+        "cells of a law of points",
+        put(
+            STORAGES["coarse"]["document"],
+            {"law.taps_N_per_m": [], "law.points_m_N": [[0, 0], [1, 1]]},
+        ),
+        "linear inside",
+    ),
+    refused(
+        "cells that remember more",
+        put(STORAGES["coarse damped"]["document"], {"domain.remembered": 2}),
+        "another number of readings",
+    ),
     *(case for name in STORAGES for case in of(name)),
     *(
         refused(
@@ -95,9 +163,13 @@ CASES = [
     *(
         refused(f"laws in a row that begin {what}", put(ROW, {"table.starts": starts}), phrase)
         for what, starts, phrase in (
-            ("nowhere", [], "where a hand may begin"),
-            ("in a list of one word", "0", "where a hand may begin"),
-            ("in more states than there are", [0] * (ROW["table"]["states"] + 1), "where a hand may begin"),
+            ("nowhere", [], "starts must have 1"),
+            ("in a list of one word", "0", "starts must be a list"),
+            (
+                "in more states than there are",
+                [0] * (ROW["table"]["states"] + 1),
+                "a state that is not in the table",
+            ),
             ("past the last state", [ROW["table"]["states"]], "not in the table"),
         )
     ),
@@ -195,20 +267,22 @@ CASES = [
         board(f"{name}: {what}", phrase, **{f"domain__{key}": value})
         for name in ("spring", "solid", "row")
         for what, key, value, phrase in (
-            ("moves of no length", "largest_move_counts", 0, "longest move must be > 0"),
-            ("moves back", "largest_move_counts", -1, "longest move must be > 0"),
-            ("moves without end", "largest_move_counts", 10_000_001, "longest move must be > 0"),
-            ("no step", "steps_per_count", 0, "whole number of at least 1"),
+            ("moves of no length", "largest_move_counts", 0, "domain.largest_move_counts must be"),
+            ("moves back", "largest_move_counts", -1, "domain.largest_move_counts must be"),
+            ("moves without end", "largest_move_counts", 10_000_001, "domain.largest_move_counts must be"),
+            ("no step", "steps_per_count", 0, "domain.steps_per_count must be ≥ 1"),
             ("a board turned round", "highest_count", -9, EMPTY),
-            ("a count that is none", "lowest_count", "-1/2", "whole number of ordinary size"),
-            ("a count far off", "lowest_count", -(10**7) - 1, "whole number of ordinary size"),
+            ("a count that is none", "lowest_count", "-1/2", "domain.lowest_count must be"),
+            ("a count far off", "lowest_count", -(10**7) - 1, "domain.lowest_count must be"),
         )
     ),
     *(
         refused(
-            f"{name}, the force unit is {unit}", put(STORAGES[name]["document"], {"force_unit": unit}), phrase
+            f"{name}, the force unit is {unit}",
+            put(STORAGES[name]["document"], {"force_unit": unit}),
+            "force_unit must be > 0",
         )
-        for name, phrase in (("spring", EMPTY), ("solid", EMPTY), ("row", EMPTY), ("coarse", "must be > 0"))
+        for name in ("spring", "solid", "row", "coarse")
         for unit in (0, "-1/1000000")
     ),
     *(

@@ -23,7 +23,6 @@ def touching(
 ) -> Any:
     """b = ½ N·s/m if nothing else is said."""
     return {
-        "format": "zwidth witness 1",
         "kind": "touching motion",
         "loop": loop(numerator, denominator, **{"damping_N_s_per_m": "1/2", **device}),
         "law": {"fed_with": fed, "never_pulls": never_pulls},
@@ -127,7 +126,7 @@ CASES = [
     ),
     refused("too much is told", put(THERE, {"energy_J": "1.0000000011"}), "the energy is", 1),
     refused("no surface", put(THERE, {"loop.unilateral": False}), "acts inside only"),
-    refused("one position", put(THERE, {"positions_m": [0]}), "two positions or more"),
+    refused("one position", put(THERE, {"positions_m": [0]}), "positions_m must have 2 to 50000 entries"),
     refused(
         "it begins inside", put(THERE, {"positions_m": ["1/1000", 1, "1/1000"]}), "begin at rest outside"
     ),
@@ -147,9 +146,11 @@ CASES = [
     ),
     refused("a pole at 2", put(FILTER, {"loop.denominator": [1, -2]}), "does not forget"),
     refused("a pole at 1", put(FILTER, {"loop.denominator": [1, -1]}), "does not forget"),
-    refused("another sample period beside it", put(THERE, {"sample_period_s": 2}), "sample period is not"),
+    refused("another sample period beside it", put(THERE, {"sample_period_s": 2}), "T is 1 s, not 2 s"),
     refused("fed with something else", put(THERE, {"law.fed_with": "force"}), "fed_with must be"),
-    refused("never_pulls is a word", put(THERE, {"law.never_pulls": "no"}), "never_pulls true or false"),
+    refused(
+        "never_pulls is a word", put(THERE, {"law.never_pulls": "no"}), "never_pulls must be true or false"
+    ),
     refused("an entry of the law that no proof has", put(THERE, {"law.remark": 1}), "entries"),
     refused("no positions", without(THERE, "positions_m"), "positions_m is missing"),
 ]

@@ -16,7 +16,7 @@ def violation(damping: Any, numerator: Any, denominator: Any = (1,), **device: A
     """A loop, and `proof` as it is given."""
     proof = device.pop("proof", {"kind": "criterion", "cosine": device.pop("cosine", None)})
     told = loop(numerator, denominator, damping_N_s_per_m=damping, **device)
-    return {"format": "zwidth violation 1", "kind": "violation", "loop": told, "proof": proof}
+    return {"kind": "violation", "loop": told, "proof": proof}
 
 
 def pair(name: str, damping: Any, *law: Any, **device: Any) -> Any:
@@ -72,8 +72,8 @@ CASES = [
     ),
     # α = ½, 1/(1 − ζ/2): 2b² (5/4 − c) + b (…) − 1/8: by M D̄ = ½ (1 + ζ)(1 − ζ̄/2)
     accepted("at c = 1", violation(0, [1], cosine=1, delay_s="1/2")),
-    refused("c is above 1", violation(0, [1], cosine=1 + TINY), "no frequency"),
-    refused("c is below −1", violation(0, [1], cosine=-1 - TINY), "no frequency"),
+    refused("c is above 1", violation(0, [1], cosine=1 + TINY), "proof.cosine must be"),
+    refused("c is below −1", violation(0, [1], cosine=-1 - TINY), "proof.cosine must be"),
     accepted("H(1) < 0", violation(99, [-TINY], proof=STATIC), "H(1) is negative", shows="active"),
     accepted("H(1) < 0 by the sign of D", violation(99, [1], [-1], proof=STATIC)),
     refused("H(1) is 0", violation(0, [1, -1], [1, 0], proof=STATIC), "not negative"),
@@ -90,8 +90,8 @@ CASES = [
     accepted("its root on the circle", violation(0, [2], proof=POLE)),
     refused("its root just inside", violation(0, [2 - TINY], proof=POLE), "may be positive real"),
     accepted("H(1) < 0, z = 1 + K/(b + g)", violation(9, [-1], proof=POLE)),
-    refused("offset 0", violation(0, [3], proof={**POLE, "offset": 0}), "offset must be positive"),
-    refused("offset below 0", violation(0, [3], proof={**POLE, "offset": -1}), "offset must be positive"),
+    refused("offset 0", violation(0, [3], proof={**POLE, "offset": 0}), "proof.offset must be > 0"),
+    refused("offset below 0", violation(0, [3], proof={**POLE, "offset": -1}), "proof.offset must be > 0"),
     # −(1 − ζ)/(1 + ζ) with b = ½ is positive real; without the common 1 − ζ taken out it would have a root
     # at 1
     refused("N(1) = 0: z = −1/3", violation("1/2", [-1, 1], [1, 1], proof=POLE), "may be positive real"),
@@ -116,9 +116,11 @@ CASES = [
     refused(
         "part of a sample with an offset", violation(9, [1, 0], [1, -2], delay_s="1/2", proof=POLE), "entries"
     ),
-    refused("whole samples without an offset", violation(9, [-1, 0], [1, -2], proof=UNSTABLE), "entries"),
-    refused("another kind", violation(9, [-1], proof={"kind": "by eye"}), "unknown kind of violation"),
-    refused("no cosine", violation(0, [3], proof={"kind": "criterion"}), "entries"),
+    refused(
+        "whole samples without an offset", violation(9, [-1, 0], [1, -2], proof=UNSTABLE), "offset is missing"
+    ),
+    refused("another kind", violation(9, [-1], proof={"kind": "by eye"}), "proof.kind must be criterion or"),
+    refused("no cosine", violation(0, [3], proof={"kind": "criterion"}), "proof.cosine is missing"),
     refused("an entry more", put(SPRING, {"proof.offset": 1}), "entries"),
     refused("no proof", without(SPRING, "proof"), "proof is missing"),
 ]

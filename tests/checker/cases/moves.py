@@ -1,0 +1,355 @@
+"""Every move on small boards of random numbers, beside the same conditions written once more, plainly.
+
+A function is raised until no move takes out more than it falls; then it holds by equality at many states, and
+one unit less at one of them is found there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from functools import partial
+from importlib import import_module
+from itertools import product
+from math import ceil
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from . import Case
+
+ROUNDS = 10
+LOWERED = 12
+"""States of each board that are lowered."""
+TRIES = 400
+
+Needs = Callable[[Any], dict[int, int]]
+"""The least value of every state that a move from it asks for, by the values of all."""
+
+
+def kernel(name: str) -> Any:
+    """Of the checker, as it is loaded now."""
+    return getattr(import_module("zwidth.checker.storage.moves"), name)
+
+
+def whole(random: Random, shape: Any, low: int, high: int, kind: Any = np.int64) -> Any:
+    """Random whole numbers."""
+    size = int(np.prod(shape))
+    return np.array([random.randrange(low, high) for _ in range(size)], dtype=kind).reshape(shape)
+
+
+def rising(random: Random, count: int) -> Any:
+    """What a move over 0, 1, … steps costs."""
+    return np.array([d * 6 + random.randrange(d * d + 1) for d in range(count)])
+
+
+def compared(value: Any, needs: Needs, look: Callable[[Any], int], per_cell: int) -> str:
+    """What is wrong with a search for the first state that fails; `value` is raised on the way."""
+    flat = value.reshape(-1)
+    for _ in range(TRIES):
+        short = {s: v for s, v in needs(value).items() if flat[s] < v}
+        found = look(value)
+        if (found in short) is not bool(short) or (short and found // per_cell != min(short) // per_cell):
+            return f"state {found}, of {sorted(short)[:5]}"
+        if not short:
+            break
+        for state, least in short.items():
+            flat[state] = least
+    else:
+        return "there is no such function"
+    if look(value) != -1:
+        return "refused where all holds"
+    needed = needs(value)
+    tight = [s for s, v in needed.items() if flat[s] == v > 0]
+    for state in tight[:: max(1, len(tight) // LOWERED)]:
+        flat[state] -= 1
+        short = {s for s, v in needs(value).items() if flat[s] < v}
+        found = look(value)
+        flat[state] += 1
+        if (found in short) is not bool(short) or (short and found // per_cell != min(short) // per_cell):
+            return f"a unit less at {state}: {found}"
+    return "" if tight else "nothing is tight"
+
+
+def history(n: int, n2: int, h: int, reach: int, histories: int) -> int:
+    """The moves that are remembered, the last one first, after one more."""
+    width = 2 * reach + 1
+    return (n - n2 + reach) * (histories // width) + h // width if histories > 1 else 0
+
+
+def reached(n: int, reach: int, cells: int) -> range:
+    """The cells of the next reading."""
+    return range(max(0, n - reach), min(cells, n + reach + 1))
+
+
+def boards(random: Random, memories: tuple[int, ...]) -> Iterator[tuple[int, int, int, int, Any, Any]]:
+    """Cells, histories, steps and reach; a value, and which states there are."""
+    for round_ in range(ROUNDS):
+        reach, steps = random.choice((1, 1, 2)), random.choice((1, 2, 3))
+        memory = memories[round_ % len(memories)]
+        cells, histories = random.randrange(2, 5), (2 * reach + 1) ** memory
+        value = whole(random, (cells, histories, steps + 1), 0, 20)
+        exists = np.array([[random.random() < 0.8 for _ in range(histories)] for _ in range(cells)])
+        exists[random.randrange(cells)] = True
+        yield cells, histories, steps, reach, value, exists
+
+
+def on_a_board() -> str:
+    """One force in each interval."""
+    random = Random(11)
+    for cells, histories, steps, reach, value, exists in boards(random, (0, 1, 2, 1)):
+        forces = whole(random, (cells, histories), -6, 7)
+        costs = rising(random, random.randrange(1, reach * steps + 1) + 1)
+
+        def needs(
+            value: Any, f: Any = forces, c: Any = costs, e: Any = exists, r: int = reach
+        ) -> dict[int, int]:
+            cells, histories, knots = value.shape
+            out: dict[int, int] = {}
+            for n, h, j in np.ndindex(value.shape):
+                for n2 in reached(n, r, cells) if e[n, h] else ():
+                    for j2 in range(knots):
+                        d = (n2 - n) * (knots - 1) + j2 - j
+                        if abs(d) < len(c):
+                            then = value[n2, history(n, n2, h, r, histories), j2]
+                            state = (n * histories + h) * knots + j
+                            out[state] = max(out.get(state, 0), then - f[n, h] * d - c[abs(d)])
+            return out
+
+        tables = [table.astype(np.float64) for table in (forces, costs)]
+        look = partial(_floats, kernel("first_violation"), exists, tables, (reach, steps))
+        wrong = compared(value, needs, look, histories * (steps + 1))
+        if wrong:
+            return wrong
+    return ""
+
+
+def _floats(look: Any, exists: Any, tables: Any, sizes: Any, value: Any) -> int:
+    """Values and tables in doubles."""
+    return int(look(value.astype(np.float64), exists, *tables, *sizes))
+
+
+def in_two_parts_on_a_board() -> str:
+    """Two forces, the second of what all histories share but for the oldest reading."""
+    random = Random(12)
+    for cells, histories, steps, reach, value, exists in boards(random, (1, 2, 1)):
+        width = 2 * reach + 1
+        forces, later = (
+            whole(random, (cells, histories), -6, 7),
+            whole(random, (cells, histories // width), -6, 7),
+        )
+        second = np.where(exists, np.repeat(later, width, axis=1), 99)
+        most = reach * steps
+        costs, then = (rising(random, random.randrange(1, most + 1) + 1) for _ in range(2))
+
+        def needs(value: Any, f: Any = forces, g: Any = later, c: Any = costs, t: Any = then, e: Any = exists,
+                  r: int = reach) -> dict[int, int]:  # fmt: skip
+            cells, histories, knots = value.shape
+            steps, out = knots - 1, {}
+            for n, h in np.ndindex(cells, histories):
+                goal: dict[int, int] = {}
+                for n2 in reached(n, r, cells):
+                    for j2 in range(knots):
+                        at = n2 * steps + j2
+                        goal[at] = max(goal.get(at, 0), value[n2, history(n, n2, h, r, histories), j2])
+                force = g[n, h // (2 * r + 1)]
+                middle = {m: _most(goal, m, force, t, goal[m]) for m in goal}
+                for j in range(knots if e[n, h] else 0):
+                    out[(n * histories + h) * knots + j] = _most(middle, n * steps + j, f[n, h], c, 0)
+            return out
+
+        tables = [table.astype(np.float64) for table in (forces, costs, second, then)]
+        look = partial(_floats, kernel("first_violation_in_parts"), exists, tables, (reach, steps))
+        wrong = compared(value, needs, look, histories * (steps + 1))
+        if wrong:
+            return wrong
+    return ""
+
+
+def _most(goal: dict[int, int], start: int, force: int, costs: Any, least: int) -> int:
+    """The best of all moves from one place."""
+    far = {to: abs(to - start) for to in goal if abs(to - start) < len(costs)}
+    return max([least, *(goal[to] - force * (to - start) - costs[d] for to, d in far.items())])
+
+
+def in_a_table() -> str:
+    """What follows stands in a table; −1 is off the board."""
+    random = Random(13)
+    for _ in range(ROUNDS):
+        states, reach, steps = random.randrange(2, 7), random.choice((1, 2)), random.choice((1, 2))
+        value = whole(random, (states, steps + 1), 0, 20)
+        successors, forces = whole(random, (states, 2 * reach + 1), -1, states), whole(random, states, -6, 7)
+        costs = rising(random, random.randrange(1, reach * steps + 1) + 1)
+
+        def needs(value: Any, f: Any = forces, c: Any = costs, then: Any = successors) -> dict[int, int]:
+            out: dict[int, int] = {}
+            knots = value.shape[1]
+            for (s, move), to in np.ndenumerate(then):
+                for j, j2 in np.ndindex(knots, knots):
+                    d = (move - then.shape[1] // 2) * (knots - 1) + j2 - j
+                    if to >= 0 and abs(d) < len(c):
+                        state = s * knots + j
+                        out[state] = max(out.get(state, 0), value[to, j2] - f[s] * d - c[abs(d)])
+            return out
+
+        def look(value: Any, rest: Any = (successors, forces, costs, steps)) -> int:
+            return int(kernel("first_violation_in_table")(value, *rest))
+
+        wrong = compared(value, needs, look, steps + 1)
+        if wrong:
+            return wrong
+    return ""
+
+
+def on_a_line() -> str:
+    """Corners of cells, two of them at one place; one force, or two."""
+    random = Random(14)
+    for round_ in range(2 * ROUNDS):
+        two, reach = round_ % 2 == 1, random.choice((1, 2))
+        corners, histories = (
+            random.randrange(3, 7),
+            (2 * reach + 1) ** random.choice((1, 2) if two else (0, 1, 2)),
+        )
+        at = random.randrange(1, corners)
+        places = np.array([*range(at), *range(at - 1, corners - 1)])
+        value = whole(random, (corners, histories), 0, 20)
+        exists = np.array([[random.random() < 0.8 for _ in range(histories)] for _ in range(corners)])
+        exists[0] = True
+        forces = [whole(random, (corners, histories), -6, 7) for _ in range(2)]
+        costs = [rising(random, random.randrange(1, reach + 1) + 1) for _ in range(2)]
+
+        def needs(value: Any, p: Any = places, f: Any = forces, c: Any = costs, e: Any = exists,
+                  r: int = reach, two: bool = two) -> dict[int, int]:  # fmt: skip
+            corners, histories = value.shape
+            out = {}
+            for n, h in np.ndindex(corners, histories):
+                goal: dict[int, int] = {}
+                for n2 in reached(n, r, corners):
+                    best = value[n2, history(n, n2, h, r, histories)]
+                    goal[int(p[n2])] = max(goal.get(int(p[n2]), 0), best)
+                if two:
+                    goal = {m: _most(goal, m, f[1][n, h], c[1], goal[m]) for m in goal}
+                if e[n, h]:
+                    out[n * histories + h] = _most(goal, int(p[n]), f[0][n, h], c[0], 0)
+            return out
+
+        several = 2 if two else 1
+        tables = [t.astype(np.float64) for pair in zip(forces, costs, strict=True) for t in pair][
+            : 2 * several
+        ]
+        name = "first_violation_in_parts_on_line" if two else "first_violation_on_line"
+        look = partial(_floats, kernel(name), exists, tables, (places, reach))
+        wrong = compared(value, needs, look, histories)
+        if wrong:
+            return f"{several}: {wrong}"
+    return ""
+
+
+PART = 1 << 16
+ROOM = 4
+"""Units by which roundings may move what is asked for."""
+
+
+def relaxing() -> str:
+    """At every level and where a move passes one: accepted only where it holds, and with some units more."""
+    random = Random(15)
+    told = [0, 0]
+    for _ in range(4 * ROUNDS):
+        reach, steps, levels = 1, random.choice((1, 2)), random.choice((1, 2, 4))
+        cells, histories = random.randrange(1, 4), random.choice((1, 3))
+        value = whole(random, (cells, histories, levels, steps + 1), 0, 60)
+        rows = whole(random, (cells, histories), -1, cells)
+        both = [whole(random, (cells, levels), -6, 7) for _ in range(2)]
+        pole = Fraction(random.randrange(0, 8), random.choice((8, 11)))
+        start = [Fraction(random.randrange(1000), 1000) * (levels - 1) * (1 - pole) for _ in range(cells)]
+        images = [[min(a + pole * i, Fraction(levels - 1)) for i in range(levels)] for a in start]
+        ends = [np.array([[f(x * PART) for x in row] for row in images]) for f in (int, ceil)]
+        costs = rising(random, random.randrange(1, steps + 1) + 1) + 2 * ROOM
+
+        def deficits(value: Any, rows: Any = rows, both: Any = both, images: Any = images, costs: Any = costs,
+                     steps: int = steps) -> Iterator[tuple[Fraction, tuple[Any, ...]]]:  # fmt: skip
+            """By how much each condition fails, and the values that would mend it."""
+            cells, histories, levels, knots = value.shape
+            for n, h in np.ndindex(cells, histories):
+                row = rows[n, h]
+                for n2 in reached(n, 1, cells) if row >= 0 else ():
+                    then = value[n2, history(n, n2, h, 1, histories)]
+                    for j, j2 in np.ndindex(knots, knots):
+                        d = (n2 - n) * steps + j2 - j
+                        if abs(d) >= len(costs):
+                            continue
+                        force = both[0 if d > 0 else 1][row]
+                        have = [
+                            Fraction(int(value[n, h, i, j] + force[i] * d + costs[abs(d)]))
+                            for i in range(levels)
+                        ]
+                        line = images[row]
+                        for i in range(levels):
+                            yield _at(then[:, j2], line[i]) - have[i], ((n, h, i, j),)
+                            level = int(line[i]) + 1
+                            if i + 1 < levels and line[i] < level < line[i + 1]:
+                                s = (level - line[i]) / (line[i + 1] - line[i])
+                                lacks = int(then[level, j2]) - (1 - s) * have[i] - s * have[i + 1]
+                                yield lacks, ((n, h, i, j), (n, h, i + 1, j))
+
+        def look(value: Any, tables: Any = (rows, *both, *ends, costs, reach, steps)) -> int:
+            return int(kernel("first_relaxing_violation")(value, *tables))
+
+        for _ in range(TRIES):
+            worst = max((lack for lack, _ in deficits(value)), default=Fraction(-99))
+            found = look(value)
+            if (worst > 0 and found < 0) or (worst <= -ROOM and found >= 0):
+                return f"state {found}, where {float(worst)} units are lacking"
+            told[found >= 0] += 1
+            if worst <= -ROOM:
+                break
+            for lack, states in list(deficits(value)):
+                for state in states if lack > -ROOM else ():
+                    value[state] += max(1, ceil((lack + ROOM) / 2))
+        else:
+            return "there is no such function"
+    return "" if min(told) > ROUNDS else "nothing was told apart"
+
+
+def a_level_that_is_passed_counts() -> str:
+    """Between two levels whose images lie to either side of a third one, where V is largest."""
+    for pole, start, first, second in product(
+        (Fraction(1, 2), Fraction(3, 4)), (Fraction(5, 8), Fraction(7, 8)), (0, 4000, -4000), (0, 4000, -4000)
+    ):
+        images = [min(start + pole * i, Fraction(2)) for i in range(3)]
+        rows, ends = (
+            np.zeros((1, 1), np.int64),
+            [np.array([[f(x * PART) for x in images]]) for f in (int, ceil)],
+        )
+        value = np.zeros((1, 1, 3, 2), dtype=np.int64)
+        value[0, 0, 1, 1] = 30_000
+        there = (1 - start) / pole  # the part of the way from level 0 to 1 whose image is level 1
+        needed = 30_000 - (1 - there) * first - there * second
+        for inwards, cost, right in ((True, 50, -1), (True, -50, 0), (False, 50, -1)):
+            forces = [
+                np.array([[first, second, 0]]) if inwards == (k == 0) else np.zeros((1, 3), int)
+                for k in (0, 1)
+            ]
+            least = int(needed) + cost if inwards else 30_000 + cost
+            costs = np.array([30_000, least])
+            found = kernel("first_relaxing_violation")(value, rows, *forces, *ends, costs, 1, 1)
+            have = [least + (force if inwards else 0) for force in (first, second, 0)]
+            then = [_at(value[0, 0, :, 1], image) for image in images]
+            if any(h < v for h, v in zip(have, then, strict=True)):
+                right = 0
+            if (found < 0) is not (right < 0):
+                return f"{pole}, {start}, {first}, {second}, {cost}: {found}"
+    return ""
+
+
+def _at(values: Any, level: Fraction) -> Fraction:
+    """Between two levels, on a line."""
+    below = min(int(level), len(values) - 1)
+    above = min(below + 1, len(values) - 1)
+    return int(values[below]) + (level - below) * int(values[above] - values[below])
+
+
+CHECKS = (on_a_board, in_two_parts_on_a_board, in_a_table, on_a_line, relaxing, a_level_that_is_passed_counts)
+
+CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]

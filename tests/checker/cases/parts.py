@@ -1,0 +1,388 @@
+"""Parts of the checker one by one, where a document shows only what all of them come to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from importlib import import_module
+from itertools import combinations, permutations, product
+from math import comb, isqrt
+from random import Random
+from types import SimpleNamespace
+from typing import Any
+
+from . import Case
+
+
+def part(name: str) -> Any:
+    """Of the checker, as it is loaded now."""
+    return import_module(f"zwidth.checker.{name}")
+
+
+def refuses(function: Callable[..., Any], *values: Any, **more: Any) -> bool:
+    """True where that is refused."""
+    try:
+        function(*values, **more)
+    except part("document.refusal").Invalid:
+        return True
+    return False
+
+
+def what_is_spent_adds_up() -> str:
+    """In one document, and not from one to the next; what is too much at once is refused anywhere."""
+    effort = part("document.effort")
+    most = effort.MOST * 10  # a product of no bits costs a tenth
+    for _ in range(2):
+        with effort.one_document():
+            if refuses(effort.spend, 0.6 * most):
+                return "refused too soon"
+            if not refuses(effort.spend, 0.6 * most):
+                return "two parts are not added"
+    if refuses(effort.spend, 0.6 * most) or refuses(effort.spend, 0.6 * most):
+        return "added where there is no document"
+    if not refuses(effort.spend, 1.1 * most) or not refuses(effort.reserve, 2 * effort.MOST_ROOM):
+        return "too much at once is let through"
+    return "room is refused" if refuses(effort.reserve, effort.MOST_ROOM / 2) else ""
+
+
+def numbers_are_read_and_told() -> str:
+    """What is no number; how many digits are shown, and to which side they are rounded."""
+    number = part("document.number")
+    for value in (True, False, None, [], {}, "1_000", " 1", "1/0", "0x1", "nan", "1e5001", complex(1)):
+        if not refuses(number.number, value):
+            return f"{value!r} is read"
+    for value, right in (
+        ("1/3", Fraction(1, 3)),
+        (0.1, Fraction(1, 10)),
+        ("-.5e-1", Fraction(-1, 20)),
+        ("7.", 7),
+    ):
+        if number.number(value) != right:
+            return f"{value!r} is read as {number.number(value)}"
+    for value, told in (
+        (Fraction(0), "0"), (Fraction(1, 3), "0.333333"), (Fraction(1, 10**5), "0.00001"),
+        (Fraction(10**8), "100000000"),
+        (Fraction(1, 10**6), "1e-6"), (Fraction(3, 10**7), "3e-7"),
+        (Fraction(10**9), "1e+9"), (Fraction(-5, 2), "-2.5"),
+        (Fraction(123456789), "123457000"),
+    ):  # fmt: skip
+        if number.about(value) != told:
+            return f"{value} is told as {number.about(value)}"
+    if (number.down(Fraction(2, 3)), number.up(Fraction(2, 3))) != ("0.666666", "0.666667"):
+        return "rounded to the wrong side"
+    if number.common_scale([Fraction(1, 6), Fraction(3, 4)]) != 12:
+        return "no common scale"
+    large = 1 << 70
+    if refuses(number.common_scale, [Fraction(1, large), Fraction(large)], 100) or not (
+        refuses(number.common_scale, [Fraction(1, large), Fraction(1, large + 1)], 100)
+        and refuses(number.common_scale, [Fraction(large**3)], 100)
+    ):
+        return "the number of digits"
+    return ""
+
+
+def polynomials_are_multiplied() -> str:
+    """As many coefficients as there must be, none of an empty one."""
+    polynomial = part("exact.polynomial")
+    if polynomial.multiply([1, 2], [0, 3, 4]) != [0, 3, 10, 8] or polynomial.multiply([5], [7]) != [35]:
+        return "a product"
+    if polynomial.multiply([], [1]) or polynomial.multiply([1], []) or polynomial.multiply([], []):
+        return "a product with nothing"
+    return "" if polynomial.add([1, 2], [3]) == [4, 2] == polynomial.add([3], [1, 2]) else "a sum"
+
+
+def entries_are_told() -> str:
+    """Exact decimals, fractions, intervals, units; the first four entries too many."""
+    fields, unit = part("document.fields"), part("document.unit")
+    for value, told in (
+        (Fraction(1, 10), "0.1"), (Fraction(7, 20), "0.35"), (Fraction(1, 6), "1/6"), (Fraction(3), "3"),
+        (Fraction(-1, 3), "-1/3"), (Fraction(1, 3**90), "about 1.14574263767e-43"),
+        (Fraction(2**300), "about 2.03703597633e+90"),
+        (Fraction(1, 2**40), "9.094947017729282379150390625e-13"),
+    ):  # fmt: skip
+        if fields._exactly(value) != told:
+            return f"{value} is told as {fields._exactly(value)}"
+    between = fields.Between(unit.FORCE)
+    if (
+        between.text((Fraction(1), Fraction(2)), "linear") != "1 to 2"
+        or between.text((1, 1), "linear") != "1"
+    ):
+        return "an interval"
+    words = {
+        "m_per_s_N": "m/s, N", "rad_per_s_N_m": "rad/s, N·m", "m_N": "m, N", "rad_N_m": "rad, N·m",
+        "N_N_s_per_m": "N, N·s/m", "N_m_N_m_s_per_rad": "N·m, N·m·s/rad", "N_m_rad": "in N, m, rad",
+        "N_m_s_rad": "in N, m, s, rad", "kg_m2": "kg·m²", "N_s_per_m": "N·s/m", "": "",
+    }  # fmt: skip
+    for ending, told in words.items():
+        if unit.in_words(ending) != told:
+            return f"{ending} is told as {unit.in_words(ending)}"
+    record = fields.Record({"a": fields.Number()})
+    try:
+        record.read(dict.fromkeys("bcdefg", 1), "", "linear")
+    except part("document.refusal").Invalid as error:
+        if str(error) != "entries that no proof of this kind has: b, c, d, e":
+            return str(error)
+    long = fields.numbers()
+    if long.text([Fraction(1)] * 12, "linear") != f"[{', '.join('1' * 12)}]" or "…" not in long.text(
+        [Fraction(1)] * 13, "linear"
+    ):
+        return "a long list"
+    if not fields.numbers().shown or fields.numbers(shown=False).shown:
+        return "what is shown"
+    deep: Any = 1
+    for _ in range(11):
+        deep = {"x": [deep, 1]}
+    shallow: Any = {"x": {"x": {"x": {"x": 1}}}}
+    return (
+        ""
+        if refuses(lambda: list(fields._told(deep))) and list(fields._told(shallow)) == ["x"] * 4
+        else "depth"
+    )
+
+
+def sums_of_minors_are_those_of_the_matrix() -> str:
+    """Of Hermitian matrices of whole numbers, by all minors."""
+    sums, random = part("port.matrix")._principal_sums, Random(1)
+    for size, _ in product((1, 2, 3, 4), range(4)):
+        a = [[(0, 0)] * size for _ in range(size)]
+        for i in range(size):
+            a[i][i] = (random.randrange(-9, 10), 0)
+            for j in range(i):
+                a[i][j] = (random.randrange(-9, 10), random.randrange(-9, 10))
+                a[j][i] = (a[i][j][0], -a[i][j][1])
+        right = [
+            sum(
+                _determinant([[a[i][j] for j in chosen] for i in chosen])[0]
+                for chosen in combinations(range(size), k)
+            )
+            for k in range(1, size + 1)
+        ]
+        if sums(a) != right:
+            return f"{a}: {sums(a)}, not {right}"
+    return ""
+
+
+def _times(x: tuple[Any, Any], y: tuple[Any, Any]) -> tuple[Any, Any]:
+    return x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0]
+
+
+def _determinant(a: Sequence[Sequence[tuple[Any, Any]]]) -> tuple[Any, Any]:
+    """By Leibniz."""
+    real = imaginary = Fraction(0)
+    for order in permutations(range(len(a))):
+        sign = (-1) ** sum(order[i] > order[j] for j in range(len(a)) for i in range(j))
+        term: tuple[Any, Any] = (sign, 0)
+        for i, j in enumerate(order):
+            term = _times(term, a[i][j])
+        real, imaginary = real + term[0], imaginary + term[1]
+    return real, imaginary
+
+
+def minors_of_a_port_are_those_at_a_point() -> str:
+    """Π = ½(Dᴴ N + Nᴴ D) − σ Dᴴ D at s = j tan θ/2 or z = e^{jθ}, in rational numbers."""
+    matrix, random = part("port.matrix"), Random(2)
+    for continuous, axes, level in product(
+        (True, False), (1, 2, 3), (Fraction(0), Fraction(2, 3), Fraction(-1))
+    ):
+        order, size = 2, range(axes)
+
+        def some(low: int = -5) -> list[Fraction]:
+            return [
+                Fraction(random.randrange(low, 6), random.randrange(1, 4))
+                for _ in range(random.randrange(0, 4))
+            ]
+
+        outputs, inputs = ([[some() for _ in size] for _ in size] for _ in range(2))
+        d = inputs[0][0] = [Fraction(1), Fraction(2), Fraction(1, 2)]
+        p = matrix.Ports(outputs, inputs, d, continuous, level, order, axes)
+        t = Fraction(random.randrange(1, 9), 5)
+        c, sine = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+        point = (Fraction(0), t) if continuous else (c, sine)
+        n, u = ([[_at(q, point) for q in row] for row in side] for side in (outputs, inputs))
+        pi = [[(Fraction(0), Fraction(0)) for _ in size] for _ in size]
+        for i, j, k in product(size, size, size):
+            for factor, a, b in ((Fraction(1, 2), u, n), (Fraction(1, 2), n, u), (-level, u, u)):
+                real, imaginary = _times((a[k][i][0], -a[k][i][1]), b[k][j])
+                pi[i][j] = pi[i][j][0] + factor * real, pi[i][j][1] + factor * imaginary
+        more = (1 + c) ** order if continuous else Fraction(1)
+        right = [
+            more**k * sum(_determinant([[pi[i][j] for j in s] for i in s])[0] for s in combinations(size, k))
+            for k in range(1, axes + 1)
+        ]
+        own = _at(d, point)
+        found = matrix._minors_at(p, matrix._whole(p), t)
+        if found != (c, more * (own[0] ** 2 + own[1] ** 2), right):
+            return f"{p} at {t}"
+    return ""
+
+
+def _at(ascending: Sequence[Fraction], point: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
+    value: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
+    for c in reversed(ascending):
+        value = _times(value, point)
+        value = value[0] + c, value[1]
+    return value
+
+
+def lines_of_a_burst_are_those_of_the_port() -> str:
+    """Re(N D̄) − σ |D|² at (m + j)Ω, and a row's answer to α − jβ."""
+    motion, matrix, random = part("port.motion"), part("port.matrix_motion"), Random(3)
+    for power, order, cycles in product((1, 2, 3), (0, 1, 2, 3), (4, 6)):
+        n, d = ([Fraction(random.randrange(-5, 6), 3) for _ in range(order + 1)] for _ in range(2))
+        level, step = Fraction(random.randrange(-3, 4), 2), Fraction(random.randrange(2, 7), 3)
+        told = SimpleNamespace(power=power, cycles=cycles, step=step)
+        right = Fraction(0)
+        for j in range(-power, power + 1):
+            point = (Fraction(0), (cycles + j) * step)
+            a, b = _at(n, point), _at(d, point)
+            weight = Fraction(comb(2 * power, power + j) ** 2, 4**power)
+            right += weight * (a[0] * b[0] + a[1] * b[1] - level * (b[0] ** 2 + b[1] ** 2)) / step
+            (found,) = matrix._line(
+                [[n, d]], point[1], [Fraction(2), Fraction(3)], [Fraction(-1), Fraction(5)]
+            )
+            sums = [_times(q, w) for q, w in ((a, (2, 1)), (b, (3, -5)))]
+            if found != (sums[0][0] + sums[1][0], sums[0][1] + sums[1][1]):
+                return f"the answer of {n}, {d}"
+        if order <= 2 * power and motion._burst(SimpleNamespace(
+            numerator=n, denominator=d, level=level, order=order
+        ), told) != right:  # fmt: skip
+            return f"a burst through {n}, {d}"
+    return ""
+
+
+def ranks_are_full_or_not() -> str:
+    """Of matrices with and without a pivot in its place."""
+    full = part("port.matrix")._has_full_rank
+    for rows, right in (
+        ([[0, 1], [1, 0]], True), ([[1, 2], [2, 4]], False), ([[0, 0], [1, 1]], False),
+        ([[2, 1], [1, 1]], True),
+        ([[1, 2, 3], [4, 5, 6], [7, 8, 9]], False), ([[1, 2, 3], [4, 5, 6], [7, 8, 10]], True),
+        ([[0]], False),
+        ([[0, 1, 1], [0, 2, 3], [5, 1, 1]], True),
+    ):  # fmt: skip
+        if full([[Fraction(x) for x in row] for row in rows]) is not right:
+            return f"{rows}"
+    return ""
+
+
+def rotations_are_those_of_their_quaternions() -> str:
+    """Whichever of its four numbers is the largest; there and back, and as a product."""
+    pose, cells = part("arm.pose"), part("arm.cells")
+    for told in ((9, 1, -2, 3), (1, 9, 2, -3), (-2, 1, 9, 3), (3, -1, 2, 9), (1, 0, 0, 0), (0, 0, 3, 4)):
+        w, x, y, z = told
+        size = sum(v * v for v in told)
+        doubled = [
+            [-y * y - z * z, x * y - w * z, x * z + w * y],
+            [x * y + w * z, -x * x - z * z, y * z - w * x],
+            [x * z - w * y, y * z + w * x, -x * x - y * y],
+        ]
+        rotation = [
+            [(i == k) + Fraction(2 * v, size) for k, v in enumerate(row)] for i, row in enumerate(doubled)
+        ]
+        found = pose._quaternion(rotation)
+        if pose._rotation(found) != rotation or pose._rotation([Fraction(v) for v in told]) != rotation:
+            return f"{told}: {found}"
+        if any(found[i] * told[j] != found[j] * told[i] for i, j in product(range(4), repeat=2)):
+            return f"{told} is not along {found}"
+        rows = pose._times_quaternion([Fraction(v) for v in told])
+        right = [[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]]
+        for found_row, row in zip(rows, right, strict=True):
+            for entry, v in zip(found_row, row, strict=True):
+                off = abs(v * (1 << cells.BITS)) / Fraction(isqrt(size << 160), 1 << 80)
+                if abs(abs(entry.middle) - off) > 99 or entry.middle * v < 0 or entry.radius > 99:
+                    return f"{told} as a matrix"
+    return ""
+
+
+def turns_are_bounded() -> str:
+    """Half for every joint that turns, where the hand turns in space; how many rows a wall has."""
+    pose, chain = part("arm.pose"), part("arm.chain")
+    told = chain.Chain([SimpleNamespace(slides=s) for s in (False, True, False, False)], [])
+    found = [pose.turning_bend(told, pose.Pose(turns, True)) for turns in (0, 1, 3)]
+    if found != [0, 0, Fraction(3, 2)]:
+        return f"{found}"
+    rows = [list(pose.Pose(turns, True).sizes) for turns in (0, 1, 3)]
+    if rows != [[1, 2, 3], [3], [6]]:
+        return f"{rows}"
+    stiffness = [[Fraction(k if i == j else 0) for j in range(6)] for i, k in enumerate((1, 9, 3, 4, 2, 7))]
+    plane = pose.in_words([row[:3] for row in stiffness[:3]], pose.Pose(1, True))
+    if "up to 9 N/m and 3 N·m/rad" not in plane:
+        return plane
+    if not chain.NOTHING.is_zero:
+        return "nothing is something"
+    links = [SimpleNamespace(slides=False, low=0, high=0, translation=[Fraction(k), 0, 0]) for k in (9, 2, 4)]
+    bends = chain.bends(chain.Chain(links, [Fraction(8), 0, 0]))
+    if [row[0] / chain.LONGER for row in bends] != [14, 12, 8]:
+        return f"bends {bends}"
+    said = pose.in_words(stiffness, pose.Pose(3, True))
+    return (
+        ""
+        if "up to 9 N/m and 7 N·m/rad" in said and not pose.in_words(stiffness, pose.Pose(0, True))
+        else said
+    )
+
+
+def sizes_of_matrices_are_not_below() -> str:
+    """√(‖A‖₁ ‖A‖∞) or ‖A‖_F, the smaller; a root is not below."""
+    encoders, chain = part("arm.encoders"), part("arm.chain")
+    for rows, square in (([[3, 4]], 25), ([[1, 1], [1, 1]], 4), ([[2, 0], [0, 2]], 4), ([[1, -2], [0, 0]], 5),
+                         ([[-3, 0], [0, 0]], 9), ([[1], [-1]], 2)):  # fmt: skip
+        found = encoders._size([[Fraction(x) for x in row] for row in rows])
+        if not square <= found * found <= square * (1 + Fraction(1, 10**20)):
+            return f"{rows}: {float(found)}"
+    for x in (Fraction(2), Fraction(1, 3), Fraction(10**9 + 1, 7), Fraction(0)):
+        if not x <= chain.root_above(x) ** 2 <= x * (1 + Fraction(1, 10**20)) + Fraction(1, 10**40):
+            return f"a root of {x}"
+    return "" if chain.root_above(Fraction(9, 4)) == Fraction(3, 2) else "a root of a square"
+
+
+def a_friction_curve_goes_on() -> str:
+    """Between its points, before the first, beyond the last."""
+    law = part("contact.law")
+    points = [(Fraction(1), Fraction(2)), (Fraction(2), Fraction(6)), (Fraction(4), Fraction(4))]
+    told = law.Losses([], points, Fraction(1), Fraction(1), 0, Fraction(1))
+    for speed, force in ((0, 2), (1, 2), ("3/2", 4), (2, 6), (3, 5), (4, 4), (6, 4)):
+        if told._force(Fraction(speed)) != force:
+            return f"{told._force(Fraction(speed))} at {speed}"
+    rising = told._replace(curve=points[:2])
+    return "" if rising._force(Fraction(3)) == 10 else "beyond the last point"
+
+
+def what_may_be_0_is_no_pivot() -> str:
+    """Known only within what reaches 0, from either side."""
+    vibration, enclosed = part("known_hand.vibration"), part("exact.enclosed").Enclosed
+    for middle, radius, right in (
+        (3, 3, False),
+        (-3, 3, False),
+        (3, 2, True),
+        (-3, 2, True),
+        (0, 0, False),
+        (3, 5, False),
+    ):
+        found = vibration._inverse(enclosed(8, middle, (), radius))
+        if (found is not None) is not right:
+            return f"{middle} ± {radius}"
+        if found is not None:
+            for end in (middle - radius, middle + radius):
+                if abs(Fraction(1 << 16, end) - found.middle) > found.radius:
+                    return f"1 over {middle} ± {radius}"
+    return ""
+
+
+CHECKS = (
+    what_is_spent_adds_up,
+    numbers_are_read_and_told,
+    polynomials_are_multiplied,
+    entries_are_told,
+    sums_of_minors_are_those_of_the_matrix,
+    minors_of_a_port_are_those_at_a_point,
+    lines_of_a_burst_are_those_of_the_port,
+    ranks_are_full_or_not,
+    rotations_are_those_of_their_quaternions,
+    turns_are_bounded,
+    sizes_of_matrices_are_not_below,
+    a_friction_curve_goes_on,
+    what_may_be_0_is_no_pivot,
+)
+
+CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]
