@@ -400,4 +400,14 @@ CASES = [
     refused("a bound that is entries", put(THERE, {"bounds": {"force_N": 1}}), "entries"),
     refused("a speed in a unit of length", put(THERE, {"bounds": {"speed_m": 1}}), "the unit of speed"),
     refused("bounds that are no object", put(THERE, {"bounds": []}), "must be an object"),
+    refused(
+        "rounds in which nothing moves, of a law that relaxes",
+        law(
+            put(motion([0, 3, 3, 3, 0], (1, 2, 5)), {"loop.damping_N_s_per_m": 0, "energy_J": 9}),
+            taps_N_per_m=[1],
+            relaxing={"pole": 0, "stiffness_N_per_m": 1},
+            resets=False,
+        ),
+        "none comes out",
+    ),
 ]

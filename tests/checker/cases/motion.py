@@ -323,4 +323,27 @@ CASES = [
         "1/5",
         motion([0, 2, "39/20"], 0, resolution_m=2, damping_N_s_per_m=0),
     ),
+    # rounds in closed form, once the loop has settled: the energies by going through all of them
+    taken(
+        "a force that is late to the first round",
+        5,
+        repeated(motion([0, 1, 0, -1, 0], 5, [1], damping_N_s_per_m=0, delay_s=1, **FREE), (0, 4, 3)),
+    ),
+    taken(
+        "a memory that is late to the first round",
+        4,
+        repeated(motion([0, -1, -2, -1], 4, [0, 0, 1], [1, 0, 0], damping_N_s_per_m=0, **FREE), (1, 3, 5)),
+    ),
+    taken(
+        "rounds inwards that begin outside",
+        18,
+        repeated(motion([0, 1, 2, 2, -1, 2, 3, 3], 18, [1], damping_N_s_per_m=0), (3, 7, 4)),
+    ),
+    taken(
+        "rounds inwards of a memory that has not settled",
+        30,
+        repeated(
+            motion([0, 1, 2, 2, 2, 3, -5], 30, [0, 0, 1], [1, 0, 0], damping_N_s_per_m=0, **FREE), (4, 5, 6)
+        ),
+    ),
 ]
