@@ -32,7 +32,7 @@ from typing import Any, NamedTuple
 from attack.ledger import alone
 from documents import ledger, seeds
 from documents.examine import FINDINGS, Examined, examine, told
-from documents.grammar import SHARES
+from documents.grammar import SHARES, Valid, ready
 from documents.self_test import self_test
 from rich.progress import track
 
@@ -54,7 +54,7 @@ class Told(NamedTuple):
 
 
 def chunk(
-    work: tuple[int, int], given: Mapping[str, list[dict[str, Any]]], only: str | None
+    work: tuple[int, int], given: Mapping[str, Valid], only: str | None
 ) -> tuple[ledger.Stretch, list[Told]]:
     """A stretch of seeds: the counts, and what is to be told of some."""
     warnings.simplefilter("ignore")
@@ -77,7 +77,7 @@ def _noticed(seed: int, found: Examined, *, small: bool) -> Told:
     return Told(line, name, told(found, seed) if small else "")
 
 
-def campaign(given: argparse.Namespace, known: Mapping[str, list[dict[str, Any]]]) -> int:
+def campaign(given: argparse.Namespace, known: Mapping[str, Valid]) -> int:
     """Run what the ledger does not have; returns how many findings there were."""
     findings, start, ran = 0, time.perf_counter(), 0
     folder = given.ledger.with_name(f"{given.ledger.stem}-findings")
@@ -123,7 +123,7 @@ def _results(run: Any, work: list[tuple[int, int]], processes: int) -> Iterator[
             raise
 
 
-def _alone(seed: int, known: Mapping[str, list[dict[str, Any]]], only: str | None) -> int:
+def _alone(seed: int, known: Mapping[str, Valid], only: str | None) -> int:
     """One seed: its document, what is said of it, and the smallest of which the same is."""
     found = examine(seed, known, only)
     print(json.dumps(found.written.document, indent=1, default=str))
@@ -153,7 +153,7 @@ def main() -> int:
     parser.add_argument("--write-readme", action="store_true")
     parser.add_argument("--self-test", action="store_true", help="can every judge say no?")
     given = parser.parse_args()
-    known = seeds.read(given.seeds)
+    known = ready(seeds.read(given.seeds))
     if given.self_test:
         return int(self_test(known) > 0)
     if given.only is not None:

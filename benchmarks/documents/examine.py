@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .checked import ask
-from .grammar import Document, Written, is_number, leaves, write
+from .grammar import Document, Valid, Written, is_number, leaves, write
 from .judges import judge
 from .opinion import AGREES, FALSE, OPEN, Opinion
 
@@ -46,7 +46,7 @@ def _stop(*_: object) -> None:
     raise _TooLong
 
 
-def examine(seed: int, seeds: Mapping[str, list[Document]], only: str | None = None) -> Examined:
+def examine(seed: int, seeds: Mapping[str, Valid], only: str | None = None) -> Examined:
     """The document of a seed, judged."""
     written = write(seed, seeds, only)
     before = _room()
@@ -56,7 +56,9 @@ def examine(seed: int, seeds: Mapping[str, list[Document]], only: str | None = N
     room = _room()
     opinion = Opinion(REFUSED, reason) if valid is False else Opinion(ERROR, reason)
     if valid:
-        opinion = Opinion(ILL_FORMED, reason) if written.ill_formed else judged(written.document, seed)
+        opinion = (
+            Opinion(ILL_FORMED, reason) if written.ill_formed else judged(written.document, seed, reason)
+        )
     return Examined(written, *opinion, seconds, room if room > before else 0.0)
 
 
@@ -79,12 +81,12 @@ def _asked(document: Any) -> tuple[bool | None, str]:
     return answer.valid, answer.reason
 
 
-def judged(document: Document, seed: int) -> Opinion:
-    """The judge's opinion, or that it cannot say: of numbers that no double holds, or after too long."""
+def judged(document: Document, seed: int, reason: str = "") -> Opinion:
+    """The judge's opinion of what the checker proved, or that it cannot say: of numbers that no double holds, or after too long."""
     _begin()
     try:
         with np.errstate(all="ignore"):
-            return judge(document, np.random.default_rng(seed))
+            return judge(document, np.random.default_rng(seed), reason)
     except _TooLong:
         return Opinion(OPEN, f"not judged in {PATIENCE} s")
     except (OverflowError, FloatingPointError, np.linalg.LinAlgError) as error:
@@ -122,7 +124,8 @@ def shrunken(found: Examined, seed: int) -> Any:
 
 
 def _still_false(document: Any, seed: int) -> bool:
-    return bool(_asked(document)[0]) and judged(document, seed).word == FALSE
+    valid, reason = _asked(document)
+    return bool(valid) and judged(document, seed, reason).word == FALSE
 
 
 def _smaller(document: Any) -> Iterator[Any]:
