@@ -31,7 +31,7 @@ from typing import Any, NamedTuple
 
 from attack.ledger import alone
 from documents import ledger, seeds
-from documents.examine import FINDINGS, Examined, examine, told
+from documents.examine import FINDINGS, Examined, examine, told, watch
 from documents.grammar import SHARES, Valid, ready
 from documents.self_test import self_test
 from rich.progress import track
@@ -58,6 +58,7 @@ def chunk(
 ) -> tuple[ledger.Stretch, list[Told]]:
     """A stretch of seeds: the counts, and what is to be told of some."""
     warnings.simplefilter("ignore")
+    watch.begin()
     stretch, noticed = ledger.Stretch(*work), list[Told]()
     for seed in range(work[0], work[1] + 1):
         found = examine(seed, given, only)
@@ -125,6 +126,7 @@ def _results(run: Any, work: list[tuple[int, int]], processes: int) -> Iterator[
 
 def _alone(seed: int, known: Mapping[str, Valid], only: str | None) -> int:
     """One seed: its document, what is said of it, and the smallest of which the same is."""
+    watch.begin()
     found = examine(seed, known, only)
     print(json.dumps(found.written.document, indent=1, default=str))
     print(f"{found.written.kind}, {found.written.how}: {found.word}, {found.why}")

@@ -11,6 +11,7 @@ import json
 import zlib
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from functools import lru_cache
 from random import Random
 from typing import Any, NamedTuple
 
@@ -67,7 +68,7 @@ class Written(NamedTuple):
 
 
 class Valid(NamedTuple):
-    """Valid documents of a kind as text, from which each is read anew, and the share of each: small ones most."""
+    """Valid documents of a kind as text, from which each is read anew, and the share of each."""
 
     texts: list[str]
     shares: list[float]
@@ -197,6 +198,7 @@ def _inner(document: Any, path: Path) -> Any:
     return document
 
 
+@lru_cache(maxsize=100_000, typed=True)
 def is_number(value: Any) -> bool:
     """A number as documents write it."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):

@@ -24,7 +24,7 @@ JUDGES: dict[str, Judge] = {
 
 
 def judge(document: dict[str, Any], rng: np.random.Generator, reason: str = "") -> Opinion:
-    """The opinion of the judge of its kind; of corners that of each, and of mixes if the reason names them."""
+    """The opinion of the judge of its kind; of corners that of each, and of mixes if they are claimed."""
     kind = document["kind"]
     if kind == "corners":
         corners = document["corners"]

@@ -1,4 +1,4 @@
-"""Corners of which every mix is proved too: one device, one denominator, and random mixes as passive as they."""
+"""Corners of which every mix is proved too: one device, one denominator, and random mixes passive."""
 
 from __future__ import annotations
 
