@@ -144,7 +144,7 @@ def test_the_criterion_of_a_document_from_nothing_is_the_one_of_its_loop(seeds, 
         if asked > 0:
             loop["damping_N_s_per_m"] = str(asked)
             q = [float(c) for c in fresh.criterion(loop)]
-            size = np.polyval(np.abs(q[::-1]), 1.0)
+            size = sum(abs(float(c)) for c in fresh.criterion(loop, 2 * asked))
             assert np.polyval(q[::-1], cos(theta)) == pytest.approx(0, abs=1e-12 * size)
 
 
@@ -167,3 +167,80 @@ def test_a_ledger_says_what_is_left_to_run(tmp_path):
     assert ledger.still_to_run(read, 0, 35, 6) == [(10, 15), (16, 19), (30, 34)]
     assert ledger.still_to_run(read, 3, 5, 6) == []
     assert "| spring | 6 | 3 | 3 | 0 | 0 | 0 | 0 | 0.50 | 20 | 100 |" in ledger.table(read)
+
+
+def _corners(numerators, **changes):
+    """Springs around one device, the last of them around one with some numbers changed."""
+    loop = {
+        "damping_N_s_per_m": "1", "coulomb_friction_N": "0", "resolution_m": "0", "sample_period_s": "0.001",
+        "delay_s": "0", "denominator": ["1"], "unilateral": True,
+    }  # fmt: skip
+    corners = [{"kind": "spring", "loop": {**loop, "numerator": [k]}} for k in numerators]
+    corners[-1]["loop"] |= changes
+    return {"kind": "corners", "corners": corners}
+
+
+@pytest.mark.parametrize(
+    ("document", "wrong"),
+    [
+        (_corners(["100", "200"]), ""),
+        (_corners(["100", "200"], damping_N_s_per_m="2"), "mixes of laws of several devices"),
+        (_corners(["100", "200"], denominator=["2"]), ""),
+        (_corners(["100", "200"], unilateral=False), "mixes of laws of several devices"),
+        (_corners(["100", "200000"]), "a mix, "),
+    ],
+)
+def test_a_claim_about_mixes_is_judged(seeds, document, wrong):
+    """Of one device and denominator alone, and no mix of the laws may be active."""
+    from documents.judges import mixes
+
+    corners, rng = document["corners"], np.random.default_rng(0)
+    assert mixes.between(corners, rng, "").word == "agrees"
+    found = mixes.between(corners, rng, f"all corners; and {mixes.CLAIM}")
+    assert (found.word, found.why.startswith(wrong)) == ("false" if wrong else "agrees", True)
+
+
+def test_what_the_checker_does_not_foresee_is_an_error(ready, monkeypatch):
+    """A refusal that says so is a fault of the checker, and no refusal."""
+    from documents import checked
+    from documents.examine import ERROR, examine
+
+    from zwidth.checker import STOPPED, Verified
+
+    monkeypatch.setattr(checked, "verify", lambda document: Verified(False, f"{STOPPED}: KeyError"))
+    found = examine(0, ready, "spring")
+    assert (found.word, STOPPED in found.why) == (ERROR, True)
+
+
+def test_a_check_that_does_not_end_is_stopped(ready, monkeypatch):
+    """After some ticks of the processor's clock, and that is an error of the checker."""
+    import signal
+
+    from documents import checked, examine
+
+    def without_end(document):
+        while True:
+            pass
+
+    monkeypatch.setattr(examine, "TICK", 0.01)
+    monkeypatch.setattr(examine, "PATIENCE", 0.02)
+    monkeypatch.setattr(checked, "verify", without_end)
+    before = signal.getsignal(signal.SIGPROF)
+    try:
+        examine.watch.begin()
+        found = examine.examine(0, ready, "spring")
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+    assert (found.word, found.why) == (examine.ERROR, "not checked in 0.02 s")
+
+
+def test_valid_documents_are_drawn_from_text(ready):
+    """Small ones more often, and what is drawn may be changed."""
+    valid = ready["spring"]
+    assert sorted(valid.shares, reverse=True) == [
+        share for _, share in sorted(zip(map(len, valid.texts), valid.shares, strict=True))
+    ]
+    first, again = (valid.one(Random(0)) for _ in range(2))
+    first["loop"].clear()
+    assert again == valid.one(Random(0))

@@ -16,6 +16,7 @@ Rng = np.random.Generator
 
 SLACK = 1e-8
 POINTS = 400
+MOST_CYCLES = 100_000
 
 
 def _system(document: Document) -> tuple[np.ndarray, np.ndarray, bool]:
@@ -108,6 +109,8 @@ def _taken(document: Document, rng: Rng) -> Opinion:
     matrix = "numerators" in document["system"]
     level, sides = exact(document["level"]), _sides(document)
     if motion["kind"] == "burst":
+        if exact(motion["cycles"]) > MOST_CYCLES:
+            return cannot_say("a burst of so many cycles is not summed up")
         got, size = _burst(motion, sides, float(level), matrix)
     elif motion["kind"] == "polynomial":
         phi = [exacts(a) for a in (motion["coefficients"] if matrix else [motion["coefficients"]])]
