@@ -31,7 +31,7 @@ from typing import Any, NamedTuple
 
 from attack.ledger import alone
 from documents import ledger, seeds
-from documents.examine import FINDINGS, Examined, examine, told, watch
+from documents.examine import FINDINGS, Examined, examine, numbers_of_any_length, told, watch
 from documents.grammar import SHARES, Valid, ready
 from documents.self_test import self_test
 from rich.progress import track
@@ -128,7 +128,8 @@ def _alone(seed: int, known: Mapping[str, Valid], only: str | None) -> int:
     """One seed: its document, what is said of it, and the smallest of which the same is."""
     watch.begin()
     found = examine(seed, known, only)
-    print(json.dumps(found.written.document, indent=1, default=str))
+    with numbers_of_any_length():
+        print(json.dumps(found.written.document, indent=1, default=str))
     print(f"{found.written.kind}, {found.written.how}: {found.word}, {found.why}")
     print(f"{found.seconds:.3f} s, {found.room:.0f} MB")
     if found.word in FINDINGS:

@@ -137,7 +137,7 @@ def judged(document: Document, seed: int, reason: str = "") -> Opinion:
     It cannot say of numbers that no double holds, nor after too long.
     """
     try:
-        with np.errstate(all="ignore"), _numbers_of_any_length(), watch:
+        with np.errstate(all="ignore"), numbers_of_any_length(), watch:
             return judge(document, np.random.default_rng(seed), reason)
     except _TooLong:
         return Opinion(OPEN, f"not judged in {PATIENCE} s")
@@ -148,7 +148,7 @@ def judged(document: Document, seed: int, reason: str = "") -> Opinion:
 
 
 @contextmanager
-def _numbers_of_any_length() -> Iterator[None]:
+def numbers_of_any_length() -> Iterator[None]:
     """Judges may read and write more than 4300 digits at a time; the checker must do without."""
     before = sys.get_int_max_str_digits()
     sys.set_int_max_str_digits(0)
@@ -220,7 +220,7 @@ def told(found: Examined, seed: int) -> str:
     """A finding as text: its smallest form, what it was made of, and the reason."""
     words = {"seed": seed, "word": found.word, "why": found.why, "how": found.written.how}
     try:
-        with _numbers_of_any_length():
+        with numbers_of_any_length():
             return json.dumps({**words, "document": shrunken(found, seed)}, indent=1, default=str)
     except RecursionError:  # lists too deep for any text
         return json.dumps(words, indent=1)
