@@ -164,10 +164,11 @@ def main() -> int:
     if given.kind and given.ledger == HERE / "random_documents.csv":
         parser.error("--kind writes other documents than the campaign does: name another --ledger")
     findings = campaign(given, known) if given.documents else 0
-    text = ledger.table(ledger.read(given.ledger))
+    stretches = ledger.read(given.ledger)
+    text = ledger.table(stretches)
     print(text)
     if given.write_readme:
-        ledger.into_readme(HERE / "README.md", text)
+        ledger.into_readme(HERE / "README.md", f"{ledger.seeds_run(stretches)}\n\n{text}")
     return int(findings > 0)
 
 

@@ -50,17 +50,23 @@ WRITTEN = {
 }  # fmt: skip
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _benchmarks():
+    """Benchmarks are scripts beside one another."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(Path(__file__).parents[2] / "benchmarks"))
+        yield
+
+
 @pytest.fixture(scope="module")
 def seeds():
     """Valid documents of every kind."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(Path(__file__).parents[2] / "benchmarks"))
-        from documents import seeds
+    from documents import seeds
 
-        made = seeds.made(name for name in seeds.MAKERS if name not in SLOW)
-        for kind, documents in WRITTEN.items():
-            made[kind] = [*made.get(kind, []), *copy.deepcopy(documents)]
-        yield made
+    made = seeds.made(name for name in seeds.MAKERS if name not in SLOW)
+    for kind, documents in WRITTEN.items():
+        made[kind] = [*made.get(kind, []), *copy.deepcopy(documents)]
+    return made
 
 
 @pytest.fixture(scope="module")
@@ -164,6 +170,7 @@ def test_a_ledger_says_what_is_left_to_run(tmp_path):
     ledger.write(path, done)
     read = ledger.read(path)
     assert [(s.first, s.last) for s in read] == [(0, 9), (20, 29)]
+    assert ledger.seeds_run(read) == "Seeds 0 to 9, 20 to 29:"
     assert ledger.still_to_run(read, 0, 35, 6) == [(10, 15), (16, 19), (30, 34)]
     assert ledger.still_to_run(read, 3, 5, 6) == []
     assert "| spring | 6 | 3 | 3 | 0 | 0 | 0 | 0 | 0.50 | 20 | 100 |" in ledger.table(read)
