@@ -197,7 +197,7 @@ def _corners(numerators, **changes):
         (_corners(["100", "200000"]), "a mix, "),
     ],
 )
-def test_a_claim_about_mixes_is_judged(seeds, document, wrong):
+def test_a_claim_about_mixes_is_judged(document, wrong):
     """Of one device and denominator alone, and no mix of the laws may be active."""
     from documents.judges import mixes
 
@@ -251,3 +251,26 @@ def test_valid_documents_are_drawn_from_text(ready):
     first, again = (valid.one(Random(0)) for _ in range(2))
     first["loop"].clear()
     assert again == valid.one(Random(0))
+
+
+PORT = {"time": "discrete", "numerator": ["0.3", "-0.1", "-0.2"], "denominator": ["1", "0", "0"]}
+BURST = {"kind": "burst", "step_rad_per_s": "1", "cycles": 10**9, "power": 2}
+LATE = _corners(["100"], sample_period_s="1.00000000000000002e-3", delay_s="0.001")["corners"][0]
+
+
+@pytest.mark.parametrize(
+    ("document", "word"),
+    [
+        ({"kind": "positive real", "system": PORT, "index": "input", "level": "-1e-18"}, "cannot say"),
+        ({"kind": "positive real", "system": PORT, "index": "input", "level": "1e-3"}, "false"),
+        ({"kind": "extraction", "system": PORT, "index": "input", "level": 9, "motion": BURST}, "cannot say"),
+        (LATE, "agrees"),
+        ({**LATE, "loop": {**LATE["loop"], "numerator": [10**6000]}}, "cannot say"),
+    ],
+    ids=("level of rounding", "level above it", "long burst", "almost a sample late", "more than a double"),
+)
+def test_a_judge_knows_what_doubles_cannot_hold(document, word):
+    """It then says so, or goes another way, and does not fail."""
+    from documents.examine import judged
+
+    assert judged(document, 0).word == word
