@@ -87,8 +87,8 @@ def examine(seed: int, seeds: Mapping[str, Valid], only: str | None = None) -> E
     valid, reason = _asked(written.document)
     seconds, room = time.perf_counter() - start, 0.0
     if seconds > QUICK_S:
-        room = _most.grown()
         seconds = _of_processor(written.document)
+        room = _most.grown()
     opinion = Opinion(REFUSED, reason) if valid is False else Opinion(ERROR, reason)
     if valid:
         opinion = (
