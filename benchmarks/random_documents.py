@@ -31,8 +31,8 @@ from typing import Any, NamedTuple
 
 from attack.ledger import alone
 from documents import ledger, seeds
-from documents.examine import FINDINGS, Examined, examine, told
-from documents.grammar import SHARES
+from documents.examine import FINDINGS, Examined, examine, numbers_of_any_length, told, watch
+from documents.grammar import SHARES, Valid, ready
 from documents.self_test import self_test
 from rich.progress import track
 
@@ -54,10 +54,11 @@ class Told(NamedTuple):
 
 
 def chunk(
-    work: tuple[int, int], given: Mapping[str, list[dict[str, Any]]], only: str | None
+    work: tuple[int, int], given: Mapping[str, Valid], only: str | None
 ) -> tuple[ledger.Stretch, list[Told]]:
     """A stretch of seeds: the counts, and what is to be told of some."""
     warnings.simplefilter("ignore")
+    watch.begin()
     stretch, noticed = ledger.Stretch(*work), list[Told]()
     for seed in range(work[0], work[1] + 1):
         found = examine(seed, given, only)
@@ -77,7 +78,7 @@ def _noticed(seed: int, found: Examined, *, small: bool) -> Told:
     return Told(line, name, told(found, seed) if small else "")
 
 
-def campaign(given: argparse.Namespace, known: Mapping[str, list[dict[str, Any]]]) -> int:
+def campaign(given: argparse.Namespace, known: Mapping[str, Valid]) -> int:
     """Run what the ledger does not have; returns how many findings there were."""
     findings, start, ran = 0, time.perf_counter(), 0
     folder = given.ledger.with_name(f"{given.ledger.stem}-findings")
@@ -123,10 +124,12 @@ def _results(run: Any, work: list[tuple[int, int]], processes: int) -> Iterator[
             raise
 
 
-def _alone(seed: int, known: Mapping[str, list[dict[str, Any]]], only: str | None) -> int:
+def _alone(seed: int, known: Mapping[str, Valid], only: str | None) -> int:
     """One seed: its document, what is said of it, and the smallest of which the same is."""
+    watch.begin()
     found = examine(seed, known, only)
-    print(json.dumps(found.written.document, indent=1, default=str))
+    with numbers_of_any_length():
+        print(json.dumps(found.written.document, indent=1, default=str))
     print(f"{found.written.kind}, {found.written.how}: {found.word}, {found.why}")
     print(f"{found.seconds:.3f} s, {found.room:.0f} MB")
     if found.word in FINDINGS:
@@ -153,7 +156,7 @@ def main() -> int:
     parser.add_argument("--write-readme", action="store_true")
     parser.add_argument("--self-test", action="store_true", help="can every judge say no?")
     given = parser.parse_args()
-    known = seeds.read(given.seeds)
+    known = ready(seeds.read(given.seeds))
     if given.self_test:
         return int(self_test(known) > 0)
     if given.only is not None:
@@ -161,10 +164,11 @@ def main() -> int:
     if given.kind and given.ledger == HERE / "random_documents.csv":
         parser.error("--kind writes other documents than the campaign does: name another --ledger")
     findings = campaign(given, known) if given.documents else 0
-    text = ledger.table(ledger.read(given.ledger))
+    stretches = ledger.read(given.ledger)
+    text = ledger.table(stretches)
     print(text)
     if given.write_readme:
-        ledger.into_readme(HERE / "README.md", text)
+        ledger.into_readme(HERE / "README.md", f"{ledger.seeds_run(stretches)}\n\n{text}")
     return int(findings > 0)
 
 

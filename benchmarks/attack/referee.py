@@ -251,13 +251,17 @@ def needed(loop: PlainLoop) -> tuple[float, float]:
     return _needed(replace(loop, damping=Fraction(0), friction=Fraction(0), resolution=Fraction(0)))
 
 
+_GRID = np.concatenate([np.linspace(0, pi, 401)[1:], np.geomspace(1e-6, 1e-2, 60)])
+_WIDTH = np.array([0.0, *(s * w for w in np.geomspace(0.05, 20, 12) for s in (1, -1))])
+"""Angles at which every law is looked at, and around each root, in distances of it from the circle."""
+
+
 @lru_cache(maxsize=8)
 def _needed(loop: PlainLoop) -> tuple[float, float]:
     """What a law asks for, whatever the device has."""
-    theta = np.concatenate([np.linspace(0, pi, 401)[1:], np.geomspace(1e-6, 1e-2, 60)])
+    theta = _GRID
     roots = np.roots([float(c) for c in loop.denominator]) if len(loop.denominator) > 1 else np.zeros(0)
-    width = np.array([0.0, *(s * w for w in np.geomspace(0.05, 20, 12) for s in (1, -1))])
-    near = [abs(np.angle(p)) + abs(1 - abs(p)) * width for p in roots if p.imag >= 0 and abs(p) > 0.5]
+    near = [abs(np.angle(p)) + abs(1 - abs(p)) * _WIDTH for p in roots if p.imag >= 0 and abs(p) > 0.5]
     theta = np.concatenate([theta, *near]) if near else theta
     theta = np.unique(theta[(theta > 0) & (theta <= pi)])
     values = _needs(loop, theta)

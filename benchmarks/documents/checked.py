@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from zwidth.checker import verify
+from zwidth.checker import STOPPED, verify
 
 
 class Answer(NamedTuple):
@@ -15,20 +15,14 @@ class Answer(NamedTuple):
 
 
 def ask(document: Any) -> Answer:
-    """The checker's answer; anything that it raises goes on."""
-    if isinstance(document, dict) and document.get("kind") == "corners":
-        return _corners(document)
+    """The checker's answer; anything that it raises goes on.
+
+    Raises
+    ------
+    RuntimeError
+        If the checker stopped at something that it does not foresee.
+    """
     found = verify(document)
-    return Answer(bool(found.valid), str(found.reason))
-
-
-def _corners(document: dict[str, Any]) -> Answer:
-    """Corners are taken apart by what reads files, and each of them is checked alone."""
-    from zwidth.errors import InputError
-    from zwidth.passivity.certificate import verify_document
-
-    try:
-        found = verify_document(document)
-    except InputError as error:
-        return Answer(False, str(error))
+    if found.reason.startswith(STOPPED):
+        raise RuntimeError(found.reason)
     return Answer(bool(found.valid), str(found.reason))

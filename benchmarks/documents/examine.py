@@ -6,15 +6,17 @@ import copy
 import json
 import resource
 import signal
+import sys
 import time
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .checked import ask
-from .grammar import Document, Written, is_number, leaves, write
+from .grammar import Document, Valid, Written, is_number, leaves, write
 from .judges import judge
 from .opinion import AGREES, FALSE, OPEN, Opinion
 
@@ -25,7 +27,12 @@ FINDINGS = (FALSE, ILL_FORMED, ERROR)
 PATIENCE = 60
 """Seconds of the processor after which a document is given up: an error of the checker, open for a judge."""
 
+TICK = 5
+
 SHRINK_S = 3.0
+
+QUICK_S = 0.02
+"""What is checked in less is not measured closer: to ask the system takes as long as to check a document."""
 
 
 class Examined(NamedTuple):
@@ -42,66 +49,113 @@ class _TooLong(Exception):
     """Longer than anybody would wait."""
 
 
-def _stop(*_: object) -> None:
-    raise _TooLong
+class _Watch:
+    """Stops what takes too long.
+
+    A clock of the processor ticks all the time, and nothing has to be asked of the system for a document.
+    """
+
+    def __init__(self) -> None:
+        self.left: int | None = None
+
+    def begin(self) -> None:
+        """Let the clock of this process tick."""
+        signal.signal(signal.SIGPROF, self._tick)
+        signal.setitimer(signal.ITIMER_PROF, TICK, TICK)
+
+    def _tick(self, *_: object) -> None:
+        if self.left is not None:
+            self.left -= 1
+            if self.left < 0:
+                raise _TooLong
+
+    def __enter__(self) -> None:
+        self.left = PATIENCE // TICK
+
+    def __exit__(self, *_: object) -> None:
+        self.left = None
 
 
-def examine(seed: int, seeds: Mapping[str, list[Document]], only: str | None = None) -> Examined:
+watch = _Watch()
+"""To be begun in each process; without, nothing is stopped."""
+
+
+def examine(seed: int, seeds: Mapping[str, Valid], only: str | None = None) -> Examined:
     """The document of a seed, judged."""
     written = write(seed, seeds, only)
-    before = _room()
-    start = time.process_time()
+    start = time.perf_counter()
     valid, reason = _asked(written.document)
-    seconds = time.process_time() - start
-    room = _room()
+    seconds, room = time.perf_counter() - start, 0.0
+    if seconds > QUICK_S:
+        seconds = _of_processor(written.document)
+        room = _most.grown()
     opinion = Opinion(REFUSED, reason) if valid is False else Opinion(ERROR, reason)
     if valid:
-        opinion = Opinion(ILL_FORMED, reason) if written.ill_formed else judged(written.document, seed)
-    return Examined(written, *opinion, seconds, room if room > before else 0.0)
+        opinion = (
+            Opinion(ILL_FORMED, reason) if written.ill_formed else judged(written.document, seed, reason)
+        )
+    return Examined(written, *opinion, seconds, room)
 
 
-def _room() -> float:
-    """The most that the process has taken so far [MB]."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+def _of_processor(document: Any) -> float:
+    """Seconds of the processor that the check takes if nothing has to be compiled for it."""
+    start = time.process_time()
+    _asked(document)
+    return time.process_time() - start
+
+
+class _Most:
+    """The most room that the process has taken so far [MB]."""
+
+    def __init__(self) -> None:
+        self.room = 0.0
+
+    def grown(self) -> float:
+        """What it is now, 0 if it has not grown since it was asked for last."""
+        before, self.room = self.room, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+        return self.room if self.room > before else 0.0
+
+
+_most = _Most()
 
 
 def _asked(document: Any) -> tuple[bool | None, str]:
     """Whether it is accepted, None where the checker failed, and why."""
-    _begin()
     try:
-        answer = ask(document)
+        with watch:
+            answer = ask(document)
     except _TooLong:
         return None, f"not checked in {PATIENCE} s"
     except Exception as error:  # what a user would see as a traceback
         return None, f"{type(error).__name__}: {error}"[:200]
-    finally:
-        _end()
     return answer.valid, answer.reason
 
 
-def judged(document: Document, seed: int) -> Opinion:
-    """The judge's opinion, or that it cannot say: of numbers that no double holds, or after too long."""
-    _begin()
+def judged(document: Document, seed: int, reason: str = "") -> Opinion:
+    """The judge's opinion of what the checker proved.
+
+    It cannot say of numbers that no double holds, nor after too long.
+    """
     try:
-        with np.errstate(all="ignore"):
-            return judge(document, np.random.default_rng(seed))
+        with np.errstate(all="ignore"), numbers_of_any_length(), watch:
+            return judge(document, np.random.default_rng(seed), reason)
     except _TooLong:
         return Opinion(OPEN, f"not judged in {PATIENCE} s")
     except (OverflowError, FloatingPointError, np.linalg.LinAlgError) as error:
         return Opinion(OPEN, f"numbers that no double holds: {error}")
     except Exception as error:  # a judge that fails says nothing, and must be mended
         return Opinion(ERROR, f"the judge failed: {type(error).__name__}: {error}"[:200])
+
+
+@contextmanager
+def numbers_of_any_length() -> Iterator[None]:
+    """Judges may read and write more than 4300 digits at a time; the checker must do without."""
+    before = sys.get_int_max_str_digits()
+    sys.set_int_max_str_digits(0)
+    try:
+        yield
     finally:
-        _end()
-
-
-def _begin() -> None:
-    signal.signal(signal.SIGPROF, _stop)
-    signal.setitimer(signal.ITIMER_PROF, PATIENCE)
-
-
-def _end() -> None:
-    signal.setitimer(signal.ITIMER_PROF, 0)
+        sys.set_int_max_str_digits(before)
 
 
 def shrunken(found: Examined, seed: int) -> Any:
@@ -122,7 +176,8 @@ def shrunken(found: Examined, seed: int) -> Any:
 
 
 def _still_false(document: Any, seed: int) -> bool:
-    return bool(_asked(document)[0]) and judged(document, seed).word == FALSE
+    valid, reason = _asked(document)
+    return bool(valid) and judged(document, seed, reason).word == FALSE
 
 
 def _smaller(document: Any) -> Iterator[Any]:
@@ -165,6 +220,7 @@ def told(found: Examined, seed: int) -> str:
     """A finding as text: its smallest form, what it was made of, and the reason."""
     words = {"seed": seed, "word": found.word, "why": found.why, "how": found.written.how}
     try:
-        return json.dumps({**words, "document": shrunken(found, seed)}, indent=1, default=str)
+        with numbers_of_any_length():
+            return json.dumps({**words, "document": shrunken(found, seed)}, indent=1, default=str)
     except RecursionError:  # lists too deep for any text
         return json.dumps(words, indent=1)

@@ -132,14 +132,16 @@ def damp(rng: Random, loop: Document) -> None:
 
 def law(rng: Random) -> tuple[Polynomial, Polynomial, Modes, Polynomial]:
     """N, D ascending in 1/z, and the modes and the rest that sum up to it."""
-    modes = [
-        (Fraction(rng.randint(-9, 9), 10), short(rng, 1, 100) * rng.choice((-1, 1)))
-        for _ in range(rng.randint(0, 2))
-    ]
-    rest = [
-        short(rng, 10, 500),
-        *(short(rng, 1, 200) * rng.choice((-1, 1)) for _ in range(rng.randint(0, 2))),
-    ]
+    poles = [Fraction(rng.randint(-9, 9), 10) for _ in range(rng.randint(0, 2))]
+    return law_of_poles(rng, poles, rng.randint(0, 2))
+
+
+def law_of_poles(
+    rng: Random, poles: list[Fraction], more: int
+) -> tuple[Polynomial, Polynomial, Modes, Polynomial]:
+    """The same of given poles, its rest of so many terms and one."""
+    modes = [(pole, short(rng, 1, 100) * rng.choice((-1, 1))) for pole in poles]
+    rest = [short(rng, 10, 500), *(short(rng, 1, 200) * rng.choice((-1, 1)) for _ in range(more))]
     above, below = rest, [Fraction(1)]
     for pole, residue in modes:
         line = [Fraction(1), -pole]
@@ -233,17 +235,26 @@ def _bounded(loop: Document, whole: int, part: Fraction, share: Fraction, period
     return plus(q, in_cosine(above, above), -period * share / 2)
 
 
+def _weights(rng: Random) -> Any:
+    """Of the speed: a pole, or a list."""
+    if rng.random() < 0.5:
+        return {"pole": str(Fraction(rng.randint(0, 9), 10))}
+    return texts([Fraction(rng.randint(-3, 5), 4) for _ in range(rng.randint(1, 3))])
+
+
 def _contact(rng: Random) -> Document:
     """K + B W(ζ) (1 − ζ)/T near both bounds."""
+    return _contact_of(rng, _weights(rng), Fraction(rng.choice(PERIODS)))
+
+
+def _contact_of(rng: Random, weights: Any, period: Fraction) -> Document:
     k, b = short(rng, 10, 500), short(rng, 0.01, 1) * rng.choice((1, 1, -1))
-    period = Fraction(rng.choice(PERIODS))
-    if rng.random() < 0.5:
-        pole = Fraction(rng.randint(0, 9), 10)
-        weights: Any = {"pole": str(pole)}
+    if isinstance(weights, dict):
+        pole = Fraction(weights["pole"])
         top, bottom, gain, variation = [1 - pole], [Fraction(1), -pole], Fraction(1), 2 * (1 - pole)
     else:
-        top = [Fraction(rng.randint(-3, 5), 4) for _ in range(rng.randint(1, 3))]
-        weights, bottom, gain = texts(top), [Fraction(1)], sum(map(abs, top), Fraction(0))
+        top = [Fraction(w) for w in weights]
+        bottom, gain = [Fraction(1)], sum(map(abs, top), Fraction(0))
         variation = sum(map(abs, times(top, [Fraction(1), Fraction(-1)])), Fraction(0))
     above = plus(times(top, [b / period, -b / period]), bottom, k)
     size = max(len(above), len(bottom))
@@ -257,6 +268,48 @@ def _contact(rng: Random) -> Document:
     )  # fmt: skip
     told = {"stiffness_N_per_m": str(k), "virtual_damping_N_s_per_m": str(b), "weights": weights}
     return {"kind": "contact", "loop": loop, "law": told}
+
+
+def family(rng: Random) -> list[Document]:
+    """Corners around one device, of one denominator, one of them near its limit."""
+    kind, number = rng.choice(("spring", "linear", "quantized", "contact")), rng.randint(2, 4)
+    if kind == "contact":
+        weights, period = _weights(rng), Fraction(rng.choice(PERIODS))
+        corners = [_contact_of(rng, weights, period) for _ in range(number)]
+    else:
+        poles = [
+            Fraction(rng.randint(-9, 9), 10) for _ in range(rng.randint(0, 2) if kind != "spring" else 0)
+        ]
+        more = rng.randint(0, 2)
+        corners = [_corner(rng, kind, poles, more) for _ in range(number)]
+    most = {key: max((corner["loop"][key] for corner in corners), key=Fraction) for key in _LOSSES}
+    shared = {"delay_s", "sample_period_s", "resolution_m", "unilateral"}
+    for corner in corners:
+        corner["loop"] |= {**{key: corners[0]["loop"][key] for key in shared}, **most}
+        if kind in ("linear", "quantized"):
+            corner["proof"]["positivity"] = positivity(criterion(corner["loop"]))
+    return corners
+
+
+_LOSSES = ("damping_N_s_per_m", "coulomb_friction_N")
+
+
+def _corner(rng: Random, kind: str, poles: list[Fraction], more: int) -> Document:
+    """A proof with a law of these poles, the device its own."""
+    above, below, modes, rest = law_of_poles(rng, poles, more)
+    if kind == "spring":
+        above, below, rest = rest[:1], [Fraction(1)], rest[:1]
+    loop = loop_of(rng, above, below)
+    damp(rng, loop)
+    document: Document = {"format": "zwidth certificate 1", "kind": kind, "loop": loop}
+    if kind != "linear":
+        found, bound = norm(rng, modes, rest)
+        loop |= {"resolution_m": "0.0001", "coulomb_friction_N": str(close(rng, bound / 20000))}
+    if kind != "spring":
+        document["proof"] = {"stability": {"kind": "open loop"}, "positivity": {}}
+    if kind == "quantized":
+        document["proof"]["norm"] = found
+    return document
 
 
 def _relaxing(rng: Random) -> Document:

@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import base64
 import copy
+import json
 import zlib
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from functools import lru_cache
 from random import Random
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .fresh import KINDS, fresh
+from .fresh import KINDS, family, fresh
 
 Document = dict[str, Any]
 Path = tuple[Any, ...]
@@ -24,9 +26,9 @@ SHARES = {
     "spring": 7, "linear": 7, "quantized": 7, "delays": 4, "contact": 7, "relaxing contact": 6,
     "multiplier contact": 3, "nonlinear spring": 6, "endless pull": 4, "slow hands": 5, "force bounding": 4,
     "active hand": 5, "violation": 8, "motion": 5, "touching motion": 3, "contact motion": 3, "row motion": 3,
-    "storage": 0.8, "coarse storage": 0.5, "row storage": 0.8, "stability": 1, "instability": 1,
-    "absolute stability": 0.8, "vibration": 4, "arm": 0.8, "positive real": 6, "positive real matrix": 3,
-    "extraction": 5, "matrix extraction": 4, "corners": 2,
+    "storage": 0.6, "coarse storage": 0.4, "row storage": 0.6, "stability": 0.6, "instability": 0.8,
+    "absolute stability": 0.6, "vibration": 4, "arm": 0.5, "positive real": 6, "positive real matrix": 3,
+    "extraction": 5, "matrix extraction": 4, "corners": 3,
 }  # fmt: skip
 """How often each kind is written, rare where a check or a judge takes long."""
 
@@ -65,7 +67,25 @@ class Written(NamedTuple):
     ill_formed: bool
 
 
-def write(seed: int, seeds: Mapping[str, list[Document]], only: str | None = None) -> Written:
+class Valid(NamedTuple):
+    """Valid documents of a kind as text, from which each is read anew, and the share of each."""
+
+    texts: list[str]
+    shares: list[float]
+
+    def one(self, rng: Random) -> Document:
+        """Any of them, to be changed."""
+        document: Document = json.loads(rng.choices(self.texts, self.shares)[0])
+        return document
+
+
+def ready(documents: Mapping[str, list[Document]]) -> dict[str, Valid]:
+    """Valid documents, so that they can be drawn."""
+    texts = {kind: [json.dumps(one) for one in some] for kind, some in documents.items()}
+    return {kind: Valid(some, [1 / (300 + len(text)) for text in some]) for kind, some in texts.items()}
+
+
+def write(seed: int, seeds: Mapping[str, Valid], only: str | None = None) -> Written:
     """The document of a seed, of one kind `only` if told; `seeds` are valid documents by their kind."""
     rng = Random(seed)
     kind = only or rng.choices(list(SHARES), list(SHARES.values()))[0]
@@ -74,7 +94,7 @@ def write(seed: int, seeds: Mapping[str, list[Document]], only: str | None = Non
     if kind in KINDS and rng.random() < FROM_NOTHING:
         document, how = fresh(kind, rng), "from nothing"
     else:
-        document, how = copy.deepcopy(rng.choice(seeds[kind])), "a seed"
+        document, how = seeds[kind].one(rng), "a seed"
         for _ in range(rng.choices((1, 2, 3), (6, 3, 1))[0]):
             how = f"{how}, {_changed(rng, document, seeds[kind])}"
     if kind != "arm" and rng.random() < ROTARY:
@@ -107,19 +127,59 @@ def _of_a_wheel(key: str) -> str:
     return key
 
 
-def _corners(rng: Random, seeds: Mapping[str, list[Document]]) -> Written:
-    parts = []
-    for _ in range(rng.randint(1, 3)):
-        kind = rng.choice(("spring", "linear", "contact", "violation", "quantized", "instability"))
-        part = copy.deepcopy(rng.choice(seeds[kind]))
-        if rng.random() < 0.5:
-            _changed(rng, part, seeds[kind])
-        parts.append(part)
-    if rng.random() < 0.2:
-        return Written(
-            "corners", {"kind": "corners", "corners": [*parts, parts[0]]}, "the same corner twice", True
-        )
-    return Written("corners", {"kind": "corners", "corners": parts}, "several corners", False)
+def _corners(rng: Random, seeds: Mapping[str, Valid]) -> Written:
+    """Any proofs, or proofs around one device, of which one may be of another; or one of them twice."""
+    if rng.random() < 0.5:
+        parts, how = family(rng), "corners around one device"
+        if rng.random() < 0.4:
+            part = rng.choice(parts)
+            how = f"{how}, {_otherwise(rng, part)}"
+    else:
+        parts, how = [_any_corner(rng, seeds) for _ in range(rng.randint(1, 3))], "several corners"
+    twice = rng.random() < 0.15
+    if twice:
+        parts.insert(rng.randint(0, len(parts)), _in_other_words(rng, rng.choice(parts)))
+    if rng.random() < ROTARY:
+        parts, how = turned(parts), f"{how}, rotary"
+    document: Document = {"kind": "corners", "corners": parts}
+    if rng.random() < ILL_FORMED:
+        words = _spoilt(rng, document)
+        return Written("corners", document, f"{how}, {words}", twice or bool(words))
+    return Written("corners", document, f"{how}, the same corner twice" if twice else how, twice)
+
+
+def _any_corner(rng: Random, seeds: Mapping[str, Valid]) -> Document:
+    kind = rng.choice(("spring", "linear", "contact", "violation", "quantized", "instability"))
+    part = seeds[kind].one(rng)
+    if rng.random() < 0.5:
+        _changed(rng, part, seeds[kind])
+    return part
+
+
+def _otherwise(rng: Random, corner: Document) -> str:
+    """Another device, law or unit of force of one corner: mixes are of one device alone."""
+    loop = corner["loop"]
+    key = rng.choice([k for k in loop if k != "denominator"] + ["denominator"] * 3)
+    if key == "unilateral":
+        loop[key] = not loop[key]
+    elif key in ("numerator", "denominator"):
+        factor = rng.choice((Fraction(2), Fraction(-1), near_one(rng)))
+        for side in ("numerator", "denominator") if rng.random() < 0.7 else (key,):
+            loop[side] = [str(factor * Fraction(c)) for c in loop[side]]
+    else:
+        loop[key] = str(Fraction(loop[key]) * rng.choice((1, 2, 1 + abs(near_one(rng) - 1), near_one(rng))))
+    return f"{key} of another"
+
+
+def _in_other_words(rng: Random, corner: Document) -> Document:
+    """The same, its numbers written as other fractions."""
+    same: Document = json.loads(json.dumps(corner))
+    if rng.random() < 0.5:
+        for path, value in leaves(same):
+            if isinstance(value, str) and is_number(value):
+                exact = Fraction(value)
+                _inner(same, path[:-1])[path[-1]] = f"{3 * exact.numerator}/{3 * exact.denominator}"
+    return same
 
 
 def leaves(value: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
@@ -138,6 +198,7 @@ def _inner(document: Any, path: Path) -> Any:
     return document
 
 
+@lru_cache(maxsize=100_000, typed=True)
 def is_number(value: Any) -> bool:
     """A number as documents write it."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
@@ -149,7 +210,7 @@ def is_number(value: Any) -> bool:
     return True
 
 
-def _changed(rng: Random, document: Document, others: list[Document]) -> str:
+def _changed(rng: Random, document: Document, others: Valid) -> str:
     """Change one thing in place; in words."""
     packed = [
         path for path, v in leaves(document) if isinstance(v, str) and len(v) > 30 and path[-1] != "format"
@@ -171,7 +232,7 @@ def near_one(rng: Random) -> Fraction:
     )
 
 
-def _nudged(rng: Random, document: Document, others: list[Document]) -> str:
+def _nudged(rng: Random, document: Document, others: Valid) -> str:
     paths = _numbers(document)
     if not paths:
         return "nothing"
@@ -199,7 +260,7 @@ def _as_written(value: Fraction, like: Any) -> Any:
     return str(value)
 
 
-def _strengthened(rng: Random, document: Document, others: list[Document]) -> str:
+def _strengthened(rng: Random, document: Document, others: Valid) -> str:
     """The claim says more, by a little; its proof stays."""
     found = []
     for path in _numbers(document):
@@ -228,7 +289,7 @@ def _lists(value: Any) -> Iterator[list[Any]]:
             yield from _lists(inner)
 
 
-def _listed(rng: Random, document: Document, others: list[Document]) -> str:
+def _listed(rng: Random, document: Document, others: Valid) -> str:
     """Terms taken away, doubled, put in, exchanged."""
     found = list(_lists(document))
     if not found:
@@ -252,7 +313,7 @@ def _listed(rng: Random, document: Document, others: list[Document]) -> str:
     return f"a list {kind}"
 
 
-def _flipped(rng: Random, document: Document, others: list[Document]) -> str:
+def _flipped(rng: Random, document: Document, others: Valid) -> str:
     found = [(path, v) for path, v in leaves(document) if isinstance(v, (bool, str)) and v in FLIPS]
     if not found:
         return _nudged(rng, document, others)
@@ -261,21 +322,21 @@ def _flipped(rng: Random, document: Document, others: list[Document]) -> str:
     return f"{'.'.join(map(str, path))} turned over"
 
 
-def _grafted(rng: Random, document: Document, others: list[Document]) -> str:
+def _grafted(rng: Random, document: Document, others: Valid) -> str:
     """A part of another document of the kind in its place."""
-    other = rng.choice(others)
+    other = others.one(rng)
     ways = [(key,) for key in document if key not in ("kind", "format")]
     ways += [(k, inner) for (k,) in list(ways) if isinstance(document[k], dict) for inner in document[k]]
     path = rng.choice(ways)
     try:
-        part = copy.deepcopy(_inner(other, path))
+        part = _inner(other, path)
     except (KeyError, TypeError, IndexError):
         return "nothing"
     _inner(document, path[:-1])[path[-1]] = part
     return f"{'.'.join(path)} of another"
 
 
-def _retyped(rng: Random, document: Document, others: list[Document]) -> str:
+def _retyped(rng: Random, document: Document, others: Valid) -> str:
     """A list or an object is something else."""
     ways = [path for path, _ in _objects(document) if path]
     ways += [path for path, value in _entries(document) if isinstance(value, list)]
@@ -323,10 +384,15 @@ NO_NUMBERS: tuple[Any, ...] = (
     "−1", None, True, {}, "1e", "e5", "+", "²", "1,5", "1.5.2", float("inf"), float("nan"), [[[[]]]],
 )  # fmt: skip
 
-UNITS = (
-    ("_N_s_per_m", "_N_m_s_per_rad"), ("_N_per_m", "_N_m_per_rad"), ("_m", "_rad"), ("_N", "_N_m"),
-    ("_s", "_ms"), ("_kg", "_g"), ("_Hz", "_rad_per_s"),
-)  # fmt: skip
+UNITS = {
+    "_N_N_s_per_m": "_N_m_N_m_s_per_rad", "_N_m_N_m_s_per_rad": "_N_N_s_per_m",
+    "_m_per_s_N": "_rad_per_s_N_m", "_rad_per_s_N_m": "_m_per_s_N", "_N_m_s_per_rad": "_N_s_per_m",
+    "_N_s_per_m": "_N_m_s_per_rad", "_N_m_per_rad": "_N_per_m", "_N_per_m": "_N_m_per_rad",
+    "_rad_per_s": "_m_per_s", "_m_per_s": "_rad_per_s", "_rad_N_m": "_m_N", "_m_N": "_rad_N_m",
+    "_per_rad": "_per_m", "_per_m": "_per_rad", "_N_m": "_N", "_rad": "_m", "_kg_m2": "_kg", "_kg": "_kg_m2",
+    "_N": "_N_m", "_m": "_rad", "_Hz": "_rad_per_s", "_s": "_ms", "_J": "_mJ",
+}  # fmt: skip
+"""Another unit for each, the longer ones first."""
 
 
 def _objects(value: Any, path: Path = ()) -> Iterator[tuple[Path, dict[str, Any]]]:
@@ -363,17 +429,16 @@ def _unread(rng: Random, document: Document) -> str:
 def _other_unit(rng: Random, document: Document) -> str:
     """One key of a quantity in another unit, or in none, or given twice."""
     found = [
-        (table, key, old, new)
+        (table, key, next(unit for unit in UNITS if key.endswith(unit)))
         for _, table in _objects(document)
         for key in table
-        for old, new in UNITS
-        if isinstance(key, str) and key.endswith(old) and "m_N" not in key and len(table) > 1
+        if len(table) > 1 and isinstance(key, str) and key.endswith(tuple(UNITS))
     ]
     if not found:
         return ""
-    table, key, old, new = rng.choice(found)
+    table, key, old = rng.choice(found)
     stem = key.removesuffix(old)
-    other = rng.choice((stem + new, stem, f"{key}s"))
+    other = rng.choice((stem + UNITS[old], stem, f"{key}s"))
     value = table[key]
     if rng.random() < 0.6:
         del table[key]

@@ -119,6 +119,12 @@ def total(stretches: list[Stretch]) -> dict[str, Tally]:
     return dict(sorted(all_of.kinds.items()))
 
 
+def seeds_run(stretches: list[Stretch]) -> str:
+    """Which seeds were run, in words."""
+    ends = (f"{s.first:,} to {s.last:,}".replace(",", " ") for s in stretches)
+    return f"Seeds {', '.join(ends)}:"
+
+
 def table(stretches: list[Stretch]) -> str:
     """The totals as a Markdown table."""
     rows = [

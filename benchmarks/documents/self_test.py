@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Mapping
 
 from .examine import judged
-from .grammar import SHARES, Document, write
+from .grammar import SHARES, Valid, write
 from .opinion import FALSE
 
 
-def blind(kind: str, seeds: Mapping[str, list[Document]], number: int) -> Counter[str]:
+def blind(kind: str, seeds: Mapping[str, Valid], number: int) -> Counter[str]:
     """What the judge of a kind says of so many documents if the checker accepted all of them."""
     said: Counter[str] = Counter()
     for seed in range(number):
@@ -20,13 +21,13 @@ def blind(kind: str, seeds: Mapping[str, list[Document]], number: int) -> Counte
     return said
 
 
-def self_test(seeds: Mapping[str, list[Document]], number: int = 60) -> int:
+def self_test(seeds: Mapping[str, Valid], number: int = 60) -> int:
     """How many judges found nothing false among documents that nobody checked; prints what each said."""
     silent = 0
     for kind in SHARES:
         said = blind(kind, seeds, number)
         silent += not said[FALSE]
         print(f"{kind}: {dict(said)}", flush=True)
-    valid = sum(judged(document, 0).word == FALSE for some in seeds.values() for document in some)
+    valid = sum(judged(json.loads(text), 0).word == FALSE for some in seeds.values() for text in some.texts)
     print(f"{silent} judges never said false; {valid} valid documents were called false")
     return silent + valid

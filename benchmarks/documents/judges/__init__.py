@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..opinion import Opinion, cannot_say, first
-from . import arms, boards, closed, hands, loops, motions, ports
+from . import arms, boards, closed, hands, loops, mixes, motions, ports
 
 Judge = Callable[[dict[str, Any], np.random.Generator], Opinion]
 
@@ -23,10 +23,11 @@ JUDGES: dict[str, Judge] = {
 }
 
 
-def judge(document: dict[str, Any], rng: np.random.Generator) -> Opinion:
-    """The opinion of the judge of its kind; of corners that of each, and of none of them twice the same."""
+def judge(document: dict[str, Any], rng: np.random.Generator, reason: str = "") -> Opinion:
+    """The opinion of the judge of its kind; of corners that of each, and of mixes if they are claimed."""
     kind = document["kind"]
     if kind == "corners":
-        return first(*(judge(corner, rng) for corner in document["corners"]))
+        corners = document["corners"]
+        return first(*(judge(corner, rng) for corner in corners), mixes.between(corners, rng, reason))
     found = JUDGES.get(kind)
     return found(document, rng) if found else cannot_say("no judge of this kind")

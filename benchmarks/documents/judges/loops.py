@@ -39,12 +39,17 @@ def passive(loop: PlainLoop, rng: Rng, *, kept: bool = False) -> Opinion:
     wrong = (criterion(loop) or unstable(loop)) if loop.linear_inside else ""
     if wrong:
         return false(wrong)
-    found = attack(loop, rng, 48, 100, kept=kept, angle=needed(loop)[1])
+    found = attack(_as_a_double(loop), rng, 48, 100, kept=kept, angle=needed(loop)[1])
     if found.score > ROUNDING and refutes(loop, found, kept=kept):
         return false(
             f"a motion of {len(found.positions)} samples takes out {found.score:.3g} of what is lost"
         )
     return agrees()
+
+
+def _as_a_double(loop: PlainLoop) -> PlainLoop:
+    """The same with a whole sample where no double is between the part and 1."""
+    return loop if float(loop.part) < 1 else replace(loop, delay=(loop.whole + 1) * loop.period)
 
 
 def criterion(loop: PlainLoop) -> str:

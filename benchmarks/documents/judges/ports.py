@@ -16,6 +16,7 @@ Rng = np.random.Generator
 
 SLACK = 1e-8
 POINTS = 400
+MOST_CYCLES = 100_000
 
 
 def _system(document: Document) -> tuple[np.ndarray, np.ndarray, bool]:
@@ -31,11 +32,25 @@ def _system(document: Document) -> tuple[np.ndarray, np.ndarray, bool]:
 def _port(document: Document, z: np.ndarray) -> np.ndarray:
     """F at some places (k, m, m): G, or its inverse."""
     above, below, _ = _system(document)
+    return _value(above, below, document["index"], z)
+
+
+def _value(above: np.ndarray, below: np.ndarray, index: str, z: np.ndarray) -> np.ndarray:
     powers = z[:, None] ** np.arange(above.shape[-1] - 1, -1, -1)
     top, bottom = np.einsum("kn,ijn->kij", powers, above), powers @ below
-    if document["index"] == "input":
+    if index == "input":
         return top / bottom[:, None, None]
     return bottom[:, None, None] * np.linalg.inv(top)
+
+
+def _rounding(document: Document, z: np.ndarray, rng: Rng) -> float:
+    """How far F moves at a place where its coefficients move by some more than rounding."""
+    above, below, _ = _system(document)
+    here, most = _value(above, below, document["index"], z), 0.0
+    for _ in range(8):
+        moved = [side * (1 + 1e-14 * rng.standard_normal(side.shape)) for side in (above, below)]
+        most = max(most, float(np.abs(_value(*moved, document["index"], z) - here).sum()))
+    return most
 
 
 def _places(document: Document, rng: Rng) -> np.ndarray:
@@ -73,6 +88,8 @@ def _positive(document: Document, rng: Rng) -> Opinion:
     size = np.abs(f).sum(axis=(1, 2)) + abs(level)
     worst = int(np.argmax((level - least) / size))
     if least[worst] < level - SLACK * size[worst]:
+        if level - least[worst] < _rounding(document, places[worst : worst + 1], rng):
+            return cannot_say("rounding hides what the Hermitian part is")
         return false(f"the Hermitian part is {least[worst]:.9g} < {level:.9g} at {places[worst]:.6g}")
     return agrees()
 
@@ -92,6 +109,8 @@ def _taken(document: Document, rng: Rng) -> Opinion:
     matrix = "numerators" in document["system"]
     level, sides = exact(document["level"]), _sides(document)
     if motion["kind"] == "burst":
+        if exact(motion["cycles"]) > MOST_CYCLES:
+            return cannot_say("a burst of so many cycles is not summed up")
         got, size = _burst(motion, sides, float(level), matrix)
     elif motion["kind"] == "polynomial":
         phi = [exacts(a) for a in (motion["coefficients"] if matrix else [motion["coefficients"]])]

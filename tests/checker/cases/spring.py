@@ -68,6 +68,7 @@ CASES = [
         encoder="counted",
     ),
     refused("a spring that pushes away", spring(4, [-8]), "stiffness is negative"),
+    refused("a spring that pushes away, above any double", spring(4, ["-1e400"]), "negative: -1e+400"),
     accepted("no spring at all", spring(0, [0])),
     refused("H(z) has a zero", spring(99, [8, 1], [1, 0]), "not a spring"),
     refused("H(z) has a pole", spring(99, [8, 0], [1, "-1/2"]), "not a spring"),

@@ -291,7 +291,7 @@ CASES = [
             put(STORAGES[name]["document"], {"force_unit": "1e-30"}),
             "too large to be compared",
         )
-        for name in ("spring", "row", "coarse", "points", "limited", "grows")
+        for name in ("spring", "solid", "row", "coarse", "points", "limited", "grows")
     ),
     *(
         refused(f"{name} without {key}", without(STORAGES[name]["document"], key), "is missing")

@@ -146,6 +146,11 @@ CASES = [
     ),
     refused("a pole at 2", put(FILTER, {"loop.denominator": [1, -2]}), "does not forget"),
     refused("a pole at 1", put(FILTER, {"loop.denominator": [1, -1]}), "does not forget"),
+    refused(
+        "a law whose numbers grow by 16 000 bits a sample",
+        put(FILTER, {"loop.denominator": ["1e4990", 1], "positions_m": [0, *[1] * 400, 0]}),
+        "too large to be checked",
+    ),
     refused("another sample period beside it", put(THERE, {"sample_period_s": 2}), "T is 1 s, not 2 s"),
     refused("fed with something else", put(THERE, {"law.fed_with": "force"}), "fed_with must be"),
     refused(

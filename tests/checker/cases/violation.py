@@ -44,6 +44,8 @@ CASES = [
         fed_with="",
     ),
     accepted("T = 2 s", violation("2.999", [3], cosine=-1, sample_period_s=2), "is violated at 0.25 Hz"),
+    accepted("T above any double", violation(1, [3], cosine=-1, sample_period_s="1e400"), "at 5e-401 Hz"),
+    accepted("T below any double", violation(0, [3], cosine=-1, sample_period_s="1e-400"), "at 5e+399 Hz"),
     accepted(
         "an encoder and friction change nothing",
         put(SPRING, {"loop.resolution_m": 1, "loop.coulomb_friction_N": 9}),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import gcd, lcm
 
+from ..document.effort import spend
 from ..document.fields import Choice, Flag, Read, Record, document, numbers
 from ..document.number import common_scale
 from ..document.refusal import Invalid
@@ -86,17 +87,19 @@ def _work(p: Loop, x: list[Fraction], ways: list[int], penetration: bool, never_
     lead, order = bottom[0], len(bottom) - 1
     feed = [c * lead**i for i, c in enumerate(top)]
     back = [c * lead ** max(i - 1, 0) for i, c in enumerate(bottom)]
+    longest = max(map(int.bit_length, (*feed, *back)))
     past, power, effort, work = [0] * order, 1, 0.0, 0
     for k, v in enumerate(u):
         effort += (order + 2) * (1 + power.bit_length() / 1000)
         if effort > MOST_EFFORT:
             raise Invalid("the motion is too long, or its exact numbers grow too long, to be checked")
+        spend(2 * order + 4, power.bit_length(), longest)
         w = int(v * unit) * power - sum(a * old for a, old in zip(back[1:], past, strict=True))
         power *= lead
         work *= lead
         if q[k] > 0:
             f = at_rest * power + feed[0] * w + sum(b * old for b, old in zip(feed[1:], past, strict=True))
-            if f * power > 0 or not never_pulls:
+            if not never_pulls or (f > 0) == (power > 0):
                 work += f * ways[k]
         past = [w, *past[:-1]] if order else past
     return Fraction(work, power * unit * content)

@@ -9,6 +9,7 @@ from its gradient by what b and f_c absorb.
 from __future__ import annotations
 
 from ..document.fields import Read, document
+from ..document.number import about
 from ..document.refusal import Invalid
 from .loop import LOOP, loop_of
 
@@ -22,7 +23,7 @@ def spring(told: Read) -> str:
         raise Invalid("the law is not a spring: H(z) is not constant")
     k = p.numerator[0] / p.denominator[0]
     if k < 0:
-        raise Invalid(f"the stiffness is negative: {float(k):g}")
+        raise Invalid(f"the stiffness is negative: {about(k)}")
     reach = k * p.period / 2 * (2 * p.whole + 1 + 2 * p.part)
     inside = p.period**2 / 4 * p.part * (1 - p.part) * k**2
     if p.damping < reach or p.damping * (p.damping - reach) < inside:

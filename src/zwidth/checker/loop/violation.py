@@ -23,6 +23,7 @@ from math import acos, pi
 from typing import NamedTuple
 
 from ..document.fields import Number, OneOf, Read, Record, document, only_if
+from ..document.number import about
 from ..document.refusal import Invalid
 from ..exact.polynomial import bits
 from ..exact.roots import inside_unit_circle
@@ -66,8 +67,8 @@ def violation(told: Read) -> str:
 def _violated(p: Loop, cosine: Fraction) -> str:
     if criterion_at(p, cosine) >= 0:
         raise Invalid("the criterion is not violated at this frequency")
-    turns = acos(cosine) / (2 * pi)
-    return f"the linear criterion is violated at {turns / float(p.period):.6g} Hz"
+    turns = Fraction(acos(cosine) / (2 * pi))
+    return f"the linear criterion is violated at {about(turns / p.period)} Hz"
 
 
 def _negative(p: Loop) -> str:

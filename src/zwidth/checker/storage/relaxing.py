@@ -56,7 +56,10 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     value = storage_of(told.storage, (high - low + 1, columns, levels, steps + 1))
     spring = int(law.taps[0] * losses.resolution // unit)
     branch = int(law.relaxing[1] * losses.resolution / per_count // unit)
-    off = max(abs(low), abs(high)) + 2 + 2 * levels + 2
+    farthest = max(abs(low), abs(high))
+    if abs(spring) * farthest + abs(branch) * levels >= _MOST:
+        raise Invalid("the forces are too large to be compared exactly")
+    off = farthest + 2 + 2 * levels + 2
     costs = costs_of(losses, unit, off, Fraction(1), fastest, steps)
     forces = _forces(law, spring, branch, low, high, least, per_count, levels)
     images = _images(law, low, high, least, per_count, levels)
