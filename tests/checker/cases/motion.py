@@ -346,4 +346,35 @@ CASES = [
             motion([0, 1, 2, 2, 2, 3, -5], 30, [0, 0, 1], [1, 0, 0], damping_N_s_per_m=0, **FREE), (4, 5, 6)
         ),
     ),
+    taken(
+        "rounds outwards that end outside",
+        20,
+        repeated(motion([0, 4, 5, 3, 4, 2], 20, [1], [1], damping_N_s_per_m=0, delay_s=0), (3, 5, 6)),
+    ),
+    taken(
+        "rounds inwards of a memory that moves faster",
+        102,
+        repeated(
+            motion([0, 1, 2, 4, 6, 7, -7], 102, [0, 0, 1], [1, 0, 0], damping_N_s_per_m=0, delay_s=0, **FREE),
+            (4, 5, 6),
+        ),
+    ),
+    taken(
+        "rounds inwards of a memory of which one part has settled",
+        75,
+        repeated(
+            motion([0, 1, 2, 3, 5, 6, -6], 75, [0, 0, 1], [1, 0, 0], damping_N_s_per_m=0, delay_s=0, **FREE),
+            (4, 5, 6),
+        ),
+    ),
+    taken(
+        "rounds inwards of forces of which one has settled",
+        54,
+        repeated(motion([0, 1, 3, 4, -6], 54, [1], [1], damping_N_s_per_m=0, delay_s=1, **FREE), (2, 3, 6)),
+    ),
+    taken(
+        "from rest within the first count",
+        1,
+        motion(["1/2", "3/2", "1/2"], 1, resolution_m=1, **FREE),
+    ),
 ]
