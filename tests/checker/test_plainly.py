@@ -86,10 +86,10 @@ def test_a_device_that_is_worse_is_refused_by_both(name: str) -> None:
     "case", [case for case in CASES if "a unit less" not in case.name], ids=lambda c: c.name
 )
 def test_the_twin_accepts_what_the_fast_check_accepts(case: Any) -> None:
-    """And what the one refuses for what it is, the other refuses."""
+    """And what the one refuses for what it is, not for the size of its numbers, the other refuses."""
     document = plain(case.document)
     one, other = fast(document), plainly(document)
-    if one.valid or "takes out more" not in one.words:
+    if one.valid or not any(words in one.words for words in ("takes out more", "too large to be compared")):
         assert other.valid is one.valid, (one, other)
 
 
