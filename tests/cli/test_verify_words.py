@@ -93,6 +93,13 @@ def test_the_same_corner_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "the same corner is given twice" in told(again, tmp_path, capsys, status=1)
 
 
+def test_corners_that_differ_in_a_late_digit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two corners that are shown alike, with twelve digits, are two all the same."""
+    stiffness = [f"{'1' * 60}{digit}/1{'0' * 59}3" for digit in "12"]
+    near = [{**SPRING, "loop": {**SPRING["loop"], "numerator": [k]}} for k in stiffness]
+    assert "all 2 corners" in told({"kind": "corners", "corners": near}, tmp_path, capsys)
+
+
 def test_an_active_hand_keeps_contact_in_its_band(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A hand more active than the device is damped shakes it off the wall: contact is kept, it says."""
     found = plain(zw.tolerated_activity(PADDLE.replace(delay=0), zw.Wall(20, 0.12)).to_dict())
@@ -120,6 +127,12 @@ def test_corners_of_several_kinds(tmp_path: Path, capsys: pytest.CaptureFixture[
     out = told({"kind": "corners", "corners": [SPRING, STABLE]}, tmp_path, capsys)
     assert "is passive" not in out
     assert "VALID Proved: all 2 corners" in out
+    verdict = {
+        "outcome": "passive",
+        "certificate": {"kind": "corners", "corners": [SPRING, STABLE]},
+        "worst_hand": {"certificate": SPRING},
+    }
+    assert "corners that show different things" in told(verdict, tmp_path, capsys, status=1)
 
 
 @pytest.mark.parametrize("outcome", ["passive", "active"])

@@ -1,10 +1,10 @@
 """The independent checker: re-proves a certificate or a violation, recomputes a motion.
 
-Written from the mathematics alone, with other algorithms than the prover's: Chebyshev sums for the criterion,
-Bernstein coefficients for its sign, Routh's table for stability, Schur and Cohn's recursion where a hand is
-known, a plain recursion for the energy of a motion, every move one by one for a storage function.  The
-standard library does for all but the last, whose many moves need numpy and numba, and have a slow twin
-without them.  It imports nothing else of zwidth, and zwidth imports of it what stands here: keep it so.
+Written from the mathematics alone: Chebyshev sums for the criterion, Bernstein coefficients for its sign,
+Schur and Cohn's recursion for roots, a plain recursion for the energy of a motion, every move one by one for
+a storage function.  The standard library does for all but the last, whose many moves need numpy and numba,
+and have a slow twin without them.  It imports nothing else of zwidth, and zwidth imports of it what stands
+here: keep it so.
 
 Everything is exact, or enclosed where e^A, sines and roots come in: numbers are integers, or text such as
 "3/20" and "0.15".

@@ -39,12 +39,20 @@ def corners(document: Mapping[str, Any]) -> tuple[Found, Scope | None, tuple[Rea
         reasons.append(found.reason)
         scopes.append(covered)
         told.append((read, motion))
-        claimed.append(tuple(fields_of(kind).rows("", read, motion)))
-    if any(claim in claimed[:place] for place, claim in enumerate(claimed)):
+        shown = (name for name, field in KINDS[kind].fields.fields.items() if field.shown)
+        claimed.append((kind, *(_frozen(getattr(read, name)) for name in shown)))
+    if len(set(claimed)) < len(claimed):
         raise Invalid("the same corner is given twice")
     between = "and every mix of their laws" if _are_mixed([read for read, _ in told]) else _BETWEEN
     reason = f"all {len(listed)} corners: {'; or '.join(dict.fromkeys(reasons))}; {between}"
     return Found(reason), weakest(scopes), told[0]
+
+
+def _frozen(value: Any) -> Any:
+    """What a corner says, every digit of it, in a form that can be compared."""
+    if isinstance(value, Read):
+        return tuple((name, _frozen(inner)) for name, inner in vars(value).items())
+    return tuple(map(_frozen, value)) if isinstance(value, (list, tuple)) else value
 
 
 _BETWEEN = "nothing is said of what lies between them"

@@ -153,7 +153,7 @@ KINDS: dict[str, Kind] = {
     "stability": Kind(KNOWN_HAND, _proof(stability), scope.of_a_known_hand(STABLE)),
     "instability": Kind(KNOWN_HAND, _proof(instability), scope.of_a_known_hand(UNSTABLE)),
     "absolute stability": Kind(ABSOLUTE_STABILITY, _proof(absolute), scope.of_a_known_hand(STABLE, BROKEN)),
-    "vibration": Kind(VIBRATION, _proof(vibration), scope.of_a_known_hand(UNSTABLE)),
+    "vibration": Kind(VIBRATION, _proof(vibration), scope.of_a_known_hand(UNSTABLE, BROKEN)),
     "positive real": Kind(POSITIVE_REAL, _proof(positive_real), scope.of_a_port(INDEX)),
     "positive real matrix": Kind(POSITIVE_REAL_MATRIX, _proof(positive_real_matrix), scope.of_a_port(INDEX)),
     "extraction": Kind(EXTRACTION, _taken(extraction), scope.of_a_port(NO_INDEX)),

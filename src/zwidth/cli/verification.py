@@ -41,7 +41,7 @@ def verifications(document: object) -> list[Part]:
     if outcome not in ("passive", "passive in contact", "active"):
         return found
     scopes = [part.verification.scope for part in found]
-    bounded = all(scope is None or scope.hands == "bounded" for scope in scopes)
+    bounded = all(scope is not None and scope.hands == "bounded" for scope in scopes)
     if outcome != "active" and bounded and told.get("format") != _OF_BOUNDED_HANDS:
         return [_refused(part, outcome, "covers hands within bounds only") for part in found]
     return [_refused(part, outcome, _misfit(part.verification.scope, outcome, told)) for part in found]
@@ -57,9 +57,9 @@ def _refused(part: Part, outcome: str, misfit: str | None) -> Part:
 
 
 def _misfit(covered: Scope | None, outcome: str, told: Mapping[str, Any]) -> str | None:
-    """Why evidence does not show an outcome; None where it does."""
+    """Why evidence that is valid does not show an outcome; None where it does."""
     if covered is None:
-        return None
+        return "is of corners that show different things"
     if covered.shows in ("stable", "unstable"):
         return "is of a hand that is known"
     if covered.shows in ("index at least", "index below"):

@@ -56,7 +56,7 @@ CASES = [
         "slope 0.92, -1 off the hand's rest, vibrates for ever: rounds of 3 samples, 1 inside",
         shows="unstable",
         hands="known",
-        contact="kept",
+        contact="made and broken",
         encoder="ideal",
         force_limit=False,
         force_steps=False,
