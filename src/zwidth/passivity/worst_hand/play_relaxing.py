@@ -6,12 +6,13 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
 from zwidth.passivity.worst_hand.board import Integers
 from zwidth.passivity.worst_hand.relaxing import RelaxingBoard, sweep_relaxing
-from zwidth.passivity.worst_hand.solve import THREADS, Played, in_time, slices
+from zwidth.passivity.worst_hand.solve import THREADS, Played, in_time
 
 _LOOK = 4
 """Rounds between two searches for a cycle."""
@@ -21,6 +22,10 @@ _STARTS = 12
 
 _LONGEST = 160
 """Moves that are followed."""
+
+_BLOCKS = 8
+"""Blocks of cells, each improved by one thread from what the others were before the round: as many on every
+machine, so that a game ends the same way on each.  (What is raised between levels depends on the order.)"""
 
 _UNENDING = {"generous": 300, "strict": 60}
 """Rounds after which the search is given up: energy that only trickles in from level to level."""
@@ -43,14 +48,16 @@ def play_relaxing(
     value = board.relaxing_guess
     inwards, outwards = board.all_forces
     tables = (board.rows, inwards, outwards, *board.images, board.costs, board.knots, board.steps)
-    parts = slices(board.domain.cells, value.size)
+    ends = np.linspace(0, board.domain.cells, _BLOCKS + 1).astype(int).tolist()
+    parts = [(first, last) for first, last in pairwise(ends) if first < last]
     generous = board.rules == "generous"
     rounds = 0
     with ThreadPoolExecutor(THREADS) as pool:
         while time.monotonic() < deadline and rounds < _UNENDING[board.rules]:
             rounds += 1
+            before = value.copy()
             jobs = [
-                partial(sweep_relaxing, value, *tables, first, last, board.domain.reach, generous)
+                partial(sweep_relaxing, value, before, *tables, first, last, board.domain.reach, generous)
                 for first, last in parts
             ]
             improved = in_time(pool, deadline, jobs)

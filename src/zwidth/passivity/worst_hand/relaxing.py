@@ -140,6 +140,7 @@ class RelaxingBoard(Board):
 @compiled
 def sweep_relaxing(
     value: Integers,
+    before: Integers,
     rows: Integers,
     inwards: Integers,
     outwards: Integers,
@@ -156,7 +157,8 @@ def sweep_relaxing(
 ) -> int:
     """Improve the states of the cells first … last − 1; returns how many improved.
 
-    value is (cells, histories, levels, knots).
+    value is (cells, histories, levels, knots); before is value as it was before this round.  Of other
+    cells before is read: what they become meanwhile depends on which thread is the faster.
     """
     cells, histories, levels, edges = value.shape
     older = histories // (2 * reach + 1) if histories > 1 else 1
@@ -173,9 +175,10 @@ def sweep_relaxing(
                 m = at[row, i]
                 for n2 in range(low, high + 1):
                     h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
+                    goals = value[n2, h2] if first <= n2 < last else before[n2, h2]
                     for j2 in range(edges):
-                        a = value[n2, h2, m, j2]
-                        step = value[n2, h2, m + 1, j2] - a
+                        a = goals[m, j2]
+                        step = goals[m + 1, j2] - a
                         weight = above[row, i] if step > 0 else below[row, i]
                         there[n2, j2] = a - ((-step * weight) >> 16)
                 for j in range(edges):
@@ -204,8 +207,9 @@ def sweep_relaxing(
                 late = min(late, 1 << 16)
                 for n2 in range(low, high + 1):
                     h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
+                    goals = value[n2, h2] if first <= n2 < last else before[n2, h2]
                     for j2 in range(edges):
-                        goal = value[n2, h2, m, j2]
+                        goal = goals[m, j2]
                         for j in range(edges):
                             d = (n2 - n) * steps + knots[j2] - knots[j]
                             if abs(d) >= costs.size:
