@@ -250,9 +250,9 @@ def test_the_quickstart_example_says_what_comes_out(tmp_path: Path, monkeypatch:
 )
 def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> None:
     """Every TOML block with tables in the docs is a valid specification; one without is a velocity filter."""
-    from zwidth.cli.laws import with_laws
-    from zwidth.cli.specification import TABLES, read_tables, specified
     from zwidth.cli.touch import build_touch
+    from zwidth.specification.laws import with_laws
+    from zwidth.specification.read import TABLES, read_tables, specified
 
     blocks = _blocks(page, "toml")
     assert blocks
@@ -295,9 +295,9 @@ def _help(*command: str) -> str:
 
 def test_every_parameter_is_on_the_command_line_page() -> None:
     """Every parameter that `zwidth check` takes stands on its page, and every type of environment."""
-    from zwidth.cli.environments import TYPES, option_keys
-    from zwidth.cli.laws import LAWS
-    from zwidth.cli.specification import DEVICE_KEYS
+    from zwidth.specification.environments import TYPES, option_keys
+    from zwidth.specification.laws import LAWS
+    from zwidth.specification.read import DEVICE_KEYS
 
     page = _command_line_page()
     keys = {*DEVICE_KEYS, *option_keys(), "type"}

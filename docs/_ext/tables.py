@@ -8,10 +8,10 @@ from pathlib import Path
 import trust
 
 from zwidth import catalogue
-from zwidth.cli.environments import TYPES, Key, all_keys
-from zwidth.cli.laws import ESTIMATORS, LAWS, LawType
 from zwidth.cli.options import Parameter, device_parameters, environment_parameters
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.specification.environments import TYPES, Key, all_keys
+from zwidth.specification.laws import ESTIMATORS, LAWS, LawType
 
 GENERATED = Path(__file__).parent.parent / "_generated"
 

@@ -16,9 +16,9 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from strategies import texts
 
-from zwidth.cli.environments import TYPES
 from zwidth.cli.main import main
 from zwidth.cli.options import device_parameters, environment_parameters
+from zwidth.specification.environments import TYPES
 
 quick = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]

@@ -14,10 +14,10 @@ from strategies import toml_values
 
 import zwidth as zw
 from zwidth import rendering
-from zwidth.cli.laws import ESTIMATORS, LAWS, build_law, with_laws
 from zwidth.cli.main import main
-from zwidth.cli.specification import TABLES, read_tables
-from zwidth.cli.table import Table
+from zwidth.specification.laws import ESTIMATORS, LAWS, build_law, with_laws
+from zwidth.specification.read import TABLES, read_tables
+from zwidth.specification.table import Table
 
 LOOP = '[device]\ncatalogue = "haptic-paddle"\n\n[environment]\ntype = "wall"\nstiffness = 400\n'
 WALL = zw.Wall(400)

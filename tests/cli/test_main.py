@@ -17,10 +17,10 @@ from zwidth.cli.commands import decided
 from zwidth.cli.main import main
 from zwidth.cli.numerals import shown
 from zwidth.cli.options import device_parameters, environment_parameters, joined
-from zwidth.cli.specification import Specification
 from zwidth.device import catalogue
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.verdict import Verdict
+from zwidth.specification.read import Specification
 
 PASSIVE = ("check", "haptic-paddle", "--stiffness", "300")
 ACTIVE = ("check", "haptic-paddle", "--stiffness", "770")
@@ -344,7 +344,7 @@ def test_interrupt(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("zwidth.cli.specification.read_tables", interrupted)
+    monkeypatch.setattr("zwidth.specification.read.read_tables", interrupted)
     assert run(*PASSIVE).status == 130
 
 

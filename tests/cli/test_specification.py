@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from strategies import texts, toml_values
 
 import zwidth as zw
-from zwidth.cli.environments import TYPES, build_environment, option_keys
-from zwidth.cli.specification import DEVICE_KEYS, LARGEST_FILE, Specification, build_device, load
-from zwidth.cli.table import Table
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.specification.environments import TYPES, build_environment, option_keys
+from zwidth.specification.read import DEVICE_KEYS, LARGEST_FILE, Specification, build_device, load
+from zwidth.specification.table import Table
 
 DEVICE = '[device]\ndamping = "0.15 N*s/m"\nrate = "3 kHz"\n'
 WALL = '[environment]\ntype = "wall"\nstiffness = 300\n'

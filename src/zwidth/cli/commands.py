@@ -12,10 +12,10 @@ from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
-    from zwidth.cli.specification import Specification
     from zwidth.passivity.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
     from zwidth.passivity.verdict import Verdict
+    from zwidth.specification.read import Specification
 
 
 class Command(NamedTuple):
@@ -117,8 +117,8 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
 
 def _loop(arguments: argparse.Namespace) -> Specification:
     """The device, and the environment behind its laws."""
-    from zwidth.cli.laws import with_laws
-    from zwidth.cli.specification import WITH_LAWS, Specification, read_tables, specified
+    from zwidth.specification.laws import with_laws
+    from zwidth.specification.read import WITH_LAWS, Specification, read_tables, specified
 
     tables = read_tables(arguments.sources, WITH_LAWS)
     given = specified(tables, overrides(arguments))

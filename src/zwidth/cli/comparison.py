@@ -7,12 +7,12 @@ import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.laws import with_laws
 from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
 from zwidth.cli.output import print_json, print_text, say_written, targets, writing
-from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+from zwidth.specification.laws import with_laws
+from zwidth.specification.table import quoted, suggestion
 from zwidth.writing import writing_whole
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def configure_compare(parser: argparse.ArgumentParser) -> None:
 
 def run_compare(arguments: argparse.Namespace) -> int:
     """`zwidth compare`: 0."""
-    from zwidth.cli.specification import WITH_LAWS, read_tables, specified
+    from zwidth.specification.read import WITH_LAWS, read_tables, specified
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     tables = read_tables(arguments.sources, WITH_LAWS)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from zwidth.cli.environments import TYPES, Key
 from zwidth.cli.numerals import shown
-from zwidth.cli.table import plain
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.specification.environments import TYPES, Key
+from zwidth.specification.table import plain
 
 _OF_A_DEVICE = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
 """What a verdict depends on."""

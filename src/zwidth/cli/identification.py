@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.cli.options import BEHIND, Once, add_all, environment_parameters, given
 from zwidth.cli.output import print_json, say_written, targets, writing
-from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
+from zwidth.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
     from zwidth.environment import Environment
@@ -154,7 +154,7 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     if identified.shows("wrong model"):
         return Result(log, identified, confidence, others, environment, None, None)
     from zwidth.cli.commands import decided
-    from zwidth.cli.specification import Specification
+    from zwidth.specification.read import Specification
 
     verdict = decided(Specification(identified.device(confidence, **others), environment))
     passive_for = identified.confidence(environment, **others)
@@ -228,8 +228,8 @@ def _confidence(typed: str | None) -> float:
 
 def _environment(arguments: argparse.Namespace) -> Any:
     """What makes the environment to check, once the motion is known; None of it where none was given."""
-    from zwidth.cli.environments import build_environment
-    from zwidth.cli.specification import environment_table, read_tables
+    from zwidth.specification.environments import build_environment
+    from zwidth.specification.read import environment_table, read_tables
 
     keys = [p.key for p in environment_parameters()]
     words = given(arguments, (*keys, *(BEHIND + key for key in keys)))

@@ -5,15 +5,15 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.environments import option_keys
-from zwidth.cli.laws import with_laws
 from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
 from zwidth.cli.output import print_json, say_written, targets, writing
-from zwidth.cli.table import quoted, suggestion
 from zwidth.device.catalogue import PROPERTIES
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
+from zwidth.specification.environments import option_keys
+from zwidth.specification.laws import with_laws
+from zwidth.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
     from zwidth.passivity.worst_hand import Bracket
@@ -62,7 +62,7 @@ def configure_limit(parser: argparse.ArgumentParser) -> None:
 
 def run_limit(arguments: argparse.Namespace) -> int:
     """`zwidth limit`: 0 if both sides of the limit were found, else 3."""
-    from zwidth.cli.specification import WITH_LAWS, Specification, read_tables, specified
+    from zwidth.specification.read import WITH_LAWS, Specification, read_tables, specified
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     tables = read_tables(arguments.sources, WITH_LAWS)

@@ -15,8 +15,8 @@ from typing import NoReturn
 from zwidth.cli.commands import COMMANDS
 from zwidth.cli.options import joined
 from zwidth.cli.output import quiet_pipe, tolerate_encoding
-from zwidth.cli.table import plain, quoted, suggestion
 from zwidth.errors import InputError
+from zwidth.specification.table import plain, quoted, suggestion
 
 BAD_INPUT = 2
 INTERRUPTED = 130

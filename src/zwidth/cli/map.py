@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.options import Once, Parameter, add_all, device_parameters, given
 from zwidth.cli.output import print_json, print_text, say_written, targets, writing
-from zwidth.cli.specification import read_tables, specified_device
-from zwidth.cli.table import plain, quoted, suggestion
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
+from zwidth.specification.read import read_tables, specified_device
+from zwidth.specification.table import plain, quoted, suggestion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -125,8 +125,8 @@ def _device(arguments: argparse.Namespace) -> Device:
 
 def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     """The map as `z_width` takes it."""
-    from zwidth.cli.values import velocity_filter
     from zwidth.maps.request import standard_hands
+    from zwidth.specification.values import velocity_filter
 
     options: dict[str, Any] = {
         "stiffness": _range(arguments.stiffness, "stiffness", "stiffness", motion),

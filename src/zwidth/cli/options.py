@@ -11,12 +11,12 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
-from zwidth.cli.environments import TYPES, option_keys
-from zwidth.cli.laws import LAWS
-from zwidth.cli.specification import DEVICE_KEYS, ROTARY_KEYS
-from zwidth.cli.table import quoted
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.specification.environments import TYPES, option_keys
+from zwidth.specification.laws import LAWS
+from zwidth.specification.read import DEVICE_KEYS, ROTARY_KEYS
+from zwidth.specification.table import quoted
 
 BEHIND = "environment."
 """What stands before a key of the environment behind a coupling."""

@@ -11,9 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
-from zwidth.cli.table import plain
 from zwidth.errors import InputError
 from zwidth.showing import OBEYED, printable
+from zwidth.specification.table import plain
 
 PICTURES = (".png", ".svg", ".pdf")
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from zwidth.cli.options import Once, add_all, device_parameters, given
 from zwidth.cli.output import print_text
-from zwidth.cli.specification import load_device
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+from zwidth.specification.read import load_device
 
 _OPTIONS = (
     ("--force-noise", "σ", "standard deviation of the load cell per sample [N; rotary N*m]"),

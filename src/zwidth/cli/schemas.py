@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from importlib.resources import files
 
-from zwidth.cli.table import quoted, suggestion
 from zwidth.errors import InputError
+from zwidth.specification.table import quoted, suggestion
 
 
 def schema(kind: str) -> str:

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.laws import with_laws
 from zwidth.cli.options import Once, add_all, add_law_option, add_parameters, given, overrides
 from zwidth.cli.output import check_new, print_json, say_written, writing
-from zwidth.cli.specification import TABLES, read_tables, specified
 from zwidth.errors import InputError
+from zwidth.specification.laws import with_laws
+from zwidth.specification.read import TABLES, read_tables, specified
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,13 +14,13 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from zwidth.cli.options import Parameter
-from zwidth.cli.table import COMMAND_LINE, Table, located, quoted, suggestion
 from zwidth.device import amplifier as amplifiers
 from zwidth.device.amplifier import Amplifier
 from zwidth.errors import InputError
 from zwidth.operator import OPERATORS, Operator, ParametricOperator, RecordedForce, WitnessMotion
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.units import parse_number
+from zwidth.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
 
 OPERATOR = "operator"
 BEFORE = "operator."

@@ -10,9 +10,9 @@ from rich.text import Text
 
 from zwidth.cli.numerals import shown
 from zwidth.cli.report import page
-from zwidth.cli.table import plain
 from zwidth.energy.ledger import ROUNDING
 from zwidth.loop.trace import UNITS
+from zwidth.specification.table import plain
 from zwidth.traces import Comparison, compare_traces
 
 if TYPE_CHECKING:

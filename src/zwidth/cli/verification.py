@@ -13,18 +13,26 @@ from rich.text import Text
 from zwidth.checker import Scope, Verified
 from zwidth.cli.numerals import shown
 from zwidth.cli.report import page
-from zwidth.cli.table import plain
+from zwidth.errors import InputError
 from zwidth.passivity.certificate import evidence, verify_document
+from zwidth.specification.table import plain
+
+_LAWS_IN_A_ROW = ("row storage", "row motion")
+"""Documents of a table or of forces: the checker knows no law, and the law is stepped again here."""
 
 _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 """A document that claims nothing of hands beyond its bounds."""
 
 
 class Part(NamedTuple):
-    """One certificate or witness of a document, and what the checker says of it."""
+    """One certificate or witness of a document, and what the checker says of it.
+
+    Of laws in a row `law` says which they are, if they were stepped again and gave what the document lists.
+    """
 
     evidence: Mapping[str, Any]
     verification: Verified
+    law: str | None = None
 
 
 def verifications(document: object) -> list[Part]:
@@ -36,7 +44,7 @@ def verifications(document: object) -> list[Part]:
         If the document contains no evidence.
     """
     told = document if isinstance(document, Mapping) else {}
-    found = [Part(part, verify_document(part)) for part in evidence(document)]
+    found = [_with_law(Part(part, verify_document(part))) for part in evidence(document)]
     outcome = told.get("outcome")
     if outcome not in ("passive", "passive in contact", "active"):
         return found
@@ -45,6 +53,18 @@ def verifications(document: object) -> list[Part]:
     if outcome != "active" and bounded and told.get("format") != _OF_BOUNDED_HANDS:
         return [_refused(part, outcome, "covers hands within bounds only") for part in found]
     return [_refused(part, outcome, _misfit(part.verification.scope, outcome, told)) for part in found]
+
+
+def _with_law(part: Part) -> Part:
+    """Laws in a row stepped again from the parameters in the document."""
+    if not part.verification.valid or part.evidence["kind"] not in _LAWS_IN_A_ROW:
+        return part
+    from zwidth.passivity.worst_hand.row_document import law_of  # the compiler of their steps takes its time
+
+    try:
+        return part._replace(law=law_of(part.evidence))
+    except InputError as error:
+        return part._replace(verification=Verified(False, str(error)))
 
 
 def _refused(part: Part, outcome: str, misfit: str | None) -> Part:
@@ -135,7 +155,11 @@ def _rows(part: Part) -> Iterator[tuple[str, str]]:
     yield "kind", plain(str(part.evidence.get("kind")))
     if isinstance(corners := part.evidence.get("corners"), list):
         yield "corner below", f"1 of {len(corners)}, each with a proof of its own"
+    if part.law is not None:
+        yield "law, stepped again", plain(part.law, 300)
     for row in found.rows:
+        if row.told and part.law is not None:
+            continue
         name = "told, not checked" if row.told else plain(row.name)
         yield name, plain(f"{row.text} {row.unit}".rstrip(), 300)
 

@@ -13,9 +13,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.table import located
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+from zwidth.specification.table import located
 
 if TYPE_CHECKING:
     from zwidth.environment.matrix_wall import MatrixWall
@@ -74,8 +74,8 @@ def read_wall(path: Path, turns: int) -> Any:
     InputError
         If the file cannot be read, or a matrix in it cannot be used.
     """
-    from zwidth.cli.specification import read_tables
     from zwidth.environment.matrix_wall import MatrixWall
+    from zwidth.specification.read import read_tables
 
     table = read_tables([path], ("wall",))["wall"]
     table.check_keys(_UNITS, "a wall given by matrices")

@@ -20,10 +20,11 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import exact_text, save_json, unit_key, unit_suffix
+from zwidth.passivity.document import save_json, unit_key, unit_suffix
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.wording import lines
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import exact_text
 
 ROUNDOFF = Fraction(1, 2**53)
 """u: relative error of one operation on doubles, at most."""

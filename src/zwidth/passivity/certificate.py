@@ -19,11 +19,12 @@ from zwidth.errors import InputError
 from zwidth.passivity.contact import DampedWall, Decay
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.delay_interval import Piece
-from zwidth.passivity.document import exact_text, loop_document, save_json, unit_key
+from zwidth.passivity.document import loop_document, save_json, unit_key
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.one_norm import NormBound
 from zwidth.passivity.positivity import Positivity
 from zwidth.passivity.relaxing_contact import RelaxingLaw
+from zwidth.quantity.text import exact_text
 from zwidth.showing import Html, element
 
 FORMAT = "zwidth certificate 1"

@@ -15,6 +15,7 @@ from typing import Any
 
 from zwidth.passivity.loop import LinearLoop
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import as_decimal, exact_text
 from zwidth.writing import writing_whole
 
 
@@ -51,26 +52,6 @@ def loop_document(
         "denominator": [str(c) for c in (*loop.denominator, *[0] * (size - len(loop.denominator)))],
         "unilateral": unilateral,
     }
-
-
-def exact_text(value: Fraction) -> str:
-    """A rational as decimal text where it ends, else as "p/q"."""
-    decimal = as_decimal(value)
-    return f"{value.numerator}/{value.denominator}" if decimal is None else str(decimal)
-
-
-def as_decimal(value: Fraction) -> Decimal | None:
-    """The finite decimal equal to a rational, or None."""
-    rest, twos, fives = value.denominator, 0, 0
-    while rest % 2 == 0:
-        rest, twos = rest // 2, twos + 1
-    while rest % 5 == 0:
-        rest, fives = rest // 5, fives + 1
-    if rest != 1:
-        return None
-    places = max(twos, fives)
-    digits = value.numerator * 10**places // value.denominator
-    return Decimal((int(digits < 0), tuple(int(d) for d in str(abs(digits))), -places))
 
 
 def save_json(path: str | Path, document: object) -> None:

@@ -18,8 +18,9 @@ from zwidth.checker import verify
 from zwidth.device import Device
 from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.scope import Contact
+from zwidth.quantity.text import exact_text
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,9 @@ from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate, wall_document
 from zwidth.passivity.contact import DampedWall
 from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.document import exact_text, loop_document, unit_key
+from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.loop import LinearLoop
+from zwidth.quantity.text import exact_text
 
 KIND = "slow hands"
 

@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.checker import verify
-from zwidth.passivity.document import exact_text, loop_document, save_json
+from zwidth.passivity.document import loop_document, save_json
 from zwidth.passivity.linear import LinearRefutation, offset_of
 from zwidth.passivity.refutation import refute_linear
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.supremum import frequency
 from zwidth.passivity.witness import Setting, Witness
+from zwidth.quantity.text import exact_text
 from zwidth.showing import Html, element
 
 FORMAT = "zwidth violation 1"

@@ -15,10 +15,10 @@ from known_motion import COULOMB, DAMPING, MASS, PERIOD, STEP, Recording, paddle
 from scipy import stats
 
 import zwidth as zw
-from zwidth.cli.specification import load
 from zwidth.identification.device.curve import friction_bins
 from zwidth.identification.device.identified import Estimate
 from zwidth.identification.device.limits import advice, limits, percent
+from zwidth.specification.read import load
 
 
 def log_of(recording: Recording) -> zw.Log:

@@ -19,15 +19,18 @@ from .law import LOSSES, losses_of
 
 MOST_POSITIONS = 100_000
 MOST_WORDS = 10_000
+MOST_PARAMETERS = 100_000
 
 TOLD_LAW = Record(
     {
         "description": Words(MOST_WORDS),
+        "specification": Words(MOST_PARAMETERS, default="", shown=False),
         "counts_force_limit": Flag(shown=False),
         "counts_force_resolution": Flag(shown=False),
     }
 )
-"""What is said of laws in a row: the proof is of the table, or of the forces, and not of these words."""
+"""What is said of laws in a row, and their parameters for who has the law: the proof is of the table, or of
+the forces, and not of these words."""
 
 ROW_MOTION = document(
     {

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 from zwidth.device.device import Device
 from zwidth.identification.device.limits import percent
 from zwidth.identification.device.table import source_name
-from zwidth.passivity.document import as_decimal
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import as_decimal
 
 if TYPE_CHECKING:
     from zwidth.identification.device.identified import Identified

@@ -17,8 +17,8 @@ from zwidth.errors import InputError
 from zwidth.passivity.absolute.orbit import Array, corrected, growth_of, returns, simulated
 from zwidth.passivity.absolute.plant import Plant
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import exact_text
 from zwidth.quantity.exact import Exact
+from zwidth.quantity.text import exact_text
 
 _RUNS = 4
 _SHORT = 14

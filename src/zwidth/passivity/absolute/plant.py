@@ -22,10 +22,11 @@ from zwidth.device import Device
 from zwidth.environment import PulseTransferFunction
 from zwidth.errors import InputError
 from zwidth.operator.operator import LinearHand, Operator
-from zwidth.passivity.document import exact_text, unit_key, unit_suffix
+from zwidth.passivity.document import unit_key, unit_suffix
 from zwidth.passivity.schur import is_schur
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import exact_text
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from zwidth.passivity.absolute.plant import Plant
 from zwidth.passivity.absolute.search import Found
 from zwidth.passivity.absolute.terms import Criterion, Term
 from zwidth.passivity.certificate import FORMAT
-from zwidth.passivity.document import exact_text
+from zwidth.quantity.text import exact_text
 
 _STEPS = (0, 2e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1)
 """How far the slope is lowered, relatively, before the weights are given up."""

@@ -33,13 +33,14 @@ from zwidth.passivity.active_hand.shaking import ShakingHand, shaking_hand, tole
 from zwidth.passivity.boundary import largest_holding
 from zwidth.passivity.certificate import FORMAT, Certificate, certify, linear_proof, positivity_document
 from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.document import exact_text, loop_document, save_json, unit_suffix
+from zwidth.passivity.document import loop_document, save_json, unit_suffix
 from zwidth.passivity.linear import LinearProof
 from zwidth.passivity.loop import LinearLoop
 from zwidth.passivity.scope import Contact, Hands, Scope, scope_of
 from zwidth.passivity.wording import lines
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import exact_text
 from zwidth.quantity.units import parse_number
 
 Array = npt.NDArray[np.float64]

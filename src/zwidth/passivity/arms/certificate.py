@@ -26,7 +26,7 @@ from zwidth.passivity.arms.encoders import Chain, EncoderSteps, moving_steps
 from zwidth.passivity.arms.joints import as_matrix, surplus
 from zwidth.passivity.arms.need import wall_matrices, wall_need
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import exact_text
+from zwidth.quantity.text import exact_text
 
 Array = npt.NDArray[np.float64]
 Written = LeggedArm | PlanarChain | DescribedArm

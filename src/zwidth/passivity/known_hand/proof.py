@@ -9,9 +9,10 @@ from typing import Any
 
 from zwidth.environment.environment import RationalFunction
 from zwidth.passivity.certificate import FORMAT
-from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.known_hand.decide import Found
 from zwidth.passivity.known_hand.plant import Motion, Range
+from zwidth.quantity.text import exact_text
 
 
 def evidence(found: Found, motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any] | None:

@@ -6,13 +6,13 @@ import base64
 import zlib
 
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import exact_text
 from zwidth.passivity.worst_hand.board import Domain
 from zwidth.passivity.worst_hand.coarse_board import CoarseBoard, coarse_board
 from zwidth.passivity.worst_hand.law import FiniteLaw
 from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.solve import Tell, play
 from zwidth.passivity.worst_hand.storage import loop_document
+from zwidth.quantity.text import exact_text
 
 CELLS = (16, 32, 64, 128)
 """Cells in the longest move, coarse to fine."""

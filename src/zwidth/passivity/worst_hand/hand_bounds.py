@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.motion import Motion
 from zwidth.passivity.scope import Hands
 from zwidth.passivity.worst_hand.board import Domain
 from zwidth.passivity.worst_hand.law import FiniteLaw
 from zwidth.passivity.worst_hand.losses import Losses
+from zwidth.quantity.text import exact_text
 
 
 @dataclass(frozen=True)

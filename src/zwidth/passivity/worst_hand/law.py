@@ -28,7 +28,8 @@ from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
-from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.document import unit_key
+from zwidth.quantity.text import exact_text
 
 Surface = Literal["none", "position", "penetration"]
 

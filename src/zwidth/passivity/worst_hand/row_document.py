@@ -1,7 +1,8 @@
 """Laws in a row in a certificate or a witness, and whether they give what it says.
 
 The checker knows no law: it takes the table of states, or the forces of a motion, as they stand in
-the document.  `same_law` steps the law again, by the simulator's own functions, and compares to the bit.
+the document.  `same_law` steps a law again, by the simulator's own functions, and compares to the bit;
+`law_of` does so with the law that the document gives the parameters of.
 """
 
 from __future__ import annotations
@@ -15,18 +16,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.loop.every_reading import after_reading, scratch
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.worst_hand.board import Domain
+from zwidth.passivity.worst_hand.domain import losses_of
 from zwidth.passivity.worst_hand.row_law import RowLaw, row_law
 from zwidth.passivity.worst_hand.row_table import Table, tabulate
+from zwidth.passivity.worst_hand.storage import loop_document
+from zwidth.specification.write import parsed
 
 if TYPE_CHECKING:
     from zwidth.device.device import Device
     from zwidth.environment.environment import Environment
 
 STORAGE, MOTION = "row storage", "row motion"
+
+MOST_STEPS = 20_000_000
+"""Readings that a law is stepped through for a document of somebody else's: some seconds to half a minute."""
+
+MOST_WAITING = 10_000
+"""Samples of delay, likewise: each keeps a force."""
 
 
 def packed(values: Any, kind: str = "<i8") -> str:
@@ -41,9 +52,10 @@ def _raw(value: Any) -> Any:
 
 
 def law_document(law: RowLaw) -> dict[str, Any]:
-    """What is in the game, in words: the table and the forces are its data."""
+    """What is in the game, in words and parameters: the table and the forces are its data."""
     return {
         "description": law.description,
+        **({"specification": law.specification} if law.specification else {}),
         "counts_force_limit": law.limited,
         "counts_force_resolution": law.stepped,
     }
@@ -115,17 +127,69 @@ def same_law(document: Mapping[str, Any], device: Device, environment: Environme
     return _same_motion(document, device, environment, limited, stepped)
 
 
+def law_of(document: Mapping[str, Any]) -> str | None:
+    """Environment and laws that a document is of, in words made from its parameters, stepped again.
+
+    None where it gives no parameters, or has more states and readings than are stepped again.
+
+    Parameters
+    ----------
+    document
+        As of `same_law`.
+
+    Raises
+    ------
+    InputError
+        If its parameters are no specification, or are those of another loop or of another law.
+    """
+    text = document["law"].get("specification")
+    if not text or _steps(document) > MOST_STEPS:
+        return None
+    found = parsed(text, "the specification in it")
+    device, environment = found.device, as_environment(found.environment)
+    if not _same_loop(document["loop"], device):
+        raise InputError("its specification is of a loop with other numbers")
+    if not same_law(document, device, environment):
+        raise InputError("stepped again, the law of its specification gives other forces than it lists")
+    return environment.describe(device.motion)
+
+
+def _steps(document: Mapping[str, Any]) -> int:
+    """Readings that a law has to be stepped through."""
+    if document["kind"] == MOTION:
+        return max(len(document[key]) for key in map("positions_".__add__, ("m", "rad")) if key in document)
+    reach = ceil(Fraction(str(document["domain"]["largest_move_counts"])))
+    return int(document["table"]["states"]) * (2 * reach + 1)
+
+
+def _same_loop(told: Mapping[str, Any], device: Device) -> bool:
+    """Whether a device has the numbers of a loop; friction and damping too where no curve is used."""
+    if device.exact("delay") > MOST_WAITING * device.exact("sample_period"):
+        return False
+    own = loop_document(losses_of(device), device.motion)
+    curve = any(key.startswith("friction_curve") for key in told)
+    clock = ("resolution", "sample_period", "delay")
+    compared = [key for key in own if not curve or key.startswith(clock)]
+    return all(key in told and Fraction(str(told[key])) == Fraction(own[key]) for key in compared)
+
+
 def _same_motion(
     document: Mapping[str, Any], device: Device, environment: Environment, limited: bool, stepped: bool
 ) -> bool:
     """Whether the forces are the law's, and it remembers after a round what it did before it."""
-    x, forces = ([Fraction(str(v)) for v in document[key]] for key in columns(device.motion))
+    positions, held = columns(device.motion)
+    x = [Fraction(str(v)) for v in document[positions]]
     counts = [int(p // device.exact("resolution")) for p in x]
-    law = row_law(device, environment, counts[0], force_limit=limited, force_resolution=stepped)
+    law = row_law(device, environment, counts[0], only=True, force_limit=limited, force_resolution=stepped)
     if counts[0] not in law.resting:
         return False
     run = Run(law, counts[0])
-    seen = [(Fraction(run.force(n)), run.memory) for n in counts]
     part = document["repeats"]
-    round_closes = seen[int(part["first"])][1] == seen[int(part["last"])][1]
-    return round_closes and [force for force, _ in seen[:-1]] == forces
+    ends = {int(part["first"]): b"", int(part["last"]): b""}
+    for k, (n, force) in enumerate(zip(counts, [*document[held], None], strict=True)):
+        given = Fraction(run.force(n))
+        if force is not None and given != Fraction(str(force)):
+            return False
+        if k in ends:
+            ends[k] = run.memory
+    return len(set(ends.values())) == 1

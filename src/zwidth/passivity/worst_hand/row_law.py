@@ -14,6 +14,7 @@ from zwidth.errors import InputError
 from zwidth.loop.law import LIMIT, STEP
 from zwidth.loop.setup import prepare
 from zwidth.operator import PrescribedMotion
+from zwidth.specification.write import written
 
 Floats = NDArray[np.float64]
 
@@ -32,6 +33,8 @@ class RowLaw:
         Forces that are kept, of which the oldest acts: one, and one more for each sample of delay.
     description
         Environment and laws, on one line.
+    specification
+        Device, environment and laws in TOML; empty where it has no words for them.
     clamped, unilateral
         As the environment.
     limited, stepped
@@ -42,6 +45,7 @@ class RowLaw:
     resting: dict[int, Floats]
     waiting: int
     description: str
+    specification: str
     clamped: bool
     unilateral: bool
     limited: bool
@@ -58,6 +62,7 @@ def row_law(
     environment: Environment,
     lowest: int,
     *,
+    only: bool = False,
     force_limit: bool = False,
     force_resolution: bool = False,
 ) -> RowLaw:
@@ -70,6 +75,8 @@ def row_law(
     lowest
         The first count of the board: the hand begins at rest at any count from there to 0, or at
         0 only where the environment has no surface.
+    only
+        True for a hand that begins at `lowest` and nowhere else.
     force_limit, force_resolution
         True to count in the actuator's force limit, the steps of its converter.
 
@@ -90,7 +97,7 @@ def row_law(
         )
     first = min(lowest, 0) if environment.unilateral else 0
     resting = {}
-    for count in range(first, 1):
+    for count in (first,) if only else range(first, 1):
         middle = (count + 0.5) * float(device.exact("resolution"))
         hand = PrescribedMotion(np.full(2, middle))
         setup = prepare(device, environment, hand, device.exact("sample_period"))
@@ -103,8 +110,17 @@ def row_law(
         resting=resting,
         waiting=ceil(delay) + 1,
         description=environment.describe(device.motion),
+        specification=_specification(device, environment),
         clamped=environment.clamped,
         unilateral=environment.unilateral,
         limited=force_limit,
         stepped=force_resolution,
     )
+
+
+def _specification(device: Device, environment: Environment) -> str:
+    """Device, environment and laws in TOML, or nothing."""
+    try:
+        return written(device, environment)
+    except InputError:  # a law of one's own is in no other program
+        return ""

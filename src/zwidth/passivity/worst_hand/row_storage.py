@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import exact_text
 from zwidth.passivity.worst_hand.row_board import RowBoard
 from zwidth.passivity.worst_hand.row_document import STORAGE, law_document, packed, table_document
 from zwidth.passivity.worst_hand.row_law import RowLaw
 from zwidth.passivity.worst_hand.storage import Storage, domain_document, loop_document
+from zwidth.quantity.text import exact_text
 
 if TYPE_CHECKING:
     import xarray as xr

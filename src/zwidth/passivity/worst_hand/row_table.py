@@ -113,7 +113,7 @@ def tabulate(law: RowLaw, domain: Domain, most: int = MOST_STATES) -> Table:
     done = 0
     moves = np.arange(-domain.reach, domain.reach + 1)
     size = len(found.rows[0])
-    most = min(most, _MOST_NUMBERS // size)
+    most = min(most, _MOST_NUMBERS // (size + len(moves)))
     while done < len(found.rows):
         last = done + max(1, _AT_ONCE // (size * len(moves)))
         rows, counts = np.array(found.rows[done:last]), np.array(found.counts[done:last])

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import exact_text, unit_key
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.worst_hand.board import Board
 from zwidth.passivity.worst_hand.losses import Losses
 from zwidth.passivity.worst_hand.relaxing import RelaxingBoard
 from zwidth.passivity.worst_hand.solve import Played
+from zwidth.quantity.text import exact_text
 
 if TYPE_CHECKING:
     import xarray as xr

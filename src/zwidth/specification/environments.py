@@ -11,12 +11,12 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
-from zwidth.cli.table import COMMAND_LINE, Table, located, quoted, suggestion
-from zwidth.cli.values import branches, coefficients, flag, quantities, velocity_filter
 from zwidth.environment import Environment
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse, parse_number
+from zwidth.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
+from zwidth.specification.values import branches, coefficients, flag, quantities, velocity_filter
 
 Form = Literal[
     "quantity",

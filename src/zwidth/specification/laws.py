@@ -16,11 +16,11 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from zwidth.cli.table import COMMAND_LINE, Table, located, quoted, suggestion
-from zwidth.cli.values import flag, quantities
 from zwidth.environment import Environment
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+from zwidth.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
+from zwidth.specification.values import flag, quantities
 
 if TYPE_CHECKING:
     from zwidth.rendering import Estimator, Stage

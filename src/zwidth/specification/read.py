@@ -19,9 +19,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from zwidth.cli.environments import build_environment, option_keys
-from zwidth.cli.laws import NOT_PROVED, ROW
-from zwidth.cli.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
 from zwidth.device import Device, catalogue
 from zwidth.device.rotary import rotary
 from zwidth.environment import Environment
@@ -29,6 +26,9 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse
+from zwidth.specification.environments import build_environment, option_keys
+from zwidth.specification.laws import NOT_PROVED, ROW
+from zwidth.specification.table import COMMAND_LINE, Table, located, plain, quoted, suggestion
 
 _LONG_DELAY = Fraction(1, 2)
 """Without a unit, a delay this long is questioned [s]."""
@@ -203,7 +203,22 @@ def _read(source: Path | str, kinds: Sequence[str]) -> dict[str, Table]:
     if str(source) in catalogue.names():
         return {"device": Table(str(source), {"catalogue": str(source)})}
     name = _shown(source)
-    content = _parse(_text(source), name)
+    tables = tables_of(_text(source), name, kinds)
+    device = tables.get("device")
+    if device is not None and "name" not in device.values and "catalogue" not in device.values:
+        device.values["name"] = Path(source).stem
+    return tables
+
+
+def tables_of(text: str, name: str, kinds: Sequence[str] = LOOP_TABLES) -> dict[str, Table]:
+    """The tables of a text, by kind; `name` says in messages where it stands.
+
+    Raises
+    ------
+    InputError
+        If it is not TOML, is empty, or has a table that is not of these kinds.
+    """
+    content = _parse(text, name)
     for key, value in content.items():
         if key == "law" and key not in kinds:
             raise InputError(f"{name}: [[law]]: {NOT_PROVED}")
@@ -216,8 +231,6 @@ def _read(source: Path | str, kinds: Sequence[str]) -> dict[str, Table]:
             raise InputError(f"{name}: {key} is a table, written [{key}] above its keys")
     if not content:
         raise InputError(f"{name}: the file has none of the tables {', '.join(f'[{k}]' for k in kinds)}")
-    if "device" in content and "name" not in content["device"] and "catalogue" not in content["device"]:
-        content["device"]["name"] = Path(source).stem
     return {
         key: Table(f"{name}: [[law]]" if key == "law" else f"{name}: [{key}]", value)
         for key, value in content.items()

@@ -11,12 +11,12 @@ import re
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from zwidth.cli.table import Table, quoted, suggestion
 from zwidth.environment import BackwardDifference, OnePole, VelocityFilter, Window
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse, parse_number
+from zwidth.specification.table import Table, quoted, suggestion
 
 
 def coefficients(value: object, key: str) -> list[Exact]:

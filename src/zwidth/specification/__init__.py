@@ -1,0 +1,1 @@
+"""A loop as text: device, environment and laws in TOML tables, read and written."""

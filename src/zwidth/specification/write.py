@@ -1,0 +1,154 @@
+"""A device, an environment and laws as the TOML text that `read` reads, digit for digit.
+
+    [device]                                [environment]
+    damping = "0.15 N*s/m"                  type = "wall"
+    sample_period = "0.001 s"               stiffness = "300 N/m"
+
+Each quantity carries its unit.  What is written is read again and compared before it is handed out.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from zwidth.device import Device
+from zwidth.environment import BackwardDifference, Environment, OnePole, VelocityFilter, Window
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import exact_text
+from zwidth.specification.environments import TYPES
+from zwidth.specification.laws import ESTIMATORS, LAWS, LawType, with_laws
+from zwidth.specification.read import WITH_LAWS, Specification, specified, tables_of
+
+
+def written(device: Device, environment: Environment) -> str:
+    """The loop as a specification in TOML.
+
+    Parameters
+    ----------
+    device, environment
+        A loop; the environment may stand behind laws in a row.
+
+    Raises
+    ------
+    InputError
+        If a specification has no words for it: an environment or a law of one's own.
+    """
+    stages = getattr(environment, "stages", ())
+    inner = environment.environment if stages else environment  # type: ignore[attr-defined]
+    tables = [("[device]", _device(device)), ("[environment]", _environment(inner, device.motion))]
+    tables += [("[[law]]", _law(stage, LAWS, device.motion)) for stage in stages]
+    text = "\n".join(line for head, values in tables for line in (head, *_lines(values), ""))
+    again = parsed(text)
+    if (again.device.replace(name=device.name), again.environment) != (device, environment):
+        raise InputError(f"a specification cannot say all of this: {environment.describe(device.motion)}")
+    return text
+
+
+def parsed(text: str, name: str = "specification") -> Specification:
+    """The loop of a text, with its laws in a row; `name` says in messages where it stands.
+
+    Raises
+    ------
+    InputError
+        If it is no specification of a loop, or anything in it cannot be used.
+    """
+    tables = tables_of(text, name, WITH_LAWS)
+    loop = specified({kind: table for kind, table in tables.items() if kind != "law"})
+    row = tables.get("law")
+    return Specification(loop.device, with_laws(loop.environment, row, None, loop.device.motion))
+
+
+def _lines(values: Mapping[str, object]) -> Iterator[str]:
+    return (f"{key} = {_toml(value)}" for key, value in values.items())
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(_lines(value))} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_toml, value))}]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    assert isinstance(value, str)
+    return json.dumps("".join(c if c.isprintable() else "?" for c in value), ensure_ascii=False)
+
+
+def _device(device: Device) -> dict[str, object]:
+    values: dict[str, object] = {"name": device.name, "motion": device.motion}
+    for key, value in device.parameters().items():
+        name = "inertia" if key == "mass" and device.motion == "rotary" else key
+        if key not in device.assumed:
+            values[name] = _quantity(value, GLOSSARY[key].unit_for(device.motion))
+    return values
+
+
+def _quantity(value: Exact | Interval | int, unit: str) -> object:
+    """One value with its unit; an interval is a list of two."""
+    if isinstance(value, Interval):
+        return [_quantity(end, unit) for end in (value.low, value.high)]
+    number = str(value) if isinstance(value, int) else exact_text(value.fraction)
+    return number if unit == "1" else f"{number} {unit}"
+
+
+def _environment(environment: Environment, motion: str) -> dict[str, object]:
+    name, row = next(
+        ((name, row) for name, row in TYPES.items() if row.class_name == type(environment).__name__),
+        (None, None),
+    )
+    if name is None or row is None:
+        raise InputError(f"a specification has no {type(environment).__name__}")
+    values: dict[str, object] = {"type": name}
+    for key, kind in row.keys.items():
+        value = getattr(environment, key)
+        unit = GLOSSARY[kind.quantity].unit_for(motion) if kind.quantity else "1"
+        if kind.form == "branches":
+            values[key] = [_branch(branch, motion) for branch in value]
+        elif kind.form == "environment":
+            values[key] = _environment(value, motion)
+        elif kind.form == "velocity filter":
+            values[key] = _filter(value)
+        elif value is not None:
+            values[key] = _value(value, unit)
+    return values
+
+
+def _value(value: Any, unit: str) -> object:
+    if isinstance(value, tuple):
+        return [_quantity(one, unit) for one in value]
+    return value if isinstance(value, str | bool) else _quantity(value, unit)
+
+
+def _branch(branch: Any, motion: str) -> list[object]:
+    units = (GLOSSARY[key].unit_for(motion) for key in ("branch_stiffness", "branch_damping"))
+    return [_quantity(value, unit) for value, unit in zip(branch, units, strict=True)]
+
+
+def _filter(estimate: object) -> dict[str, object]:
+    if isinstance(estimate, BackwardDifference):
+        return {"type": "backward-difference"}
+    if isinstance(estimate, Window):
+        return {"type": "window", "samples": str(estimate.samples)}
+    if isinstance(estimate, OnePole):
+        return {"type": "one-pole", "time_constant": _quantity(estimate.time_constant, "s")}
+    if isinstance(estimate, VelocityFilter):
+        sides = {key: _value(getattr(estimate, key), "1") for key in ("numerator", "denominator")}
+        return {"type": "filter", **sides}
+    raise InputError(f"a specification has no {type(estimate).__name__}")
+
+
+def _law(law: object, kinds: Mapping[str, LawType], motion: str) -> dict[str, object]:
+    name = next((name for name, row in kinds.items() if row.class_name == type(law).__name__), None)
+    if name is None:
+        raise InputError(f"a specification has no {type(law).__name__}")
+    values: dict[str, object] = {"type": name}
+    for key, kind in kinds[name].keys.items():
+        value = getattr(law, key)
+        if kind.form == "velocity":
+            values[key] = _law(value, ESTIMATORS, motion)
+        elif value is not None:
+            values[key] = _value(value, kind.unit_for(motion))
+    return values

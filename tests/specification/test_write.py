@@ -1,0 +1,128 @@
+"""A loop written as a specification is the loop that is read again, digit for digit."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+import zwidth as zw
+from zwidth import rendering
+from zwidth.specification.environments import TYPES
+from zwidth.specification.laws import LAWS
+from zwidth.specification.read import load
+from zwidth.specification.write import parsed, written
+
+THIRD = Fraction(1, 3)
+DEVICE = zw.Device(
+    name='Tom\'s "wheel" \\ μ',
+    mass="0.2",
+    damping=THIRD,
+    coulomb_friction=("0.1", "0.2"),
+    resolution="1e-30",
+    sample_period="0.001",
+    force_limit=10,
+)
+ENVIRONMENTS = {
+    "wall": zw.Wall(THIRD, damping=-1, clamped=True),
+    "wall, window": zw.Wall(10, damping=1, velocity_filter=zw.Window(5)),
+    "wall, one pole": zw.Wall((10, 20), damping=1, velocity_filter=zw.OnePole(("0.001", "0.002"))),
+    "wall, filter": zw.Wall(10, damping=1, velocity_filter=zw.VelocityFilter([500, 0, -500], [1, 0, 0])),
+    "maxwell": zw.Maxwell(stiffness=100, damping=THIRD, discretization="tustin"),
+    "standard-linear-solid": zw.StandardLinearSolid(100, branch_stiffness=("1", "2"), branch_damping=3),
+    "generalized-maxwell": zw.GeneralizedMaxwell(5, branches=[(800, 3), (THIRD, 20)]),
+    "nonlinear-spring": zw.NonlinearSpring([0, "0.001", "0.002"], [0, 1, 4]),
+    "hunt-crossley": zw.HuntCrossley(1000, exponent="1.5", dissipation="0.7"),
+    "transfer-function": zw.ContinuousTransferFunction([1, 2], [1, THIRD], discretization="zoh"),
+    "pulse-transfer-function": zw.PulseTransferFunction([1, "-0.5"], [1, "0.25"]),
+    "its own period": zw.PulseTransferFunction([1], [1], sample_period="0.001"),
+    "virtual-coupling": zw.VirtualCoupling(1000, 2, zw.VirtualCoupling(500, 1, zw.Wall(100))),
+}
+CHOSEN = {
+    "extrapolation": {"samples": THIRD},
+    "damper": {"damping": "0.1", "velocity": rendering.AdaptiveWindow(noise="1e-5", longest=9, fit="best")},
+    "hysteresis": {"force": "0.03", "stiffness": 700, "clamped": True},
+    "passivity-controller": {"observer": "published", "largest_damping": THIRD, "credit": True},
+    "held": {"samples": 3},
+    "dual-rate": {"samples": 4, "updates": "jump"},
+    "braking-pulse": {"velocity": rendering.Kalman(3000)},
+    "event-transient": {"kind": "acceleration", "record": ["100", THIRD]},
+    "dither": {"amplitude": "0.01", "kind": "random", "seed": 7},
+    "saturation": {"limit": "1e-30"},
+    "slew-limit": {"rate": THIRD},
+}
+
+
+def same(device: zw.Device, environment: object) -> None:
+    """What is read of what was written is the same."""
+    found = parsed(written(device, environment))
+    assert found.device.parameters() == device.parameters()
+    assert (found.device.motion, found.device.assumed) == (device.motion, device.assumed)
+    assert found.environment == environment
+
+
+@pytest.mark.parametrize("name", ENVIRONMENTS)
+def test_every_environment_is_read_as_it_was(name: str) -> None:
+    """Also numbers that are no decimals, intervals, and a name with quotation marks."""
+    same(DEVICE, ENVIRONMENTS[name])
+    assert parsed(written(DEVICE, ENVIRONMENTS[name])).device.name == DEVICE.name
+
+
+def test_every_type_is_written() -> None:
+    """A new one comes with its example here."""
+    assert set(TYPES) <= set(ENVIRONMENTS)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_every_law_is_read_as_it_was(name: str) -> None:
+    """With what was chosen; what was left to the device is left to it again."""
+    kind = getattr(rendering, LAWS[name].class_name)
+    chosen = CHOSEN.get(name, {})
+    same(DEVICE, zw.render(zw.Wall(300), kind(**chosen)))
+
+
+def test_laws_keep_their_order() -> None:
+    """And a coupling behind them stays behind them."""
+    laws = rendering.Saturation("0.5"), rendering.SlewLimit(100), rendering.Saturation("0.25")
+    same(DEVICE, zw.render(zw.VirtualCoupling(1000, 2, zw.Wall(100)), *laws))
+
+
+def test_a_wheel_is_written_in_its_own_units() -> None:
+    """N·m and rad, an inertia in the place of a mass."""
+    wheel = zw.rotary(inertia="0.01", damping="0.02", counts_per_turn=65536, rate=1000, delay="0.002")
+    same(wheel, zw.render(zw.Wall(30, damping="0.1"), rendering.SlewLimit(50)))
+    text = written(wheel, zw.render(zw.Wall(30), rendering.SlewLimit(50)))
+    assert 'inertia = "0.01 kg*m^2"' in text
+    assert 'rate = "50 N*m/s"' in text
+
+
+def test_the_command_line_reads_it(tmp_path) -> None:
+    """It is the file that every command takes."""
+    (tmp_path / "loop.toml").write_text(written(DEVICE, zw.Wall(300)), encoding="utf-8")
+    assert load([tmp_path / "loop.toml"]).environment == zw.Wall(300)
+
+
+def test_what_has_no_words_is_refused() -> None:
+    """A law of one's own is in nobody else's program."""
+
+    class Own(zw.Wall):
+        """Somebody's wall."""
+
+    with pytest.raises(zw.InputError, match="a specification has no Own"):
+        written(DEVICE, Own(300))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "none of the tables"),
+        ("[device", "not TOML"),
+        ("[device]\ndamping = 1\nrate = 1000", "no environment is given"),
+        ("[environment]\ntype = 'wall'\nstiffness = 1", "no device is given"),
+        ("[operator]\ntype = 'finger'", "zwidth simulate"),
+    ],
+)
+def test_what_is_no_loop_is_refused(text: str, said: str) -> None:
+    """In one message that says where."""
+    with pytest.raises(zw.InputError, match=said):
+        parsed(text, "here")
