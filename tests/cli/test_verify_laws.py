@@ -147,7 +147,7 @@ def test_a_law_of_ones_own_is_told(kind: str, verify: Verify) -> None:
 
 def test_a_document_that_would_take_long_is_told(verify: Verify, monkeypatch: pytest.MonkeyPatch) -> None:
     """A small file does not keep the command busy."""
-    monkeypatch.setattr(documents, "MOST_STEPS", 5)
+    monkeypatch.setattr(documents, "MOST_WORK", 5)
     for kind in KINDS:
         status, said = verify(found(kind))
         assert status == 0

@@ -23,7 +23,7 @@ from zwidth.passivity.document import unit_key
 from zwidth.passivity.worst_hand.board import Domain
 from zwidth.passivity.worst_hand.domain import losses_of
 from zwidth.passivity.worst_hand.row_law import RowLaw, row_law
-from zwidth.passivity.worst_hand.row_table import Table, tabulate
+from zwidth.passivity.worst_hand.row_table import DoesNotClose, Table, tabulate
 from zwidth.passivity.worst_hand.storage import loop_document
 from zwidth.specification.write import parsed
 
@@ -33,8 +33,12 @@ if TYPE_CHECKING:
 
 STORAGE, MOTION = "row storage", "row motion"
 
-MOST_STEPS = 20_000_000
-"""Readings that a law is stepped through for a document of somebody else's: some seconds to half a minute."""
+MOST_WORK = 10_000_000
+"""Readings that a law is stepped through for somebody else's document, times the numbers that it remembers: some
+ten seconds of the dearest, windows of 1000 readings that are fitted at each length."""
+
+_A_REST = 1000
+"""What it costs to find what is remembered by a hand that has rested at one count, likewise."""
 
 MOST_WAITING = 10_000
 """Samples of delay, likewise: each keeps a force."""
@@ -122,7 +126,10 @@ def same_law(document: Mapping[str, Any], device: Device, environment: Environme
         low, high = int(board["lowest_count"]), int(board["highest_count"])
         law = row_law(device, environment, low, force_limit=limited, force_resolution=stepped)
         domain = Domain(low, high, ceil(Fraction(str(board["largest_move_counts"]))))
-        table = tabulate(law, domain, most=int(document["table"]["states"]))
+        try:
+            table = tabulate(law, domain, most=int(document["table"]["states"]))
+        except DoesNotClose:  # it has more states than the table
+            return False
         return all(_raw(v) == _raw(document["table"].get(k)) for k, v in table_document(table).items())
     return _same_motion(document, device, environment, limited, stepped)
 
@@ -130,7 +137,7 @@ def same_law(document: Mapping[str, Any], device: Device, environment: Environme
 def law_of(document: Mapping[str, Any]) -> str | None:
     """Environment and laws that a document is of, in words made from its parameters, stepped again.
 
-    None where it gives no parameters, or has more states and readings than are stepped again.
+    None where it gives no parameters, or where stepping its law again would take long.
 
     Parameters
     ----------
@@ -143,23 +150,29 @@ def law_of(document: Mapping[str, Any]) -> str | None:
         If its parameters are no specification, or are those of another loop or of another law.
     """
     text = document["law"].get("specification")
-    if not text or _steps(document) > MOST_STEPS:
+    if not text:
         return None
     found = parsed(text, "the specification in it")
     device, environment = found.device, as_environment(found.environment)
     if not _same_loop(document["loop"], device):
         raise InputError("its specification is of a loop with other numbers")
+    if _work(document, device, environment) > MOST_WORK:
+        return None
     if not same_law(document, device, environment):
         raise InputError("stepped again, the law of its specification gives other forces than it lists")
     return environment.describe(device.motion)
 
 
-def _steps(document: Mapping[str, Any]) -> int:
-    """Readings that a law has to be stepped through."""
+def _work(document: Mapping[str, Any], device: Device, environment: Environment) -> int:
+    """Readings that a law has to be stepped through, times the numbers that it remembers."""
+    law = row_law(device, environment, 0)
+    remembered = len(law.starts[0])
     if document["kind"] == MOTION:
-        return max(len(document[key]) for key in map("positions_".__add__, ("m", "rad")) if key in document)
-    reach = ceil(Fraction(str(document["domain"]["largest_move_counts"])))
-    return int(document["table"]["states"]) * (2 * reach + 1)
+        return remembered * len(document[columns(device.motion)[0]])
+    board = document["domain"]
+    reach = ceil(Fraction(str(board["largest_move_counts"])))
+    steps = int(document["table"]["states"]) * (2 * reach + 1)
+    return remembered * steps - _A_REST * min(int(board["lowest_count"]), 0)
 
 
 def _same_loop(told: Mapping[str, Any], device: Device) -> bool:
