@@ -299,6 +299,9 @@ def test_units_and_factors(recording, tmp_path: Path) -> None:
     degrees = zw.read_log(path, units={"position": "deg"}, scale={"hand_force": "0.01 N*m/V", "position": -1})
     (block,) = degrees.blocks()
     assert np.abs(block.position + np.radians(counts)).max() < 1e-12
+    with pytest.raises(zw.InputError, match="says of itself that it is in V, and N is given"):
+        zw.read_log(path, units={"position": "deg", "hand_force": "N"})
+    path.write_text("t_s,enc_counts,load_cell\n" + body)
     with pytest.raises(zw.InputError, match="not a torque"):
         zw.read_log(path, units={"position": "deg", "hand_force": "N"})
 

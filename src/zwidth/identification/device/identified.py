@@ -15,7 +15,7 @@ from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.identification.device.table import as_html, as_text, source_name
 from zwidth.identification.logs import Finding
-from zwidth.quantity.exact import Interval
+from zwidth.quantity.exact import Interval, as_parameter, ends
 from zwidth.showing import Html
 from zwidth.writing import check_target, writing_whole
 
@@ -158,7 +158,7 @@ class Identified:
             for name, low in below.best(self.sample_period, self.resolution)._asdict().items():
                 high = max(float(low), self.estimates[name].value)
                 given[name] = low if confidence is None else Interval(float(low), high)
-        if isinstance(given.get("mass"), Interval) and given["mass"].low <= 0:
+        if "mass" in given and ends(as_parameter(given["mass"]))[0] <= 0:
             del given["mass"]  # the data do not rule out 0, which no device has; no criterion needs it
         return Device(**{**given, **others})
 

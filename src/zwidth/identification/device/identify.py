@@ -10,7 +10,7 @@ equation to smoothed and differentiated positions.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import inf
 from typing import Literal
 
@@ -20,7 +20,8 @@ from zwidth.errors import InputError
 from zwidth.identification.device.choice import Zero, choose, too_little
 from zwidth.identification.device.findings import findings
 from zwidth.identification.device.fit import gather
-from zwidth.identification.device.identified import Identified
+from zwidth.identification.device.identified import Estimate, Identified
+from zwidth.identification.device.impossible import impossible
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.logs import Log
 
@@ -58,7 +59,8 @@ def identify(
     Raises
     ------
     InputError
-        If the log shows too little: too few strokes, or no force and no mass.
+        If the log shows too little: too few strokes, or no force and no mass; or a mass or damping below 0,
+        as with a sensor that counts the other way.
     """
     zero = _checked(log, mass, delay, zero)
     if model not in ("Coulomb and viscous", "viscous"):
@@ -74,6 +76,14 @@ def identify(
     viscous = found.regression(tuple(n for n in names if n != "coulomb_friction"))
     if estimates is None or fit is None or viscous is None:
         raise InputError(too_little(log))
+
+    def again(other: Log) -> Mapping[str, Estimate] | None:
+        chosen = choose(other, own, mass, samples, zero)
+        return gather(other, chosen, mass=mass, delay=samples, zero=zero, progress=None).estimates(names)
+
+    wrong = impossible(log, estimates, again)
+    if wrong is not None:
+        raise InputError(wrong)
     weights = found.shape.value / found.shape.piece
     return Identified(
         estimates=estimates,

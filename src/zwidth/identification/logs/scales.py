@@ -77,25 +77,28 @@ def meaning_of(
     """
     _check_keys("units", units, columns)
     _check_keys("scale", scale, columns)
-    _check_scales(scale or {})
+    scale = {quantity: _number_or_text(given) for quantity, given in (scale or {}).items()}
+    _check_scales(scale)
+    _refuse_other_units(table, columns, units or {})
     stated = {q: _unit_text(table, q, c, units) for q, c in columns.items()}
     if motion is None and table.attributes.get("motion") in ("linear", "rotary"):
         motion = table.attributes["motion"]
-    turning = _turning(motion, stated["position"], (scale or {}).get("position"), resolution, counts_per_turn)
+    turning = _turning(motion, stated["position"], scale.get("position"), resolution, counts_per_turn)
     step = _step(resolution, counts_per_turn, turning)
     factors = {}
     for quantity, column in columns.items():
-        if quantity == "position" and _is_counts(stated[quantity]) and "position" not in (scale or {}):
+        times = scale.get(quantity)
+        if quantity == "position" and _is_counts(stated[quantity]) and not isinstance(times, str):
             if step is None:
                 raise InputError(
                     f'{table.source}: "{column}" is in counts; say what a count is with '
                     'resolution="22.4 um" '
                     "or counts_per_turn=4096"
                 )
-            factors[quantity] = step
+            factors[quantity] = step if times is None else step * float(parse_number(times, "1", "scale"))
             continue
         where = f'{table.source}: {quantity} in column "{column}"'
-        factors[quantity] = _factor(where, quantity, stated[quantity], (scale or {}).get(quantity), turning)
+        factors[quantity] = _factor(where, quantity, stated[quantity], times, turning)
     return Meaning(
         columns=columns, factors=factors, motion="rotary" if turning else "linear", resolution=step
     )
@@ -119,6 +122,28 @@ def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[
             raise InputError(f"{what}: the log has no {key}; leave it out, or name its column in columns")
 
 
+def _number_or_text(scale: object) -> object:
+    """A bare factor that was typed, such as "-1", as the number that it is."""
+    try:
+        return Exact(scale) if isinstance(scale, str) else scale
+    except InputError:
+        return scale
+
+
+def _refuse_other_units(table: Table, columns: Mapping[str, str], units: Mapping[str, str]) -> None:
+    """A unit that is given for a column whose file or name states another: which of the two is meant?"""
+    for quantity, given in units.items():
+        column = columns[quantity]
+        stated = _spelled(table.units[column] or name_and_unit(column, quantity)[1], quantity)
+        if stated is None or _is_counts(stated) or not is_unit(stated) or stated == _spelled(given, quantity):
+            continue
+        raise InputError(
+            f'{table.source}: column "{column}" says of itself that it is in {stated}, and {given} is given; '
+            "leave the unit out, or say what a number in it stands for with "
+            f'scale={{"{quantity}": "1 {given}"}}'
+        )
+
+
 def _check_scales(scale: Mapping[str, object]) -> None:
     for quantity, given in scale.items():
         what = f"scale of the {quantity}"
@@ -128,7 +153,13 @@ def _check_scales(scale: Mapping[str, object]) -> None:
 
 
 def _unit_text(table: Table, quantity: str, column: str, units: Mapping[str, str] | None) -> str | None:
-    text = (units or {}).get(quantity) or table.units[column] or name_and_unit(column, quantity)[1]
+    return _spelled(
+        (units or {}).get(quantity) or table.units[column] or name_and_unit(column, quantity)[1], quantity
+    )
+
+
+def _spelled(text: str | None, quantity: str) -> str | None:
+    """A unit in the spelling of `unit_of`."""
     if text is None:
         return None
     plain = text.strip().translate(_SPELLING)

@@ -1,0 +1,78 @@
+"""Numbers that no device has, m < 0 or b < 0, and what most likely made them.
+
+Turn the sign of every force round, and m, b and f_c change theirs: a sensor that counts the other way
+gives all three below 0.  Where a hand's force and an actuator's are both logged, each sign is tried.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from itertools import combinations
+
+from zwidth.identification.device.identified import Estimate
+from zwidth.identification.logs import Log
+from zwidth.identification.logs.log import Block
+
+Estimates = Mapping[str, Estimate]
+
+_OTHER_CAUSES = (
+    "no sign that is turned round makes a device of it: is an actuator at work whose force is not in the "
+    "log, is friction compensated, does it fall with speed, or are force and position not of one moment?"
+)
+
+
+def impossible(log: Log, estimates: Estimates, again: Callable[[Log], Estimates | None]) -> str | None:
+    """What is wrong with a log that shows a mass or a damping below 0, surely; None where neither is.
+
+    Parameters
+    ----------
+    log
+        What was recorded.
+    estimates
+        What it shows.
+    again
+        What a log with other signs shows, fitted likewise; None if nothing.
+    """
+    above = [name for name in ("mass", "damping") if name in estimates]
+    below = [name for name in above if estimates[name].interval()[1] < 0]
+    if not below:
+        return None
+    said = " and ".join(f"{name} comes out as {estimates[name]}" for name in below)
+    said = f"{log.source}: {said}, and no device has that"
+    for channels in _subsets(log.channels):
+        found = again(_turned(log, channels))
+        if found is not None and all(found[name].interval()[0] > 0 for name in above):
+            return f"{said}; {_flipped(log, channels, found, below)}"
+    return f"{said}; {_OTHER_CAUSES}"
+
+
+def _flipped(log: Log, channels: tuple[str, ...], found: Estimates, below: list[str]) -> str:
+    """What to type, and how the data would look then."""
+    words = " and ".join(name.replace("_", " ") for name in channels)
+    right = " and ".join(f"{name} {found[name].value:.4g} {found[name].unit}" for name in below)
+    typed = " and ".join(f'scale={{"{name}": "-1"}}' for name in channels)
+    other = ""
+    if channels == log.channels:
+        other = ' or, where it is the position that counts the other way, scale={"position": "-1"}'
+    return (
+        f"the sign of the {words} looks turned round: with the other one {right} come out; read the log "
+        f"with {typed}{other}, or with a factor of the other sign where one was given"
+    )
+
+
+def _subsets(channels: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    """The fewest signs first."""
+    for size in range(1, len(channels) + 1):
+        yield from combinations(channels, size)
+
+
+def _turned(log: Log, channels: tuple[str, ...]) -> Log:
+    """The same log with the sign of some forces turned round."""
+
+    def blocks() -> Iterator[Block]:
+        for block in log.blocks():
+            forces = {name: getattr(block, name) for name in channels}
+            yield block._replace(**{name: -force for name, force in forces.items()})
+
+    return replace(log, _blocks=blocks)
