@@ -124,15 +124,15 @@ def costs_are_below_what_is_lost() -> str:
             lacks = (friction * d + drag) / UNIT - int(cost) - off * d
             if not 0 <= lacks <= d + d * d + 1:
                 return f"{float(lacks)} units at {d}"
-    several = [(Fraction(1), Fraction(0)), (Fraction(1, 2), Fraction(1, 2)), (Fraction(0), Fraction(1))]
-    for steps in range(1, 30):
+    three = [(Fraction(1), Fraction(0)), (Fraction(1, 2), Fraction(1, 2)), (Fraction(0), Fraction(1))]
+    for steps, several in product(range(1, 30), (three, three[::2])):
         one, *each = (
             board.costs_of(losses(0, Fraction(1), *models), UNIT, 4, Fraction(1), Fraction(40), steps)
             for models in (several, *([m] for m in several))
         )
         best = [max(each, key=lambda c: c[d] + c[d + 1]) for d in range(len(one) - 1)]
         if list(one) != [min(c[d] for c in best[max(d - 1, 0) : d + 1]) for d in range(len(one))]:
-            return f"of several models, {steps} steps"
+            return f"of {len(several)} models, {steps} steps"
     return ""
 
 
