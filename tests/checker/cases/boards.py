@@ -5,6 +5,7 @@ A table of forces is rounded by some units, and says by how many at most.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from fractions import Fraction
 from importlib import import_module
@@ -12,7 +13,8 @@ from itertools import product
 from math import ceil
 from typing import Any
 
-from . import Case
+from . import Case, plain, put
+from .storage import STORAGES, STORED, TAKES, packed
 
 STEP, PERIOD = Fraction(1, 10), Fraction(1, 4)
 UNIT = Fraction(1, 10**7)
@@ -124,15 +126,15 @@ def costs_are_below_what_is_lost() -> str:
             lacks = (friction * d + drag) / UNIT - int(cost) - off * d
             if not 0 <= lacks <= d + d * d + 1:
                 return f"{float(lacks)} units at {d}"
-    several = [(Fraction(1), Fraction(0)), (Fraction(1, 2), Fraction(1, 2)), (Fraction(0), Fraction(1))]
-    for steps in range(1, 30):
+    three = [(Fraction(1), Fraction(0)), (Fraction(1, 2), Fraction(1, 2)), (Fraction(0), Fraction(1))]
+    for steps, several in product(range(1, 30), (three, three[::2])):
         one, *each = (
             board.costs_of(losses(0, Fraction(1), *models), UNIT, 4, Fraction(1), Fraction(40), steps)
             for models in (several, *([m] for m in several))
         )
         best = [max(each, key=lambda c: c[d] + c[d + 1]) for d in range(len(one) - 1)]
         if list(one) != [min(c[d] for c in best[max(d - 1, 0) : d + 1]) for d in range(len(one))]:
-            return f"of several models, {steps} steps"
+            return f"of {len(several)} models, {steps} steps"
     return ""
 
 
@@ -232,6 +234,23 @@ def costs_of_cells_are_below_what_is_lost() -> str:
     return ""
 
 
+def without_numba_the_twin_checks() -> str:
+    """Of each kind of storage function, where nothing is stored."""
+    numba, modules = sys.modules.get("numba"), sys.modules
+    for name in ("spring", "coarse", "row"):
+        told = plain(put(STORAGES[name]["document"], {"storage": packed([0] * len(STORED[name]))}))
+        modules["numba"] = None  # type: ignore[assignment]
+        try:
+            found = import_module("zwidth.checker").verify(told)
+        finally:
+            del modules["numba"]
+            if numba is not None:
+                modules["numba"] = numba
+        if found.valid or "with the readings" not in found.reason or TAKES not in found.reason:
+            return f"{name}: {found.reason}"
+    return ""
+
+
 CHECKS = (
     forces_on_a_board_are_those_of_the_law,
     many_forces_are_computed_in_parts,
@@ -240,6 +259,7 @@ CHECKS = (
     averages_go_where_the_law_sends_them,
     forces_at_corners_are_those_of_the_law,
     costs_of_cells_are_below_what_is_lost,
+    without_numba_the_twin_checks,
 )
 
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]

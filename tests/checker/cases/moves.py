@@ -6,7 +6,7 @@ one unit less at one of them is found there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import partial
 from importlib import import_module
@@ -314,32 +314,72 @@ def relaxing() -> str:
 
 def a_level_that_is_passed_counts() -> str:
     """Between two levels whose images lie to either side of a third one, where V is largest."""
-    for pole, start, first, second in product(
-        (Fraction(1, 2), Fraction(3, 4)), (Fraction(5, 8), Fraction(7, 8)), (0, 4000, -4000), (0, 4000, -4000)
+    poles, starts, sizes = (
+        (Fraction(1, 2), Fraction(3, 4)),
+        (Fraction(5, 8), Fraction(7, 8)),
+        (0, 4000, -4000),
+    )
+    for pole, start, first, second, (i, level) in product(
+        poles, starts, sizes, sizes, ((0, 1), (1, 1), (2, 1), (1, 2))
     ):
-        images = [min(start + pole * i, Fraction(2)) for i in range(3)]
-        rows, ends = (
-            np.zeros((1, 1), np.int64),
-            [np.array([[f(x * PART) for x in images]]) for f in (int, ceil)],
-        )
-        value = np.zeros((1, 1, 3, 2), dtype=np.int64)
-        value[0, 0, 1, 1] = 30_000
-        there = (1 - start) / pole  # the part of the way from level 0 to 1 whose image is level 1
+        images = [min(max(level - 1 + start + pole * (k - i), Fraction(0)), Fraction(3)) for k in range(4)]
+        value = np.zeros((1, 1, 4, 2), dtype=np.int64)
+        value[0, 0, level, 1] = 30_000
+        there = (1 - start) / pole  # the part of the way from level i to the next whose image is that level
         needed = 30_000 - (1 - there) * first - there * second
+        pushed = [first if k == i else second if k == i + 1 else 0 for k in range(4)]
         for inwards, cost, right in ((True, 50, -1), (True, -50, 0), (False, 50, -1)):
-            forces = [
-                np.array([[first, second, 0]]) if inwards == (k == 0) else np.zeros((1, 3), int)
-                for k in (0, 1)
-            ]
             least = int(needed) + cost if inwards else 30_000 + cost
-            costs = np.array([30_000, least])
-            found = kernel("first_relaxing_violation")(value, rows, *forces, *ends, costs, 1, 1)
-            have = [least + (force if inwards else 0) for force in (first, second, 0)]
+            have = [least + (force if inwards else 0) for force in pushed]
             then = [_at(value[0, 0, :, 1], image) for image in images]
             if any(h < v for h, v in zip(have, then, strict=True)):
                 right = 0
+            found = _from_one_cell(value, images, pushed, inwards, 30_000, least)
             if (found < 0) is not (right < 0):
-                return f"{pole}, {start}, {first}, {second}, {cost}: {found}"
+                return f"{pole}, {start}, {first}, {second}, {i}, {level}, {cost}: {found}"
+    return ""
+
+
+def _from_one_cell(
+    value: Any, images: Sequence[Fraction], pushed: Sequence[int], inwards: bool, stays: int, moves: int
+) -> int:
+    """On a board of one cell of one step: forces one way, and what it costs to stay and to move."""
+    rows, none = np.zeros((1, 1), np.int64), np.zeros((1, len(pushed)), np.int64)
+    forces = [np.array([pushed]), none] if inwards else [none, np.array([pushed])]
+    ends = [np.array([[f(x * PART) for x in images]]) for f in (int, ceil)]
+    costs = np.array([stays, moves])
+    return int(kernel("first_relaxing_violation")(value, rows, *forces, *ends, costs, 1, 1))
+
+
+LARGE = 1 << 40
+"""An energy of which a part in 2¹⁶ is still some energy."""
+
+
+def an_image_between_two_parts_of_a_level_counts_at_both() -> str:
+    """At a third of a level V is at most what it is at one of the two 65536ths beside it."""
+    for larger in (0, 1):
+        value = np.zeros((1, 1, 2, 2), dtype=np.int64)
+        value[0, 0, larger, 1] = LARGE
+        there = Fraction(1 if larger else 2, 3) * LARGE
+        beside = (LARGE >> 16) * (21846 if larger else PART - 21845)
+        for least, right in ((int(there), 0), (beside - 1, 0), (beside, -1)):
+            found = _from_one_cell(value, [Fraction(1, 3)] * 2, [0, 0], True, LARGE, least)
+            if (found < 0) is not (right < 0):
+                return f"{larger}, {least} of {float(there)}: {found}"
+    return ""
+
+
+def a_level_that_is_passed_at_once_counts() -> str:
+    """The image of level 0 is half a part short of level 1, where V is largest: soon it is too little."""
+    images = [1 - Fraction(1, 2 * PART) + Fraction(i, 2) for i in range(3)]
+    value = np.zeros((1, 1, 3, 2), dtype=np.int64)
+    value[0, 0, 1, 1] = LARGE
+    pushed = [0, -(LARGE >> 1) + (1 << 27), 0]  # at level 1 there is enough for V half way to level 2
+    # a part in 2¹⁶ of the way to level 1, level 1 is passed: about 2²³ are lacking there
+    for least, right in ((LARGE, 0), (LARGE + (1 << 22), 0), (LARGE + (1 << 25), -1)):
+        found = _from_one_cell(value, images, pushed, True, LARGE, least)
+        if (found < 0) is not (right < 0):
+            return f"{least - LARGE} more: {found}"
     return ""
 
 
@@ -350,6 +390,15 @@ def _at(values: Any, level: Fraction) -> Fraction:
     return int(values[below]) + (level - below) * int(values[above] - values[below])
 
 
-CHECKS = (on_a_board, in_two_parts_on_a_board, in_a_table, on_a_line, relaxing, a_level_that_is_passed_counts)
+CHECKS = (
+    on_a_board,
+    in_two_parts_on_a_board,
+    in_a_table,
+    on_a_line,
+    relaxing,
+    a_level_that_is_passed_counts,
+    an_image_between_two_parts_of_a_level_counts_at_both,
+    a_level_that_is_passed_at_once_counts,
+)
 
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]

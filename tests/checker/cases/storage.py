@@ -15,7 +15,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from . import Case, accepted, put, refused, without
+from . import Case, accepted, edge, put, refused, without
 
 STORAGES = json.loads(Path(__file__).with_name("storages.json").read_text(encoding="utf-8"))
 TAKES = "takes out more"
@@ -92,12 +92,56 @@ def in_units(name: str, unit: Fraction) -> Any:
     return put(told, {"force_unit": unit, "storage": packed([0] * len(unpacked(told["storage"])))})
 
 
+def small(kind: str, law: Any, domain: Any, values: list[int], friction: Any, unit: Any = 1) -> Any:
+    """A count of 1 m and a sample of 1 s, no damping; numbers that can be worked out by hand."""
+    return {
+        "format": "zwidth certificate 1",
+        "kind": kind,
+        "loop": {
+            "damping_N_s_per_m": 0,
+            "coulomb_friction_N": friction,
+            "resolution_m": 1,
+            "sample_period_s": 1,
+            "delay_s": 0,
+        },
+        "law": {"surface": "none", "clamped": False, **law},
+        "domain": domain,
+        "force_unit": unit,
+        "storage": packed(values),
+    }
+
+
+def counts(low: int, high: int, **more: Any) -> dict[str, Any]:
+    """Moves of a count at most, in one step."""
+    ends = {"lowest_count": low, "highest_count": high}
+    return {**ends, "largest_move_counts": 1, "steps_per_count": 1, **more}
+
+
+def cells(low: int, high: int, **more: Any) -> dict[str, Any]:
+    """Of a count each; moves of a cell at most."""
+    ends = {"lowest_cell": low, "highest_cell": high}
+    return {**ends, "counts_per_cell": 1, "largest_move_cells": 1, "remembered": 0, **more}
+
+
+def relaxing(low: int, high: int, values: list[int], law: Any, **more: Any) -> Any:
+    """A spring of 10 N/m, beside it one of 4 N/m that relaxes; 30 N of friction."""
+    told = {"taps_N_per_m": [10], "relaxing": {"pole": "1/2", "stiffness_N_per_m": 4}, "resets": False, **law}
+    return small("storage", told, counts(low, high, levels_per_count=1, **more), values, 30)
+
+
 def leading(place: tuple[int, int], to: int) -> Any:
     """The laws in a row, of states at −2, −1, 0, 1, where one reading leads elsewhere."""
     successors = unpacked(ROW["table"]["successors"])
     successors[3 * place[0] + place[1]] = to
     return put(ROW, {"table.successors": packed(successors)})
 
+
+HUGE = 1 << 61
+STEEP = 1 << 46
+"""Where numbers are too large to be compared."""
+SPRING_OF_1, TOO_LARGE = {"surface": "position", "taps_N_per_m": [1]}, "numbers are too large to be compared"
+FORCES_TOO_LARGE = "forces are too large to be compared"
+TOO_MUCH = "too many numbers"
 
 CASES = [
     *(
@@ -297,5 +341,144 @@ CASES = [
         refused(f"{name} without {key}", without(STORAGES[name]["document"], key), "is missing")
         for name in ("spring", "solid", "row", "coarse")
         for key in ("domain", "force_unit", "storage")
+    ),
+    refused(
+        "a pull of 2⁶⁴ units, which numbers of 64 bits take for 0",
+        small("storage", {"taps_N_per_m": [-(1 << 62)]}, counts(4, 4), [0] * 2, 10),
+        FORCES_TOO_LARGE,
+    ),
+    refused(
+        "points of a large pull",
+        small(
+            "storage",
+            {"taps_N_per_m": [], "points_m_N": [[0, -(10**17)], [1, 0]]},
+            counts(0, 1),
+            [0] * 4,
+            10,
+        ),
+        FORCES_TOO_LARGE,
+    ),
+    # 4 counts at 1 N/m are 2⁵³ units of 2⁻⁵¹ N
+    refused(
+        "forces of 2⁵³ units",
+        small("storage", SPRING_OF_1, counts(-4, 1), [0] * 12, 0, Fraction(1, 1 << 51)),
+        FORCES_TOO_LARGE,
+    ),
+    refused(
+        "forces of a little less than 2⁵³ units",
+        small("storage", SPRING_OF_1, counts(-4, 1), [0] * 12, 0, Fraction(1, (1 << 51) - 1)),
+        TAKES,
+    ),
+    # 8 cells and a count at 1 N/m are 2⁵³ units
+    refused(
+        "cells, forces of 2⁵³ units",
+        small("coarse storage", SPRING_OF_1, cells(-8, 1), [0] * 11, 0, Fraction(9, 1 << 53)),
+        FORCES_TOO_LARGE,
+    ),
+    refused(
+        "cells, forces of a little less than 2⁵³ units",
+        small("coarse storage", SPRING_OF_1, cells(-8, 1), [0] * 11, 0, Fraction(9, (1 << 53) - 1)),
+        TAKES,
+    ),
+    refused(
+        "cells of a device with a friction curve",
+        put(STORAGES["coarse"]["document"], {"loop": STORAGES["curve"]["document"]["loop"]}),
+        "one friction model",
+    ),
+    accepted(
+        "cells without a surface may end nearer than a move reaches",
+        small("coarse storage", {"taps_N_per_m": [0]}, cells(-2, 1, largest_move_cells=3), [0] * 4, 10),
+        contact="both sides",
+    ),
+    # no force acts outside, and a move of a cell costs φ h − ½ k Δ h − κ h² = 1000 − 50 − 100 J, of which
+    # 3 J are kept for rounding
+    *edge(
+        "cells, more is stored outside",
+        *(
+            small(
+                "coarse storage",
+                {"surface": "position", "taps_N_per_m": [100]},
+                cells(-2, 1),
+                [far, 0, 0, 0, 0],
+                1000,
+            )
+            for far in (847, 851)
+        ),
+        TAKES,
+    ),
+    # a move costs 350 − 50 − 100 J, and the wall pulls with 150 N at 1 and with 250 N at 2
+    accepted(
+        "a wall that pulls, where no cell follows the last one",
+        small(
+            "coarse storage",
+            {"surface": "position", "taps_N_per_m": [-100]},
+            cells(-1, 2),
+            [0] * 5,
+            350,
+        ),
+    ),
+    accepted(
+        "a law that relaxes, on a board outside alone",
+        relaxing(-1, 0, [0] * 8, {"surface": "penetration"}),
+        "at any position from -1 to 1 counts",
+    ),
+    accepted(
+        "a law that begins anew at the highest count",
+        relaxing(-1, 0, [0] * 8, {"surface": "position", "resets": True}),
+    ),
+    refused(
+        "a law that begins anew beyond the board",
+        relaxing(-2, -1, [0] * 8, {"surface": "position", "resets": True}),
+        "must hold 0",
+    ),
+    # 14 N at most and 21 units a move: V + 2 · 14 · 2 + 21
+    accepted(
+        "a law that relaxes, what is stored just small enough",
+        relaxing(0, 1, [HUGE - 78] * 8, {"surface": "penetration"}),
+    ),
+    refused(
+        "a law that relaxes, what is stored just too large",
+        relaxing(0, 1, [HUGE - 77] * 8, {"surface": "penetration"}),
+        TOO_LARGE,
+    ),
+    # from one level to the next V rises by so much, and 4 N may act on 2 moves there and back
+    refused(
+        "a law that relaxes, a rise just small enough",
+        relaxing(0, 1, [0, 0, STEEP - 17, STEEP - 17] * 2, {"surface": "penetration"}),
+        TAKES,
+    ),
+    refused(
+        "a law that relaxes, a rise just too steep",
+        relaxing(0, 1, [0, 0, STEEP - 16, STEEP - 16] * 2, {"surface": "penetration"}),
+        TOO_LARGE,
+    ),
+    refused(
+        "a law that relaxes, forces too large together",
+        relaxing(
+            0,
+            1,
+            [0] * 8,
+            {"taps_N_per_m": [2 * 10**18], "relaxing": {"pole": 0, "stiffness_N_per_m": 10**18}},
+        ),
+        FORCES_TOO_LARGE,
+    ),
+    # 3 · 10¹⁰ pairs of places; 50 states, from each of which 2 · 10⁷ counts are tried
+    refused(
+        "a count in so many steps that it takes too long",
+        small("storage", SPRING_OF_1, counts(0, 0, steps_per_count=10**5), [0], 0),
+        TOO_MUCH,
+    ),
+    refused(
+        "a law that relaxes, moves so far that it takes too long",
+        relaxing(0, 4, [0], {}, largest_move_counts=10**7),
+        TOO_MUCH,
+    ),
+    refused(
+        "a law that relaxes, nothing at the first six states",
+        put(
+            STORAGES["solid"]["document"],
+            {"storage": packed([0] * 6 + [10**13] * (len(STORED["solid"]) - 6))},
+        ),
+        "from state 0 a move",
     ),
 ]
