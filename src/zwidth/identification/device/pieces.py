@@ -54,18 +54,31 @@ def pieces(log: Log) -> Iterator[Piece]:
     for block in _cut(log.blocks(), size):
         if not count:
             count = count_without_steps(block.position)
-        yield _piece(block, log.resolution, count)
+        yield _piece(block, log.resolution, count, log.stops)
 
 
-def _piece(block: Block, resolution: float, count: float) -> Piece:
+def _piece(block: Block, resolution: float, count: float, stops: tuple[float, float]) -> Piece:
     if count == 0:  # it does not move
         return Piece(block.position, find_strokes(np.zeros(block.position.size)), block)
     origin = block.position[0]
     if resolution == 0:
-        return Piece(block.position, find_strokes(counted(block.position - origin, count)), block)
+        strokes = find_strokes(counted(block.position - origin, count))
+        return Piece(block.position, _within_range(strokes, block, stops), block)
     counts = np.rint((block.position - origin) / resolution)
-    strokes = find_strokes(counts)
+    strokes = _within_range(find_strokes(counts), block, stops)
     return Piece(positions(counts, strokes) * resolution + origin, strokes, block)
+
+
+def _within_range(strokes: Strokes, block: Block, stops: tuple[float, float]) -> Strokes:
+    """The strokes in which the sensor of the hand's force is never at the end of its range.
+
+    A stroke goes as a whole: which of its pulses stay must not depend on the force that they show.
+    """
+    if block.hand_force is None or not np.isfinite(stops).any():
+        return strokes
+    beyond = np.cumsum((block.hand_force <= stops[0]) | (block.hand_force >= stops[1]))
+    clear = beyond[strokes.last] == np.where(strokes.first > 0, beyond[strokes.first - 1], 0)
+    return strokes._replace(first=strokes.first[clear], last=strokes.last[clear], side=strokes.side[clear])
 
 
 def _cut(blocks: Iterator[Block], size: int) -> Iterator[Block]:

@@ -128,7 +128,7 @@ def _log(
         about_period,
         *findings.clock(survey, cutter, tally),
         *findings.position(survey, wrap, unit),
-        *findings.forces(survey),
+        *findings.forces(survey, "N·m" if meaning.motion == "rotary" else "N"),
     )
     varying = cutter.clock.group > 1 or survey.deviation > 1e-6 * period
 
@@ -145,6 +145,7 @@ def _log(
         runs=survey.runs,
         channels=tuple(survey.ranges),
         findings=said,
+        stops=survey.stops.found()[0],
         _blocks=blocks,
     )
 

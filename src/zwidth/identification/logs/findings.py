@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from math import isfinite
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.log import Finding
@@ -162,10 +163,19 @@ def position(survey: Survey, wrap: float, unit: str) -> Iterator[Finding]:
         yield Finding(kind="overflow", text=text)
 
 
-def forces(survey: Survey) -> Iterator[Finding]:
-    """Forces that are not there, or say nothing."""
+def forces(survey: Survey, unit: str) -> Iterator[Finding]:
+    """Forces that are not there, say nothing, or are more than the sensor can say."""
     if "hand_force" not in survey.ranges:
         yield Finding(kind="no hand force", text="no column of the hand's force is used")
     low, high = survey.ranges.get("actuator_force", (0.0, 1.0))
     if low == high:
         yield Finding(kind="constant", text=f"the actuator force is {low:g} throughout")
+    (low, high), samples = survey.stops.found()
+    ends = " and at ".join(f"{end:.4g} {unit}" for end in (low, high) if isfinite(end))
+    if ends:
+        share = 100 * samples / survey.samples
+        text = (
+            f"the hand's force stays at {ends} in {samples} samples, {share:.2g} %: the sensor is at the end "
+            "of its range, and what the hand does beyond is not known; strokes with such samples are left out"
+        )
+        yield Finding(kind="saturated", text=text, samples=samples)

@@ -47,6 +47,7 @@ def join_logs(logs: Sequence[Log]) -> Log:
         findings=tuple(
             replace(finding, text=f"{log.source}: {finding.text}") for log in logs for finding in log.findings
         ),
+        stops=(max(log.stops[0] for log in logs), min(log.stops[1] for log in logs)),
         _blocks=blocks,
     )
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from math import inf
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -95,6 +96,9 @@ class Log:
         Which of hand_force and actuator_force there are.
     findings
         What was odd, and what was done about it.
+    stops
+        [N; N·m] readings of the hand's force from which on its sensor is at the lower and at the upper end
+        of its range; infinite where none is seen.
     """
 
     source: str
@@ -105,6 +109,7 @@ class Log:
     runs: int = 1
     channels: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
+    stops: tuple[float, float] = (-inf, inf)
     _blocks: Callable[[], Iterator[Block]] = field(repr=False, compare=False)
 
     def blocks(self) -> Iterator[Block]:

@@ -10,6 +10,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.identification.logs.runs import Segment
 from zwidth.identification.logs.steps import FEWEST, Grid, grid_of, offset_on, on_grid
+from zwidth.identification.logs.stops import Stops
 from zwidth.identification.logs.wraps import Jumps
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ class Survey:
         self.shortest, self.longest, self.latest = np.inf, -np.inf, 0.0
         self.ranges: dict[str, tuple[float, float]] = {}
         self.jumps = Jumps()
+        self.stops = Stops()
         self.grid: Grid | None = None
         self.found: Grid | None = None
         self.sought, self.off_grid = False, 0
@@ -130,3 +132,5 @@ class Survey:
         if force is not None:
             low, high = self.ranges.get(name, (np.inf, -np.inf))
             self.ranges[name] = min(low, float(force.min())), max(high, float(force.max()))
+            if name == "hand_force":
+                self.stops.take(force)
