@@ -36,6 +36,9 @@ def to_dict(identified: Identified, confidence: float) -> dict[str, Any]:
         document[key("given_mass", "mass")] = identified.mass
     for name, estimate in identified.estimates.items():
         document[key(name)] = _estimate(estimate, confidence)
+    for name in ("inward", "outward"):
+        estimate = getattr(identified.directions, name)
+        document[key(f"damping_{name}", "damping")] = _estimate(estimate, confidence)
     for limit in limits(identified):
         low, high = limit.interval(confidence)
         document[key(f"stiffest_by_{limit.parameter}", "stiffness")] = {

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from zwidth.identification.device.choice import SURE
 from zwidth.identification.device.fit import Found, units_of
-from zwidth.identification.device.identified import Estimate
+from zwidth.identification.device.identified import Directions, Estimate
 from zwidth.identification.logs import Finding
 
 _SEEN = {
@@ -16,10 +16,20 @@ _SEEN = {
 
 
 def findings(
-    found: Found, names: tuple[str, ...], estimates: Mapping[str, Estimate], period: float
+    found: Found,
+    names: tuple[str, ...],
+    estimates: Mapping[str, Estimate],
+    directions: Directions,
+    period: float,
 ) -> Iterable[Finding]:
     """The wrong model first, then what is not known, then what was fitted besides."""
     yield from _model(found, names, estimates, period)
+    if directions.difference.beyond(SURE):
+        yield Finding(
+            kind="damping by direction",
+            text=f"damping differs by direction: {directions.inward} into the wall, {directions.outward} "
+            "out of it; a hand may be quick one way and slow the other, so walls rest on the smaller",
+        )
     for name in ("damping", "coulomb_friction"):
         if name in estimates and estimates[name].interval(0.95)[0] <= 0:
             word = name.replace("_", " ")

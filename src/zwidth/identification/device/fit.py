@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from zwidth.identification.device.choice import LONGER, SURE, Choice, Zero, shifts
-from zwidth.identification.device.identified import Estimate
+import numpy as np
+
+from zwidth.identification.device.choice import LONGER, SAFETY, SURE, Choice, Zero, shifts
+from zwidth.identification.device.identified import Directions, Estimate
 from zwidth.identification.device.moments import Moments
 from zwidth.identification.device.pieces import pieces
 from zwidth.identification.device.points import Points
@@ -68,6 +70,24 @@ class Found(NamedTuple):
             for name, shift in zip(names, shifts(fit, longer), strict=True)
         }
 
+    def directions(self, names: tuple[str, ...]) -> Directions | None:
+        """Damping into the wall, b + a, and out of it, b − a; None where the strokes do not tell."""
+        names = (*names, "asymmetry")
+        fit, longer = self.regression(names), regress(self.longer, names, self.mass, self.shares[1])
+        if fit is None or longer is None:
+            return None
+        b, a = (names.index(name) for name in ("damping", "asymmetry"))
+        unit = units_of(self.motion)["damping"]
+
+        def combined(of_b: float, of_a: float) -> Estimate:
+            weights = np.zeros(len(names))
+            weights[b], weights[a] = of_b, of_a
+            shift = SAFETY * abs(float(weights @ (fit.values - longer.values)))
+            error = float(np.sqrt(weights @ fit.covariance @ weights))
+            return Estimate(float(weights @ fit.values), error, shift, fit.degrees, unit)
+
+        return Directions(combined(1.0, 1.0), combined(1.0, -1.0), combined(0.0, 1.0))
+
     def sees(self, names: tuple[str, ...], term: str) -> bool:
         """True where one term more is larger than its uncertainty, that of the method included."""
         estimates = self.estimates((*names, term))
@@ -109,4 +129,5 @@ def units_of(motion: str) -> dict[str, str]:
         "spring": "N m/rad" if turn else "N/m",
         "quadratic": "N m s²/rad²" if turn else "N s²/m²",
         "force_lag": "s",
+        "asymmetry": "N m s/rad" if turn else "N s/m",
     }

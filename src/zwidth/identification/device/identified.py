@@ -67,6 +67,35 @@ class Estimate(NamedTuple):
         return f"{self.value:.4g} {self.unit} (95 %: {low:.4g} to {high:.4g})"
 
 
+class Directions(NamedTuple):
+    """Damping in each direction.
+
+    A wall takes back no more than friction takes out in the direction in which there is less of it: a hand
+    may be quick that way and slow the other.  Of Coulomb friction only the mean of both directions counts,
+    what it differs by does no work to and fro.
+
+    Parameters
+    ----------
+    inward, outward
+        b of motion into the wall, and out of it [N·s/m; N·m·s/rad].
+    difference
+        Half of what the first has more.
+    """
+
+    inward: Estimate
+    outward: Estimate
+    difference: Estimate
+
+    @property
+    def weaker(self) -> Estimate:
+        """The lesser of the two."""
+        return min(self.inward, self.outward, key=lambda estimate: estimate.value)
+
+    def least(self, confidence: float) -> float:
+        """Below which neither is, this often: whichever is the weaker is above its own lower end."""
+        return min(self.inward.interval(confidence)[0], self.outward.interval(confidence)[0])
+
+
 @dataclass(frozen=True, kw_only=True)
 class Identified:
     """A device as a log shows it.
@@ -76,6 +105,8 @@ class Identified:
     estimates
         By parameter: damping, coulomb_friction, mass unless it was given, and what else was
         fitted: spring [N/m], quadratic [N·s²/m²], force_lag [s]; N·m and rad if rotary.
+    directions
+        Damping into the wall and out of it.
     mass
         The given one [kg; kg·m²], or None.
     sample_period, resolution
@@ -104,6 +135,7 @@ class Identified:
     """
 
     estimates: Mapping[str, Estimate]
+    directions: Directions
     mass: float | None
     sample_period: float
     resolution: float
@@ -122,8 +154,9 @@ class Identified:
     def device(self, confidence: float | None = 0.99, **others: Any) -> Device:
         """A device whose b and f_c are at least as large as stated, with this confidence for both together.
 
-        Where friction was found not to be f_c + b |v|, their lower ends are those of the model below the
-        friction curve that proves the stiffest wall: the fitted line lies above friction somewhere.
+        The lower end of b is that of the direction with less damping.  Where friction was found not to be
+        f_c + b |v|, the lower ends are those of the model below the friction curve that proves the stiffest
+        wall, less what the directions may differ by: the fitted line lies above friction somewhere.
 
         Parameters
         ----------
@@ -153,14 +186,34 @@ class Identified:
         for name in ("mass", "damping", "coulomb_friction"):
             if name in self.estimates:
                 given[name] = _parameter(self.estimates[name], confidence)
+        given["damping"] = self._damping(confidence)
         if self.shows("bent friction"):
             below = self.friction_curve(0.5 if confidence is None else confidence)
             for name, low in below.best(self.sample_period, self.resolution)._asdict().items():
+                if name == "damping":
+                    low = max(float(low) - self._difference(confidence), 0.0)
                 high = max(float(low), self.estimates[name].value)
                 given[name] = low if confidence is None else Interval(float(low), high)
         if "mass" in given and ends(as_parameter(given["mass"]))[0] <= 0:
             del given["mass"]  # the data do not rule out 0, which no device has; no criterion needs it
         return Device(**{**given, **others})
+
+    def _damping(self, confidence: float | None) -> float | Interval:
+        """Of the direction with less of it, up to that of the mean of both."""
+        own = _parameter(self.estimates["damping"], confidence)
+        if confidence is None or not isinstance(own, Interval):
+            weaker = (
+                self.directions.weaker if self.shows("damping by direction") else self.estimates["damping"]
+            )
+            return max(weaker.value, 0.0)
+        return Interval(max(min(float(own.low), self.directions.least(confidence)), 0.0), own.high)
+
+    def _difference(self, confidence: float | None) -> float:
+        """The most by which one direction may have less damping than the mean of both."""
+        if confidence is None:
+            return abs(self.directions.difference.value) if self.shows("damping by direction") else 0.0
+        low, high = self.directions.difference.interval(confidence)
+        return max(-low, high)
 
     def shows(self, kind: str) -> bool:
         """True where there is a finding of this kind."""

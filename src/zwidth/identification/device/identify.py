@@ -81,12 +81,16 @@ def identify(
         chosen = choose(other, own, mass, samples, zero)
         return gather(other, chosen, mass=mass, delay=samples, zero=zero, progress=None).estimates(names)
 
+    directions = found.directions(names)
+    if directions is None:
+        raise InputError(too_little(log))
     wrong = impossible(log, estimates, again)
     if wrong is not None:
         raise InputError(wrong)
     weights = found.shape.value / found.shape.piece
     return Identified(
         estimates=estimates,
+        directions=directions,
         mass=mass,
         sample_period=log.sample_period,
         resolution=log.resolution,
@@ -99,7 +103,7 @@ def identify(
         pulse_length=PIECES * choice.piece * log.sample_period,
         strokes=found.moments.strokes,
         pulses=found.moments.pulses,
-        findings=(*log.findings, *findings(found, names, estimates, log.sample_period)),
+        findings=(*log.findings, *findings(found, names, estimates, directions, log.sample_period)),
         points=found.points.dataset(fit, mass, log.motion),
     )
 

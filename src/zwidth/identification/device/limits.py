@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from zwidth.identification.device.identified import Estimate, Identified
+    from zwidth.identification.device.identified import Directions, Estimate, Identified
 
 NARROW = 3.0
 """Ratio of quick to slow speeds (upper to lower tenth) below which b and f_c are hard to tell apart."""
@@ -31,12 +31,15 @@ class Limit(NamedTuple):
         By which the parameter becomes a stiffness; inf where Δ is 0.
     estimate
         Of the parameter.
+    directions
+        Of damping: the one with less of it is what counts.
     """
 
     parameter: str
     symbol: str
     factor: float
     estimate: Estimate
+    directions: Directions | None = None
 
     @property
     def value(self) -> float:
@@ -45,8 +48,10 @@ class Limit(NamedTuple):
 
     def interval(self, confidence: float) -> tuple[float, float]:
         """Where the truth is, this often; what is negative allows no stiffness [N/m; N·m/rad]."""
-        low, high = (max(end, 0.0) for end in self.estimate.interval(confidence))
-        return self.factor * low, self.factor * high
+        low, high = self.estimate.interval(confidence)
+        if self.directions is not None:
+            low = min(low, self.directions.least(confidence))
+        return self.factor * max(low, 0.0), self.factor * max(high, 0.0)
 
 
 def limits(identified: Identified) -> tuple[Limit, ...]:
@@ -54,7 +59,9 @@ def limits(identified: Identified) -> tuple[Limit, ...]:
     found = []
     if "damping" in identified.estimates:
         factor = 2 / identified.sample_period
-        found.append(Limit("damping", "2b/T", factor, identified.estimates["damping"]))
+        differs = identified.shows("damping by direction")
+        estimate = identified.directions.weaker if differs else identified.estimates["damping"]
+        found.append(Limit("damping", "2b/T", factor, estimate, identified.directions))
     if "coulomb_friction" in identified.estimates and identified.resolution > 0:
         factor = 2 / identified.resolution
         found.append(Limit("coulomb_friction", "2f_c/Δ", factor, identified.estimates["coulomb_friction"]))

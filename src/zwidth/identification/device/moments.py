@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 
     from zwidth.identification.device.regression import Regression
 
-REGRESSORS = ("mass", "damping", "coulomb_friction", "spring", "quadratic", "force_lag")
-"""What a force may be made of: m a, b v, f_c sgn v, k x, c v |v|, −τ df/dt of one that came late."""
+REGRESSORS = ("mass", "damping", "coulomb_friction", "spring", "quadratic", "force_lag", "asymmetry")
+"""What a force may be made of: m a, b v, f_c sgn v, k x, c v |v|, −τ df/dt of one that came late, and a |v|
+of damping that is b + a into the wall and b − a out of it."""
 
 COLUMNS = len(REGRESSORS) + 1
 """The regressors, and the force."""
@@ -109,6 +110,7 @@ def halves(rows: Array) -> tuple[Array, Array]:
             rows[:, pulses.POSITION],
             speed * np.abs(speed),
             -rows[:, pulses.FORCE_SLOPE],
+            speed * rows[:, pulses.SIDE],
             rows[:, pulses.FORCE],
         )
         found.append(np.stack(columns, axis=1))

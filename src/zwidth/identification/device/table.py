@@ -52,6 +52,11 @@ def rows(identified: Identified, confidence: float = 0.95) -> list[Row]:
             estimate = identified.estimates[key]
             low, high = estimate.interval(confidence)
             table.append(_row(symbol, NAMES[key], estimate.value, low, high, estimate.unit))
+        if key == "damping" and identified.shows("damping by direction"):
+            for name in ("inward", "outward"):
+                estimate = getattr(identified.directions, name)
+                low, high = estimate.interval(confidence)
+                table.append(_row("b", f"  {name}", estimate.value, low, high, estimate.unit))
     stiffness = "N·m/rad" if identified.motion == "rotary" else "N/m"
     for limit in limits(identified):
         low, high = limit.interval(confidence)
