@@ -8,10 +8,12 @@ from Jacobians by differences in 40 digits, of homogeneous matrices, and of a le
 from __future__ import annotations
 
 import json
+from importlib import import_module
+from math import cos, sin
 from pathlib import Path
 from typing import Any
 
-from . import TINY, Case, Fraction, accepted, put, refused, without
+from . import TINY, Case, Fraction, accepted, plain, put, refused, without
 
 ARMS = json.loads(Path(__file__).with_name("arms.json").read_text(encoding="utf-8"))
 LESS = "the damping is not enough"
@@ -175,6 +177,35 @@ def link(kind: str, needs: Fraction, rest: bool) -> dict[str, Any]:
 
 CHAIN, POSED = several(), several(3)
 
+# a slide by itself, its hand 2 m off the axis: 1100 Δ/2 for its steps, whatever that distance
+SLIDE = put(COUNTED, {
+    "arm.end_m": ["2", "0", "0"],
+    "arm.joints": [
+        {**SLIDES["arm"]["joints"][1], "resolution_m": STEP, "coulomb_friction_N": 550 * STEP * LONGER**2}
+    ],
+})  # fmt: skip
+# the link of 0.1 m in the plane, in pose: 1100 N/m, 20 N and 5 N·m/rad; moments do nothing to what is misread
+IN_PLANE = put(PLANE, {
+    "arm.end_m": ["0.1", "0", "0"], "arm.joints": [put(COUNTED["arm"]["joints"][0], {
+        "coulomb_friction_N_m": STEP * (1100 * COLUMN**2 + 40 * COLUMN + 5 + 2 * LONGER * COLUMN) / 2,
+    })],
+    "wall.stiffness_N_m_rad": [["1000", "0", "20"], ["0", "1000", "0"], ["20", "0", "5"]],
+    **{f"wall.{key}_N_m_s_rad": [["0.1", "0", "0"], ["0", "0.1", "0"], ["0", "0", "0"]]
+       for key in ("virtual_damping", "damping_bound")},
+    "loop": {**COUNTED["loop"], "largest_moment_N_m": 3},
+})  # fmt: skip
+# a limit of 0 is one that is told
+NO_MOMENT = put(ARMS["held in pose"]["document"], {"loop.largest_moment_N_m": 0})
+
+
+def the_surplus_is_that_of_the_middle() -> str:
+    """b − R (∂x/∂q)² of one joint whose region is not the same on both sides of 0; R = 1."""
+    link = put(SWEEP, {"arm.end_m": ["0.1", "0.02", "0"], f"{JOINT}damping_N_m_s_per_rad": 1})
+    found = import_module("zwidth.checker").verify(plain(link)).surplus
+    right = 1 - (0.1 * sin(0.55) + 0.02 * cos(0.55)) ** 2
+    return "" if len(found) == 1 and abs(found[0][0] - right) < 1e-12 else f"{found}, not {right}"
+
+
 CASES = [
     *(case for name in ARMS for case in of(name)),
     # a region
@@ -269,6 +300,24 @@ CASES = [
         )
     ),
     accepted("moments are told", POSED, "moments up to 3 N·m"),
+    accepted("no moments are told of a point", COUNTED, "for forces up to 2 N; "),
+    accepted("a slide far from its axis", SLIDE),
+    refused(
+        "a slide far from its axis, less friction",
+        put(SLIDE, {f"{JOINT}coulomb_friction_N": 550 * STEP * LONGER**2 - TINY}),
+        "Coulomb friction of joint 1",
+    ),
+    accepted("an encoder in the plane, in pose", IN_PLANE, "moments up to 3 N·m"),
+    refused(
+        "an encoder in the plane, in pose, less friction",
+        put(
+            IN_PLANE,
+            {
+                f"{JOINT}coulomb_friction_N_m": IN_PLANE["arm"]["joints"][0]["coulomb_friction_N_m"] - TINY,
+            },
+        ),
+        "Coulomb friction of joint 1",
+    ),
     refused(
         "three joints, a longer first column",
         put(CHAIN, {"arm.joints.0.largest_column_m_per_rad": "0.25", "arm.joints.0.coulomb_friction_N_m": 9}),
@@ -323,7 +372,17 @@ CASES = [
             refused(f"{name}, a wide region with less", widened(damped(name, less), "0.3"), LESS),
         )
     ),
+    Case("the surplus is that of the middle", the_surplus_is_that_of_the_middle, ""),
+    *(
+        accepted(f"a wall in pose, {name}", damped(name, 1 + TINY), words)
+        for name, words in (
+            ("plane pose", "up to 900 N/m and 5 N·m/rad, in every orientation of rest"),
+            ("every rest", "up to 900 N/m and 5 N·m/rad, in every orientation of rest"),
+            ("given rest", "up to 900 N/m and 5 N·m/rad, from the orientation of rest that is given"),
+        )
+    ),
     # held
+    accepted("held in pose, no moments", NO_MOMENT, "for forces up to 1 N and moments up to 0 N·m"),
     refused("a held torque and a delay", put(HELD, {"loop.delay_samples": 1}), "needs no delay"),
     refused(
         "a curvature that is less than the bends",
@@ -395,6 +454,16 @@ CASES = [
         "matrices of two sizes", put(MIXED, {"wall.virtual_damping_N_s_per_m": [["0"]]}), "differ in size"
     ),
     refused(
+        "a stiffness larger than both other matrices",
+        put(MIXED, {"wall.virtual_damping_N_s_per_m": [["0"]], "wall.damping_bound_N_s_per_m": [["0"]]}),
+        "differ in size",
+    ),
+    refused(
+        "three rows of two columns",
+        put(MIXED, {"wall.stiffness_N_per_m": [["1", "0"], ["0", "1"], ["0", "0"]]}),
+        "rows, and as many columns",
+    ),
+    refused(
         "a matrix of four rows",
         put(MIXED, {"wall.stiffness_N_per_m": [["0"] * 4] * 4}),
         "wall.stiffness_N_per_m must have 1 to 3 entries",
@@ -453,6 +522,15 @@ CASES = [
         put(MIXED, {f"{JOINT}damping_N_m_s_per_rad": "-1"}),
         "damping_N_m_s_per_rad must be ≥ 0",
     ),
+    refused(
+        "damping of more than 2⁶⁴",
+        put(MIXED, {f"{JOINT}damping_N_m_s_per_rad": 1 + 2**64}),
+        "a number is too large",
+    ),
+    accepted(
+        "sixteen joints that stand still",
+        put(TURNS, {"arm.joints": [{**TURNS["arm"]["joints"][0], "damping_N_m_s_per_rad": 1}] * 16}),
+    ),
     refused("no joints", put(MIXED, {"arm.joints": []}), "arm.joints must have 1 to 16 entries"),
     refused(
         "17 joints",
@@ -469,6 +547,27 @@ CASES = [
         "a mirror",
         put(EVERY, {f"{JOINT}rotation": [["0.6", "0.8", "0"], ["0.8", "-0.6", "0"], ["0", "0", "1"]]}),
         "mirrors",
+    ),
+    refused(
+        "a mirror that changes every axis for another",
+        put(
+            EVERY,
+            {
+                f"{JOINT}rotation": [["0", "1", "0"], ["0", "0", "1"], ["-1", "0", "0"]],
+                f"{JOINT}damping_N_m_s_per_rad": 9,
+            },
+        ),
+        "mirrors",
+    ),
+    accepted(
+        "a rotation that changes every axis for another",
+        put(
+            EVERY,
+            {
+                f"{JOINT}rotation": [["0", "1", "0"], ["0", "0", "1"], ["1", "0", "0"]],
+                f"{JOINT}damping_N_m_s_per_rad": 9,
+            },
+        ),
     ),
     refused("two rotations", put(EVERY, {"wall.turns": 2}), "wall.turns must be 1 or 3"),
     refused("another rest", put(EVERY, {"wall.rest": "any"}), "must be every orientation or given"),
@@ -491,6 +590,11 @@ CASES = [
     refused("no rest", without(GIVEN, f"{JOINT}rest_rad"), "rest_rad is missing"),
     # legs
     refused("legs in pose", {**TWO, "wall": PLANE["wall"]}, "no pose"),
+    refused(
+        "two legs, a region of three coordinates",
+        put(TWO, {"arm.low_m": ["0.02", "0.09", "0"], "arm.high_m": ["0.02", "0.09", "0"]}),
+        "as many legs as its places have coordinates",
+    ),
     refused("a wall of three coordinates, two legs", {**TWO, "wall": MIXED["wall"]}, "as many coordinates"),
     refused(
         "legs, held",
@@ -504,6 +608,9 @@ CASES = [
             },
         ),
         "are not bounded",
+    ),
+    refused(
+        "held, without the largest force", without(HELD, "loop.largest_force_N"), "largest_force_N is missing"
     ),
     refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "arm.legs must have 2 to 3 entries"),
     refused("a region turned round", put(TWO, {"arm.low_m": ["0.03", "0.09"]}), "low ≤ high"),

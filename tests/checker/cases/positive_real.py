@@ -59,6 +59,7 @@ def taken(name: str, energy: Any, told: Any, words: str = "", **facts: Any) -> A
 LEAD, BACK = ([1, 2], [1, 1]), ([1, 1], [1, 2])
 DISCRETE = {"time": "discrete"}
 OUTPUT = {"index": "output"}
+FOURTH = [1, 4, 6, 4, 1]
 ALL = proved(AT_MINUS_ONE, *LEAD, 1)
 SEQUENCE = {"kind": "sequence", "latent": [1, -1]}
 DELAY = drawn(SEQUENCE, [1], [1, 0], **DISCRETE)
@@ -109,6 +110,11 @@ CASES = [
     *pair("an integrator", proved(signs(square=()), [1], [1, 0])),
     *pair("a derivative", proved(signs(square=()), [1, 0], [1])),
     *pair("nothing", proved(signs(square=()), [0], [1])),
+    # (z + ¼)/(z − ¼): Re(N D̄) = 15/16, and N + D = 2z
+    accepted("a root at 0", proved(CONSTANT, [1, "1/4"], [1, "-1/4"], **DISCRETE)),
+    # N = D = (s + 1)⁴: half of |D|² = (1 + x)⁴, which is 16/(1 + c)⁴
+    accepted("of order 4", proved(CONSTANT, FOURTH, FOURTH, "1/2")),
+    refused("of order 4, more than it is", proved(CONSTANT, FOURTH, FOURTH, 1 + TINY), "do not multiply"),
     accepted("zeros before N and D", proved(AT_MINUS_ONE, [0, 1, 2], [0, 0, 1, 1], 1)),
     refused(
         "−1/s: Re = 0, its root outside",
@@ -201,6 +207,11 @@ CASES = [
     taken("a burst of order 2, a higher level", smooth(2), put(SMOOTH, {"level": 2})),
     refused("a burst that is not smooth", put(SMOOTH, {"motion.power": 0}), "more cycles than its power"),
     refused("fewer cycles than its power", put(FAST, {"motion.cycles": 1}), "more cycles than its power"),
+    refused(
+        "a burst of too many lines",
+        put(FAST, {"motion.cycles": 500, "motion.power": 400, "system.numerator": [1] * 371}),
+        "too many lines",
+    ),
     refused("no pace", put(FAST, {"motion.step_rad_per_s": 0}), "step_rad_per_s must be > 0"),
     refused("a pace below 0", put(FAST, {"motion.step_rad_per_s": -1}), "step_rad_per_s must be > 0"),
     refused("a power of 401", put(FAST, {"motion.power": 401, "motion.cycles": 402}), "power must be ≤ 400"),

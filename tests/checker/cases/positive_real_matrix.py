@@ -235,6 +235,7 @@ CASES = [
         "a row that is a number", put(CONSTANT, {"system.numerators": [1, 2]}), "numerators[0] must be a list"
     ),
     refused("a sequence at its level", put(LATE, {"level": "-1/2"}), "none comes out"),
+    taken("a sequence, a level of a half", 2, put(LATE, {"level": "1/2"})),
     taken("a sequence, a level", 3, put(LATE, {"level": 1})),
     taken("a sequence, fractions", "3/4", put(LATE, {"level": 1, "motion.latent": [["1/2", 0], [0, "1/2"]]})),
     taken("a polynomial", 3 * (Fraction(9, 2) + 9), PUSH),

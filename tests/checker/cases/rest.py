@@ -9,9 +9,11 @@ With a hand of spring and damper the limits were bisected on the poles of the ex
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
-from . import TINY, Fraction, accepted, put, refused, without
+from . import TINY, Case, Fraction, accepted, put, refused, without
+from .arithmetic import expanded, in_zeta
 
 
 def hand(kind: str, numerator: Any, denominator: Any, **motion: Any) -> Any:
@@ -77,6 +79,44 @@ ON_CIRCLE = {
     ("5/3", 0): ("5167098/4450277", "-316062/342329"),
 }
 
+# less than any number of bits tells: h₁ smaller by it moves the pair inside, larger outside
+HAIR = Fraction(1, 10**700)
+
+
+def near_circle(late: str, pole: Any, by: Fraction, sign: int = 1) -> Any:
+    """A law whose pair of roots is off the circle by little, h₁ times a factor; T = 3 s."""
+    first, second = map(Fraction, ON_CIRCLE[late, pole])
+    law_ = [sign * first * by, sign * second], [sign, sign * Fraction(pole)]
+    return hand("stability", *law_, mass_kg=27, sample_period_s=3, delay_s=3 * Fraction(late))
+
+
+def the_polynomial_is_enclosed() -> str:
+    """P of a free mass of 3 kg, T = 2 s, beside its coefficients without rounding."""
+    rest, motions = (import_module(f"zwidth.checker.known_hand.{name}") for name in ("rest", "held_motion"))
+    unit = Fraction(4, 3)
+    for part, whole in ((0, 0), (0, 3), (Fraction(1, 3), 0), (Fraction(1, 4), 2)):
+        late, rest_of = whole + (part > 0), 1 - Fraction(part)
+        plant = [unit / 2, unit]
+        if part:
+            plant = [unit * rest_of**2 / 2, unit * rest_of + unit / 2, unit]
+        for above, below in (([3], [2]), ([5, -4], [3, 0]), ([2, 1, -1], [1, 3, 7, 1])):
+            free = expanded([1, 0, 0], in_zeta(below), *[[1, 1]] * late)
+            force = expanded(plant, in_zeta(above))
+            sums = [x + y for x, y in zip(free, [0] * (len(free) - len(force)) + force, strict=True)]
+            zero = (Fraction(0),) * 2
+            motion = motions.motion_of(
+                (Fraction(3),) * 2, zero, zero, Fraction(2), 2 * (whole + Fraction(part))
+            )
+            loop = rest._Loop(motion, in_zeta(above), in_zeta(below))
+            for bits in (20, 128):
+                found = rest._characteristic(loop, bits)
+                off = [
+                    abs(Fraction(c, below[0]) * 2**bits - x.middle) for c, x in zip(sums, found, strict=True)
+                ]
+                if any(o > x.radius for o, x in zip(off, found, strict=True)):
+                    return f"{above}/{below}, {whole} + {part} samples late, {bits} bits"
+    return ""
+
 
 def within(k: Any, wide: Any) -> Any:
     """A spring before a held device, some of it within bounds."""
@@ -84,6 +124,7 @@ def within(k: Any, wide: Any) -> Any:
 
 
 CASES = [
+    Case("the polynomial is enclosed", the_polynomial_is_enclosed, ""),
     accepted(
         "a free mass",
         RESTS,
@@ -152,6 +193,19 @@ CASES = [
         )
     ),
     *(
+        accepted(
+            f"a pair just {side} the circle, {late} samples late, a pole at {pole}",
+            {**near_circle(late, pole, by), "kind": kind},
+            words,
+        )
+        for late, pole in ON_CIRCLE
+        for side, by, kind, words in (
+            ("inside", 1 - HAIR, "stability", "come to rest"),
+            ("outside", 1 + HAIR, "instability", "do not come to rest"),
+        )
+    ),
+    accepted("a pair just inside the circle, N and D turned", near_circle("1/3", "1/3", 1 - HAIR, -1)),
+    *(
         case
         for name, wide, less, more in (
             ("the mass", {"mass_kg": ["4/5", "6/5"]}, "1.12", "1.18"),
@@ -217,6 +271,17 @@ CASES = [
     refused(
         "what moves too far within a sample where it is damped most",
         hand("stability", *spring("0.1"), damping_N_s_per_m=[1, 900], stiffness_N_per_m=1),
+        "move too far within one sample",
+    ),
+    # δ + η is 500 and a hair at one end only
+    refused(
+        "what moves just too far within a sample where it is damped most",
+        hand(
+            "stability",
+            *spring("0.1"),
+            damping_N_s_per_m=[1, 499 + Fraction(1, 10**20)],
+            stiffness_N_per_m=1,
+        ),
         "move too far within one sample",
     ),
     refused("301 samples late", put(RESTS, {"loop.delay_s": 301}), "more than 300 samples"),

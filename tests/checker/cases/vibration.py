@@ -3,6 +3,7 @@
 G = (2z + 0.92)/(z² − z/2), gap −1: from K = 175/192 on there are motions of three samples, one or two of them
 inside; at 175/192 a sample stands on the surface.  A hand of spring and damper: where a sample comes
 to the surface was bisected on the positions of the exact hold, in 30 digits.
+1/(z − ½), gap −1, a sample inside and one not: x(0) = −2K/(3 + 2K) and x(1) = 2 x(0), below −1 for K > 3/2.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from . import TINY, Fraction, accepted, put, refused, without
-from .absolute import SIX
+from .absolute import ONE_POLE, SIX
 
 LIMIT, HAIR = Fraction(175, 192), Fraction(1, 10**60)
 
@@ -48,6 +49,7 @@ LIMITS = {  # the slope from which on the pattern is one of the wall
 }
 NOT = "is not one of the wall"
 ONE, TWO = six("0.92", True, False, False), six("0.92", True, True, False)
+POLE = put(six(2, True, False), {"plant": ONE_POLE})
 
 CASES = [
     accepted(
@@ -71,6 +73,14 @@ CASES = [
             refused(f"at the limit, {name}", six(LIMIT, *pattern), NOT),
             refused(f"just below the limit, {name}", six(LIMIT - HAIR, *pattern), NOT),
         )
+    ),
+    accepted("one pole", put(POLE, {"slope": Fraction(3, 2) + HAIR}), "rounds of 2 samples, 1 inside"),
+    refused("one pole, at the limit", put(POLE, {"slope": "3/2"}), NOT),
+    refused("one pole, below the limit", put(POLE, {"slope": Fraction(3, 2) - HAIR}), NOT),
+    refused(
+        "every motion of two samples goes on, and none is told",
+        put(POLE, {"plant": {"numerator": [0], "denominator": [1, 0, -1]}}),
+        NOT,
     ),
     accepted("begun a sample later", six("0.92", False, False, True)),
     accepted("twice round", six("0.92", *[True, False, False] * 2)),
