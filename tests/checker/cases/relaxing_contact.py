@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import TINY, accepted, edge, loop, put, refused, without
+from . import TINY, Fraction, accepted, edge, loop, put, refused, without
 
 
 def relaxing(
@@ -49,7 +49,7 @@ TWO = relaxing(
 LESS, FRICTION, OTHER = "damping is below", "below ‖h‖₁ Δ/2", "is not the law"
 
 
-def damped(name: str, document: Any, needed: int, **changes: Any) -> Any:
+def damped(name: str, document: Any, needed: Any, **changes: Any) -> Any:
     """The damping that is needed, and less."""
     told = put(
         document, {"loop.damping_N_s_per_m": needed, **{k.replace("__", "."): v for k, v in changes.items()}}
@@ -97,6 +97,11 @@ CASES = [
         for case in edge(
             f"friction, {name}", document, put(document, {"loop.coulomb_friction_N": needed - TINY}), FRICTION
         )
+    ),
+    # p = ½, g = ½ and −½: (9/2 − 5ζ/2)/(1 − ζ/2), b ≥ 1 + 1/6; (7/2 − 3ζ/2)/(1 − ζ/2), b ≥ 1 + ½
+    *damped("a small part", relaxing([("1/2", "1/2")], ["9/2", "-5/2"], [1, "-1/2"]), Fraction(7, 6)),
+    *damped(
+        "a small part below 0", relaxing([("1/2", "-1/2")], ["7/2", "-3/2"], [1, "-1/2"]), Fraction(3, 2)
     ),
     # g = 0 is no part that relaxes, and needs nothing
     *damped("a part of 0", relaxing([("1/2", 0)], [4], [1]), 1),
