@@ -87,6 +87,19 @@ def functions_are_rounded_outward() -> str:
     return ""
 
 
+def curvature_is_bounded_closely() -> str:
+    """Of numbers that vary by a 64th: the bound is above what is left of a tangent, by less than a quarter."""
+    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    for middle in (1 << 58, 3 << 58, 5 << 60):
+        x = enclosed(60, middle, (middle >> 6,))
+        for function, right in ((functions.root, square_root), (functions.inverse, lambda v: 1 / v)):
+            found = function(x)
+            off = max(abs(right(value) - at(found, shared, 0)) for value, shared in corners(x)) * (1 << 60)
+            if not off <= found.radius <= Fraction(5, 4) * off:
+                return f"{function.__name__} of {middle}: {float(off)} off, {found.radius} said"
+    return ""
+
+
 def roots_have_few_bits() -> str:
     """Of numbers whose root is a unit or two."""
     functions, enclosed = module("functions"), module("enclosed").Enclosed
@@ -435,6 +448,7 @@ def rational_numbers_are_enclosed() -> str:
 
 CHECKS = (
     functions_are_rounded_outward,
+    curvature_is_bounded_closely,
     roots_have_few_bits,
     what_may_be_0_has_no_inverse,
     sines_are_rounded_outward,

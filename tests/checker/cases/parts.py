@@ -105,6 +105,7 @@ def entries_are_told() -> str:
         (Fraction(1, 10), "0.1"), (Fraction(7, 20), "0.35"), (Fraction(1, 6), "1/6"), (Fraction(3), "3"),
         (Fraction(-1, 3), "-1/3"), (Fraction(1, 3**90), "about 1.14574263767e-43"),
         (Fraction(2**300), "about 2.03703597633e+90"),
+        (Fraction(2**200 - 1, 2**199), f"1.{10**199 - 5**199:0199d}"),
         (Fraction(1, 2**40), "9.094947017729282379150390625e-13"),
     ):  # fmt: skip
         if fields._exactly(value) != told:
