@@ -12,7 +12,18 @@ from typing import Any
 
 from . import TINY, Fraction, accepted, edge, put, refused, without
 from .contact import DAMPED, FILTERED
-from .linear import AT_MINUS_ONE, AT_ONE, CONSTANT, DAMPER, LATE_SPRING, ON_CIRCLE, PARTLY, SPRING, linear, signs
+from .linear import (
+    AT_MINUS_ONE,
+    AT_ONE,
+    CONSTANT,
+    DAMPER,
+    LATE_SPRING,
+    ON_CIRCLE,
+    PARTLY,
+    SPRING,
+    linear,
+    signs,
+)
 from .multiplier_contact import WALL
 from .quantized import norm, quantized
 from .relaxing_contact import ONE

@@ -88,7 +88,7 @@ def functions_are_rounded_outward() -> str:
 
 
 def curvature_is_bounded_closely() -> str:
-    """Of numbers that vary by a 64th: the bound is above what is left of a tangent, by less than a quarter."""
+    """Of numbers that vary by a 64th: what a tangent leaves, and a bound above it by less than a quarter."""
     functions, enclosed = module("functions"), module("enclosed").Enclosed
     for middle in (1 << 58, 3 << 58, 5 << 60):
         x = enclosed(60, middle, (middle >> 6,))
@@ -156,13 +156,14 @@ def sines_are_rounded_outward() -> str:
 def series_are_cut_off_outward() -> str:
     """Of small angles and of some turns, each exact: their sine and cosine lie within what is said."""
     functions, enclosed = module("functions"), module("enclosed").Enclosed
-    for bits, middle in ((8, 0), (8, 1), (8, -70), (12, 4096), (20, 3 << 20), (40, -(5 << 40)), (40, 7 << 40)):
+    angles = ((8, 0), (8, 1), (8, -70), (12, 4096), (20, 3 << 20), (40, -(5 << 40)), (40, 1 << 43))
+    for bits, middle in angles:
         for first in (0, 1):
             x = enclosed(bits, middle)
             found = functions._series(x, first)
             off = abs(sine(at(x, (), 0), first) - at(found, (), 0)) * (1 << bits)
             if off > found.radius:
-                return f"{('cos', 'sin')[first]} {middle / (1 << bits)}: {float(off)} off, {found.radius} said"
+                return f"{('cos', 'sin')[first]} {middle}/2^{bits}: {float(off)} off, {found.radius} said"
     return ""
 
 

@@ -106,8 +106,8 @@ COARSE = motion([0, 3, 0], 2, resolution_m=3, **FREE)
 HALF_A_COUNT = repeated(
     motion([0, 2, 2, 3, -1], 0, [1, 0, 0], [2, 0, -1], resolution_m=2, damping_N_s_per_m=0, **FREE), (1, 3, 2)
 )
-"""1/(2 − ζ²), Δ = 2, each round 1 further: the readings 0, 2, 2 and again 2, 2, then 4, the forces 0, 1, 1, then
-3/2, 3/2, 11/4: all of the law has grown by the same in the first round, and not in the second.  4 · 11/4 − 1 − 3/2
+"""1/(2 − ζ²), Δ = 2, each round 1 further.  The readings are 0, 2, 2, 2, 2, 4, the forces 0, 1, 1, 3/2,
+3/2, 11/4: in the first round all of them grow by 1, in the second they do not.  4 · 11/4 − 1 − 3/2 comes out.
 """
 
 CASES = [

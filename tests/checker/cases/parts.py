@@ -130,7 +130,10 @@ def entries_are_told() -> str:
     except part("document.refusal").Invalid as error:
         if str(error) != "entries that no proof of this kind has: b, c, d, e":
             return str(error)
-    one, two = fields.Record({"a": fields.Number()}), fields.Record({"a": fields.Number(), "b": fields.Flag()})
+    one, two = (
+        fields.Record({"a": fields.Number()}),
+        fields.Record({"a": fields.Number(), "b": fields.Flag()}),
+    )
     for first, second in ((one, two), (two, one), (fields.numbers(), two), (two, fields.numbers())):
         either = fields.Either(first, second, lambda value, first=first: _is_read_by(first, value))
         for value, names in (
