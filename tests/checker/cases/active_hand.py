@@ -191,6 +191,10 @@ CASES = [
         put(CLOSE, {"proof.cosine": "-0.9999987317275395452"}),
         NARROW,
     ),
+    # 1 + cos 3.141592653 = 1.74 · 10⁻¹⁹
+    accepted(
+        "c₀ next to −1", put(CLOSE, {"proof.angle": "3.141592653", "proof.cosine": "-0.9999999999999999999"})
+    ),
     accepted("a larger angle", put(LATE, {"proof.angle": "0.78539817", "proof.cosine": "0.70710677"})),
     accepted("c₀ just below cos θ", put(LATE, {"proof.cosine": "0.7071067811"})),
     refused("c₀ just above cos θ", put(LATE, {"proof.cosine": "0.7071067812"}), NARROW),

@@ -231,6 +231,27 @@ def roots_are_told_inside_from_outside() -> str:
     return ""
 
 
+def roots_next_to_the_circle_are_told() -> str:
+    """By 2^−5000 inside or outside, which no fixed number of bits tells."""
+    near = Fraction(1, 1 << 5000)
+    for sign, part in product((1, -1), (Fraction(1), Fraction(-1, 2))):
+        for root, right in ((1 - near, True), (1 + near, False), (near - 1, True), (-1 - near, False)):
+            if module("roots").inside_unit_circle([sign * part, -sign * part * root]) is not right:
+                return f"{sign * part} (z − {float(root)})"
+    return ""
+
+
+def what_is_0_somewhere_is_not_positive() -> str:
+    """c² in coefficients of Bernstein is 1, −1, 1, or 3, −1, −1, 3; with a little more it is positive."""
+    positivity, refusal = module("positivity"), import_module("zwidth.checker.document.refusal").Invalid
+    for told in ([0, 0, 1], [0, 0, 1, 0], [0, 0, 1, 0, 0]):
+        if not refuses(positivity.require_positive, list(map(Fraction, told)), refusal):
+            return f"{told}"
+        if refuses(positivity.require_positive, [Fraction(1, 10**9), *map(Fraction, told[1:])], refusal):
+            return f"{told} and more"
+    return ""
+
+
 def whole_numbers_decide_every_root() -> str:
     """The same without rounding, where no number of bits is enough."""
     decays, enclosed = module("schur_cohn").decays, module("enclosed").Enclosed
@@ -283,6 +304,19 @@ def coprime_polynomials_are_told() -> str:
     if are_coprime([first], [first]) is not True or not are_coprime([1, 1], [1, first]):
         return "a highest coefficient that one prime divides"
     return ""
+
+
+def the_circle_becomes_an_axis() -> str:
+    """ζ = 2w/(1 − w), times (1 − w)ⁿ, exactly; a constant has no root."""
+    crossing, enclosed, random = module("crossing"), module("enclosed").Enclosed, Random(6)
+    for order in range(5):
+        told = [random.randrange(-9, 10) for _ in range(order + 1)]
+        found = crossing._bilinear([enclosed(8, c, (), abs(c)) for c in told])
+        for w in (Fraction(0), Fraction(1), Fraction(-2, 3), Fraction(5)):
+            right = sum(c * (2 * w) ** (order - i) * (1 - w) ** i for i, c in enumerate(told))
+            if sum(x.middle * w ** (order - i) for i, x in enumerate(found)) != right:
+                return f"{told}"
+    return "" if crossing.never_crosses([enclosed(8, 3, (), 1)]) else "a constant"
 
 
 def no_root_crosses_unseen() -> str:
@@ -456,9 +490,12 @@ CHECKS = (
     series_are_cut_off_outward,
     angles_have_few_turns,
     roots_are_told_inside_from_outside,
+    roots_next_to_the_circle_are_told,
+    what_is_0_somewhere_is_not_positive,
     whole_numbers_decide_every_root,
     what_is_open_is_not_decided,
     coprime_polynomials_are_told,
+    the_circle_becomes_an_axis,
     no_root_crosses_unseen,
     sums_of_products_are_rounded_once,
     what_may_not_be_0_is_not_left_out,

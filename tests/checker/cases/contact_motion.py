@@ -227,6 +227,12 @@ CASES = [
         3 * (3 - 1) - Fraction(48, 2**80),
         law(motion([0, 0, 1, 1, 1, 1, 0], (0, 6, 3), delay_s=1), resets=True, **RELAXING),
     ),
+    # at 1 the reading two samples ago is −1, in later rounds 1: 3 · 3/2, 1 · 3/2, 1 · 3/2, less 9/2 b in each
+    taken(
+        "at rest within a count, remembered for two samples",
+        "51/8",
+        motion(["-1/2", 1, "-1/2"], (0, 2, 3), {"taps_N_per_m": [2, 0, -1]}, damping_N_s_per_m="1/12"),
+    ),
     refused("resets of a law that does not relax", law(THERE, resets=True), "only a law that relaxes"),
     refused("no resets of a law that does not relax", law(THERE, resets=False), "only a law that relaxes"),
     refused("a step of 0", law(THERE, force_step_N=0), "force_step_N must be > 0"),

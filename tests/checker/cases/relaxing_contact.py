@@ -46,6 +46,8 @@ TWO = relaxing(
     coulomb_friction_N=7,
     resolution_m=1,
 )
+# p = ½ and −½, g = 3 and 3: (10 − 6ζ − ζ²)/(1 − ζ²/4); b ≥ 1 + 3 + 3
+BOTH = relaxing([("1/2", 3), ("-1/2", 3)], [10, -6, -1], [1, 0, "-1/4"])
 LESS, FRICTION, OTHER = "damping is below", "below ‖h‖₁ Δ/2", "is not the law"
 
 
@@ -82,6 +84,7 @@ CASES = [
     *damped("late, it takes more", ONE, 8, loop__delay_s="1"),
     *damped("a pole below 0 takes more", SWINGS, 4),
     *damped("a part below 0 takes more", SOFTENS, 4),
+    *damped("beside a pole below 0 a part takes more", BOTH, 7),
     *damped("two parts", TWO, 3),
     *damped("two parts that never pull take more", TWO, 5, law__never_pulls=True),
     *damped("no part", relaxing([], [4], [1]), 1),

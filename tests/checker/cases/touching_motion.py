@@ -119,6 +119,11 @@ CASES = [
             ("it never pulls, N and D three times as large", [9, -6], [3, 0]),
         )
     ),
+    taken(
+        "it never pulls, a force of one unit",
+        "1/2",
+        touching([0, 1, 0], 0, (1,), never_pulls=True, damping_N_s_per_m="1/4"),
+    ),
     # 1/(1 − ζ/2 − ζ²/4): the forces 0, 1, 3/2, 2
     taken(
         "a filter of two poles",
