@@ -342,6 +342,16 @@ CASES = [
         repeated(motion([0, -1, -2, -1], 4, [0, 0, 1], [1, 0, 0], damping_N_s_per_m=0, **FREE), (1, 3, 5)),
     ),
     taken(
+        "a force that is late to the first round, and pushes",
+        5,
+        repeated(motion([0, -1, 0, 1, 0], 5, [1], damping_N_s_per_m=0, delay_s=1, **FREE), (0, 4, 3)),
+    ),
+    taken(
+        "a memory that is late to the first round, and grows",
+        4,
+        repeated(motion([0, 1, 2, 1], 4, [0, 0, 1], [1, 0, 0], damping_N_s_per_m=0, **FREE), (1, 3, 5)),
+    ),
+    taken(
         "rounds inwards that begin outside",
         18,
         repeated(motion([0, 1, 2, 2, -1, 2, 3, 3], 18, [1], damping_N_s_per_m=0), (3, 7, 4)),
