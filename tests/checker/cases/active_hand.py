@@ -12,7 +12,18 @@ from typing import Any
 
 from . import TINY, Fraction, accepted, edge, put, refused, without
 from .contact import DAMPED, FILTERED
-from .linear import AT_MINUS_ONE, AT_ONE, CONSTANT, DAMPER, LATE_SPRING, ON_CIRCLE, PARTLY, SPRING, signs
+from .linear import (
+    AT_MINUS_ONE,
+    AT_ONE,
+    CONSTANT,
+    DAMPER,
+    LATE_SPRING,
+    ON_CIRCLE,
+    PARTLY,
+    SPRING,
+    linear,
+    signs,
+)
 from .multiplier_contact import WALL
 from .quantized import norm, quantized
 from .relaxing_contact import ONE
@@ -66,6 +77,9 @@ MORE = banded(BARE, 1, AT_MINUS_ONE, MOST, AT_MINUS_ONE, "21/20", "0.49", "0.167
 COUNTED = put(LATE, {"loop.resolution_m": 1, "loop.coulomb_friction_N": 1, "proof.norm": norm(top=[2])})
 WRONG, NARROW = "do not multiply", "narrower than what is said"
 FULL = banded(SPRING, 2, CONSTANT, "1/2", signs(square=()), "3.2", -1, "1/2")
+CLOSE = put(FULL, {"proof.angle": "3.14", "below_Hz": "0.4997"})
+# no law: 2b everywhere, and 0 where the hand gives out what b takes
+IDLE = banded(linear(1, CONSTANT, [0]), 1, CONSTANT, 1, signs(square=()), 4, -1, "1/2")
 REDUCED = everywhere(spring(4))
 
 CASES = [
@@ -170,6 +184,17 @@ CASES = [
         ),
         NARROW,
     ),
+    # cos 3.14 = −0.99999873172753954528…
+    *edge(
+        "c₀ just below cos 3.14",
+        put(CLOSE, {"proof.cosine": "-0.9999987317275395454"}),
+        put(CLOSE, {"proof.cosine": "-0.9999987317275395452"}),
+        NARROW,
+    ),
+    # 1 + cos 3.141592653 = 1.74 · 10⁻¹⁹
+    accepted(
+        "c₀ next to −1", put(CLOSE, {"proof.angle": "3.141592653", "proof.cosine": "-0.9999999999999999999"})
+    ),
     accepted("a larger angle", put(LATE, {"proof.angle": "0.78539817", "proof.cosine": "0.70710677"})),
     accepted("c₀ just below cos θ", put(LATE, {"proof.cosine": "0.7071067811"})),
     refused("c₀ just above cos θ", put(LATE, {"proof.cosine": "0.7071067812"}), NARROW),
@@ -219,6 +244,7 @@ CASES = [
     # beyond π the cosine rises: nothing but −1 is below it
     refused("beyond π", put(FULL, {"proof.cosine": "-0.9"}), NARROW),
     refused("an angle above 4", put(FULL, {"proof.angle": "4.0001"}), "proof.angle must be ≤ 4"),
+    *edge("as much activity as damping", IDLE, put(IDLE, {"activity_N_s_per_m": 1 + TINY}), "so wide a band"),
     accepted("an angle of 4", put(FULL, {"proof.angle": 4})),
     refused(
         "an angle of many digits",

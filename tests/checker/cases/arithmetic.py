@@ -87,6 +87,32 @@ def functions_are_rounded_outward() -> str:
     return ""
 
 
+def curvature_is_bounded_closely() -> str:
+    """Of numbers that vary by a 64th: what a tangent leaves, and a bound above it by less than a quarter."""
+    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    for middle in (1 << 58, 3 << 58, 5 << 60):
+        x = enclosed(60, middle, (middle >> 6,))
+        for function, right in ((functions.root, square_root), (functions.inverse, lambda v: 1 / v)):
+            found = function(x)
+            off = max(abs(right(value) - at(found, shared, 0)) for value, shared in corners(x)) * (1 << 60)
+            if not off <= found.radius <= Fraction(5, 4) * off:
+                return f"{function.__name__} of {middle}: {float(off)} off, {found.radius} said"
+    return ""
+
+
+def roots_have_few_bits() -> str:
+    """Of numbers whose root is a unit or two."""
+    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    for bits, middle in product(range(3), range(1, 9)):
+        for slopes, radius in (((), 0), ((1,), 0), ((), middle - 1), ((middle // 2,), middle // 3)):
+            x = enclosed(bits, middle, slopes, radius)
+            if x.reach < middle:
+                wrong = outside(functions.root(x), x, square_root, 1 << 40)
+                if wrong:
+                    return wrong
+    return ""
+
+
 def what_may_be_0_has_no_inverse() -> str:
     """Nor a root; the smallest number that is not 0 has both."""
     functions, enclosed = module("functions"), module("enclosed").Enclosed
@@ -124,6 +150,20 @@ def sines_are_rounded_outward() -> str:
                     wrong = _not_curved(found, x, first)
                     if wrong:
                         return f"{('cos', 'sin')[first]} {middle / (1 << bits)}, {bits} bits: {wrong}"
+    return ""
+
+
+def series_are_cut_off_outward() -> str:
+    """Of small angles and of some turns, each exact: their sine and cosine lie within what is said."""
+    functions, enclosed = module("functions"), module("enclosed").Enclosed
+    angles = ((8, 0), (8, 1), (8, -70), (12, 4096), (20, 3 << 20), (40, -(5 << 40)), (40, 1 << 43))
+    for bits, middle in angles:
+        for first in (0, 1):
+            x = enclosed(bits, middle)
+            found = functions._series(x, first)
+            off = abs(sine(at(x, (), 0), first) - at(found, (), 0)) * (1 << bits)
+            if off > found.radius:
+                return f"{('cos', 'sin')[first]} {middle}/2^{bits}: {float(off)} off, {found.radius} said"
     return ""
 
 
@@ -191,6 +231,27 @@ def roots_are_told_inside_from_outside() -> str:
     return ""
 
 
+def roots_next_to_the_circle_are_told() -> str:
+    """By 2^−5000 inside or outside, which no fixed number of bits tells."""
+    near = Fraction(1, 1 << 5000)
+    for sign, part in product((1, -1), (Fraction(1), Fraction(-1, 2))):
+        for root, right in ((1 - near, True), (1 + near, False), (near - 1, True), (-1 - near, False)):
+            if module("roots").inside_unit_circle([sign * part, -sign * part * root]) is not right:
+                return f"{sign * part} (z − {float(root)})"
+    return ""
+
+
+def what_is_0_somewhere_is_not_positive() -> str:
+    """c² in coefficients of Bernstein is 1, −1, 1, or 3, −1, −1, 3; with a little more it is positive."""
+    positivity, refusal = module("positivity"), import_module("zwidth.checker.document.refusal").Invalid
+    for told in ([0, 0, 1], [0, 0, 1, 0], [0, 0, 1, 0, 0]):
+        if not refuses(positivity.require_positive, list(map(Fraction, told)), refusal):
+            return f"{told}"
+        if refuses(positivity.require_positive, [Fraction(1, 10**9), *map(Fraction, told[1:])], refusal):
+            return f"{told} and more"
+    return ""
+
+
 def whole_numbers_decide_every_root() -> str:
     """The same without rounding, where no number of bits is enough."""
     decays, enclosed = module("schur_cohn").decays, module("enclosed").Enclosed
@@ -245,8 +306,23 @@ def coprime_polynomials_are_told() -> str:
     return ""
 
 
+def the_circle_becomes_an_axis() -> str:
+    """ζ = 2w/(1 − w), times (1 − w)ⁿ, exactly; a constant has no root."""
+    crossing, enclosed, random = module("crossing"), module("enclosed").Enclosed, Random(6)
+    for order in range(5):
+        told = [random.randrange(-9, 10) for _ in range(order + 1)]
+        found = crossing._bilinear([enclosed(8, c, (), abs(c)) for c in told])
+        for w in (Fraction(0), Fraction(1), Fraction(-2, 3), Fraction(5)):
+            right = sum(c * (2 * w) ** (order - i) * (1 - w) ** i for i, c in enumerate(told))
+            if sum(x.middle * w ** (order - i) for i, x in enumerate(found)) != right:
+                return f"{told}"
+    return "" if crossing.never_crosses([enclosed(8, 3, (), 1)]) else "a constant"
+
+
 def no_root_crosses_unseen() -> str:
     """A factor whose root meets the circle at the end of what varies; none where that is far away."""
+    if not _never(([-2, 1], [0, 1]), [[5, -6, 4]], Fraction(1, 100)):
+        return "a polynomial that begins below 0 is not told"
     for rest in ([], [[1, 0]], [[2, -1]], [[3, 2], [2, -1]], [[5, -6, 4]], [[25, 30, 20], [2, 1]]):
         for moving, reaches in (
             (([9, -8], [0, 1]), 17), (([9, -8], [0, -1]), 1), (([9, 8], [0, 1]), 1), (([2, -1], [0, -1]), 1),
@@ -289,6 +365,37 @@ def sums_of_products_are_rounded_once() -> str:
             separate = sum((x * y for x, y in zip(a[1:], b[1:], strict=True)), a[0] * b[0])
             if found.radius > separate.radius:
                 return f"{count} of them: too wide"
+    return ""
+
+
+def what_may_not_be_0_is_not_left_out() -> str:
+    """Of a sum of products: a number near 0 that is not 0, for its radius or a slope."""
+    dot, enclosed = module("enclosed").dot, module("enclosed").Enclosed
+    five = enclosed(8, 5 << 8)
+    for x, right in (
+        (enclosed(8, 0), True), (enclosed(8, 0, (), 1), False), (enclosed(8, 0, (0, 1)), False),
+        (enclosed(8, 1), False), (enclosed(8, 0, (0, 0)), True),
+    ):  # fmt: skip
+        if x.is_zero is not right:
+            return f"{x.middle} ± {x.slopes} ± {x.radius}"
+        for found in (dot([x], [five]), dot([five], [x])):
+            if (found.middle, found.reach) != (5 * x.middle, 5 * x.reach):
+                return f"five times {x.middle} ± {x.slopes} ± {x.radius}"
+    return ""
+
+
+def what_a_quotient_loses_is_kept() -> str:
+    """A unit for each number that does not come out, and none for one that does."""
+    enclosed = module("enclosed").Enclosed
+    for middle, slope, radius, whole in product(range(-2, 3), range(-2, 3), range(2), (1, 2, 3)):
+        x = enclosed(8, middle, (slope,), radius)
+        found = x.over(whole)
+        lost = (middle % whole != 0) + (slope % whole != 0)
+        for value, shared in corners(x):
+            if abs(value / whole - at(found, shared, 0)) > Fraction(found.radius, 1 << 8):
+                return f"{middle} ± {slope} ± {radius} over {whole}"
+        if found.radius != -(-radius // whole) + lost:
+            return f"{middle} ± {slope} ± {radius} over {whole}: {found.radius} said"
     return ""
 
 
@@ -376,15 +483,23 @@ def rational_numbers_are_enclosed() -> str:
 
 CHECKS = (
     functions_are_rounded_outward,
+    curvature_is_bounded_closely,
+    roots_have_few_bits,
     what_may_be_0_has_no_inverse,
     sines_are_rounded_outward,
+    series_are_cut_off_outward,
     angles_have_few_turns,
     roots_are_told_inside_from_outside,
+    roots_next_to_the_circle_are_told,
+    what_is_0_somewhere_is_not_positive,
     whole_numbers_decide_every_root,
     what_is_open_is_not_decided,
     coprime_polynomials_are_told,
+    the_circle_becomes_an_axis,
     no_root_crosses_unseen,
     sums_of_products_are_rounded_once,
+    what_may_not_be_0_is_not_left_out,
+    what_a_quotient_loses_is_kept,
     numbers_keep_what_they_share,
     signs_are_certain,
     rational_numbers_are_enclosed,

@@ -7,9 +7,10 @@ and 2 (1 − p).
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
-from . import TINY, accepted, edge, loop, put, refused, without
+from . import TINY, Case, accepted, edge, loop, plain, put, refused, without
 
 
 def contact(k: Any, b: Any, weights: Any, numerator: Any, denominator: Any, **device: Any) -> Any:
@@ -32,7 +33,17 @@ FILTERED = contact(
 LESS = "is below (2d + 1) K T/2"
 OTHER = "is not the wall"
 
+
+def weights_may_be_a_tuple() -> str:
+    """As they may be in Python, and not in a file."""
+    found = import_module("zwidth.checker").verify(put(plain(DAMPED), {"law.weights": (2, -1)}))
+    return "" if found.valid else str(found.reason)
+
+
 CASES = [
+    Case("weights may be a tuple", weights_may_be_a_tuple, ""),
+    refused("weights that are a number", put(DAMPED, {"law.weights": 2}), "must be a list or an object"),
+    refused("weights that are a word", put(DAMPED, {"law.weights": "pole"}), "must be a list or an object"),
     *edge(
         "weights",
         DAMPED,

@@ -61,6 +61,7 @@ STEPS = {"force_step_N": "3/2"}
 LIMIT = {"force_limit_N": "3/2"}
 GAIN = "more with each round"
 HOLD = motion([0, 0, 1, 1, 0], (0, 4, 3))
+PRESSED = motion([0, 3, 0, -1, 0, 1, 1, 0], (2, 7, 3), delay_s=1)
 
 CASES = [
     taken(
@@ -104,6 +105,10 @@ CASES = [
     refused(
         "too few rounds to settle", put(HOLD, {"loop.delay_s": 2, "repeats.times": 1}), "has not settled"
     ),
+    # a sample late: to −1 under the force before the round, 6 of the 3, then 2, 2; from 1 under 2 in each;
+    # 4 b in each round, 18 b before them
+    taken("a first round with a larger force", 1, PRESSED),
+    refused("every round as the first", put(PRESSED, {"energy_J": 9}), "the energy is 1 J", 1),
     refused("nothing comes out", put(THERE, {"loop.damping_N_s_per_m": 1}), "none comes out", 0),
     refused(
         "nothing comes out of a round, but of what follows",
@@ -216,6 +221,20 @@ CASES = [
         put(law(THERE, resets=True, **RELAXING), {"energy_J": "15.0000001"}),
         "the energy is",
     ),
+    # a sample late: at 1, 1, 1 the averages 0, ½, ¾, the forces 6, 4, 3, and the last takes it back: 3 − 2 b
+    taken(
+        "relaxing, a sample late",
+        3 * (3 - 1) - Fraction(48, 2**80),
+        law(motion([0, 0, 1, 1, 1, 1, 0], (0, 6, 3), delay_s=1), resets=True, **RELAXING),
+    ),
+    # at 1 the reading two samples ago is −1, in later rounds 1: 3 · 3/2, 1 · 3/2, 1 · 3/2, less 9/2 b in each
+    taken(
+        "at rest within a count, remembered for two samples",
+        "51/8",
+        motion(["-1/2", 1, "-1/2"], (0, 2, 3), {"taps_N_per_m": [2, 0, -1]}, damping_N_s_per_m="1/12"),
+    ),
+    refused("resets of a law that does not relax", law(THERE, resets=True), "only a law that relaxes"),
+    refused("no resets of a law that does not relax", law(THERE, resets=False), "only a law that relaxes"),
     refused("a step of 0", law(THERE, force_step_N=0), "force_step_N must be > 0"),
     refused("a step below 0", law(THERE, force_step_N=-1), "force_step_N must be > 0"),
     refused(
@@ -344,10 +363,26 @@ CASES = [
         curved([0, 1], [2, "1/2"], models=[[0, "1/1000"]]),
         "not below the friction curve",
     ),
+    refused(
+        "a friction curve without models",
+        without(curved([0, 1], [1, 1]), "loop.friction_models_N_N_s_per_m"),
+        "friction_models is missing",
+    ),
+    refused(
+        "models without a friction curve",
+        put(THERE, {"loop.friction_models_N_N_s_per_m": [[0, 0]]}),
+        "friction_models is of no use here",
+    ),
     refused("no models", curved([0, 1], [1, 1], models=[]), "must have 1 to 10001 entries"),
     refused("a model below 0", curved([0, 1], [1, 1], models=[[-1, 0]]), "of a model are ≥ 0"),
     # where it begins, and the rounds
     refused("it begins inside", motion([1, 2, 1], (0, 2, 3)), "begin at rest"),
+    # 3 rounds of 4 − 2 − 2 b, and 2 − b on the way out
+    refused(
+        "it begins inside and ends outside",
+        put(motion([1, 2, 1, 0], (0, 2, 3)), {"energy_J": "9/2"}),
+        "begin at rest",
+    ),
     refused(
         "it begins inside, where there is no force",
         law(motion([1, 2, 1], (0, 2, 3)), taps_N_per_m=[], points_m_N=[[1, 0], [2, 4]]),

@@ -56,6 +56,8 @@ CASES = [
             ("quantized", BY_NORM),
             ("contact", (DAMPED, SOFTER)),
             ("one denominator, scaled", (EIGHT, spring(4, [12], [2]))),
+            ("one denominator, scaled first", (spring(4, [12], [2]), EIGHT)),
+            ("one denominator, below 0 first", (spring(4, [-12], [-2]), EIGHT)),
             ("one alone", (EIGHT,)),
         )
     ),
@@ -69,6 +71,7 @@ CASES = [
             ("another delay", (spring(9), spring(9, [3], delay_s="1/10"))),
             ("a surface and none", (PLAIN, put(LESS, {"loop.unilateral": False}))),
             ("another denominator", (FILTER, QUARTER)),
+            ("another denominator, in the other order", (QUARTER, FILTER)),
             ("a longer denominator", (EIGHT, spring(4, [6, 0], [1, 0]))),
             ("a shorter denominator", (spring(4, [6, 0], [1, 0]), EIGHT)),
             ("another weight", (DAMPED, OTHER_WEIGHTS)),

@@ -11,6 +11,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import zwidth
+
 from . import Case, plain
 
 HERE = Path(__file__).parent
@@ -81,6 +83,16 @@ def shown() -> list[str]:
     return lines
 
 
+def schemas_are_those_that_are_shipped() -> str:
+    """Of every kind, and of corners, to the byte."""
+    schema = import_module("zwidth.checker.schema")
+    for kind in (*import_module("zwidth.checker.kinds").KINDS, "corners"):
+        file = Path(zwidth.__file__).with_name("checker") / "schemas" / f"{kind.replace(' ', '-')}.json"
+        if schema.text_of(kind).encode() != file.read_bytes():
+            return f"the schema of {kind}"
+    return ""
+
+
 def differs(name: str, lines: list[str]) -> str:
     """The first line that is not as in the file."""
     told = (HERE / name).read_text(encoding="utf-8").splitlines()
@@ -90,6 +102,7 @@ def differs(name: str, lines: list[str]) -> str:
 
 CASES = [
     Case("entries", lambda: differs("declared.txt", declared()), ""),
+    Case("schemas are those that are shipped", schemas_are_those_that_are_shipped, ""),
     Case("rows", lambda: differs("shown.txt", shown()), ""),
 ]
 

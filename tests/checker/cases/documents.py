@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import accepted, put, refused
+from .linear import SPRING as LINEAR
 from .spring import spring
 
 SPRING = spring(4)
@@ -51,6 +52,16 @@ CASES = [
     accepted("b has many digits", spring("4." + "0" * 19_998)),
     refused("b has too many digits", spring("4." + "0" * 19_999), "too many digits"),
     refused("N is a text", put(SPRING, {"loop.numerator": "8"}), "numerator must be a list"),
+    refused(
+        "a word where an object is to say of which sort it is",
+        put(LINEAR, {"proof.stability": "kind"}),
+        "stability must be an object with kind",
+    ),
+    refused(
+        "a list where an object is to say of which sort it is",
+        put(LINEAR, {"proof.stability": ["kind"]}),
+        "stability must be an object with kind",
+    ),
     refused("N is a number", put(SPRING, {"loop.numerator": 8}), "numerator must be a list"),
     refused(
         "N is too long", put(SPRING, {"loop.numerator": [0] * 2001}), "numerator must have 1 to 2000 entries"

@@ -46,6 +46,8 @@ DAMPER = linear(2, AT_MINUS_ONE, [3, -1], [1, 0])  # K = 2, B = 1
 SQUARE = linear("5/2", signs(square=[0, 1]), [3, 1, -1], [1, 0, 0])
 FILTER = linear(3, AT_ONE, [1, 0], [1, "-1/2"])
 PARTLY = linear("15/16", AT_ONE, [1], delay_s="3/8")
+# 1/(1 − ζ²/2): 2b (9/4 − 2c²) − 3/2 − c is (1 − c)(21 + 20c) with b = 5
+TWO_POLES = linear(5, signs([21, 20], at_one=1), [1, 0, 0], [1, 0, "-1/2"])
 UNSTABLE = linear("1/2", signs([8, -4]), [-1, 0], [1, -2])
 ON_CIRCLE = linear("1/2", NOTHING, [-1, 1], [1, 1], closed())
 LESS = -TINY
@@ -71,6 +73,7 @@ CASES = [
     *edge("a damper: 1 + c", DAMPER, put(DAMPER, {"loop.damping_N_s_per_m": 2 + LESS}), WRONG),
     *edge("c²", SQUARE, put(SQUARE, {"loop.damping_N_s_per_m": "2.4999999999"}), WRONG),
     *edge("a filter: 1 − c", FILTER, put(FILTER, {"loop.damping_N_s_per_m": 3 + LESS}), WRONG),
+    *edge("two poles", TWO_POLES, put(TWO_POLES, {"loop.damping_N_s_per_m": 5 + LESS}), WRONG),
     *edge("α = 3/8: 1 − c", PARTLY, put(PARTLY, {"loop.damping_N_s_per_m": Fraction(15, 16) + LESS}), WRONG),
     accepted(
         "T = ½ takes half the damping",

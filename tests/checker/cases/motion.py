@@ -103,6 +103,13 @@ def written_out(x: Any, parts: Any) -> Any:
 COARSE = motion([0, 3, 0], 2, resolution_m=3, **FREE)
 """Half a count of its spring is 2 · 3²/8; 18 − 18 b comes out."""
 
+HALF_A_COUNT = repeated(
+    motion([0, 2, 2, 3, -1], 0, [1, 0, 0], [2, 0, -1], resolution_m=2, damping_N_s_per_m=0, **FREE), (1, 3, 2)
+)
+"""1/(2 − ζ²), Δ = 2, each round 1 further.  The readings are 0, 2, 2, 2, 2, 4, the forces 0, 1, 1, 3/2,
+3/2, 11/4: in the first round all of them grow by 1, in the second they do not.  4 · 11/4 − 1 − 3/2 comes out.
+"""
+
 CASES = [
     Case("rounds are what they are one by one", rounds_are_what_they_are_one_by_one, ""),
     refused(
@@ -335,6 +342,16 @@ CASES = [
         repeated(motion([0, -1, -2, -1], 4, [0, 0, 1], [1, 0, 0], damping_N_s_per_m=0, **FREE), (1, 3, 5)),
     ),
     taken(
+        "a force that is late to the first round, and pushes",
+        5,
+        repeated(motion([0, -1, 0, 1, 0], 5, [1], damping_N_s_per_m=0, delay_s=1, **FREE), (0, 4, 3)),
+    ),
+    taken(
+        "a memory that is late to the first round, and grows",
+        4,
+        repeated(motion([0, 1, 2, 1], 4, [0, 0, 1], [1, 0, 0], damping_N_s_per_m=0, **FREE), (1, 3, 5)),
+    ),
+    taken(
         "rounds inwards that begin outside",
         18,
         repeated(motion([0, 1, 2, 2, -1, 2, 3, 3], 18, [1], damping_N_s_per_m=0), (3, 7, 4)),
@@ -372,6 +389,20 @@ CASES = [
         54,
         repeated(motion([0, 1, 3, 4, -6], 54, [1], [1], damping_N_s_per_m=0, delay_s=1, **FREE), (2, 3, 6)),
     ),
+    # 5 rounds of 2 − 2 b, and then from 0 to −1 under the force 2 of the last 1: 2 − b
+    taken(
+        "a late force is left over after rounds that return",
+        "13/2",
+        repeated(motion([0, 0, 1, 1, 0, -1], 0, delay_s=1, **FREE), (0, 4, 5)),
+    ),
+    # 1/(1 − ζ): the forces 0, 1, 3, 6, 10, 15; 15 · 2 − 20 − b (5 + 4)
+    taken(
+        "rounds that go on, of a law that sums up",
+        "11/2",
+        repeated(motion([0, 1, 2, 0], 0, [1, 0], [1, -1], **FREE), (0, 1, 4)),
+    ),
+    taken("rounds of half a count", "17/2", HALF_A_COUNT),
+    refused("the second round as the first", put(HALF_A_COUNT, {"energy_J": 9}), "the energy is 8.5 J"),
     taken(
         "from rest within the first count",
         1,

@@ -72,6 +72,8 @@ def numbers_are_read_and_told() -> str:
         return "rounded to the wrong side"
     if number.common_scale([Fraction(1, 6), Fraction(3, 4)]) != 12:
         return "no common scale"
+    if number.common_scale([Fraction(1, 3), Fraction(2)]) != 3 or number.common_scale([Fraction(5)]) != 1:
+        return "a common scale larger than need be"
     large = 1 << 70
     if refuses(number.common_scale, [Fraction(1, large), Fraction(large)], 100) or not (
         refuses(number.common_scale, [Fraction(1, large), Fraction(1, large + 1)], 100)
@@ -91,6 +93,11 @@ def polynomials_are_multiplied() -> str:
     return "" if polynomial.add([1, 2], [3]) == [4, 2] == polynomial.add([3], [1, 2]) else "a sum"
 
 
+def _is_read_by(field: Any, value: Any) -> bool:
+    """True where it is of that sort."""
+    return not refuses(field.read, value, "", "linear")
+
+
 def entries_are_told() -> str:
     """Exact decimals, fractions, intervals, units; the first four entries too many."""
     fields, unit = part("document.fields"), part("document.unit")
@@ -98,6 +105,7 @@ def entries_are_told() -> str:
         (Fraction(1, 10), "0.1"), (Fraction(7, 20), "0.35"), (Fraction(1, 6), "1/6"), (Fraction(3), "3"),
         (Fraction(-1, 3), "-1/3"), (Fraction(1, 3**90), "about 1.14574263767e-43"),
         (Fraction(2**300), "about 2.03703597633e+90"),
+        (Fraction(2**200 - 1, 2**199), f"1.{10**199 - 5**199:0199d}"),
         (Fraction(1, 2**40), "9.094947017729282379150390625e-13"),
     ):  # fmt: skip
         if fields._exactly(value) != told:
@@ -122,6 +130,19 @@ def entries_are_told() -> str:
     except part("document.refusal").Invalid as error:
         if str(error) != "entries that no proof of this kind has: b, c, d, e":
             return str(error)
+    one, two = (
+        fields.Record({"a": fields.Number()}),
+        fields.Record({"a": fields.Number(), "b": fields.Flag()}),
+    )
+    for first, second in ((one, two), (two, one), (fields.numbers(), two), (two, fields.numbers())):
+        either = fields.Either(first, second, lambda value, first=first: _is_read_by(first, value))
+        for value, names in (
+            ({"a": 1}, ["a"]), ({"a": 1, "b": True}, ["a", "b"]), ([1, 2], ["name"]),
+        ):  # fmt: skip
+            if _is_read_by(first, value) or _is_read_by(second, value):
+                rows = either.rows("name", either.read(value, "", "linear"), "linear")
+                if [row.name for row in rows] != names:
+                    return f"{value}, one of two sorts"
     long = fields.numbers()
     if long.text([Fraction(1)] * 12, "linear") != f"[{', '.join('1' * 12)}]" or "…" not in long.text(
         [Fraction(1)] * 13, "linear"
@@ -132,10 +153,14 @@ def entries_are_told() -> str:
     deep: Any = 1
     for _ in range(11):
         deep = {"x": [deep, 1]}
-    shallow: Any = {"x": {"x": {"x": {"x": 1}}}}
+    shallow: Any = 1
+    for _ in range(11):
+        shallow = {"x": shallow}
     return (
         ""
-        if refuses(lambda: list(fields._told(deep))) and list(fields._told(shallow)) == ["x"] * 4
+        if refuses(lambda: list(fields._told(deep)))
+        and refuses(lambda: list(fields._told({"x": shallow})))
+        and list(fields._told(shallow)) == ["x"] * 11
         else "depth"
     )
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import TINY, accepted, edge, loop, put, refused, without
+from . import TINY, Fraction, accepted, edge, loop, put, refused, without
 
 
 def relaxing(
@@ -46,10 +46,12 @@ TWO = relaxing(
     coulomb_friction_N=7,
     resolution_m=1,
 )
+# p = ½ and −½, g = 3 and 3: (10 − 6ζ − ζ²)/(1 − ζ²/4); b ≥ 1 + 3 + 3
+BOTH = relaxing([("1/2", 3), ("-1/2", 3)], [10, -6, -1], [1, 0, "-1/4"])
 LESS, FRICTION, OTHER = "damping is below", "below ‖h‖₁ Δ/2", "is not the law"
 
 
-def damped(name: str, document: Any, needed: int, **changes: Any) -> Any:
+def damped(name: str, document: Any, needed: Any, **changes: Any) -> Any:
     """The damping that is needed, and less."""
     told = put(
         document, {"loop.damping_N_s_per_m": needed, **{k.replace("__", "."): v for k, v in changes.items()}}
@@ -82,6 +84,7 @@ CASES = [
     *damped("late, it takes more", ONE, 8, loop__delay_s="1"),
     *damped("a pole below 0 takes more", SWINGS, 4),
     *damped("a part below 0 takes more", SOFTENS, 4),
+    *damped("beside a pole below 0 a part takes more", BOTH, 7),
     *damped("two parts", TWO, 3),
     *damped("two parts that never pull take more", TWO, 5, law__never_pulls=True),
     *damped("no part", relaxing([], [4], [1]), 1),
@@ -97,6 +100,11 @@ CASES = [
         for case in edge(
             f"friction, {name}", document, put(document, {"loop.coulomb_friction_N": needed - TINY}), FRICTION
         )
+    ),
+    # p = ½, g = ½ and −½: (9/2 − 5ζ/2)/(1 − ζ/2), b ≥ 1 + 1/6; (7/2 − 3ζ/2)/(1 − ζ/2), b ≥ 1 + ½
+    *damped("a small part", relaxing([("1/2", "1/2")], ["9/2", "-5/2"], [1, "-1/2"]), Fraction(7, 6)),
+    *damped(
+        "a small part below 0", relaxing([("1/2", "-1/2")], ["7/2", "-3/2"], [1, "-1/2"]), Fraction(3, 2)
     ),
     # g = 0 is no part that relaxes, and needs nothing
     *damped("a part of 0", relaxing([("1/2", 0)], [4], [1]), 1),

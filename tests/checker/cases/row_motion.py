@@ -53,6 +53,7 @@ CASES = [
     taken("friction", "3/2", put(THERE, {"loop.coulomb_friction_N": "1/4"})),
     taken("T = 2", "9/2", put(THERE, {"loop.sample_period_s": 2})),
     taken("before and after the rounds", 34 - Fraction(9 + 16 + 9, 2), FAR),
+    taken("it ends elsewhere", "5/2", motion([0, 1, 0, -1], [0, 2, 0], (0, 2, 3))),
     refused("nothing comes out", put(THERE, {"loop.damping_N_s_per_m": 1}), "none comes out", 0),
     refused(
         "rounds gain and all does not",

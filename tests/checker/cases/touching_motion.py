@@ -112,6 +112,31 @@ CASES = [
     # at 1 after 3 it pulls with −3: on the way 1 → 0 it takes 3; at 3 it pushes with 9
     taken("it pulls", 8, put(PULLS, {"loop.damping_N_s_per_m": "1/2"})),
     taken("it never pulls", 11, put(PULLS, {"law.never_pulls": True})),
+    *(
+        taken(name, 11, put(PULLS, {"law.never_pulls": True, "loop.numerator": n, "loop.denominator": d}))
+        for name, n, d in (
+            ("it never pulls, N and D below 0", [-3, 2], [-1, 0]),
+            ("it never pulls, N and D three times as large", [9, -6], [3, 0]),
+        )
+    ),
+    taken(
+        "it never pulls, a force of one unit",
+        "1/2",
+        touching([0, 1, 0], 0, (1,), never_pulls=True, damping_N_s_per_m="1/4"),
+    ),
+    # 1/(1 − ζ/2 − ζ²/4): the forces 0, 1, 3/2, 2
+    taken(
+        "a filter of two poles",
+        1,
+        put(
+            FILTER,
+            {
+                "positions_m": [0, 1, 1, 1, 0],
+                "loop.numerator": [1, 0, 0],
+                "loop.denominator": [1, "-1/2", "-1/4"],
+            },
+        ),
+    ),
     refused(
         "the motion of one that never pulls, by one that pulls",
         put(PULLS, {"energy_J": 11}),
