@@ -12,14 +12,15 @@ from fractions import Fraction
 from functools import partial
 from importlib import import_module
 from itertools import accumulate, pairwise, product
-from math import ceil, floor
+from math import ceil
+from random import Random
 from struct import pack
 from typing import Any, NamedTuple
 
 from . import Case, plain, put
 from .rotary import CASES as ROTARY
 from .storage import CASES as STORAGE
-from .storage import STORAGES, packed, unpacked
+from .storage import packed, unpacked
 
 KINDS = ("storage", "coarse storage", "row storage")
 TAKES = "takes out more"
@@ -59,7 +60,7 @@ OTHER_WORDS = {
 """What the twin says where the fast check says something else."""
 FOR_ITS_NUMBERS = "too large to be compared"
 ROUNDED = ("a unit less", "two frictions, sample_period_s")
-"""What the fast check refuses, and the twin need not: it rounds nothing, and may give each triangle a model."""
+"""What the fast check refuses, and the twin need not: it rounds nothing, and each triangle has its model."""
 
 
 def as_the_fast_check(kind: str) -> str:
@@ -106,6 +107,8 @@ class Board(NamedTuple):
     size: int
     conditions: list[Condition]
     at: dict[int, str]
+    kinks: Mapping[str, Sequence[Condition]] = {}
+    """Of the conditions those between two levels of an average, by the level and by what has a kink there."""
 
 
 def lacking(condition: Condition, value: Sequence[int]) -> Fraction:
@@ -166,7 +169,7 @@ def intervals(losses: Any) -> list[tuple[int, Fraction]]:
 def lost(
     model: tuple[Fraction, Fraction], step: Fraction, time: Fraction, bend: Fraction = Fraction(0)
 ) -> Callable[[int], Fraction]:
-    """f_c d + b/t (d² − h²/4) for two steps or more; a force that bends by κ over a step costs κ h²/4 more."""
+    """f_c d + b/t (d² − h²/4) for two steps or more; a force that bends by κ over a step costs κ h²/4."""
     friction, damping = model
 
     def cost(steps: int) -> Fraction:
@@ -203,7 +206,8 @@ def on_counts(told: Any) -> Board:
     levels = levels_of(told, law)
     size = (domain.highest_count - domain.lowest_count + 1) * width * len(levels) * (steps + 1)
     conditions: list[Condition] = []
-    at = {}
+    at: dict[int, str] = {}
+    kinks: dict[str, list[Condition]] = {}
 
     def places(state: tuple[int, ...], j: int, average: Fraction) -> Weights:
         """V at a knot, between two levels."""
@@ -215,7 +219,7 @@ def on_counts(told: Any) -> Board:
         return [(first, 1 - share), (first + steps + 1, share)]
 
     for state, acting in ((state, state[losses.delay] * losses.resolution) for state in states):
-        for average in averages(levels, law, losses, acting, state):
+        for average, kink in averages(levels, law, losses, acting).items():
             here = {state[0] * steps + j: places(state, j, average) for j in range(steps + 1)}
             for x, weights in here.items():
                 at.update({p: f"at {x}, with the readings {', '.join(map(str, state))}," for p, _ in weights})
@@ -239,8 +243,11 @@ def on_counts(told: Any) -> Board:
                 ]
                 for model in losses.models
             ]
-            conditions += conditions_of(here, goal, partial(gains, told_parts, list(goal), joule))
-    return Board(size, conditions, at)
+            found = list(conditions_of(here, goal, partial(gains, told_parts, list(goal), joule)))
+            conditions += found
+            if kink:
+                kinks.setdefault(kink, []).extend(found)
+    return Board(size, conditions, at, kinks)
 
 
 def gains(models: Any, between: Sequence[int], joule: Fraction, x: int, p: int) -> list[Fraction] | None:
@@ -262,22 +269,21 @@ def levels_of(told: Any, law: Any) -> list[Fraction]:
     ]
 
 
-def averages(
-    levels: Sequence[Fraction], law: Any, losses: Any, acting: Fraction, state: tuple[int, ...]
-) -> list[Fraction]:
-    """All levels, and between two of them where the next average is a level, or the force changes its sign."""
-    found = set(levels)
+def averages(levels: Sequence[Fraction], law: Any, losses: Any, acting: Fraction) -> dict[Fraction, str]:
+    """All levels, and places between where the next average is a level, or the force changes its sign."""
+    found = dict.fromkeys(levels, "")
     free = law._replace(clamped=False)
-    for low, high in pairwise(levels):
+    for i, (low, high) in enumerate(pairwise(levels)):
         ends = [law.averaged(a * losses.resolution, acting) / losses.resolution for a in (low, high)]
         forces = [free.force([acting], a * losses.resolution) for a in (low, high)]
-        crossed = [(*ends, level) for level in levels]
+        crossed = [(*ends, level, "the next average is a level") for level in levels]
         if law.clamped:
-            crossed.append((*forces, Fraction(0)))
-        for first, last, wanted in crossed:
+            crossed.append((*forces, Fraction(0), "the force changes its sign"))
+        for first, last, wanted, what in crossed:
             if min(first, last) < wanted < max(first, last):
-                found.add(low + (wanted - first) / (last - first) * (high - low))
-    return sorted(found)
+                at = low + (wanted - first) / (last - first) * (high - low)
+                found.setdefault(at, f"{what}, past level {i}")
+    return found
 
 
 def on_cells(told: Any) -> Board:
@@ -355,20 +361,22 @@ def in_a_table(told: Any) -> Board:
 SEARCHES = dict(zip(KINDS, (on_counts, on_cells, in_a_table), strict=True))
 
 
-def raised(board: Board) -> list[int] | None:
-    """From 0 until all holds; nothing if it never does."""
-    value = [0] * board.size
+def raised(conditions: Sequence[Condition], least: Sequence[int]) -> list[int] | None:
+    """From the least values until all holds; nothing if it never does."""
+    value = list(least)
     for _ in range(ROUNDS):
         still = True
-        for condition in board.conditions:
+        for condition in conditions:
             if lacking(condition, value) <= 0:
                 continue
             still = False
             way = min(condition, key=lambda way: max(bound.lacks(value) for bound in way))
             for bound in way:
-                short = ceil(bound.lacks(value))
-                for place, _ in bound.here if short > 0 else ():
-                    value[place] += short
+                short = bound.lacks(value)
+                if short > 0:
+                    then = dict(bound.then)
+                    helps, place = max((weight - then.get(place, 0), place) for place, weight in bound.here)
+                    value[place] += ceil(short / helps)
         if still:
             return value
     return None
@@ -447,7 +455,7 @@ def table(device: Any, steps: int, move: Any = 1, force: float = 0.28125) -> Any
     forces = [-0.0, -0.0625, force, 0.125]
     told = {
         "states": 4,
-        "starts": [3],
+        "starts": [0, 1, 2, 3],
         "counts": packed([-1, 0, 1, 1]),
         "successors": packed([-1, 0, 1, 0, 1, 2, 1, 3, -1, 1, 3, -1]),
         "forces": packed([int.from_bytes(pack("<d", f), "little", signed=True) for f in forces]),
@@ -461,6 +469,8 @@ ONE, TWO, THREE = ("7/3",), ("7/3", "-4/5"), ("1", "-2/3", "2/9")
 NEITHER, FED = {"surface": "none"}, {"surface": "penetration"}
 CLAMPED = {"clamped": True}
 BRANCH = relaxing("1/3", "5/3")
+
+HIGH = 3_000_000
 
 # with little more friction than there must be for a storage function
 BOARDS = {
@@ -502,7 +512,7 @@ BOARDS = {
     "a law that relaxes slowly": counts(friction("2/5"), -1, 1, 1, ONE, **relaxing("4/5", "5/3")),
     "a law that relaxes, clamped": counts(friction("9/40"), -1, 1, 2, ONE, **BRANCH, **CLAMPED),
     "a law that relaxes slowly, clamped": counts(
-        friction("9/20"), 0, 2, 1, ["1"], **relaxing("2/3", 4), **CLAMPED, **FED
+        friction("1/2"), 0, 2, 1, [1], **relaxing("3/4", 3, levels=2), **CLAMPED, **FED
     ),
     "a law that relaxes, fed with the penetration": counts(
         friction("7/20"), 0, 2, 1, ONE, **relaxing("1/3", "5/3", levels=2), **FED
@@ -515,7 +525,7 @@ BOARDS = {
     ),
     "a law that begins anew": counts(friction("3/8"), -1, 2, 1, ONE, **relaxing("1/2", "5/3", resets=True)),
     "a law that begins anew, fed with the penetration": counts(
-        friction("13/20"), 0, 2, 1, ONE, **relaxing("3/4", "5/3", resets=True, levels=3), **CLAMPED, **FED
+        friction("13/20"), 0, 2, 1, ONE, **relaxing("3/4", "5/3", resets=True, levels=2), **CLAMPED, **FED
     ),
     "a law that relaxes on both sides": counts(
         friction("9/20"), -1, 1, 1, ONE, **relaxing("2/5", "5/3", levels=2), **NEITHER
@@ -526,12 +536,16 @@ BOARDS = {
 }
 
 
-def refused_with_a_unit_less(name: str) -> str:
-    """Accepted as it is; with a unit less at a place, refused if and only if a move then takes out more."""
-    document = plain(BOARDS[name])
+def refused_with_a_unit_less(name: str, highest: int = 0) -> str:
+    """Accepted as it is; with a unit less at a place, refused if and only if a move then takes out more.
+
+    The values are raised from 0, or from random ones, and then more is stored at some places than need be.
+    """
+    document, random = plain(BOARDS[name]), Random(name)
     told = told_by(document)
     board = SEARCHES[told.kind](told)
-    value = raised(board)
+    least = [random.choice((0, highest and random.randrange(highest))) for _ in range(board.size)]
+    value = raised(board.conditions, least)
     if value is None:
         return "there is no such function"
     valid, words = plainly({**document, "storage": packed(value)})
@@ -543,7 +557,7 @@ def refused_with_a_unit_less(name: str) -> str:
             of_place.setdefault(place, []).append(condition)
     places = [place for place in board.at if value[place] > 0]
     tight = 0
-    for place in places[:: ceil(Fraction(len(places), LOWERED))]:
+    for place in places[:: max(1, len(places) // LOWERED)]:
         less = [v - (k == place) for k, v in enumerate(value)]
         short = any(lacking(condition, less) > 0 for condition in of_place[place])
         valid, words = plainly({**document, "storage": packed(less)})
@@ -552,6 +566,79 @@ def refused_with_a_unit_less(name: str) -> str:
             return f"a unit less at {place}, {board.at[place]}: {valid}, {words}"
         tight += short
     return "" if tight else "nothing is tight"
+
+
+BETWEEN = {
+    "a law that relaxes slowly, clamped": {
+        "the force changes its sign, past level 2": (
+            "0 0 0 0 0 0 0 0 0 0 0 1575001 0 787501 0 1 0 1 0 1 2100001 4200002 1050001 4200002 1 4200002 "
+            "1 3266668 1 0"
+        ),
+        "the next average is a level, past level 0": (
+            "0 1 0 1 0 1 0 1 0 1 1 3500002 1 2100001 1 1 1 1 1 1 2100002 9800004 1050002 9800004 1 1 1 0 1 0"
+        ),
+        "the next average is a level, past level 2": (
+            "0 0 0 0 0 0 0 525001 0 2100001 0 1575001 0 1050001 0 1050001 2100001 1050001 2100001 1050001 "
+            "2100001 3150002 1050001 2100002 1050001 1050001 1050001 1 1050001 0"
+        ),
+        "the next average is a level, past level 3": (
+            "2 3500003 2 3500003 2 3500003 12600005 4112503 12600005 9100004 3500003 7000004 3500003 "
+            "7000004 3500003 7000004 5950003 7000004 9100004 7000004 7000004 9100005 7000004 8050005 "
+            "7000004 7000004 7000004 5950005 7000004 4900004"
+        ),
+    },
+    "a law that begins anew, fed with the penetration": {
+        "the next average is a level, past level 0": (
+            "2 4550003 9177782 4550003 2 4550003 2 4550003 2 4550003 4550003 5308337 4550003 4870837 "
+            "4550003 4433337 4550003 4433337 4550003 4433337 5600004 6066671 5016670 5045838 4433337 "
+            "4316671 4433337 3733337 4433337 3150004"
+        ),
+        "the next average is a level, past level 2": (
+            "0 0 0 0 0 0 0 0 0 0 0 758334 0 466667 0 466667 1166667 466667 1166667 466667 1050001 1516668 "
+            "466667 933334 466667 350001 466667 0 466667 0"
+        ),
+        "the next average is a level, past level 3": (
+            "4 4550005 4 4550005 4 4550005 17474082 4550005 4 4550005 4550005 9100006 4550005 9100006 "
+            "4550005 9100006 9605561 9100006 9605561 9100006 9100006 10150007 9100006 9566673 9100006 "
+            "8983340 9100006 8400007 9100006 7816673"
+        ),
+    },
+    "a law that relaxes on both sides": {
+        "the next average is a level, past level 1": (
+            "0 1225494 292161 1225494 875494 1225494 1458828 1789219 20000000 20000000 1225494 1614710 "
+            "1225494 1565689 1225494 1516668 1450984 1516668 1676474 1516668 20000000 20000000 1639220 "
+            "3500002 1516668 2916669 1516668 3645835 1516668 1"
+        ),
+        "the next average is a level, past level 2": (
+            "1 1516668 3645835 1516668 2916669 1516668 3500002 1639220 20000000 20000000 1516668 1676474 "
+            "1516668 1450984 1516668 1225494 1565689 1225494 1614710 1225494 20000000 20000000 1789219 "
+            "1458828 1225494 875494 1225494 292161 1225494 0"
+        ),
+    },
+}
+"""Values found by a linear program: they fail most at one of the kinks, and nowhere else.
+
+A line between two levels is above the function there where it is concave: where the next average passes a
+level, or where the force of a clamped law becomes 0 for a hand that moves inwards."""
+
+
+def refused_for_what_is_between_two_levels(name: str) -> str:
+    """All holds but at kinks of one sort between two levels, where a move takes out more."""
+    document = plain(BOARDS[name])
+    told = told_by(document)
+    board = SEARCHES[told.kind](told)
+    for kink, values in BETWEEN[name].items():
+        value = [int(v) for v in values.split()]
+        left_out = set(map(id, board.kinks[kink]))
+        for condition in board.conditions:
+            if id(condition) not in left_out and lacking(condition, value) > 0:
+                return f"{kink}: more is wrong"
+        if all(lacking(condition, value) <= 0 for condition in board.kinks[kink]):
+            return f"{kink}: nothing is wrong"
+        valid, words = plainly({**document, "storage": packed(value)})
+        if valid or TAKES not in words:
+            return f"{kink}: {words}"
+    return ""
 
 
 # --- what is refused before any move is tried -----------------------------------------------------
@@ -612,7 +699,7 @@ AT_THEIR_EDGE = (
     "cells, a sample late",
     "cells of a damped wall, half a sample late",
 )
-"""The lowest reading is 1 − (m + 1) r, with m readings remembered and moves of up to r; of cells −(m + 1) r."""
+"""They begin at 1 − (m + 1) r, with m readings remembered and moves of up to r; cells at −(m + 1) r."""
 
 
 def nearer(document: Any) -> Any:
@@ -622,6 +709,11 @@ def nearer(document: Any) -> Any:
 
 
 REFUSED = [
+    (
+        "laws in a row that begin in a state of the table and in another",
+        put(BOARDS["laws in a row"], {"table.starts": [0, 4]}),
+        "not in the table",
+    ),
     *((f"{name}, one reading less", nearer(BOARDS[name]), FORGOTTEN) for name in AT_THEIR_EDGE),
     (
         "cells of both sides, the one a tenth of a count too short",
@@ -685,6 +777,15 @@ def accepted_where_nothing_moves_far() -> str:
 CASES = [
     *(Case(f"{kind}, as the fast check", partial(as_the_fast_check, kind), "") for kind in KINDS),
     *(Case(name, partial(refused_with_a_unit_less, name), "") for name in BOARDS),
+    *(
+        Case(f"{name}, with more stored here and there", partial(refused_with_a_unit_less, name, HIGH), "")
+        for name, told in BOARDS.items()
+        if "relaxing" in told["law"]
+    ),
+    *(
+        Case(f"{name}, between two levels", partial(refused_for_what_is_between_two_levels, name), "")
+        for name in BETWEEN
+    ),
     *(
         Case(check.__name__.replace("_", " "), check, "")
         for check in (moves_are_counted, refused_before_any_move, accepted_where_nothing_moves_far)
