@@ -55,7 +55,7 @@ def plainly(document: Any) -> tuple[bool, str]:
 
 OTHER_WORDS = {
     "from state 0 a move": TAKES,
-    "is empty": "",
+    "is empty": "a state of the table is not on the board",
 }
 """What the twin says where the fast check says something else."""
 FOR_ITS_NUMBERS = "too large to be compared"
@@ -72,8 +72,8 @@ def as_the_fast_check(kind: str) -> str:
         if any(words in case.name for words in ROUNDED):
             continue
         valid, words = plainly(document)
-        phrase = OTHER_WORDS.get(case.refusal, case.refusal) or case.words
-        if valid is bool(case.refusal) or phrase not in words:
+        phrase = case.refusal or case.words
+        if valid is bool(case.refusal) or not (phrase in words or OTHER_WORDS.get(phrase, phrase) in words):
             return f"{case.name}: {valid}, {words}"
     return ""
 
@@ -388,7 +388,7 @@ def raised(conditions: Sequence[Condition], least: Sequence[int]) -> list[int] |
 
 UNIT = Fraction(1, 7_000_003)
 PERIOD = {"sample_period_s": "1/4"}
-DEVICE = {"damping_N_s_per_m": "1/2", "resolution_m": "1/10", "delay_s": 0, **PERIOD}
+DEVICE = {"damping_N_s_per_m": "1/20", "resolution_m": "1/10", "delay_s": 0, **PERIOD}
 POINTS = [["-1/5", "-1/3"], ["1/20", "1/30"], ["1/7", "1/9"], ["2/7", "2/3"]]
 CURVE = {
     "friction_curve_m_per_s_N": [[0, "3/10"], ["1/4", "1/4"], ["1/2", "2/5"], [1, "9/10"], [2, 2]],
@@ -397,7 +397,6 @@ CURVE = {
     "delay_s": 0,
     **PERIOD,
 }
-LITTLE = {**DEVICE, "damping_N_s_per_m": "1/20"}
 ONE_MODEL = {**CURVE, "friction_models_N_N_s_per_m": [["1/5", "1/5"]]}
 
 
@@ -453,10 +452,15 @@ def cells(
     return stored("coarse storage", device, told, domain)
 
 
-def table(device: Any, steps: int, move: Any = 1, force: float = 0.28125, side: int = 1) -> Any:
+LEADS = ((-1, 0, 1), (0, 1, 2), (1, 3, -1), (1, 3, -1))
+"""From each state, for the readings one lower, the same and one higher."""
+
+
+def table(
+    device: Any, steps: int, move: Any = 1, force: float = 0.28125, side: int = 1, leads: Any = LEADS
+) -> Any:
     """Readings −1, 0, 1, and 1 again, where the force has fallen; of the other side they are 1, 0, −1, −1."""
     forces = [side * f for f in (0.0, -0.0625, force, 0.125)]
-    leads = ([-1, 0, 1], [0, 1, 2], [1, 3, -1], [1, 3, -1])
     told = {
         "states": 4,
         "starts": [0, 1, 2, 3],
@@ -469,6 +473,23 @@ def table(device: Any, steps: int, move: Any = 1, force: float = 0.28125, side: 
     return {**stored("row storage", device, law, domain), "table": told}
 
 
+def listed_backwards(document: Any) -> Any:
+    """The same states, the last one first."""
+    told = document["table"]
+    flat = unpacked(told["successors"])
+    rows = [flat[i : i + 3] for i in range(0, len(flat), 3)]
+    return put(
+        document,
+        {
+            "table.counts": packed(unpacked(told["counts"])[::-1]),
+            "table.forces": packed(unpacked(told["forces"])[::-1]),
+            "table.successors": packed(
+                [3 - then if then >= 0 else then for row in rows[::-1] for then in row]
+            ),
+        },
+    )
+
+
 ONE, TWO, THREE = ("7/3",), ("7/3", "-4/5"), ("1", "-2/3", "2/9")
 NEITHER, FED = {"surface": "none"}, {"surface": "penetration"}
 CLAMPED = {"clamped": True}
@@ -478,28 +499,26 @@ HIGH = 3_000_000
 
 # with little more friction than there must be for a storage function
 BOARDS = {
-    "a spring": counts(friction("1/8"), 0, 2, 2, ONE),
-    "a spring, of long moves": counts(friction("1/8"), -1, 2, 3, ONE, "3/2"),
-    "a spring on both sides": counts(friction("1/8"), -2, 1, 2, ONE, **NEITHER),
+    "a spring": counts(friction("9/40"), 0, 2, 2, ONE),
+    "a spring, of long moves": counts(friction("9/40"), -1, 2, 3, ONE, "3/2"),
+    "a spring on both sides": counts(friction("9/40"), -2, 1, 2, ONE, **NEITHER),
     "a damped wall": counts(friction("7/40"), -1, 2, 2, TWO),
     "a damped wall fed with the penetration": counts(friction("7/40"), -1, 2, 2, TWO, **FED),
     "a damped wall, clamped": counts(friction("3/20"), -1, 2, 2, ("7/3", -2), **CLAMPED),
     "a law of three readings": counts(friction("3/40"), -2, 1, 1, THREE),
     "a damped wall of long moves": counts(friction("7/40"), -3, 1, 1, TWO, 2),
     "a force limit": counts(friction("1/8"), -1, 2, 1, TWO, force_limit_N="1/5"),
-    "a converter": counts(friction("3/20"), 0, 2, 2, ONE, force_step_N="1/7"),
-    "points": counts(friction("7/40"), -2, 3, 2, (), points_m_N=POINTS, **NEITHER),
+    "a converter": counts(friction("1/5"), 0, 2, 2, ONE, force_step_N="1/7"),
+    "points": counts(friction("3/10"), -2, 3, 2, (), points_m_N=POINTS, **NEITHER),
     "points inside a surface, that grow": counts(
-        friction("7/40"), -1, 2, 2, (), points_m_N=POINTS, rate_per_m="9/5"
+        friction("1/5"), -1, 2, 2, (), points_m_N=POINTS, rate_per_m="9/5"
     ),
     "a sample late": counts(friction("1/8", "1/4"), -1, 1, 2, ONE),
     "a damped wall, two samples late": counts(friction("1/8", "1/2"), -3, 1, 1, (2, -1)),
     "a third of a sample late": counts(friction("1/8", "1/12"), -1, 1, 2, ONE),
     "a damped wall, three quarters of a sample late": counts(friction("1/8", "3/16"), -2, 1, 1, TWO),
     "a sample and a third late": counts(friction("3/40", "1/3"), -2, 1, 2, ["1"], "4/5"),
-    "a third of a sample late, of short moves": counts(
-        {**LITTLE, "coulomb_friction_N": "1/8", "delay_s": "1/12"}, -1, 1, 3, ONE, "2/3"
-    ),
+    "a third of a sample late, of short moves": counts(friction("1/8", "1/12"), -1, 1, 3, ONE, "2/3"),
     "two frictions": counts(CURVE, -1, 1, 3, (4,), 2),
     "two frictions, clamped": counts(CURVE, -1, 1, 2, (4, "-4/5"), **CLAMPED),
     "a curve of one model": counts(ONE_MODEL, -1, 1, 2, ONE, 2),
@@ -507,16 +526,18 @@ BOARDS = {
     "cells fed with the penetration": cells(friction("3/4"), -2, 2, TWO, remembered=1, **FED),
     "cells of a damped wall": cells(friction("3/4"), -2, 2, TWO, remembered=1),
     "cells of a law that falls": cells(friction("3/4"), -2, 2, (1, -2), remembered=1),
-    "cells of a law that falls, with little damping": cells(
-        {**LITTLE, "coulomb_friction_N": "7/10"}, -4, 2, (1, -2), 2, remembered=1
-    ),
+    "cells of a law that falls, of long moves": cells(friction("7/10"), -4, 2, (1, -2), 2, remembered=1),
     "cells of both sides": cells(friction("27/40"), -3, 2, ONE, 2, **NEITHER),
-    "cells of both sides, the one a count longer": cells(friction("1/2"), -3, 2, ONE, 4, each=1, **NEITHER),
+    "cells of both sides, the one a count longer": cells(friction("21/40"), -3, 2, ONE, 4, each=1, **NEITHER),
     "cells, a sample late": cells(friction("9/10", "1/4"), -2, 2, ONE, remembered=1),
     "cells, a third of a sample late": cells(friction("9/10", "1/12"), -2, 2, ONE, remembered=1),
+    "cells, three quarters of a sample late": cells(
+        friction("9/10", "3/16"), -3, 2, ONE, "3/2", remembered=1
+    ),
     "cells of a damped wall, half a sample late": cells(friction("3/4", "1/8"), -3, 1, TWO, remembered=2),
     "laws in a row": table(friction("7/40"), 2),
     "laws in a row, of short moves": table(friction("7/40"), 3, "2/3"),
+    "laws in a row, the last listed first": listed_backwards(table(friction("7/40"), 2)),
     "laws in a row, two frictions": table(CURVE, 2),
     "laws in a row, two frictions, of the other side": table(CURVE, 2, side=-1),
     "a law that relaxes": counts(friction("1/4"), -1, 1, 1, ONE, **BRANCH),
@@ -743,6 +764,14 @@ def nearer(document: Any) -> Any:
 
 
 REFUSED = [
+    *(
+        (
+            f"laws in a row, where a reading off the board leads to {then}",
+            table(friction("7/40"), 2, leads=((then, 0, 1), *LEADS[1:])),
+            "is not closed",
+        )
+        for then in (-2, -3, 0)
+    ),
     (
         "laws in a row that begin in a state of the table and in another",
         put(BOARDS["laws in a row"], {"table.starts": [0, 4]}),
