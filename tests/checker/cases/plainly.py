@@ -56,6 +56,8 @@ def plainly(document: Any) -> tuple[bool, str]:
 OTHER_WORDS = {
     "from state 0 a move": TAKES,
     "is empty": "a state of the table is not on the board",
+    "must hold 0": "the average leaves the board",
+    "too many numbers": "without numpy and numba at most",
 }
 """What the twin says where the fast check says something else."""
 FOR_ITS_NUMBERS = "too large to be compared"
