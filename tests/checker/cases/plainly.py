@@ -25,8 +25,8 @@ from .storage import packed, unpacked
 KINDS = ("storage", "coarse storage", "row storage")
 TAKES = "takes out more"
 ROUNDS = 200
-LOWERED = 15
-"""Places of each board that are lowered at most."""
+LOWERED = 2000
+"""Values looked at again, about, on each board: the larger it is the fewer places are lowered."""
 
 
 def checker(name: str) -> Any:
@@ -596,7 +596,7 @@ def refused_with_a_unit_less(name: str, highest: int = 0) -> str:
             of_place.setdefault(place, []).append(condition)
     places = [place for place in board.at if value[place] > 0]
     tight = 0
-    for place in places[:: max(1, len(places) // LOWERED)]:
+    for place in places[:: max(1, len(places) * board.size // LOWERED)]:
         less = [v - (k == place) for k, v in enumerate(value)]
         short = any(lacking(condition, less) > 0 for condition in of_place[place])
         valid, words = plainly({**document, "storage": packed(less)})
