@@ -11,7 +11,7 @@ import base64
 import zlib
 from collections.abc import Mapping
 from fractions import Fraction
-from math import ceil
+from math import ceil, isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -200,8 +200,8 @@ def _same_motion(
     part = document["repeats"]
     ends = {int(part["first"]): b"", int(part["last"]): b""}
     for k, (n, force) in enumerate(zip(counts, [*document[held], None], strict=True)):
-        given = Fraction(run.force(n))
-        if force is not None and given != Fraction(str(force)):
+        given = run.force(n)
+        if force is not None and not (isfinite(given) and Fraction(given) == Fraction(str(force))):
             return False
         if k in ends:
             ends[k] = run.memory
