@@ -39,7 +39,8 @@ _LAW = {
     "rounded power": "K uⁿ is rounded to {digits} digits, as no decimal writes it",
     "table": (
         "the law is a table of its states and forces, as the simulator's compiled law gives them in doubles; "
-        "the checker takes the table as it stands, zwidth verify steps the law again and compares"
+        "the checker takes the table as it stands; zwidth verify steps the law again where a file has its "
+        "parameters"
     ),
     "doubles": "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
     "covered by a wall": "the laws add no more than the virtual damping of a wall, and that wall is proved",

@@ -63,14 +63,15 @@ def parsed(text: str, name: str = "specification") -> Specification:
 
 
 def _lines(values: Mapping[str, object]) -> Iterator[str]:
-    return (f"{key} = {_toml(value)}" for key, value in values.items())
+    return (f"{key} = {toml(value)}" for key, value in values.items())
 
 
-def _toml(value: object) -> str:
+def toml(value: object) -> str:
+    """A text, a flag, a list or a table as TOML has it on one line."""
     if isinstance(value, Mapping):
         return f"{{ {', '.join(_lines(value))} }}"
     if isinstance(value, list):
-        return f"[{', '.join(map(_toml, value))}]"
+        return f"[{', '.join(map(toml, value))}]"
     if isinstance(value, bool):
         return "true" if value else "false"
     assert isinstance(value, str)

@@ -200,13 +200,12 @@ class Identified:
 
     def _damping(self, confidence: float | None) -> float | Interval:
         """Of the direction with less of it, up to that of the mean of both."""
-        own = _parameter(self.estimates["damping"], confidence)
-        if confidence is None or not isinstance(own, Interval):
-            weaker = (
-                self.directions.weaker if self.shows("damping by direction") else self.estimates["damping"]
-            )
-            return max(weaker.value, 0.0)
-        return Interval(max(min(float(own.low), self.directions.least(confidence)), 0.0), own.high)
+        mean = self.estimates["damping"]
+        if confidence is None:
+            best = self.directions.weaker if self.shows("damping by direction") else mean
+            return max(best.value, 0.0)
+        low, high = mean.interval(_checked(confidence))
+        return Interval(max(min(low, self.directions.least(confidence)), 0.0), max(high, 0.0))
 
     def _difference(self, confidence: float | None) -> float:
         """The most by which one direction may have less damping than the mean of both."""
@@ -344,13 +343,17 @@ class Identified:
 def _parameter(estimate: Estimate, confidence: float | None) -> float | Interval:
     if confidence is None:
         return max(estimate.value, 0.0)
+    low, high = estimate.interval(_checked(confidence))
+    return Interval(max(low, 0.0), max(high, 0.0))
+
+
+def _checked(confidence: float) -> float:
     if not 0 < confidence <= MOST_CONFIDENCE:
         raise InputError(
             f"confidence must be > 0 and ≤ {MOST_CONFIDENCE}, got {confidence!r}: it is how often the stated "
             "interval holds the truth; take 0.99, or None for the best guess"
         )
-    low, high = estimate.interval(confidence)
-    return Interval(max(low, 0.0), max(high, 0.0))
+    return confidence
 
 
 def _largest(passive: Callable[[float], bool]) -> float:

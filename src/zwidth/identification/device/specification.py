@@ -18,6 +18,7 @@ from zwidth.identification.device.table import source_name
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import as_decimal
+from zwidth.specification.write import toml
 
 if TYPE_CHECKING:
     from zwidth.identification.device.identified import Identified
@@ -29,7 +30,7 @@ DIGITS = 6
 def to_toml(identified: Identified, device: Device, confidence: float | None) -> str:
     """The text of the file, see `Identified.to_toml`."""
     lines = [f"# {line}" for line in _story(identified, confidence)]
-    lines += ["", "[device]", f"name = {_quoted(device.name)}", f'motion = "{device.motion}"']
+    lines += ["", "[device]", f"name = {toml(device.name)}", f'motion = "{device.motion}"']
     for key, value in device.parameters().items():
         if key not in device.assumed:
             name = "inertia" if key == "mass" and device.motion == "rotary" else key
@@ -74,7 +75,7 @@ def _value(value: Exact | Interval, identified: bool) -> str:
         return _rounded(value.fraction, ROUND_HALF_EVEN)
     written = as_decimal(value.fraction)
     if written is None:
-        return _quoted(f"{value.fraction.numerator}/{value.fraction.denominator}")
+        return toml(f"{value.fraction.numerator}/{value.fraction.denominator}")
     return _plain(float(written))
 
 
@@ -86,8 +87,3 @@ def _rounded(value: Fraction, rounding: str) -> str:
 def _plain(number: float) -> str:
     """As TOML writes a float: with a point, or an exponent."""
     return repr(number + 0.0)
-
-
-def _quoted(text: str) -> str:
-    shown = "".join(c if c.isprintable() else "?" for c in text)
-    return '"' + shown.replace("\\", "\\\\").replace('"', '\\"') + '"'
