@@ -16,6 +16,7 @@ _OPTIONS = (
     ("--length", "L", "of a stroke, as long as the workspace allows [m; rotary rad] (default: 6 cm)"),
     ("--slow", "TIME", "of a slow stroke [s] (default: 1)"),
     ("--fast", "TIME", "of the fastest stroke that a person can make [s] (default: 0.25)"),
+    ("--speed", "V", "up to which friction is to be seen, both ways [m/s; rotary rad/s]"),
     ("--precision", "PART", "half-width of the interval, in parts of the value (default: 0.05)"),
     ("--confidence", "PART", "of that interval (default: 0.95)"),
 )
@@ -56,6 +57,7 @@ def _numbers(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
         "length": "rad" if turn else "m",
         "slow": "s",
         "fast": "s",
+        "speed": "rad/s" if turn else "m/s",
         "precision": "1",
         "confidence": "1",
     }

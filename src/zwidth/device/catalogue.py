@@ -28,6 +28,7 @@ PROPERTIES = (
     "damping",
     "coulomb_friction",
     "stiction",
+    "friction_speed",
     "resolution",
     "sample_period",
     "rate",

@@ -46,6 +46,9 @@ class Device:
     stiction
         Largest friction at rest, ≥ f_c [N; N·m]; None: f_c. Only a simulated motion needs
         it: a hand that proves or refutes passivity overcomes it by an impulse.
+    friction_speed
+        Speed up to which b and f_c were seen to be no more than friction is, > 0 [m/s; rad/s]; every claim
+        names it. None: they hold at every speed.
     resolution
         Encoder resolution Δ at the handle, ≥ 0, 0 for an ideal sensor [m; rad].
         Not given: taken as 0, see `assumed`.
@@ -75,6 +78,7 @@ class Device:
     damping: Exact | Interval
     coulomb_friction: Exact | Interval
     stiction: Exact | Interval | None
+    friction_speed: Exact | Interval | None
     resolution: Exact | Interval
     sample_period: Exact | Interval
     delay: Exact | Interval
@@ -93,6 +97,7 @@ class Device:
         damping: Parameter,
         coulomb_friction: Parameter | None = None,
         stiction: Parameter | None = None,
+        friction_speed: Parameter | None = None,
         resolution: Parameter | None = None,
         sample_period: Parameter | None = None,
         rate: Parameter | None = None,
@@ -113,6 +118,7 @@ class Device:
             "damping": damping,
             "coulomb_friction": coulomb_friction,
             "stiction": stiction,
+            "friction_speed": friction_speed,
             "resolution": resolution,
             "sample_period": period,
             "delay": delay,
@@ -230,6 +236,10 @@ _WHY = {
     "damping": (False, "negative friction would itself generate energy"),
     "coulomb_friction": (False, "negative friction would itself generate energy"),
     "stiction": (False, "it is the friction that holds the device at rest; leave it out if unknown"),
+    "friction_speed": (
+        True,
+        "it is the largest speed at which friction was seen; leave it out otherwise",
+    ),
     "resolution": (False, "it is the size of one encoder count; use 0 for an ideal sensor"),
     "sample_period": (True, "the force is held for T; a continuous loop has no hold to certify"),
     "delay": (False, "a force cannot be applied before its sample is taken"),

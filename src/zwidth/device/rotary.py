@@ -26,6 +26,7 @@ def rotary(
     damping: Parameter,
     coulomb_friction: Parameter | None = None,
     stiction: Parameter | None = None,
+    friction_speed: Parameter | None = None,
     resolution: Parameter | None = None,
     counts_per_turn: Parameter | None = None,
     handle_radius: Parameter | None = None,
@@ -53,6 +54,8 @@ def rotary(
     handle_radius
         r > 0 [m]. With it the result has motion "linear", in newtons and
         metres at the handle; without it "rotary", in N·m and rad.
+    friction_speed
+        Speed up to which the friction was seen, > 0 [rad/s]; None: it holds at every speed.
     force_limit, force_resolution
         Of the actuator, as torques [N·m].
     rest
@@ -74,6 +77,7 @@ def rotary(
         "damping": damping,
         "coulomb_friction": coulomb_friction,
         "stiction": stiction,
+        "friction_speed": friction_speed,
         "resolution": resolution,
         "force_limit": force_limit,
         "force_resolution": force_resolution,
@@ -95,6 +99,7 @@ _POWER = {
     "damping": -2,
     "coulomb_friction": -1,
     "stiction": -1,
+    "friction_speed": 1,
     "resolution": 1,
     "force_limit": -1,
     "force_resolution": -1,

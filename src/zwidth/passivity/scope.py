@@ -108,6 +108,8 @@ class Scope:
     damping, coulomb_friction
         b [N·s/m; N·m·s/rad] and f_c [N; N·m] that the device takes out at least; None where `friction` says
         it, or where there are several joints.
+    friction_speed
+        Speed up to which the device's friction was measured [m/s; rad/s]; None: it is taken for every speed.
     friction
         The measured curve in the place of both, or None.
     fed_with
@@ -139,6 +141,7 @@ class Scope:
     sampling: Sampling = "constant"
     damping: float | None = None
     coulomb_friction: float | None = None
+    friction_speed: float | None = None
     friction: FrictionCurve | None = None
     fed_with: FedWith = ""
     clamped: bool = False
@@ -177,6 +180,7 @@ def scope_of(device: Device, environment: Environment) -> Scope:
         encoder="counted" if ends(device.resolution)[1] else "ideal",
         damping=float(device.exact("damping") if certain else damping),
         coulomb_friction=float(device.exact("coulomb_friction") if certain else friction),
+        friction_speed=None if device.friction_speed is None else float(ends(device.friction_speed)[0]),
         clamped=environment.clamped and not environment.spring,
         intervals=named + (() if environment.is_certain else ("the environment's intervals",)),
         assumed=device.assumed,

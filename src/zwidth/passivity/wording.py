@@ -75,7 +75,15 @@ def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
     if not scope.hands.every:
         return "No motion of the hand within these bounds takes energy out of this loop, ever."
     more = "; it is exactly at its limit, equality included" if at_limit else ""
-    return f"{NO_MOTION.format(hand=hand)}{more}."
+    return f"{NO_MOTION.format(hand=hand)}{_if_friction_goes_on(scope)}{more}."
+
+
+def _if_friction_goes_on(scope: Scope) -> str:
+    """The condition of a claim about a device whose friction was measured up to some speed."""
+    if scope.friction_speed is None or scope.friction is not None:
+        return ""
+    speed = f"{scope.friction_speed:.4g} {_units(scope.motion)['m/s']}"
+    return f", if friction beyond {speed}, where it was not measured, is no less than f_c + b |v|"
 
 
 def lines(scope: Scope, outcome: Outcome | None = None) -> tuple[str, ...]:
@@ -136,13 +144,21 @@ def _losses(scope: Scope) -> Iterator[str]:
     elif scope.damping is not None and scope.coulomb_friction is not None:
         yield (
             f"the device takes out at least b = {scope.damping:.6g} {unit['b']} of viscous and "
-            f"f_c = {scope.coulomb_friction:.6g} {unit['N']} of Coulomb friction"
+            f"f_c = {scope.coulomb_friction:.6g} {unit['N']} of Coulomb friction{_measured(scope)}"
         )
     elif scope.damping is not None:
         yield (
             f"the device takes out b = {scope.damping:.6g} {unit['b']} of viscous friction; Coulomb friction "
-            "is left out"
+            f"is left out{_measured(scope)}"
         )
+
+
+def _measured(scope: Scope) -> str:
+    """Up to which speed."""
+    if scope.friction_speed is None:
+        return ""
+    speed = f"{scope.friction_speed:.4g} {_units(scope.motion)['m/s']}"
+    return f"; it was measured up to {speed}, for faster motions the same is taken for granted"
 
 
 def _actuator(scope: Scope) -> str:
@@ -210,6 +226,8 @@ def document(scope: Scope) -> dict[str, Any]:
         written["fed_with"] = scope.fed_with
     for name in ("damping", "coulomb_friction"):
         written[unit_key(name, scope.motion)] = getattr(scope, name)
+    if scope.friction_speed is not None:
+        written[unit_key("friction_speed", scope.motion)] = scope.friction_speed
     if scope.largest_force is not None:
         force = unit_suffix(GLOSSARY["force"].unit_for(scope.motion))
         written[f"largest_force_{force}"] = scope.largest_force

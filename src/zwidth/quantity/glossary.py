@@ -34,6 +34,7 @@ GLOSSARY: dict[str, Quantity] = dict(
         _q("damping", "b", "N*s/m", "N*m*s/rad", "viscous friction of the device itself"),
         _q("coulomb_friction", "f_c", "N", "N*m", "dry friction of the device itself"),
         _q("stiction", "f_s", "N", "N*m", "largest friction at rest; no criterion here depends on it"),
+        _q("friction_speed", "v_f", "m/s", "rad/s", "speed up to which the friction was measured"),
         _q("resolution", "Δ", "m", "rad", "one encoder count at the handle; 0 means ideal"),
         _q("sample_period", "T", "s", "s", "time between two samples"),
         _q("rate", "1/T", "Hz", "Hz", "samples per second"),

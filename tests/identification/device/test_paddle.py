@@ -248,7 +248,7 @@ def test_the_verdict_takes_the_uncertainty_into_account(found):
     """Far below the limit all that the data allow is passive; far above nothing is; near it, part of it."""
     assert found.confidence(zw.Wall(stiffness=200)) > 0.9999
     assert found.confidence(zw.Wall(stiffness=400)) == 0.0
-    low = 2 * found.directions.least(0.9) / 1e-3
+    low = 2 * found.least_damping(0.9) / 1e-3
     assert found.confidence(zw.Wall(stiffness=low)) == pytest.approx(0.9, abs=2e-3)
     device = found.device(0.9)
     assert zw.check(device, zw.Wall(stiffness=0.999 * low)).outcome == "passive"

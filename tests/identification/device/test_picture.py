@@ -23,13 +23,19 @@ def test_four_pictures_and_the_numbers(found: zw.Identified) -> None:
     """Friction, numbers, data, what is left; units on the axes."""
     figure = identification_figure(found)
     friction, numbers, data, left, _ = figure.axes
-    assert friction.get_xlabel() == "speed |v| [m/s]"
+    assert friction.get_xlabel() == "velocity v, into the wall on the right [m/s]"
     assert friction.get_ylabel() == "friction [N]"
     assert (data.get_ylabel(), left.get_ylabel()) == ("force [N]", "left over [N]")
     words = " ".join(text.get_text() for text in numbers.texts)
     assert f"{found.estimates['damping'].value:.4g} N·s/m" in words
     labels = " ".join(text.get_text() for text in friction.get_legend().get_texts())
-    for part in ("fit, 95 % band", "mass–damper model", "below all bars", "means"):
+    for part in (
+        "fit, 95 % band",
+        "mass–damper model",
+        "promised, up to",
+        "means",
+        "never: nothing is promised",
+    ):
         assert part in labels
 
 
@@ -48,7 +54,7 @@ def test_a_given_mass_and_another_model_are_drawn_too(found: zw.Identified) -> N
     log = zw.log_of(time=time, position=position, hand_force=force, resolution=STEP, motion="rotary")
     given = identification_figure(zw.identify(log, mass=0.0357))
     assert given.axes[2].get_ylabel() == "force less m a [N·m]"
-    assert given.axes[0].get_xlabel() == "speed |v| [rad/s]"
+    assert given.axes[0].get_xlabel() == "velocity v, into the wall on the right [rad/s]"
     labels = identification_figure(zw.identify(log, model="viscous")).axes[0].get_legend().get_texts()
     assert not [text for text in labels if "mass–damper" in text.get_text()]
 

@@ -42,6 +42,9 @@ PILOT = 300_000
 SURE = 0.999
 """Confidence above which a further term is believed to be there."""
 
+KNEE = 0.6
+"""Times the mean speed of the strokes: where friction may begin to be larger, the slower (Stribeck)."""
+
 LATENESS = 0.05
 """Parts of a sample below which a force is in time."""
 
@@ -60,6 +63,8 @@ class Choice(NamedTuple):
         h, samples of a piece of a pulse.
     late
         Samples by which forces were recorded late.
+    knee
+        Speed below which friction may be larger than its curve [m/s; rad/s].
     shares
         Of these pulses and of the longer ones, the part of the variance of df/dt that is motion; the rest
         is noise, which makes the coefficient of −df/dt too small.
@@ -67,6 +72,7 @@ class Choice(NamedTuple):
 
     piece: int
     late: float
+    knee: float
     shares: tuple[float, float] = (1.0, 1.0)
 
 
@@ -78,17 +84,19 @@ def choose(log: Log, names: tuple[str, ...], mass: float | None, delay: float, z
     InputError
         If the motion shows too little.
     """
-    pilot = _Pilot(list(_first(pieces(log))), log.sample_period, names, mass, delay, zero)
+    beginning = list(_first(pieces(log)))
+    knee = KNEE * _mean_speed(beginning, log.sample_period)
+    pilot = _Pilot(beginning, log.sample_period, knee, names, mass, delay, zero)
     piece = pilot.best_piece(0.0)
     if piece is None:
         raise InputError(too_little(log))
     if not log.channels:
-        return Choice(piece, 0.0)
+        return Choice(piece, 0.0, pilot.knee)
     late, longer = pilot.lateness(piece), pilot.lateness(LONGER * piece)
     if abs(late) <= SAFETY * abs(late - longer):  # counts of a coarse encoder look late too, to short pulses
-        return Choice(piece, 0.0)
+        return Choice(piece, 0.0, pilot.knee)
     piece = pilot.best_piece(late) or piece
-    return Choice(piece, late, (pilot.share(piece, late), pilot.share(LONGER * piece, late)))
+    return Choice(piece, late, pilot.knee, (pilot.share(piece, late), pilot.share(LONGER * piece, late)))
 
 
 def shifts(fit: Regression, longer: Regression) -> Array:
@@ -112,13 +120,14 @@ def too_little(log: Log) -> str:
 class _Pilot(NamedTuple):
     pieces: list[Piece]
     period: float
+    knee: float
     names: tuple[str, ...]
     mass: float | None
     delay: float
     zero: Zero
 
     def sums(self, piece: int, late: float) -> Moments:
-        shape, found = pulse(piece, self.delay, late), Moments()
+        shape, found = pulse(piece, self.delay, late), Moments(self.knee)
         for stretch in self.pieces:
             found.add(stretch.pulses(shape, self.period), self.zero)
         return found
@@ -164,6 +173,15 @@ class _Pilot(NamedTuple):
 
     def lag(self, piece: int, late: float) -> Regression | None:
         return regress(self.sums(piece, late), (*self.names, "force_lag"), self.mass)
+
+
+def _mean_speed(stretches: Iterable[Piece], period: float) -> float:
+    """Way by time of all strokes [m/s; rad/s]; 1 where there are none."""
+    way = samples = 0.0
+    for position, strokes, _ in stretches:
+        way += float(np.abs(position[strokes.last] - position[strokes.first]).sum())
+        samples += float((strokes.last - strokes.first).sum())
+    return way / (samples * period) if way > 0 else 1.0
 
 
 def _first(stream: Iterable[Piece]) -> Iterable[Piece]:

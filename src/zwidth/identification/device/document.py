@@ -39,6 +39,11 @@ def to_dict(identified: Identified, confidence: float) -> dict[str, Any]:
     for name in ("inward", "outward"):
         estimate = getattr(identified.directions, name)
         document[key(f"damping_{name}", "damping")] = _estimate(estimate, confidence)
+    for name, speed in zip(("inward", "outward"), identified.fastest, strict=True):
+        document[key(f"seen_{name}", "friction_speed")] = speed
+    for name in ("inward", "outward"):
+        estimate = getattr(identified.slopes, name)
+        document[key(f"slope_{name}", "damping")] = _estimate(estimate, confidence)
     for limit in limits(identified):
         low, high = limit.interval(confidence)
         document[key(f"stiffest_by_{limit.parameter}", "stiffness")] = {

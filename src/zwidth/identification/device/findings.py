@@ -20,6 +20,8 @@ def findings(
     names: tuple[str, ...],
     estimates: Mapping[str, Estimate],
     directions: Directions,
+    slopes: Directions,
+    speed: float,
     period: float,
 ) -> Iterable[Finding]:
     """The wrong model first, then what is not known, then what was fitted besides."""
@@ -39,14 +41,24 @@ def findings(
         if name in estimates:
             text = f"{what} is seen and fitted: {estimates[name]}"
             yield Finding(kind=name.replace("_", " "), text=text)
-    if "coulomb_friction" in names and found.sees(names, "quadratic"):
-        bent = found.regression((*names, "quadratic"))
-        assert bent is not None  # it was seen
+    yield from _bend(found, names, slopes, speed)
+
+
+def _bend(found: Found, names: tuple[str, ...], slopes: Directions, speed: float) -> Iterable[Finding]:
+    """Friction that is larger where the device is slow, or whose slope changes with speed."""
+    if "coulomb_friction" not in names:
+        return
+    unit = "rad/s" if found.motion == "rotary" else "m/s"
+    seen = []
+    if found.sees((*names, "quadratic"), "slow"):
+        seen.append(f"it is larger below {found.moments.knee:.3g} {unit}")
+    if found.sees(names, "quadratic") or found.sees((*names, "slow"), "quadratic"):
+        seen.append(f"at {speed:.3g} {unit} its slope is {slopes.weaker}")
+    if seen:
         yield Finding(
             kind="bent friction",
-            text=f"friction is not f_c + b |v|: a term c v |v| with c = {bent.value('quadratic'):.3g} "
-            f"{units_of(found.motion)['quadratic']} is seen; what is proved rests on the "
-            "largest model below the friction curve",
+            text=f"friction is not f_c + b |v|: {' and '.join(seen)}; what is proved rests on the largest "
+            "model below the friction curve",
         )
 
 

@@ -16,6 +16,9 @@ from zwidth.identification.device.pulses import Pulse, pulse
 from zwidth.identification.device.regression import Regression, regress
 from zwidth.identification.logs import Log
 
+HINT = 0.95
+"""Confidence above which a bend that differs by direction is fitted, not only believed: it costs width."""
+
 
 class Found(NamedTuple):
     """The sums.
@@ -72,21 +75,40 @@ class Found(NamedTuple):
 
     def directions(self, names: tuple[str, ...]) -> Directions | None:
         """Damping into the wall, b + a, and out of it, b − a; None where the strokes do not tell."""
-        names = (*names, "asymmetry")
+        return self._directions((*names, "asymmetry"), 0.0)
+
+    def slopes(self, names: tuple[str, ...], speed: float) -> Directions | None:
+        """Slope of friction by speed, at this speed and in each direction, of a friction that is bent.
+
+            f = f_c + (b ± a) |v| + (c ± e) v² + s max(1 − |v|/v_s, 0),     f' = b ± a + 2 (c ± e) |v|
+
+        e, by which the bend differs, is fitted where there is a sign of it, s where slow pulses are long
+        enough; None where the strokes do not tell.
+        """
+        bent = (*names, "asymmetry", "quadratic")
+        for friction in ((*bent, "slow"), bent):
+            fit = self.regression((*friction, "quadratic_asymmetry"))
+            differs = fit is not None and fit.sees("quadratic_asymmetry", HINT)
+            found = self._directions(fit.names if fit is not None and differs else friction, speed)
+            if found is not None:
+                return found
+        return None
+
+    def _directions(self, names: tuple[str, ...], speed: float) -> Directions | None:
         fit, longer = self.regression(names), regress(self.longer, names, self.mass, self.shares[1])
         if fit is None or longer is None:
             return None
-        b, a = (names.index(name) for name in ("damping", "asymmetry"))
         unit = units_of(self.motion)["damping"]
 
-        def combined(of_b: float, of_a: float) -> Estimate:
-            weights = np.zeros(len(names))
-            weights[b], weights[a] = of_b, of_a
+        def slope(both: float, side: float) -> Estimate:
+            of = {"damping": both, "asymmetry": side}
+            of |= {"quadratic": 2 * speed * both, "quadratic_asymmetry": 2 * speed * side}
+            weights = np.array([of.get(name, 0.0) for name in names])
             shift = SAFETY * abs(float(weights @ (fit.values - longer.values)))
             error = float(np.sqrt(weights @ fit.covariance @ weights))
             return Estimate(float(weights @ fit.values), error, shift, fit.degrees, unit)
 
-        return Directions(combined(1.0, 1.0), combined(1.0, -1.0), combined(0.0, 1.0))
+        return Directions(slope(1.0, 1.0), slope(1.0, -1.0), slope(0.0, 1.0))
 
     def sees(self, names: tuple[str, ...], term: str) -> bool:
         """True where one term more is larger than its uncertainty, that of the method included."""
@@ -106,7 +128,8 @@ def gather(
     """Go through the log once; `delay` of the actuator's force in samples."""
     shape, other = (pulse(h, delay, choice.late) for h in (choice.piece, LONGER * choice.piece))
     late = choice.late * log.sample_period
-    found = Found(shape, late, choice.shares, Moments(), Moments(), Points(), mass, log.motion)
+    sums, longer, points = Moments(choice.knee), Moments(choice.knee), Points(choice.knee)
+    found = Found(shape, late, choice.shares, sums, longer, points, mass, log.motion)
     done = 0
     for piece in pieces(log):
         rows = piece.pulses(shape, log.sample_period)
@@ -130,4 +153,6 @@ def units_of(motion: str) -> dict[str, str]:
         "quadratic": "N m s²/rad²" if turn else "N s²/m²",
         "force_lag": "s",
         "asymmetry": "N m s/rad" if turn else "N s/m",
+        "quadratic_asymmetry": "N m s²/rad²" if turn else "N s²/m²",
+        "slow": "N m" if turn else "N",
     }

@@ -29,6 +29,10 @@ MOST_CONFIDENCE = 0.999999
 """Beyond it the tails of Student's t say nothing about real data."""
 
 
+BINS = 6
+"""Of speed, each way."""
+
+
 class Estimate(NamedTuple):
     """A number from data.
 
@@ -107,6 +111,11 @@ class Identified:
         fitted: spring [N/m], quadratic [N·s²/m²], force_lag [s]; N·m and rad if rotary.
     directions
         Damping into the wall and out of it.
+    fastest
+        Speed that 32 strokes, or a quarter of them, went beyond, into the wall and out of it [m/s; rad/s]:
+        of friction beyond it the data say nothing.
+    slopes
+        Slope of friction at that speed, in each direction, if friction is bent.
     mass
         The given one [kg; kg·m²], or None.
     sample_period, resolution
@@ -136,6 +145,8 @@ class Identified:
 
     estimates: Mapping[str, Estimate]
     directions: Directions
+    fastest: tuple[float, float]
+    slopes: Directions
     mass: float | None
     sample_period: float
     resolution: float
@@ -152,11 +163,14 @@ class Identified:
     points: xr.Dataset
 
     def device(self, confidence: float | None = 0.99, **others: Any) -> Device:
-        """A device whose b and f_c are at least as large as stated, with this confidence for both together.
+        """A device with less friction than the data show, f_c + b |v| at every speed that they show.
 
-        The lower end of b is that of the direction with less damping.  Where friction was found not to be
-        f_c + b |v|, the lower ends are those of the model below the friction curve that proves the stiffest
-        wall, less what the directions may differ by: the fitted line lies above friction somewhere.
+        The lower end of b is that of the direction with less damping, and no more than the lower end of the
+        slope at the largest speed seen: friction may rise less, the quicker the motion.  That of f_c is
+        what the friction curve of the data leaves above b |v|.  Both hold together with the stated
+        confidence, for motions up to `speed`, which the device carries as its `friction_speed`.  Where
+        friction is surely bent, the two are those of the line below the curve that proves the stiffest
+        wall.
 
         Parameters
         ----------
@@ -183,36 +197,59 @@ class Identified:
         }
         if self.mass is not None:
             given["mass"] = self.mass
-        for name in ("mass", "damping", "coulomb_friction"):
-            if name in self.estimates:
-                given[name] = _parameter(self.estimates[name], confidence)
-        given["damping"] = self._damping(confidence)
-        if self.shows("bent friction"):
-            below = self.friction_curve(0.5 if confidence is None else confidence)
-            for name, low in below.best(self.sample_period, self.resolution)._asdict().items():
-                if name == "damping":
-                    low = max(float(low) - self._difference(confidence), 0.0)
-                high = max(float(low), self.estimates[name].value)
-                given[name] = low if confidence is None else Interval(float(low), high)
+        if "mass" in self.estimates:
+            given["mass"] = _parameter(self.estimates["mass"], confidence)
+        given |= self._friction(confidence)
+        given["friction_speed"] = self.speed
         if "mass" in given and ends(as_parameter(given["mass"]))[0] <= 0:
             del given["mass"]  # the data do not rule out 0, which no device has; no criterion needs it
         return Device(**{**given, **others})
 
-    def _damping(self, confidence: float | None) -> float | Interval:
-        """Of the direction with less of it, up to that of the mean of both."""
-        mean = self.estimates["damping"]
-        if confidence is None:
-            best = self.directions.weaker if self.shows("damping by direction") else mean
-            return max(best.value, 0.0)
-        low, high = mean.interval(_checked(confidence))
-        return Interval(max(min(low, self.directions.least(confidence)), 0.0), max(high, 0.0))
+    @property
+    def speed(self) -> float:
+        """The largest speed at which the friction of both directions was seen [m/s; rad/s]."""
+        return min(self.fastest)
 
-    def _difference(self, confidence: float | None) -> float:
-        """The most by which one direction may have less damping than the mean of both."""
+    def least_damping(self, confidence: float) -> float:
+        """The slope that friction has at least, each way and up to `speed`; 0 where it may fall."""
+        mean = self.estimates["damping"].interval(_checked(confidence))[0]
+        return max(min(mean, self.directions.least(confidence), self.slopes.least(confidence)), 0.0)
+
+    def least_coulomb_friction(self, confidence: float) -> float:
+        """What friction is at least above `least_damping` times the speed, in the mean of both directions."""
+        low = self.estimates["coulomb_friction"].interval(_checked(confidence))[0]
+        curve = self.friction_curve(confidence)
+        return max(min(low, float(curve.largest_coulomb_friction(curve.largest_damping))), 0.0)
+
+    def best_damping(self) -> float:
+        """The best guess of what a wall rests on: the lesser, where directions or slopes surely differ."""
+        found = [self.estimates["damping"].value]
+        if self.shows("damping by direction"):
+            found.append(self.directions.weaker.value)
+        if self.shows("bent friction"):
+            found.append(self.slopes.weaker.value)
+        return max(min(found), 0.0)
+
+    def _friction(self, confidence: float | None) -> dict[str, float | Interval]:
+        """Damping and, where it was fitted, Coulomb friction: best guesses, or intervals."""
+        dry = "coulomb_friction" in self.estimates
         if confidence is None:
-            return abs(self.directions.difference.value) if self.shows("damping by direction") else 0.0
-        low, high = self.directions.difference.interval(confidence)
-        return max(-low, high)
+            if self.shows("bent friction"):
+                return {**self._best_below(0.5)}
+            dry_friction = {"coulomb_friction": self.estimates["coulomb_friction"].value} if dry else {}
+            return {"damping": self.best_damping(), **dry_friction}
+        low = {"damping": self.least_damping(confidence)}
+        if dry:
+            low["coulomb_friction"] = self.least_coulomb_friction(confidence)
+        if self.shows("bent friction"):
+            low = self._best_below(confidence)
+        highs = {name: self.estimates[name].interval(confidence)[1] for name in low}
+        return {name: Interval(end, max(highs[name], end)) for name, end in low.items()}
+
+    def _best_below(self, confidence: float) -> dict[str, float]:
+        """The line below the friction curve that proves the stiffest wall."""
+        model = self.friction_curve(confidence).best(self.sample_period, self.resolution)
+        return {name: float(value) for name, value in model._asdict().items()}
 
     def shows(self, kind: str) -> bool:
         """True where there is a finding of this kind."""
@@ -242,23 +279,23 @@ class Identified:
 
         return _largest(passive)
 
-    def friction_curve(self, confidence: float = 0.95, bins: int = 8) -> FrictionCurve:
-        """A friction curve below the data, for friction that is not f_c + b |v|.
+    def friction_curve(self, confidence: float = 0.95, bins: int = BINS) -> FrictionCurve:
+        """A friction curve below the data: what friction is at least, in the mean of both directions.
 
-        Its points are lower bounds of the mean friction in bins of speed, at the mean speed of
-        each; one at rest, by an upper bound of the slope over the slower half of the pulses; and one
-        at the largest speed, by a lower bound of it over the quicker half.  `FrictionCurve.best`
-        finds the model f_c + b |v| below it that proves the stiffest wall.
-        Assumed are, beside `FrictionCurve.assumption`: the mass; the same friction in both
-        directions; that within a bin friction is nearly a straight line of speed; and that beyond the
-        largest speed it rises as over the quicker half at least.
+        Its points are lower bounds of the mean friction in bins of speed, at the mean speed of each; one at
+        rest, by a parabola through the slower half of the pulses.  A pair of speeds, one each
+        way, makes a point, and those count that a line may touch from below.  The last chord, beyond the
+        largest speed, has the slope `least_damping`.  `FrictionCurve.best` finds the model f_c + b |v|
+        below it that proves the stiffest wall. Assumed are, beside `FrictionCurve.assumption`: the mass;
+        and that within a bin friction is nearly a straight line of speed.
 
         Parameters
         ----------
         confidence
             How often all the bounds hold together, between 0 and 1.
         bins
-            How many bins of speed, 2 or more, each with as many pulses.
+            How many bins of speed each way, 2 or more, each with as many pulses; fewer are taken where the
+            strokes are few.
 
         Raises
         ------
@@ -267,7 +304,7 @@ class Identified:
         """
         from zwidth.identification.device.curve import curve_below
 
-        return curve_below(self.points, confidence, bins)
+        return curve_below(self.points, confidence, bins, self.least_damping(confidence))
 
     def to_toml(self, confidence: float | None = 0.99, **others: Any) -> str:
         """The device as a specification that `zwidth check` reads; comments say where numbers come from.

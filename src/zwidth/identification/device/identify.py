@@ -18,6 +18,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.identification.device.choice import Zero, choose, too_little
+from zwidth.identification.device.curve import fastest
 from zwidth.identification.device.findings import findings
 from zwidth.identification.device.fit import gather
 from zwidth.identification.device.identified import Estimate, Identified
@@ -81,8 +82,10 @@ def identify(
         chosen = choose(other, own, mass, samples, zero)
         return gather(other, chosen, mass=mass, delay=samples, zero=zero, progress=None).estimates(names)
 
-    directions = found.directions(names)
-    if directions is None:
+    points = found.points.dataset(fit, mass, log.motion)
+    quickest = fastest(points)
+    directions, slopes = found.directions(names), found.slopes(names, min(quickest))
+    if directions is None or slopes is None or not min(quickest) > 0:
         raise InputError(too_little(log))
     wrong = impossible(log, estimates, again)
     if wrong is not None:
@@ -91,6 +94,8 @@ def identify(
     return Identified(
         estimates=estimates,
         directions=directions,
+        fastest=quickest,
+        slopes=slopes,
         mass=mass,
         sample_period=log.sample_period,
         resolution=log.resolution,
@@ -103,8 +108,11 @@ def identify(
         pulse_length=PIECES * choice.piece * log.sample_period,
         strokes=found.moments.strokes,
         pulses=found.moments.pulses,
-        findings=(*log.findings, *findings(found, names, estimates, directions, log.sample_period)),
-        points=found.points.dataset(fit, mass, log.motion),
+        findings=(
+            *log.findings,
+            *findings(found, names, estimates, directions, slopes, min(quickest), log.sample_period),
+        ),
+        points=points,
     )
 
 

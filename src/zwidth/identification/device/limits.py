@@ -6,13 +6,14 @@ their intervals are those of b and f_c, times 2/T and 2/Δ.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from zwidth.identification.device.identified import Directions, Estimate, Identified
+    from zwidth.identification.device.identified import Estimate, Identified
 
 NARROW = 3.0
 """Ratio of quick to slow speeds (upper to lower tenth) below which b and f_c are hard to tell apart."""
@@ -31,27 +32,28 @@ class Limit(NamedTuple):
         By which the parameter becomes a stiffness; inf where Δ is 0.
     estimate
         Of the parameter.
-    directions
-        Of damping: the one with less of it is what counts.
+    best
+        The best guess of what counts of it [N·s/m, N; N·m·s/rad, N·m].
+    least
+        What it is at least, with a confidence.
     """
 
     parameter: str
     symbol: str
     factor: float
     estimate: Estimate
-    directions: Directions | None = None
+    best: float
+    least: Callable[[float], float]
 
     @property
     def value(self) -> float:
         """The best guess [N/m; N·m/rad]."""
-        return self.factor * self.estimate.value
+        return self.factor * self.best
 
     def interval(self, confidence: float) -> tuple[float, float]:
         """Where the truth is, this often; what is negative allows no stiffness [N/m; N·m/rad]."""
-        low, high = self.estimate.interval(confidence)
-        if self.directions is not None:
-            low = min(low, self.directions.least(confidence))
-        return self.factor * max(low, 0.0), self.factor * max(high, 0.0)
+        low, high = self.least(confidence), self.estimate.interval(confidence)[1]
+        return self.factor * low, self.factor * max(high, low)
 
 
 def limits(identified: Identified) -> tuple[Limit, ...]:
@@ -59,12 +61,12 @@ def limits(identified: Identified) -> tuple[Limit, ...]:
     found = []
     if "damping" in identified.estimates:
         factor = 2 / identified.sample_period
-        differs = identified.shows("damping by direction")
-        estimate = identified.directions.weaker if differs else identified.estimates["damping"]
-        found.append(Limit("damping", "2b/T", factor, estimate, identified.directions))
+        estimate, best = identified.estimates["damping"], identified.best_damping()
+        found.append(Limit("damping", "2b/T", factor, estimate, best, identified.least_damping))
     if "coulomb_friction" in identified.estimates and identified.resolution > 0:
         factor = 2 / identified.resolution
-        found.append(Limit("coulomb_friction", "2f_c/Δ", factor, identified.estimates["coulomb_friction"]))
+        estimate, least = identified.estimates["coulomb_friction"], identified.least_coulomb_friction
+        found.append(Limit("coulomb_friction", "2f_c/Δ", factor, estimate, estimate.value, least))
     return tuple(found)
 
 
@@ -89,9 +91,14 @@ def advice(identified: Identified, confidence: float) -> tuple[str, ...]:
             f"a longer log would not halve the interval of {name}: half of it and more is what means over "
             f"{1e3 * identified.pulse_length:.3g} ms may be off; smoother, longer strokes allow longer ones"
         )
+    speed = "rad/s" if identified.motion == "rotary" else "m/s"
+    lines.append(
+        f"friction was seen up to {identified.fastest[0]:.3g} {speed} into the wall and "
+        f"{identified.fastest[1]:.3g} out of it: of a hand that is quicker nothing is known; "
+        "log quicker strokes, zwidth plan --speed says which"
+    )
     slow, quick = np.quantile(np.abs(identified.points["speed"].values), [0.1, 0.9])
     if quick < NARROW * slow:
-        speed = "rad/s" if identified.motion == "rotary" else "m/s"
         lines.append(
             f"most of the motion is between {slow:.2g} and {quick:.2g} {speed}: slower and quicker strokes "
             "tell damping and Coulomb friction apart"

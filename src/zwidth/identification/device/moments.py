@@ -14,21 +14,38 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from zwidth.compiled import Array, compiled
 from zwidth.identification.device import pulses
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from zwidth.identification.device.regression import Regression
 
-REGRESSORS = ("mass", "damping", "coulomb_friction", "spring", "quadratic", "force_lag", "asymmetry")
-"""What a force may be made of: m a, b v, f_c sgn v, k x, c v |v|, −τ df/dt of one that came late, and a |v|
-of damping that is b + a into the wall and b − a out of it."""
+REGRESSORS = (
+    "mass",
+    "damping",
+    "coulomb_friction",
+    "spring",
+    "quadratic",
+    "force_lag",
+    "asymmetry",
+    "quadratic_asymmetry",
+    "slow",
+)
+"""What a force may be made of: m a, b v, f_c sgn v, k x, c v |v|, −τ df/dt of one that came late; a |v| of
+damping that is b + a into the wall and b − a out of it, e v² likewise of c; and s sgn v (1 − |v|/v_s) of
+friction that is larger at speeds below v_s (Stribeck)."""
 
 COLUMNS = len(REGRESSORS) + 1
 """The regressors, and the force."""
+
+_UPPER = np.triu_indices(COLUMNS)
+
+PAIRS: NDArray[np.int64] = np.zeros((COLUMNS, COLUMNS), dtype=np.int64)
+"""Where a pair of columns stands among all pairs, in either order."""
+PAIRS[_UPPER] = np.arange(_UPPER[0].size)
+PAIRS.T[_UPPER] = PAIRS[_UPPER]
 
 
 @dataclass
@@ -37,10 +54,12 @@ class Moments:
 
     Parameters
     ----------
+    knee
+        v_s [m/s; rad/s].
     sum
         G.
     square
-        Σ_s G_s ⊗ G_s, as a matrix over pairs of columns.
+        Σ_s G_s ⊗ G_s, as a matrix over the `PAIRS` of columns.
     strokes, pulses
         How many there were.
     lines
@@ -51,8 +70,9 @@ class Moments:
         How many pieces.
     """
 
+    knee: float
     sum: Array = field(default_factory=lambda: np.zeros((COLUMNS, COLUMNS)))
-    square: Array = field(default_factory=lambda: np.zeros((COLUMNS**2, COLUMNS**2)))
+    square: Array = field(default_factory=lambda: np.zeros((_UPPER[0].size, _UPPER[0].size)))
     strokes: int = 0
     pulses: int = 0
     lines: int = 0
@@ -63,7 +83,7 @@ class Moments:
         """Count in the pulses of one piece, its zero taken out."""
         if not len(rows):
             return
-        even, odd = halves(rows)
+        even, odd = halves(rows, self.knee)
         self.means += (even + odd).mean(axis=0) / 2
         self.pieces += 1
         basis = line(rows, zero)
@@ -74,7 +94,7 @@ class Moments:
         count = int(stroke[-1]) + 1
         parts = np.zeros((count, COLUMNS, COLUMNS))
         _products(parts, even, odd, stroke)
-        flat = parts.reshape(count, COLUMNS**2)
+        flat = parts[:, _UPPER[0], _UPPER[1]]
         self.sum += parts.sum(axis=0)
         self.square += flat.T @ flat
         self.strokes += count
@@ -95,22 +115,24 @@ def line(rows: Array, zero: str) -> Array:
     return np.linalg.qr(basis)[0]
 
 
-def halves(rows: Array) -> tuple[Array, Array]:
+def halves(rows: Array, knee: float) -> tuple[Array, Array]:
     """The columns of the pulses by the even samples and by the odd ones."""
     found = []
     for a, v in (
         (pulses.EVEN_ACCELERATION, pulses.EVEN_VELOCITY),
         (pulses.ODD_ACCELERATION, pulses.ODD_VELOCITY),
     ):
-        speed = rows[:, v]
+        speed, side = rows[:, v], rows[:, pulses.SIDE]
         columns = (
             rows[:, a],
             speed,
-            rows[:, pulses.SIDE],
+            side,
             rows[:, pulses.POSITION],
             speed * np.abs(speed),
             -rows[:, pulses.FORCE_SLOPE],
-            speed * rows[:, pulses.SIDE],
+            speed * side,
+            speed * speed,
+            side * np.maximum(1 - np.abs(speed) / knee, 0.0),
             rows[:, pulses.FORCE],
         )
         found.append(np.stack(columns, axis=1))

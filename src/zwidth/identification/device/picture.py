@@ -11,23 +11,23 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from zwidth.identification.device.curve import curve_below, friction_bins, lower_bounds
+from zwidth.identification.device.curve import DIRECTIONS, friction_bins, lower_bounds
+from zwidth.identification.device.identified import BINS, Estimate, Identified
 from zwidth.identification.device.limits import percent
 from zwidth.identification.device.pulses import PIECES, pulse
 from zwidth.identification.device.table import rows, title
 from zwidth.plots.files import save_figure
 from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure
+from zwidth.quantity.exact import ends
 
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
-    from zwidth.identification.device.identified import Identified
-
     Array = NDArray[np.float64]
 
-_BINS = 8
-"""Bins of speed."""
+_BEYOND = 1.15
+"""Times the largest speed, to which the axis goes."""
 
 _CONFIDENCE = 0.95
 """Of the bands, the error bars and the curve below the data."""
@@ -75,64 +75,90 @@ def identification_figure(identified: Identified) -> Figure:
 
 
 def draw_friction_points(axes: Axes, identified: Identified) -> None:
-    """Friction against speed: pulses, means with error bars, the fit with its band, the model below."""
+    """Friction against velocity, out of the wall on the left: pulses, means, the fit, and the line promised.
+
+    Speeds that few strokes reached are hatched: what is promised ends there.
+    """
     points = _thinned(identified)
-    speed = np.abs(points["speed"].values)
-    friction = points["friction"].values * np.sign(points["speed"].values)
-    axes.plot(speed, friction, ".", ms=2.5, color=GREY, alpha=0.4, mew=0, rasterized=True)
-    quickest = float(speed.max())
-    along = np.linspace(0.0, quickest, 50)
-    fit, reach = _fitted(identified, along)
-    axes.fill_between(along, fit - reach, fit + reach, color=BLUE, alpha=0.2, lw=0)
-    axes.plot(along, fit, color=BLUE, label=f"fit, {percent(_CONFIDENCE)} band")
-    bins = friction_bins(identified.points, _BINS)
+    velocity = points["speed"].values
+    friction = points["friction"].values * np.sign(velocity)
+    axes.plot(velocity, friction, ".", ms=2.5, color=GREY, alpha=0.4, mew=0, rasterized=True)
+    end = _BEYOND * float(np.abs(velocity).max())
+    along = np.linspace(0.0, end, 50)
+    for side, estimate in _damping_by_side(identified):
+        fit, reach = _fitted(identified, estimate, along)
+        axes.fill_between(side * along, fit - reach, fit + reach, color=BLUE, alpha=0.2, lw=0)
+        axes.plot(
+            side * along, fit, color=BLUE, label=f"fit, {percent(_CONFIDENCE)} band" if side > 0 else None
+        )
     if "coulomb_friction" in identified.estimates:
         alone = identified.viscous_alone
-        axes.plot(
-            along, alone * along, ":", color=ORANGE, lw=1.6, label=f"mass–damper model: {alone:.3g} |v|"
-        )
-    if bins.sizes["bin"] >= 2:
-        _bars(axes, identified, along)
+        label = f"mass–damper model: {alone:.3g} |v|"
+        axes.plot([-end, 0.0, end], [alone * end, 0.0, alone * end], ":", color=ORANGE, lw=1.6, label=label)
+        _promised(axes, identified)
+    _unseen(axes, identified, end)
     low, high = np.quantile(friction, [0.01, 0.99])
-    axes.set_ylim(min(low, 0.0), 1.1 * high)
-    axes.set_xlim(0.0, quickest)
-    axes.set_xlabel(f"speed |v| [{_speed(identified)}]")
+    axes.set_ylim(min(low, 0.0), 1.25 * high)
+    axes.set_xlim(-end, end)
+    axes.set_xlabel(f"velocity v, into the wall on the right [{_speed(identified)}]")
     axes.set_ylabel(f"friction [{_force(identified)}]")
     axes.set_title("friction against the motion")
-    axes.legend(loc="upper left")
+    axes.legend(loc="upper center", fontsize=7)
 
 
-def _bars(axes: Axes, identified: Identified, along: Array) -> None:
-    bins = friction_bins(identified.points, _BINS)
-    middle = bins["friction"].values
-    low = lower_bounds(bins, _CONFIDENCE)
-    axes.errorbar(
-        bins["speed"].values,
-        middle,
-        middle - low,
-        fmt="o",
-        ms=4,
-        color=BLACK,
-        capsize=3,
-        lw=1.2,
-        label="means, all within bars together",
-        zorder=5,
-    )
-    curve = curve_below(identified.points, _CONFIDENCE, _BINS)
-    best = curve.best(identified.sample_period, identified.resolution)
-    below = float(best.coulomb_friction) + float(best.damping) * along
-    text = f"below all bars: {float(best.coulomb_friction):.3g} + {float(best.damping):.3g} |v|"
-    axes.plot(along, below, color=RED, ls="--", lw=1.4, label=text)
+def _damping_by_side(identified: Identified) -> list[tuple[float, Estimate]]:
+    """+1 into the wall and −1 out of it, with the damping that was fitted for it."""
+    both = identified.directions
+    if identified.shows("damping by direction"):
+        return [(1.0, both.inward), (-1.0, both.outward)]
+    return [(side, identified.estimates["damping"]) for side in (1.0, -1.0)]
 
 
-def _fitted(identified: Identified, speed: Array) -> tuple[Array, Array]:
+def _promised(axes: Axes, identified: Identified) -> None:
+    """Means with bars in which all hold together, and below them the line on which a promise rests."""
+    bins = friction_bins(identified.points, BINS)
+    bounds = lower_bounds(identified.points, _CONFIDENCE, BINS)
+    for side, way, (_, low) in zip((1.0, -1.0), DIRECTIONS, bounds, strict=True):
+        here = bins.sel(direction=way)
+        middle = here["friction"].values
+        axes.errorbar(
+            side * here["speed"].values,
+            middle,
+            (np.maximum(middle - low[1:], 0.0), np.zeros(middle.size)),
+            fmt="o",
+            ms=4,
+            color=BLACK,
+            capsize=3,
+            lw=1.2,
+            label="means, and what they are at least, all together" if side > 0 else None,
+            zorder=5,
+        )
+    device = identified.device(_CONFIDENCE)
+    b, f_c = (float(ends(value)[0]) for value in (device.damping, device.coulomb_friction))
+    speed = identified.speed
+    label = f"promised, up to {speed:.3g} {_speed(identified)}: {f_c:.3g} + {b:.3g} |v|"
+    height = f_c + b * speed
+    axes.plot([-speed, 0.0, speed], [height, f_c, height], color=RED, ls="--", lw=1.6, label=label, zorder=6)
+
+
+def _unseen(axes: Axes, identified: Identified, end: float) -> None:
+    """Hatch the velocities of which the data say nothing."""
+    inward, outward = identified.fastest
+    for k, (near, far) in enumerate(((inward, end), (-end, -outward))):
+        label = "seen too seldom, or never: nothing is promised" if k == 0 else None
+        axes.axvspan(near, far, facecolor="none", edgecolor=GREY, hatch="///", lw=0, alpha=0.6, label=label)
+
+
+def _fitted(identified: Identified, damping: Estimate, speed: Array) -> tuple[Array, Array]:
     """f_c + b |v|, and the half width of a band that holds with each parameter at its worst."""
-    fit, reach = np.zeros_like(speed), np.zeros_like(speed)
-    for name, factor in (("coulomb_friction", np.ones_like(speed)), ("damping", speed)):
-        if name in identified.estimates:
-            estimate = identified.estimates[name]
-            fit += estimate.value * factor
-            reach += (estimate.interval(_CONFIDENCE)[1] - estimate.value) * factor
+    terms = [(damping, speed)]
+    if "coulomb_friction" in identified.estimates:
+        terms.append((identified.estimates["coulomb_friction"], np.ones_like(speed)))
+    fit = sum((estimate.value * factor for estimate, factor in terms), np.zeros_like(speed))
+    reach = sum(
+        ((estimate.interval(_CONFIDENCE)[1] - estimate.value) * factor for estimate, factor in terms),
+        np.zeros_like(speed),
+    )
     return fit, reach
 
 
@@ -166,7 +192,7 @@ def _left(axes: Axes, identified: Identified) -> None:
     axes.plot(points["speed"], points["residual"], ".", ms=2.5, color=GREY, alpha=0.4, mew=0, rasterized=True)
     velocity, left = identified.points["speed"].values, identified.points["residual"].values
     order = np.argsort(velocity, kind="stable")
-    parts = [part for part in np.array_split(order, 2 * _BINS) if part.size]
+    parts = [part for part in np.array_split(order, 2 * BINS) if part.size]
     axes.axhline(0.0, color=BLACK, lw=0.8)
     middle = [float(velocity[part].mean()) for part in parts]
     axes.plot(middle, [float(left[part].mean()) for part in parts], "o", ms=4, color=ORANGE, label="means")
@@ -227,8 +253,9 @@ def _numbers(axes: Axes, identified: Identified) -> None:
     table = rows(identified, _CONFIDENCE)
     for k, row in enumerate(table):
         y = 0.97 - 0.085 * k
-        axes.text(0.0, y, low_index(row.symbol), va="top", color=BLACK)
-        axes.text(0.16, y, f"{row.value} {row.unit}", va="top", color=BLACK, fontweight="bold")
+        way = row.name.strip() if row.name.startswith(" ") else ""
+        axes.text(0.0, y, f"{low_index(row.symbol)} {way}", va="top", color=BLACK)
+        axes.text(0.2, y, f"{row.value} {row.unit}", va="top", color=BLACK, fontweight="bold")
         axes.text(0.56, y, row.interval, va="top", color=GREY)
     below = 0.97 - 0.085 * len(table) - 0.04
     milliseconds = 1e3 * identified.pulse_length

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import ceil, inf
+from math import ceil, inf, pi
 from typing import Any, Literal
 
 import numpy as np
@@ -21,13 +21,16 @@ from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.identification.device.design import PARAMETERS, Stroke, best_shares, covariance
 from zwidth.identification.device.identified import Identified
-from zwidth.quantity.exact import Interval
+from zwidth.quantity.exact import Interval, ends
 
 RUN = 30.0
 """Length of a run [s]: a load cell is zeroed again after it."""
 
 FEWEST_STROKES = 60
 """Below which an interval may be short by chance, and is not believed."""
+
+MARGIN = 1.15
+"""Times the speed to be seen, that fast strokes have: they vary, and means over pulses are less."""
 
 LEAST_SHARE = 0.1
 """Of the time for the fast and for the slow strokes: a curved friction shows only where there are both."""
@@ -51,6 +54,8 @@ class Plan:
         Half-width of the interval that is wanted, in parts of the parameter.
     confidence
         Of that interval.
+    speed
+        Up to which friction is to be seen, both ways [m/s; rad/s]; None: nothing is asked.
     """
 
     limits: Literal["damping", "coulomb_friction"]
@@ -60,6 +65,7 @@ class Plan:
     force_noise: float
     precision: float
     confidence: float
+    speed: float | None = None
 
     def errors(self, seconds: float) -> dict[str, float]:
         """Standard errors of mass, damping and Coulomb friction to expect after so much recorded motion.
@@ -94,7 +100,7 @@ class Plan:
         return max(m * s.acceleration for s in self.strokes) + b * max(s.speed for s in self.strokes) + f_c
 
     def reached(self, found: Identified) -> bool:
-        """True where the limit is known as well as was wanted: stop.
+        """True where the limit is known as well, and up to the speed, that was wanted: stop.
 
         Parameters
         ----------
@@ -103,7 +109,8 @@ class Plan:
         """
         value = found.estimates[self.limits].value
         low, high = found.estimates[self.limits].interval(self.confidence)
-        return found.strokes >= FEWEST_STROKES and high - low <= 2 * self.precision * value
+        seen = self.speed is None or found.speed >= self.speed
+        return seen and found.strokes >= FEWEST_STROKES and high - low <= 2 * self.precision * value
 
     def __repr__(self) -> str:
         """The protocol for a person."""
@@ -116,6 +123,7 @@ def _protocol(plan: Plan) -> Iterator[str]:
     symbol, wall = {"damping": ("b", "2b/T"), "coulomb_friction": ("f_c", "2f_c/Δ")}[plan.limits]
     known = f"{symbol} within ±{plan.precision:.3g} of itself ({plan.confidence:.4g} confidence)"
     yield f"To know {known}; it sets the limit K = {wall}:"
+    yield _reached(plan, "rad/s" if rotary else "m/s")
     yield (
         "1. Motor off. Hold the handle by the load cell and by nothing else; "
         f"up to {plan.force:.2g} {force} will act."
@@ -129,6 +137,18 @@ def _protocol(plan: Plan) -> Iterator[str]:
     )
     runs = f"{plan.runs} run{'s' if plan.runs > 1 else ''}"
     yield (f"Expected: {runs} of {RUN:.0f} s. Let lengths and times vary, do not rest, do not hit the stops.")
+
+
+def _reached(plan: Plan, unit: str) -> str:
+    """Up to which speed friction will be seen, and what is known of it: a promise ends there."""
+    will = max(s.speed for s in plan.strokes) / MARGIN
+    told = f"Friction will be seen up to some {will:.2g} {unit}; of faster motions nothing will be known."
+    if plan.guess.friction_speed is None:
+        return told
+    before = float(ends(plan.guess.friction_speed)[0])
+    if before >= will:
+        told = f"{told[:-1]}: state the speed that a hand may have."
+    return f"So far it was seen up to {before:.3g} {unit}. {told}"
 
 
 def _spoken(stroke: Stroke, share: float, rotary: bool) -> str:
@@ -146,6 +166,7 @@ def plan_identification(
     fast: float = 0.25,
     precision: float = 0.05,
     confidence: float = 0.95,
+    speed: float | None = None,
 ) -> Plan:
     """Plan the motion that tells how stiff a wall may be, ``K ≤ min(2b/T, 2f_c/Δ)``.
 
@@ -164,6 +185,9 @@ def plan_identification(
         Wanted half-width, in parts of the value, between 0 and 1.
     confidence
         Between 0 and 1.
+    speed
+        Up to which friction is to be seen, into the wall and out of it, > 0 [m/s; rad/s]: the fast strokes
+        are made quick enough.  None: what they are.
 
     Raises
     ------
@@ -176,6 +200,8 @@ def plan_identification(
             raise InputError("force_noise is needed with a guessed device: σ of the load cell per sample [N]")
         force_noise = guess.force_noise
     given: dict[str, Any] = {"force_noise": force_noise, "length": length, "slow": slow, "fast": fast}
+    if speed is not None:
+        given["speed"] = speed
     for name, value in given.items():
         if not 0 < value < inf:
             raise InputError(
@@ -189,6 +215,8 @@ def plan_identification(
             f"a slow stroke takes longer than a fast one, got slow {slow:g} s and fast {fast:g} s"
         )
     limits = _limiting(device)
+    if speed is not None:
+        fast = min(fast, length / 2 * pi / (MARGIN * speed))
     strokes = (Stroke(length, slow), Stroke(length, fast))
     shares = np.clip(best_shares(strokes, limits), LEAST_SHARE, 1 - LEAST_SHARE)
     return Plan(
@@ -199,6 +227,7 @@ def plan_identification(
         force_noise=force_noise,
         precision=precision,
         confidence=confidence,
+        speed=speed,
     )
 
 

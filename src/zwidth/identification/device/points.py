@@ -34,7 +34,8 @@ _ABOUT = {
 class Points:
     """Pieces of pulses, every one at first, then every second, every fourth, …"""
 
-    def __init__(self) -> None:
+    def __init__(self, knee: float) -> None:
+        self._knee = knee
         self._kept: list[tuple[Array, Array]] = []
         self._seen, self._stride = 0, 1
 
@@ -54,7 +55,7 @@ class Points:
         found: dict[str, list[NDArray[Any]]] = {key: [] for key in _ABOUT}
         strokes = 0
         for piece, (rows, basis) in enumerate(self._kept):
-            even, odd = halves(rows)
+            even, odd = halves(rows, self._knee)
             columns = (even + odd) / 2
             terms = {name: fit.value(name) * columns[:, REGRESSORS.index(name)] for name in fit.names}
             if mass is not None:

@@ -15,7 +15,7 @@ import numpy as np
 from scipy import stats
 
 from zwidth.compiled import Array
-from zwidth.identification.device.moments import COLUMNS, REGRESSORS, Moments
+from zwidth.identification.device.moments import COLUMNS, PAIRS, REGRESSORS, Moments
 
 FEWEST = 6
 """Strokes more than parameters, below which no uncertainty is stated."""
@@ -57,6 +57,10 @@ class Regression:
         k = self.names.index(name)
         return float(np.sqrt(self.covariance[k, k]))
 
+    def sees(self, name: str, confidence: float) -> bool:
+        """True where 0 is outside a parameter's interval."""
+        return abs(self.value(name)) > self.reach(confidence) * self.error(name)
+
     def reach(self, confidence: float) -> float:
         """Standard errors to either side of a two-sided interval of Student's t."""
         return float(stats.t.ppf(0.5 + confidence / 2, self.degrees))
@@ -97,9 +101,9 @@ def regress(
     values: Array = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     residual = known.copy()  # the combination of columns that is left: f − m a − Σ θ A
     residual[chosen] -= values
-    selection = np.zeros((len(chosen), COLUMNS**2))
+    selection = np.zeros((len(chosen), len(moments.square)))
     for row, k in enumerate(chosen):
-        selection[row, k * COLUMNS : (k + 1) * COLUMNS] = residual
+        selection[row, PAIRS[k]] = residual
     scatter = selection @ moments.square @ selection.T
     inverse = np.linalg.inv(matrix)
     spare = moments.pulses - len(names) - moments.lines

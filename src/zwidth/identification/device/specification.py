@@ -34,7 +34,7 @@ def to_toml(identified: Identified, device: Device, confidence: float | None) ->
     for key, value in device.parameters().items():
         if key not in device.assumed:
             name = "inertia" if key == "mass" and device.motion == "rotary" else key
-            shown = _value(value, key in identified.estimates)
+            shown = _value(value, key in identified.estimates or key == "friction_speed")
             lines.append(f"{name} = {shown}  # {_origin(identified, key, device.motion, confidence)}")
     return "\n".join(lines) + "\n"
 
@@ -64,6 +64,8 @@ def _origin(identified: Identified, key: str, motion: str, confidence: float | N
         return best if confidence is None else f"{best}, {percent(confidence)} interval"
     if key in ("sample_period", "resolution"):
         return f"{unit}: of the log"
+    if key == "friction_speed":
+        return f"{unit}: the fastest motion seen, each way; beyond it b and f_c are taken for granted"
     return f"{unit}: as given"
 
 

@@ -72,7 +72,9 @@ def facts(identified: Identified) -> str:
         f"r² = {identified.explained:.4f}, noise {identified.force_noise:.3g} {force} per sample, offset "
         f"{identified.offset:.3g} {force}; {identified.strokes} strokes, {identified.pulses} means over "
         f"{1e3 * identified.pulse_length:.3g} ms; T = {identified.sample_period:.6g} s, "
-        f"Δ = {identified.resolution:.6g} {length}"
+        f"Δ = {identified.resolution:.6g} {length}\n"
+        f"friction seen up to {identified.fastest[0]:.3g} {length}/s into the wall, "
+        f"{identified.fastest[1]:.3g} out of it"
     )
 
 

@@ -490,6 +490,7 @@ def _kept(evidence: dict[Exact, Any], value: Exact, found: Any) -> bool:
 _NO_PART = {
     "mass": "a hand without a limit on its force moves every mass as it likes",
     "stiction": "only sliding friction is counted",
+    "friction_speed": "a claim names it, no bound contains it",
     "motor_inductance": "the actuator is taken to give every force at once",
     "supply_voltage": "the actuator is taken to give every force at once",
     "current_limit": "the actuator is taken to give every force at once",
