@@ -95,8 +95,12 @@ LAWS: Mapping[str, Law] = {
     "half-sample-prediction": _through(lambda d, w: HalfSamplePrediction(**_model())),
     "crossing-correction": _through(lambda d, w: CrossingCorrection(**_model())),
     "pole-matched": _through(lambda d, w: PoleMatched(**_model())),
-    "passivity-controller-published": _through(lambda d, w: PassivityController(observer="published")),
+    "passivity-controller-published": _through(
+        lambda d, w: PassivityController(observer="published", largest_damping="unlimited")
+    ),
+    "passivity-controller-unlimited": _through(lambda d, w: PassivityController(largest_damping="unlimited")),
     "passivity-controller": _through(lambda d, w: PassivityController()),
+    "passivity-controller-past": _through(lambda d, w: PassivityController(observer="past")),
     "passivity-controller-limited": _through(
         lambda d, w: PassivityController(largest_damping=d.exact("damping") or 1, resets=True, ceiling=0)
     ),

@@ -41,7 +41,7 @@ ROW = "row"
 
 
 class Key(NamedTuple):
-    """One key of a [[law]] table, an argument of its class."""
+    """One key of a [[law]] table, an argument of its class; a quantity may have words in its place."""
 
     form: Form
     meaning: str
@@ -88,8 +88,8 @@ def _stiffness(meaning: str) -> Key:
     return _quantity(meaning, "N/m", "N*m/rad")
 
 
-def _damping(meaning: str, required: bool = False) -> Key:
-    return _quantity(meaning, "N*s/m", "N*m*s/rad", required)
+def _damping(meaning: str, required: bool = False, words: tuple[str, ...] = ()) -> Key:
+    return _quantity(meaning, "N*s/m", "N*m*s/rad", required)._replace(words=words)
 
 
 def _mass(meaning: str) -> Key:
@@ -144,8 +144,11 @@ LAWS: Mapping[str, LawType] = MappingProxyType(
             "PassivityController",
             "damping where the energy that was counted is lacking",
             {
-                "observer": _word("sampled", "published"),
-                "largest_damping": _damping("α, what it adds at most"),
+                "observer": _word("sampled", "past", "published"),
+                "largest_damping": _damping(
+                    'α, what it adds at most, by default b of the device; or "unlimited"',
+                    words=("unlimited",),
+                ),
                 "largest_force": _force("what it adds at most"),
                 "slowest": _speed("speed below which it adds nothing"),
                 "credit": Key("flag", "true to count in what the device dissipates"),
@@ -351,6 +354,8 @@ def _read(value: object, key: str, kind: Key, motion: str) -> Any:
         return value
     if kind.form == "flag":
         return flag(value, key)
+    if kind.form == "quantity" and isinstance(value, str) and value in kind.words:
+        return value
     if kind.form == "velocity":
         return _velocity(value, key, motion)
     if kind.form == "list":
