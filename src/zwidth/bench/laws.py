@@ -31,10 +31,12 @@ from zwidth.rendering import (
     PassiveLeap,
     PassivityController,
     PoleMatched,
+    RateTerm,
     Rendered,
     Stage,
     TickTime,
     VirtualCoupling,
+    WindowedController,
     render,
 )
 from zwidth.rendering.stage import Surroundings
@@ -104,6 +106,8 @@ LAWS: Mapping[str, Law] = {
     "passivity-controller-limited": _through(
         lambda d, w: PassivityController(largest_damping=d.exact("damping") or 1, resets=True, ceiling=0)
     ),
+    "windowed-controller": _through(lambda d, w: WindowedController()),
+    "rate-term": _through(lambda d, w: RateTerm()),
     "force-bounding": _through(lambda d, w: ForceBounding()),
     "force-bounding-ideal": _through(lambda d, w: ForceBounding(encoder="ideal")),
     "energy-bounding": _through(lambda d, w: EnergyBounding()),

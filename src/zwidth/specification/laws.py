@@ -158,6 +158,21 @@ LAWS: Mapping[str, LawType] = MappingProxyType(
                 "forgetting": _quantity("time constant in which credit is forgotten", "s"),
             },
         ),
+        "windowed-controller": LawType(
+            "WindowedController",
+            "the same with a window that forgets, a floor under the speed and a clamp",
+            {
+                "window": _quantity("N, samples after which what was lost is forgotten, by default 30"),
+                "slowest": _speed("v₀, floor under the speed, by default 0.01 m/s; 0.0316 rad/s"),
+                "share": _quantity("s, part of the largest damping that is used, by default 0.9"),
+                "largest_damping": _damping("α_max, by default b of the device"),
+            },
+        ),
+        "rate-term": LawType(
+            "RateTerm",
+            "a force that leads by τ: f + τ df/dt",
+            {"time_constant": _quantity("τ, by default T/2", "s")},
+        ),
         "force-bounding": LawType(
             "ForceBounding",
             "no more force than what the hand has put in can pay for",
