@@ -27,7 +27,7 @@ steps = st.lists(st.tuples(st.floats(-4, 0), st.sampled_from([1, -1])), min_size
 """Moves of all sizes over four decades, in no order."""
 
 
-def loop(damping=B, friction=0, resolution=0):
+def loop(damping=B, friction=0, resolution=0, **more):
     """36 g at 1 kHz."""
     return zw.Device(
         mass="0.036",
@@ -35,6 +35,7 @@ def loop(damping=B, friction=0, resolution=0):
         coulomb_friction=friction,
         resolution=resolution,
         sample_period="0.001",
+        **more,
     )
 
 
@@ -54,12 +55,18 @@ def given_out(device, law, positions):
 
 @pytest.mark.parametrize("name", DEFAULTS)
 @settings(max_examples=25, deadline=None)
-@given(steps, st.sampled_from([20.0, 300.0, 5000.0]), st.sampled_from([1, 4]), st.floats(-1, 1))
-def test_no_zigzag_takes_out_more_than_stated(name, parts, stiffness, times, start):
+@given(
+    steps,
+    st.sampled_from([20.0, 300.0, 5000.0]),
+    st.sampled_from([1, 4]),
+    st.floats(-1, 1),
+    st.sampled_from([None, "0.2"]),
+)
+def test_no_zigzag_takes_out_more_than_stated(name, parts, stiffness, times, start, most):
     """½ K x₀² and (K/2 + α/T) Σ Δx², α = b by default: beyond the device's damping (K/2) Σ Δx² at most."""
     positions = zigzag(parts, start, times)
     law = zw.render(zw.Wall(stiffness), DEFAULTS[name])
-    trace, out, squares = given_out(loop(), law, positions)
+    trace, out, squares = given_out(loop(force_limit=most), law, positions)
     lost, held = trace.viscous_loss.values, stiffness / 2 * max(positions[0], 0.0) ** 2
     rounding = 1e-9 * (held + (stiffness + B / T) * squares)
     assert (out <= held + (stiffness / 2 + B / T) * squares + rounding).all()
