@@ -103,9 +103,7 @@ LAWS: Mapping[str, Law] = {
     "passivity-controller-unlimited": _through(lambda d, w: PassivityController(largest_damping="unlimited")),
     "passivity-controller": _through(lambda d, w: PassivityController()),
     "passivity-controller-past": _through(lambda d, w: PassivityController(observer="past")),
-    "passivity-controller-limited": _through(
-        lambda d, w: PassivityController(largest_damping=d.exact("damping") or 1, resets=True, ceiling=0)
-    ),
+    "passivity-controller-limited": _through(lambda d, w: PassivityController(resets=True, ceiling=0)),
     "windowed-controller": _through(lambda d, w: WindowedController()),
     "rate-term": _through(lambda d, w: RateTerm()),
     "force-bounding": _through(lambda d, w: ForceBounding()),
