@@ -11,6 +11,7 @@ from tempting import FORCE, LENGTH, TIME, device, follow, same_in_other_units
 
 import zwidth as zw
 from zwidth.rendering import Hysteresis, PassivityController, WindowedController
+from zwidth.rendering.stage import Surroundings
 
 DEVICE = device()
 OPTIONS = {
@@ -76,6 +77,22 @@ def test_what_the_spring_stores_is_never_forgotten():
     added = trace.commanded_force.values - 100 * np.maximum(inside, 0)
     assert 100 / 2 * 3e-4**2 > 100 / 2 * float((np.diff(inside) ** 2).sum()) > 1e-6  # it does leak
     assert np.abs(added).max() <= 1e-12
+
+
+@pytest.mark.parametrize(
+    ("environment", "stored"),
+    [
+        (zw.Wall(300), 150),
+        (zw.StandardLinearSolid(300, branch_stiffness=50, branch_damping=3), 150),
+        (zw.GeneralizedMaxwell(300, branches=[(800, 3)]), 150),
+        (zw.Maxwell(300, 1), 0),
+        (zw.HuntCrossley(300), 0),
+        (zw.VirtualCoupling(300, 0, zw.Wall(100)), 0),
+    ],
+)
+def test_only_a_spring_from_the_surface_is_credited(environment, stored):
+    """What relaxes, what is bent and what lies behind a coupling does not hold K x²/2 at x."""
+    assert WindowedController().numbers(Surroundings(DEVICE, environment))[3] == stored
 
 
 def test_a_clamped_amplifier_is_booked_as_it_was():

@@ -2,7 +2,7 @@
 
 Observer, S what the environment's spring stores; d_k is what the last move has lost, exact behind a hold:
 
-    d_k = f_{k−1} Δx_k − (S_k − S_{k−1}),   S = ½ K x²
+    d_k = f_{k−1} Δx_k − (S_k − S_{k−1}),   S = ½ K max(0, x)²
     D ← D − min(max(d_{k−N}, 0), max(D, 0)) + d_k
 
 Controller, with a floor v₀ under the speed and a clamp:
@@ -12,7 +12,8 @@ Controller, with a floor v₀ under the speed and a clamp:
 
 With nothing forgotten D + S is the energy that the hand has put in.  What is forgotten was lost: never
 a debt, nor what the spring will give back, nor so much that D falls below 0.  f_{k−1} is the force that
-was held, so the observer counts what the clamp let through, not what was asked for.
+was held, so the observer counts what the clamp let through, not what was asked for.  K is that of a wall
+or of a solid at rest; of other environments it is 0, and what they store is forgotten with the rest.
 
 The rules, with 30 samples, 10 mm/s and 0.9, are those of the controller for two arms in sai-primitives
 (Stanford, public code); written down for one axis behind a hold for this project.
@@ -27,6 +28,8 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.device.device import Device
+from zwidth.environment.viscoelastic import GeneralizedMaxwell, StandardLinearSolid
+from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.rendering.controller_limit import largest_damping as or_the_devices
@@ -41,7 +44,10 @@ LONGEST = 1000
 SLOWEST = {"linear": 0.01, "rotary": sqrt(0.001)}
 """v₀ where none is given [m/s; rad/s]."""
 
-_PERIOD, _MOST, _FLOOR, _HALF_STIFFNESS, _BOTH_SIDES, _WINDOW = range(6)
+_WITH_A_SPRING = (Wall, StandardLinearSolid, GeneralizedMaxwell)
+"""Whose stiffness is that of a spring from the surface, all of the force at rest."""
+
+_PERIOD, _MOST, _FLOOR, _HALF_STIFFNESS, _WINDOW = range(5)
 _BEFORE, _LOST, _HEAD, _RING = range(4)
 
 
@@ -116,8 +122,7 @@ class WindowedController(Stage):
             at.period,
             below(self.most_damping(at.device, None)),
             slowest * at.period,
-            at.stiffness / 2,
-            float(not at.environment.unilateral),
+            at.stiffness / 2 if isinstance(at.environment, _WITH_A_SPRING) else 0.0,
             float(self.window),
         ]
 
@@ -159,9 +164,8 @@ def _share(share: RealLike) -> Exact:
 @compiled
 def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: float) -> float:
     """One sample; p from i and s from j on are this law's, `applied` is the force that was held."""
-    both, stiffness = p[i + _BOTH_SIDES] > 0.0, p[i + _HALF_STIFFNESS]
-    before, head = s[j + _BEFORE], int(s[j + _HEAD])
-    inside, was_inside = (x, before) if both else (max(x, 0.0), max(before, 0.0))
+    stiffness, before, head = p[i + _HALF_STIFFNESS], s[j + _BEFORE], int(s[j + _HEAD])
+    inside, was_inside = max(x, 0.0), max(before, 0.0)
     stored = stiffness * inside * inside
     moved = x - before
     lost = applied * moved - (stored - stiffness * was_inside * was_inside)
