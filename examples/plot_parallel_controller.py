@@ -24,11 +24,14 @@ def touch(mass, controller=None):
 
 traces = {
     "no controller": touch("0.05"),
-    "published observer": touch("0.05", ParallelController(observer="published")),
+    "published observer": touch(
+        "0.05", ParallelController(observer="published", largest_mobility="unlimited")
+    ),
+    "sampled observer, no limit": touch("0.05", ParallelController(largest_mobility="unlimited")),
     "sampled observer": touch("0.05", ParallelController()),
 }
 figure, rows = plt.subplots(2, 1, sharex=True, figsize=(7, 5), layout="constrained")
-for (name, trace), style in zip(traces.items(), ("-", "--", "-"), strict=True):
+for (name, trace), style in zip(traces.items(), ("-", "--", "-", "-"), strict=True):
     rows[0].plot(trace.time, 1e3 * trace.position, style, lw=1.2, label=name)
     rows[1].plot(trace.time, 1e6 * trace.hand_work, style, lw=1.2, label=name)
     rest = np.abs(trace.velocity[-200:]).max()
@@ -42,15 +45,22 @@ rows[1].legend()
 # Without a controller the display gives out energy without end.  As it was published, the
 # observer pairs a force with the velocity that follows it; for a body that is stepped implicitly
 # it then counts what the body stores and loses, and the controller never acts.  Paired with
-# the force that the velocity met, it acts, and what comes out stays below a microjoule.
+# the force that the velocity met, it acts.
 #
-# It takes the last force for the next one.  Where forces change within a sample, it does
-# harm: 10 g diverge faster with it, and a hand that turns in each sample doubles its gain in each.
+# It takes the last force for the next one.  Without a limit it does harm where forces change within
+# a sample: 10 g diverge faster with it, and a hand that turns in each sample doubles its gain in each.
+# With T/(2M) at most, the default, both masses come to rest: more comes out at first, and then no more.
 
-for name, controller in {"no controller": None, "controller": ParallelController()}.items():
+for name, controller in {
+    "no controller": None,
+    "no limit": ParallelController(largest_mobility="unlimited"),
+    "controller": ParallelController(),
+}.items():
     light = touch("0.01", controller)
     fastest, end = float(np.abs(light.velocity).max()), float(light.time[-1])
-    print(f"10 g, {name}: {fastest:.2g} m/s after {end:g} s")
+    print(
+        f"10 g, {name}: {fastest:.2g} m/s at most, after {end:g} s {float(abs(light.velocity[-1])):.2g} m/s"
+    )
 print(f"stable masses: {zw.stable_virtual_masses(2000, '0.2', '0.001')}")
 point = zw.stable_virtual_masses(2000, "0.2", "0.001", sensor="point")
 print(f"with a point sensor: above {1e3 * point[0]:g} g")

@@ -5,7 +5,8 @@ What a passivity controller does, and what it does not
 Hannaford & Ryu (2002) let software count the energy that a wall takes in from the
 hand, and add just enough damping where the count falls below zero.  Their simulation
 has a wall of 30 kN/m that is reached from 50 mm away.  Mass and sample rate are not
-printed: 1 kg and 1 kHz are chosen here, and a hand that pushes with 1 N.
+printed: 1 kg and 1 kHz are chosen here, and a hand that pushes with 1 N.  Their controller has no
+limit; here that has to be asked for by its word.
 """
 
 import matplotlib.pyplot as plt
@@ -18,11 +19,11 @@ from zwidth.rendering import PassivityController
 plt.rcParams.update(plots.LOOK)
 display = zw.Device(mass=1, damping=1, coulomb_friction=0, resolution=0, rate="1 kHz")
 wall = zw.Wall(stiffness=30_000)
-controlled = zw.render(wall, PassivityController())
+unlimited = zw.render(wall, PassivityController(largest_damping="unlimited"))
 push = zw.operators.ConstantForce(1.0)
 
 figure, rows = plt.subplots(4, 2, sharex=True, figsize=(8, 7), layout="constrained")
-for column, (title, law) in enumerate({"wall alone": wall, "with the controller": controlled}.items()):
+for column, (title, law) in enumerate({"wall alone": wall, "with the controller": unlimited}.items()):
     trace = zw.simulate(display, law, push, 1.2, initial_position=-0.05, initial_velocity=0.2)
     added = trace.commanded_force - wall.stiffness * np.maximum(trace.measured_position, 0)
     shown = {
@@ -60,12 +61,29 @@ course = zw.Device(
 hand = zw.operators.Tracking([0.003], stiffness=400, damping=0)
 for name, law in {
     "alone": zw.Wall(2500),
-    "published observer": zw.render(zw.Wall(2500), PassivityController(observer="published")),
-    "at most 0.8 N·s/m": zw.render(zw.Wall(2500), PassivityController(largest_damping="0.8")),
+    "published observer": zw.render(
+        zw.Wall(2500), PassivityController(observer="published", largest_damping="unlimited")
+    ),
+    "at most b, 0.8 N·s/m": zw.render(zw.Wall(2500), PassivityController()),
+    "the same, afterwards": zw.render(zw.Wall(2500), PassivityController(observer="past")),
 }.items():
     trace = zw.simulate(course, law, hand, 1.5, initial_position=-0.001)
     tail = np.ptp(trace.position.values[-500:])
     print(f"{name}: tail {1e3 * tail:.2g} mm, energy {-1e3 * float(trace.actuator_work.max()):.3g} mJ")
+
+# %%
+# A course says that the controller "absorbs exactly the net energy output (if any) measured" so far.
+# With the observer of the past it does, for a hand that keeps its speed: what the wall gave in
+# one sample is owed at its end, and absorbed by the end of the next.
+
+ideal = zw.Device(mass="0.036", damping="0.15", coulomb_friction=0, resolution=0, rate="1 kHz")
+steady = 2e-3 - 3e-4 * np.arange(10)
+law = zw.render(zw.Wall(2000), PassivityController(observer="past", largest_damping="unlimited"))
+leaving = zw.operators.PrescribedMotion(np.concatenate([[-1e-3], steady]))
+trace = zw.simulate(ideal, law, leaving, 0.01)
+gave = -2000 * np.maximum(trace.measured_position.values[:-1], 0) * np.diff(trace.position)
+print("given by the wall in a sample [mJ]:", np.round(1e3 * gave[1:8], 3))
+print("owed at its end [mJ]:              ", np.round(1e3 * trace.actuator_work.values[2:9], 3))
 
 # %%
 # The controller takes the last move for the next one.  A hand that turns back is paid
@@ -96,6 +114,22 @@ rows[1].set_ylim(top=0.75)
 rows[1].legend(loc="upper right", ncols=2)
 rows[2].set_ylabel("hand's gain [µJ]")
 rows[2].set_xlabel("time [ms]")
+
+# %%
+# Without a limit there is no end to it: a small move asks for a large force, which is held over a
+# large move.  With the limit that is the default, b of the device, the controller gives out no more
+# than the device's damping takes, whatever the hand does.
+
+millimetre, micrometre = 1e-3, 1e-6
+zigzag = np.tile([0.0, millimetre, millimetre + micrometre], 39)
+bound = (2000 / 2 + 0.15 / 1e-3) * np.sum(np.diff(zigzag) ** 2)
+for name, law in {
+    "wall": zw.Wall(2000),
+    "no limit": zw.render(zw.Wall(2000), PassivityController(largest_damping="unlimited")),
+    "at most b": zw.render(zw.Wall(2000), PassivityController()),
+}.items():
+    trace = zw.simulate(ideal, law, zw.operators.PrescribedMotion(zigzag), 0.116)
+    print(f"zigzag, {name}: {float(trace.actuator_work.max()):.3g} J come out; {bound:.3g} J at most with b")
 
 # %%
 # What is proved is less: a controller that never adds more damping than α is covered by

@@ -14,10 +14,14 @@ from strategies import zero_or
 import zwidth as zw
 from zwidth.rendering import ParallelController
 
+MASS = mpf("0.03")
+
 CONTROLLERS = {
     "none": None,
     "sampled": {},
+    "unlimited": {"largest_mobility": "unlimited"},
     "published": {"observer": "published"},
+    "published, unlimited": {"observer": "published", "largest_mobility": "unlimited"},
     "capped": {"largest_mobility": "0.03", "largest_velocity": "0.002"},
     "forgets": {"resets": True, "weakest": "0.05", "ceiling": "0.00001"},
 }
@@ -31,7 +35,7 @@ def anchor_path(samples):
 
 def plain(body, path, k, c, period, sensor, rules):
     """The loop once more in 60 digits; the port's energy by Simpson's rule, exact for a parabola."""
-    mass, damping, stiffness = mpf("0.03"), mpf("0.07"), mpf(11)
+    mass, damping, stiffness = MASS, mpf("0.07"), mpf(11)
     path = [mpf(v) for v in path]
     x = y = path[0]
     own = held = work = energy = mpf(0)
@@ -72,8 +76,10 @@ def controlled(rules, energy, reading, before, held, own, period):
     if lack <= 0 or abs(reading) <= weakest:
         return own, energy
     mobility = lack / (period * reading**2)
-    if "largest_mobility" in rules:
-        mobility = min(mobility, mpf(rules["largest_mobility"]))
+    largest = rules.get("largest_mobility", period / (2 * MASS))
+    if largest != "unlimited":
+        mobility = min(mobility, mpf(largest))
+    if "largest_velocity" in rules:
         mobility = min(mobility, mpf(rules["largest_velocity"]) / abs(reading))
     return own + mobility * reading, energy
 

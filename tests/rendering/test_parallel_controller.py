@@ -13,6 +13,8 @@ from zwidth.rendering import ParallelController
 
 T = 0.001
 
+UNLIMITED = ParallelController(largest_mobility="unlimited")
+
 forces = st.lists(
     st.floats(0.01, 30).flatmap(lambda f: st.sampled_from([f, -f])), min_size=2, max_size=60
 ).map(np.array)
@@ -49,8 +51,8 @@ def rounding(trace):
 @settings(max_examples=80, deadline=None)
 @given(bodies, forces)
 def test_it_owes_one_sample_at_most(body, newtons):
-    """Sensor and pairing exact: E_{k+1} ≥ T u_k (f̄_k − φ_k), so debts do not add up; E is W_h."""
-    trace = pushed(body, newtons, ParallelController())
+    """Unlimited, sensor and pairing exact: E_{k+1} ≥ T u_k (f̄_k − φ_k), debts do not add up; E is W_h."""
+    trace = pushed(body, newtons, UNLIMITED)
     u, reading, work = (trace[key].values for key in ("velocity", "measured_force", "hand_work"))
     np.testing.assert_allclose(trace.observed_energy, work, rtol=1e-10, atol=1e-12 * np.abs(work).max())
     bound = T * u[:-1] * (newtons - reading[:-1])
@@ -72,7 +74,7 @@ def test_it_owes_one_sample_at_most_to_spring_hands(path, stiffness, damping, ma
         zw.operators.Tracking(path, stiffness=stiffness, damping=damping),
         0.05,
         sample_period="0.001",
-        controller=ParallelController(),
+        controller=UNLIMITED,
     )
     u, reading, work = (trace[key].values for key in ("velocity", "measured_force", "hand_work"))
     assume((reading[1:] != 0).all())
@@ -85,10 +87,11 @@ def test_a_hand_that_turns_doubles_its_gain_in_every_sample():
     """f̄_k = −φ_k: E_{k+1} = E_k (1 − f̄_k/φ_k) = 2 E_k without end; without a controller, a straight line."""
     turns = np.tile([1.0, -1.0], 15)
     body = zw.VirtualBody("0.01")
-    work = pushed(body, turns, ParallelController()).hand_work.values
+    work = pushed(body, turns, UNLIMITED).hand_work.values
     np.testing.assert_allclose(work[2:], -1e-4 * 2.0 ** np.arange(29), rtol=1e-12)
     assert pushed(body, turns).hand_work.values[-1] == pytest.approx(-15e-4)
-    capped = pushed(body, turns, ParallelController(largest_velocity="0.1")).hand_work.values
+    slow = ParallelController(largest_mobility="unlimited", largest_velocity="0.1")
+    capped = pushed(body, turns, slow).hand_work.values
     assert np.diff(capped).min() >= -T * 0.2 * (1 + 1e-12)
 
 
@@ -97,7 +100,8 @@ def test_a_hand_that_turns_doubles_its_gain_in_every_sample():
 def test_the_published_pairing_never_sees_an_implicit_body(newtons, mass, damping, stiffness, sensor):
     """Σ T φ_k v_k is what the body stores and loses: the controller never acts, whatever the hand."""
     body = zw.VirtualBody(mass, damping, stiffness)
-    watched = pushed(body, newtons, ParallelController(observer="published"), sensor=sensor)
+    controller = ParallelController(observer="published", largest_mobility="unlimited")
+    watched = pushed(body, newtons, controller, sensor=sensor)
     scale = np.abs(watched.velocity).max() + 1e-12
     assert np.abs(watched.velocity - watched.body_velocity).max() <= 1e-9 * scale
 
@@ -109,7 +113,7 @@ def test_what_the_published_pairing_does_not_see_grows():
         zw.operators.Tracking([0, 0.001], stiffness=2000, damping=0.2),
         1,
         sample_period="0.001",
-        controller=ParallelController(observer="published"),
+        controller=ParallelController(observer="published", largest_mobility="unlimited"),
     )
     assert trace.observed_energy.min() >= 0
     assert trace.hand_work[-1] < -1e6
@@ -144,19 +148,55 @@ def touch(mass, **options):
 
 
 def test_where_the_force_changes_slowly_it_works():
-    """50 g behind a mean sensor: 24 orders of magnitude without, and about a microjoule at most with it."""
+    """50 g behind a mean sensor: 24 orders of magnitude alone, a microjoule with it and no limit."""
     assert touch("0.05").hand_work.min() < -1e20
-    kept = touch("0.05", controller=ParallelController())
+    kept = touch("0.05", controller=UNLIMITED)
     assert -1e-6 < kept.hand_work.min() < 0
     assert np.abs(kept.velocity[-200:]).max() < 1e-4
 
 
 def test_where_it_changes_within_a_sample_it_does_harm():
-    """10 g grow faster with it; 50 g behind a point sensor are stable without, and diverge with it."""
-    assert touch("0.01", controller=ParallelController()).time[-1] < 0.8
+    """10 g grow faster without a limit; 50 g behind a point sensor are stable alone, and diverge with it."""
+    assert touch("0.01", controller=UNLIMITED).time[-1] < 0.8
     assert "diverged_at_s" not in touch("0.01").attrs
     assert np.abs(touch("0.05", sensor="point").velocity[-200:]).max() < 1e-3
-    assert "diverged_at_s" in touch("0.05", sensor="point", controller=ParallelController()).attrs
+    assert "diverged_at_s" in touch("0.05", sensor="point", controller=UNLIMITED).attrs
+
+
+@pytest.mark.parametrize("mass", ["1", "0.05", "0.01"])
+@pytest.mark.parametrize("sensor", ["mean", "point"])
+def test_by_default_none_of_these_diverges(mass, sensor):
+    """With T/(2M) at most, also where there is none of it and where there is no end to it."""
+    trace = touch(mass, sensor=sensor, controller=ParallelController())
+    assert float(trace.time[-1]) == pytest.approx(4.0)
+    assert trace.hand_work.min() > -3e-4
+    assert np.abs(trace.velocity[-200:]).max() < 0.02
+
+
+zigzags = st.lists(st.tuples(st.floats(-3, 1), st.sampled_from([1, -1])), min_size=2, max_size=120).map(
+    lambda parts: np.array([10.0**size * sign for size, sign in parts])
+)
+"""Held forces of all sizes between 1 mN and 10 N, in no order [N]."""
+
+
+@settings(max_examples=100, deadline=None)
+@given(zigzags, st.floats(0.002, 1), zero_or(0.001, 1), zero_or(0.01, 500), st.sampled_from([1, 2, 5]))
+def test_no_zigzag_takes_out_more_than_stated(newtons, mass, damping, stiffness, times):
+    """By default (T²/M) Σ f̄² at most, at every sample, for every hand: twice what the body alone may leak."""
+    newtons = np.tile(newtons, times)
+    body = zw.VirtualBody(mass, damping, stiffness)
+    for observer in ("sampled", "published"):
+        work = pushed(body, newtons, ParallelController(observer=observer)).hand_work.values
+        bound = T**2 / mass * np.cumsum(newtons**2)
+        assert (-work[1:] <= bound * (1 + 1e-9)).all()
+
+
+def test_the_same_zigzag_without_a_limit_has_no_bound():
+    """Small forces, then a large one: 1 mN asks for a velocity that 1 N is held against."""
+    newtons, body = np.tile([0.001, -1.0], 20), zw.VirtualBody("0.01")
+    bound = T**2 / 0.01 * np.sum(newtons**2)
+    assert -pushed(body, newtons, ParallelController()).hand_work.min() < bound
+    assert -pushed(body, newtons, UNLIMITED).hand_work.min() > 1e30 * bound
 
 
 @settings(max_examples=60, deadline=None)
@@ -186,6 +226,7 @@ def test_the_cap_has_its_price():
     [
         ({"observer": "other"}, "observer is one of 'sampled', 'published'"),
         ({"largest_mobility": 0}, "largest_mobility must be > 0"),
+        ({"largest_mobility": "none"}, "largest_mobility: expected a number"),
         ({"largest_velocity": -1}, "largest_velocity must be > 0"),
         ({"weakest": "x"}, "weakest: expected a number"),
         ({"resets": 1}, "resets is True to count anew in each touch"),

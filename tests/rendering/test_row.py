@@ -25,6 +25,8 @@ ROW = (
     rendering.Saturation(6),
     rendering.SlewLimit(2000),
     rendering.Dither(kind="random"),
+    rendering.RateTerm("0.002"),
+    rendering.WindowedController(window=4),
 )
 LAW = zw.render(zw.Wall(800), *ROW)
 HAND = zw.operators.Dowel()

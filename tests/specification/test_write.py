@@ -43,6 +43,8 @@ CHOSEN = {
     "damper": {"damping": "0.1", "velocity": rendering.AdaptiveWindow(noise="1e-5", longest=9, fit="best")},
     "hysteresis": {"force": "0.03", "stiffness": 700, "clamped": True},
     "passivity-controller": {"observer": "published", "largest_damping": THIRD, "credit": True},
+    "windowed-controller": {"window": 7, "slowest": THIRD, "share": "0.5", "largest_damping": THIRD},
+    "rate-term": {"time_constant": THIRD},
     "held": {"samples": 3},
     "dual-rate": {"samples": 4, "updates": "jump"},
     "braking-pulse": {"velocity": rendering.Kalman(3000)},
@@ -79,6 +81,13 @@ def test_every_law_is_read_as_it_was(name: str) -> None:
     kind = getattr(rendering, LAWS[name].class_name)
     chosen = CHOSEN.get(name, {})
     same(DEVICE, zw.render(zw.Wall(300), kind(**chosen)))
+
+
+def test_no_limit_is_a_word() -> None:
+    """A key that has a number may have it in its place."""
+    law = rendering.PassivityController(observer="past", largest_damping="unlimited")
+    assert 'largest_damping = "unlimited"' in written(DEVICE, zw.render(zw.Wall(300), law))
+    same(DEVICE, zw.render(zw.Wall(300), law))
 
 
 def test_laws_keep_their_order() -> None:

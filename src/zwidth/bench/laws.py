@@ -31,10 +31,12 @@ from zwidth.rendering import (
     PassiveLeap,
     PassivityController,
     PoleMatched,
+    RateTerm,
     Rendered,
     Stage,
     TickTime,
     VirtualCoupling,
+    WindowedController,
     render,
 )
 from zwidth.rendering.stage import Surroundings
@@ -95,11 +97,15 @@ LAWS: Mapping[str, Law] = {
     "half-sample-prediction": _through(lambda d, w: HalfSamplePrediction(**_model())),
     "crossing-correction": _through(lambda d, w: CrossingCorrection(**_model())),
     "pole-matched": _through(lambda d, w: PoleMatched(**_model())),
-    "passivity-controller-published": _through(lambda d, w: PassivityController(observer="published")),
-    "passivity-controller": _through(lambda d, w: PassivityController()),
-    "passivity-controller-limited": _through(
-        lambda d, w: PassivityController(largest_damping=d.exact("damping") or 1, resets=True, ceiling=0)
+    "passivity-controller-published": _through(
+        lambda d, w: PassivityController(observer="published", largest_damping="unlimited")
     ),
+    "passivity-controller-unlimited": _through(lambda d, w: PassivityController(largest_damping="unlimited")),
+    "passivity-controller": _through(lambda d, w: PassivityController()),
+    "passivity-controller-past": _through(lambda d, w: PassivityController(observer="past")),
+    "passivity-controller-limited": _through(lambda d, w: PassivityController(resets=True, ceiling=0)),
+    "windowed-controller": _through(lambda d, w: WindowedController()),
+    "rate-term": _through(lambda d, w: RateTerm()),
     "force-bounding": _through(lambda d, w: ForceBounding()),
     "force-bounding-ideal": _through(lambda d, w: ForceBounding(encoder="ideal")),
     "energy-bounding": _through(lambda d, w: EnergyBounding()),

@@ -116,7 +116,7 @@ def _by_check(device: Device, law: Environment) -> Standing | list[str]:
 
 def _by_a_covering_wall(device: Device, law: Environment) -> Standing | list[str]:
     """A spring with laws that add no more than α |Δx|/T, by the proof of a wall with damping α."""
-    covering = covering_wall(law)
+    covering = covering_wall(device, law)
     if covering is None:
         return []
     verdict, why_not = _with_the_actuator(device, covering)

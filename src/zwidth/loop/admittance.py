@@ -127,7 +127,9 @@ def simulate_admittance(
     check_signals(signals, samples)
     loop = _Loop(
         body=np.array([body.mass, body.damping, body.stiffness, body.integration == "explicit"], dtype=float),
-        controller=np.array(observer_only(period) if controller is None else controller.numbers(period)),
+        controller=np.array(
+            observer_only(period) if controller is None else controller.numbers(period, float(body.mass))
+        ),
         hand=np.array([hand.stiffness, hand.damping]),
         force=np.zeros(samples) if signals.force is None else signals.force,
         anchor=np.full(samples + 1, start) if signals.anchor is None else signals.anchor,

@@ -122,7 +122,7 @@ def _row(
         bounding = check_bounding(device, law)
         if bounding.certificate is not None:
             return _proved(verdict, bounding.certificate, bounding.scope)
-    covering = covering_wall(law)
+    covering = covering_wall(device, law)
     if covering is not None:
         proved = closed(device, covering)
         if proved.outcome == "passive" and proved.certificate is not None:
@@ -132,7 +132,7 @@ def _row(
     return _by_values(verdict, progress) if on_paper is None else on_paper
 
 
-def covering_wall(law: Environment) -> Wall | None:
+def covering_wall(device: Device, law: Environment) -> Wall | None:
     """A wall whose proof, for |f − K u| ≤ B |v|, is one of a wall with laws that add no more than that."""
     from zwidth.rendering.rendered import Rendered
 
@@ -140,10 +140,14 @@ def covering_wall(law: Environment) -> Wall | None:
         return None
     if law.environment.damping or law.environment.clamped:
         return None
-    bounds = [stage.most_damping() for stage in law.stages]
-    if any(bound is None for bound in bounds):
-        return None
-    return law.environment.replace(damping=sum((b.fraction for b in bounds if b is not None), Fraction(0)))
+    wall, total = law.environment, Fraction(0)
+    for n, stage in enumerate(law.stages):
+        alone = n == 0 and isinstance(wall.stiffness, Exact)
+        bound = stage.most_damping(device, wall.stiffness if alone else None)  # type: ignore[arg-type]
+        if bound is None:
+            return None
+        total += bound
+    return wall.replace(damping=total)
 
 
 def _on_paper(verdict: Verdict) -> Verdict | None:

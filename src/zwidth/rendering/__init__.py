@@ -26,11 +26,13 @@ if TYPE_CHECKING:
     from zwidth.rendering.passive_leap import PassiveLeap
     from zwidth.rendering.passivity_controller import PassivityController
     from zwidth.rendering.pole_matched import PoleMatched
+    from zwidth.rendering.rate_term import RateTerm
     from zwidth.rendering.rendered import Rendered, render
     from zwidth.rendering.saturation import Saturation
     from zwidth.rendering.slew_limit import SlewLimit
     from zwidth.rendering.stage import Stage
     from zwidth.rendering.tick_time import TickTime
+    from zwidth.rendering.windowed_controller import WindowedController
 
 __all__ = [
     "AdaptiveWindow",
@@ -53,12 +55,14 @@ __all__ = [
     "PassiveLeap",
     "PassivityController",
     "PoleMatched",
+    "RateTerm",
     "Rendered",
     "Saturation",
     "SlewLimit",
     "Stage",
     "TickTime",
     "VirtualCoupling",
+    "WindowedController",
     "render",
 ]
 
@@ -83,11 +87,13 @@ _LATER = {
     "PassiveLeap": "passive_leap",
     "PassivityController": "passivity_controller",
     "PoleMatched": "pole_matched",
+    "RateTerm": "rate_term",
     "Rendered": "rendered",
     "Saturation": "saturation",
     "SlewLimit": "slew_limit",
     "Stage": "stage",
     "TickTime": "tick_time",
+    "WindowedController": "windowed_controller",
     "render": "rendered",
 }
 """Where they are, until they are first used: the compiler of their steps takes its time to load."""

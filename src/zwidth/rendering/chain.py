@@ -26,8 +26,10 @@ from zwidth.rendering import (
     passive_leap,
     passivity_controller,
     pole_matched,
+    rate_term,
     saturation,
     slew_limit,
+    windowed_controller,
 )
 from zwidth.rendering.braking_pulse import BRAKING_PULSE
 from zwidth.rendering.crossing import CROSSING
@@ -45,10 +47,14 @@ from zwidth.rendering.hysteresis import HYSTERESIS
 from zwidth.rendering.passive_leap import PASSIVE_LEAP
 from zwidth.rendering.passivity_controller import PASSIVITY_CONTROLLER
 from zwidth.rendering.pole_matched import POLE_MATCHED
+from zwidth.rendering.rate_term import RATE_TERM
 from zwidth.rendering.saturation import SATURATION
 from zwidth.rendering.slew_limit import SLEW_LIMIT
+from zwidth.rendering.windowed_controller import WINDOWED_CONTROLLER
 
 _controlled = passivity_controller.step
+_windowed = windowed_controller.step
+_leading = rate_term.step
 _extrapolated = extrapolation.step
 _predicted = half_sample.step
 _corrected = crossing.step
@@ -93,6 +99,10 @@ def after(law: Array, at: int, count: int, memory: Array, slot: int, reading: fl
         code, size, slots = law[at], int(law[at + 1]), int(law[at + 2])
         if code == PASSIVITY_CONTROLLER:
             force = _controlled(law, at + 3, memory, slot, reading, force, applied)
+        elif code == WINDOWED_CONTROLLER:
+            force = _windowed(law, at + 3, memory, slot, reading, force, applied)
+        elif code == RATE_TERM:
+            force = _leading(law, at + 3, memory, slot, reading, force, applied)
         elif code == CROSSING:
             force = _corrected(law, at + 3, memory, slot, reading, force, applied)
         elif code == POLE_MATCHED:

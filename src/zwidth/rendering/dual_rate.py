@@ -20,7 +20,7 @@ from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.passivity_controller import UNLIMITED
+from zwidth.rendering.controller_limit import NO_LIMIT
 from zwidth.rendering.reading import count, damping_per_sample, one_of
 from zwidth.rendering.stage import Stage, Surroundings, positive
 from zwidth.rendering.theorem import Theorem, half_a_step
@@ -92,7 +92,7 @@ class DualRate(Stage):
             slope,
             float(at.environment.unilateral),
             float(self.updates == "jump"),
-            UNLIMITED if limit is None else float(at.device.exact("force_limit")),
+            NO_LIMIT if limit is None else float(at.device.exact("force_limit")),
         ]
 
     def rested(self, reading: float) -> list[float]:

@@ -13,6 +13,11 @@ Controller, φ_k taken for the force to come, v_k the velocity of the body that 
 
 Published by Hannaford & Ryu (2002), with the observer that pairs φ_{k−1} with u_{k−1}.
 It is the series controller with force and velocity exchanged.
+
+Without β_max a hand takes out what it likes: the velocity that a small force asks for is held against
+a large one.  With it, it takes out of the controller β_max T Σ |φ_k φ_{k+1}| at most.  By default
+β_max = T/(2M), M the mass of the body: as much as sampling the body itself leaks, (T/2M) T Σ φ².
+Derived: docs, "Displays of admittance".
 """
 
 from __future__ import annotations
@@ -22,7 +27,7 @@ from typing import Literal
 
 from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.passivity_controller import UNLIMITED
+from zwidth.rendering.controller_limit import NO_LIMIT, UNLIMITED, Limit, limit, said
 from zwidth.rendering.reading import one_of, truth
 from zwidth.rendering.stage import positive
 
@@ -44,9 +49,10 @@ class ParallelController:
         reads the mean force.  "published": with the reading at its beginning (Hannaford & Ryu 2002),
         which takes the leak of the hold for dissipation.
     largest_mobility
-        β_max, the mobility that the controller adds at most [m/(N·s)]; None: no limit.
+        β_max, the mobility that the controller adds at most [m/(N·s)]; None: T/(2M) of the body.
+        "unlimited": no limit, as published; a hand can then take out any energy.
     largest_velocity
-        V, what it adds at most [m/s]; None: no limit.  What it cannot pay is carried over.
+        V, what it adds at most [m/s]; None: no limit but β_max.  What it cannot pay is carried over.
     weakest
         Force up to which it does nothing [N]: there it would take a large velocity to pay.
     resets
@@ -62,7 +68,7 @@ class ParallelController:
     """
 
     observer: Literal["sampled", "published"]
-    largest_mobility: Exact | None
+    largest_mobility: Limit
     largest_velocity: Exact | None
     weakest: Exact
     resets: bool
@@ -78,11 +84,12 @@ class ParallelController:
         resets: bool = False,
         ceiling: RealLike | None = None,
     ) -> None:
-        limit = "it limits what the controller adds; None: none"
         own = {
             "observer": one_of("observer", observer, "sampled", "published"),
-            "largest_mobility": _given("largest_mobility", largest_mobility, limit),
-            "largest_velocity": _given("largest_velocity", largest_velocity, limit),
+            "largest_mobility": limit("largest_mobility", largest_mobility),
+            "largest_velocity": _given(
+                "largest_velocity", largest_velocity, "it limits what the controller adds; None: none"
+            ),
             "weakest": positive("weakest", weakest, "it is a force up to which nothing is added", zero=True),
             "resets": truth("resets", resets, "to count anew in each touch"),
             "ceiling": _given("ceiling", ceiling, "it is the energy that is kept at most", zero=True),
@@ -90,23 +97,27 @@ class ParallelController:
         for name, value in own.items():
             object.__setattr__(self, name, value)
 
-    def numbers(self, period: float) -> list[float]:
-        """As the step reads them; the period in s."""
+    def numbers(self, period: float, mass: float) -> list[float]:
+        """As the step reads them; the period in s, the mass of the body in kg."""
         return [
             period,
-            _or_unlimited(self.largest_mobility),
-            _or_unlimited(self.largest_velocity),
+            self._mobility(period, mass),
+            _or_none(self.largest_velocity),
             float(self.weakest),
             float(self.observer == "published"),
             float(self.resets),
-            _or_unlimited(self.ceiling),
+            _or_none(self.ceiling),
         ]
+
+    def _mobility(self, period: float, mass: float) -> float:
+        if self.largest_mobility == UNLIMITED:
+            return NO_LIMIT
+        return period / (2 * mass) if self.largest_mobility is None else float(self.largest_mobility)
 
     def describe(self) -> str:
         """The law with its numbers, in a few words."""
         parts = [f"{self.observer} observer"]
-        if self.largest_mobility is not None:
-            parts.append(f"at most {float(self.largest_mobility):g} m/(N·s)")
+        parts.append(said(self.largest_mobility, "m/(N·s)", "T/(2M) of the body"))
         if self.largest_velocity is not None:
             parts.append(f"at most {float(self.largest_velocity):g} m/s")
         parts += ["resets"] if self.resets else []
@@ -115,15 +126,15 @@ class ParallelController:
 
 def observer_only(period: float) -> list[float]:
     """The numbers of a controller that counts as "sampled" does, and adds nothing."""
-    return [period, 0.0, 0.0, UNLIMITED, 0.0, 0.0, UNLIMITED]
+    return [period, 0.0, 0.0, NO_LIMIT, 0.0, 0.0, NO_LIMIT]
 
 
 def _given(name: str, value: RealLike | None, why: str, zero: bool = False) -> Exact | None:
     return None if value is None else positive(name, value, why, zero)
 
 
-def _or_unlimited(value: Exact | None) -> float:
-    return UNLIMITED if value is None else float(value)
+def _or_none(value: Exact | None) -> float:
+    return NO_LIMIT if value is None else float(value)
 
 
 @compiled

@@ -7,32 +7,44 @@ on the move that followed, which is exact behind a hold):
 
 Controller, Δx_k = x_k − x_{k−1} taken for the move to come:
 
-    lack = E_ref − (E_k + f_k Δx_k)
+    lack = E_ref − (E_k + f_k Δx_k)      "past": E_ref − E_k, what has come out already
     f_k ← f_k + lack/Δx_k    where lack > 0,  |lack/Δx_k| ≤ α |Δx_k|/T and ≤ F
 
 Published in series form by Hannaford & Ryu (2002), with the observer that pairs f_k with
 the move before it; with the exact observer by Ryu, Kim & Hannaford (2004).
+
+Without α a hand takes out what it likes: lack/Δx_k of a small move is held over a large one.  With
+α it takes out of the controller (α/T) Σ |Δx_k Δx_{k+1}| ≤ (α/T) Σ Δx² at most, and the device's
+damping takes (b/T) Σ Δx² in, at least.  So α = b by default.  Derived: docs, "Passivity controllers".
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from math import exp
 from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
+from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.rendering.controller_limit import NO_LIMIT, Limit, as_read, largest_damping, limit, said
 from zwidth.rendering.reading import one_of, truth
 from zwidth.rendering.stage import Stage, Surroundings, positive
 
 PASSIVITY_CONTROLLER = 1.0
 
-_PERIOD, _DAMPING, _FORCE, _FLOOR, _PUBLISHED = range(5)
+_PERIOD, _DAMPING, _FORCE, _FLOOR, _OBSERVER = range(5)
 _FRICTION, _DRAG, _REFERENCE, _RESETS, _CEILING, _KEPT = range(5, 11)
 _BEFORE, _ENERGY, _ADDED, _MOVED = range(4)
 
-UNLIMITED = 1e300
+OBSERVERS = ("sampled", "past", "published")
+"""In the order of the numbers that the step knows them by."""
+
+_SAMPLED, _PAST, _PUBLISHED = 0.0, 1.0, 2.0
+
+Observer = Literal["sampled", "past", "published"]
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
@@ -43,12 +55,14 @@ class PassivityController(Stage):
     ----------
     observer
         "sampled": the held force is paired with the move that follows it, exact behind a hold without
-        delay.  "published": with the move before it (Hannaford & Ryu 2002), which takes the leak of the
-        hold for dissipation.
+        delay; the move to come is taken to be like the last.  "past": the same count without the move to
+        come; what has come out is absorbed afterwards.  "published": paired with the move before it
+        (Hannaford & Ryu 2002), which takes the leak of the hold for dissipation.
     largest_damping
-        α, the damping that the controller adds at most [N·s/m; N·m·s/rad]; None: no limit.
+        α, the damping that the controller adds at most [N·s/m; N·m·s/rad]; None: b of the device, which
+        pays for it.  "unlimited": no limit, as published; a hand can then take out any energy.
     largest_force
-        What it adds at most [N; N·m]; None: no limit.  What it cannot pay is carried over.
+        What it adds at most [N; N·m]; None: no limit but α.  What it cannot pay is carried over.
     slowest
         Speed below which it does nothing [m/s; rad/s]: there counts of the encoder make
         its force large and rough.
@@ -71,14 +85,15 @@ class PassivityController(Stage):
     Raises
     ------
     InputError
-        If a number is not positive, or a word is not one of these.
+        If a number is not positive, or a word is not one of these; when it is simulated, if `largest_damping`
+        was not given and the device has no damping.
     """
 
     code: ClassVar[float] = PASSIVITY_CONTROLLER
     slots: ClassVar[int] = 4
 
-    observer: Literal["sampled", "published"]
-    largest_damping: Exact | None
+    observer: Observer
+    largest_damping: Limit
     largest_force: Exact | None
     slowest: Exact
     credit: bool
@@ -90,7 +105,7 @@ class PassivityController(Stage):
     def __init__(
         self,
         *,
-        observer: Literal["sampled", "published"] = "sampled",
+        observer: Observer = "sampled",
         largest_damping: RealLike | None = None,
         largest_force: RealLike | None = None,
         slowest: RealLike = 0,
@@ -101,8 +116,8 @@ class PassivityController(Stage):
         forgetting: RealLike | None = None,
     ) -> None:
         own = {
-            "observer": one_of("observer", observer, "sampled", "published"),
-            "largest_damping": _limit("largest_damping", largest_damping),
+            "observer": one_of("observer", observer, *OBSERVERS),
+            "largest_damping": limit("largest_damping", largest_damping),
             "largest_force": _limit("largest_force", largest_force),
             "slowest": positive("slowest", slowest, "it is a speed below which nothing is added", zero=True),
             "credit": truth("credit", credit, "to count in what the device dissipates"),
@@ -124,7 +139,8 @@ class PassivityController(Stage):
         Raises
         ------
         InputError
-            If the reference is a spring's energy and the environment has no stiffness.
+            If the reference is a spring's energy and the environment has no stiffness; if
+            `largest_damping` was not given and the device has no damping.
         """
         if self.reference == "spring" and at.stiffness <= 0:
             raise InputError(
@@ -137,28 +153,27 @@ class PassivityController(Stage):
         period = at.period
         return [
             period,
-            UNLIMITED if self.largest_damping is None else float(self.largest_damping),
-            UNLIMITED if self.largest_force is None else float(self.largest_force),
+            as_read(largest_damping(self.largest_damping, at.device)),
+            NO_LIMIT if self.largest_force is None else float(self.largest_force),
             float(self.slowest) * period,
-            float(self.observer == "published"),
+            float(OBSERVERS.index(self.observer)),
             friction,
             damping / period,
             at.stiffness / 2 if self.reference == "spring" else 0.0,
             float(self.resets),
-            UNLIMITED if self.ceiling is None else float(self.ceiling),
+            NO_LIMIT if self.ceiling is None else float(self.ceiling),
             1.0 if self.forgetting is None else exp(-period / float(self.forgetting)),
         ]
 
-    def most_damping(self) -> Exact | None:
+    def most_damping(self, device: Device, spring: Exact | None) -> Fraction | None:
         """The largest damping, if there is a limit."""
-        return self.largest_damping
+        return largest_damping(self.largest_damping, device)
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
         unit, force = ("N·m·s/rad", "N·m") if motion == "rotary" else ("N·s/m", "N")
         parts = [f"{self.observer} observer"]
-        if self.largest_damping is not None:
-            parts.append(f"at most {float(self.largest_damping):g} {unit}")
+        parts.append(said(self.largest_damping, unit, "b of the device"))
         if self.largest_force is not None:
             parts.append(f"at most {float(self.largest_force):g} {force}")
         parts += [word for word, said in (("device credited", self.credit), ("resets", self.resets)) if said]
@@ -181,12 +196,12 @@ def step(p: Array, i: int, s: Array, j: int, x: float, force: float, applied: fl
     if before > 0.0:
         before *= p[i + _KEPT]
     lost = p[i + _FRICTION] * abs(moved) + p[i + _DRAG] * moved * moved
-    if p[i + _PUBLISHED] > 0.0:
+    if p[i + _OBSERVER] == _PUBLISHED:
         energy = before + force * moved + s[j + _ADDED] * s[j + _MOVED] + lost
         ahead = energy
     else:
         energy = before + applied * moved + lost
-        ahead = energy + force * moved
+        ahead = energy + force * moved if p[i + _OBSERVER] == _SAMPLED else energy
     if p[i + _RESETS] > 0.0 and force == 0.0:
         energy, ahead = 0.0, 0.0
     energy = min(energy, p[i + _CEILING])

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import ClassVar, NamedTuple
 
 from zwidth.device.device import Device
@@ -63,10 +64,11 @@ class Stage(ABC):
         """What it remembers after the hand has been at a reading for ever."""
         return [reading] + [0.0] * (self.slots - 1)
 
-    def most_damping(self) -> Exact | None:
+    def most_damping(self, device: Device, spring: Exact | None) -> Fraction | None:
         """α where what it adds is never more than α |Δx|/T; None where it is not so bounded.
 
-        A wall with that much virtual damping, of either sign, covers the law then.
+        A wall with that much virtual damping, of either sign, covers the law then.  `spring` is K where the
+        force that comes in is that of the wall's spring; None where a law before has changed it.
         """
         return None
 

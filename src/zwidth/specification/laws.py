@@ -41,7 +41,7 @@ ROW = "row"
 
 
 class Key(NamedTuple):
-    """One key of a [[law]] table, an argument of its class."""
+    """One key of a [[law]] table, an argument of its class; a quantity may have words in its place."""
 
     form: Form
     meaning: str
@@ -88,8 +88,8 @@ def _stiffness(meaning: str) -> Key:
     return _quantity(meaning, "N/m", "N*m/rad")
 
 
-def _damping(meaning: str, required: bool = False) -> Key:
-    return _quantity(meaning, "N*s/m", "N*m*s/rad", required)
+def _damping(meaning: str, required: bool = False, words: tuple[str, ...] = ()) -> Key:
+    return _quantity(meaning, "N*s/m", "N*m*s/rad", required)._replace(words=words)
 
 
 def _mass(meaning: str) -> Key:
@@ -144,8 +144,11 @@ LAWS: Mapping[str, LawType] = MappingProxyType(
             "PassivityController",
             "damping where the energy that was counted is lacking",
             {
-                "observer": _word("sampled", "published"),
-                "largest_damping": _damping("α, what it adds at most"),
+                "observer": _word("sampled", "past", "published"),
+                "largest_damping": _damping(
+                    'α, what it adds at most, by default b of the device; or "unlimited"',
+                    words=("unlimited",),
+                ),
                 "largest_force": _force("what it adds at most"),
                 "slowest": _speed("speed below which it adds nothing"),
                 "credit": Key("flag", "true to count in what the device dissipates"),
@@ -154,6 +157,21 @@ LAWS: Mapping[str, LawType] = MappingProxyType(
                 "ceiling": _quantity("energy above which no credit is kept", "J"),
                 "forgetting": _quantity("time constant in which credit is forgotten", "s"),
             },
+        ),
+        "windowed-controller": LawType(
+            "WindowedController",
+            "the same with a window that forgets, a floor under the speed and a clamp",
+            {
+                "window": _quantity("N, samples after which what was lost is forgotten, by default 30"),
+                "slowest": _speed("v₀, floor under the speed, by default 0.01 m/s; 0.0316 rad/s"),
+                "share": _quantity("s, part of the largest damping that is used, by default 0.9"),
+                "largest_damping": _damping("α_max, by default b of the device"),
+            },
+        ),
+        "rate-term": LawType(
+            "RateTerm",
+            "a force that leads by τ: f + τ df/dt",
+            {"time_constant": _quantity("τ, by default T/2", "s")},
         ),
         "force-bounding": LawType(
             "ForceBounding",
@@ -351,6 +369,8 @@ def _read(value: object, key: str, kind: Key, motion: str) -> Any:
         return value
     if kind.form == "flag":
         return flag(value, key)
+    if kind.form == "quantity" and isinstance(value, str) and value in kind.words:
+        return value
     if kind.form == "velocity":
         return _velocity(value, key, motion)
     if kind.form == "list":

@@ -1,0 +1,73 @@
+"""How far a controller may go: a number, what the device or the body pays for, or "unlimited" in words.
+
+None           what follows from the loop: b of the device, T/(2M) of the virtual body
+"unlimited"    no limit; only where it is asked for by that word
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Literal
+
+from zwidth.device.device import Device
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval, RealLike
+from zwidth.rendering.reading import below
+from zwidth.rendering.stage import positive
+
+Limit = Exact | Literal["unlimited"] | None
+
+UNLIMITED: Literal["unlimited"] = "unlimited"
+
+NO_LIMIT = 1e300
+"""Of a controller without one, as the steps read it: more than any force or damping."""
+
+
+def limit(name: str, value: RealLike | None) -> Limit:
+    """A number > 0, None or "unlimited".
+
+    Raises
+    ------
+    InputError
+        If it is none of these.
+    """
+    if value is None or value == UNLIMITED:
+        return value  # type: ignore[return-value]  # the word itself, by the line above
+    why = 'it limits what the controller adds; leave it out for what the loop can bear, or say "unlimited"'
+    return positive(name, value, why)
+
+
+def largest_damping(given: Limit, device: Device) -> Fraction | None:
+    """α of a controller [N·s/m; N·m·s/rad]: as given, or b of the device; None where it is unlimited.
+
+    Where b is an interval it is the upper end, which covers every device within.
+
+    Raises
+    ------
+    InputError
+        If it was not given and the device has no damping.
+    """
+    if given == UNLIMITED:
+        return None
+    if given is not None:
+        return Exact(given).fraction
+    damping = device.damping.high if isinstance(device.damping, Interval) else device.damping
+    if damping > 0:
+        return damping.fraction
+    raise InputError(
+        f"largest_damping was not given and is otherwise b of the device, and {device.name} has none: "
+        "nothing would pay for what the controller gives to a hand that turns back; give the damping "
+        'that was measured, or largest_damping, or largest_damping="unlimited" for no limit at all'
+    )
+
+
+def as_read(alpha: Fraction | None) -> float:
+    """A limit as the steps read it, rounded down."""
+    return NO_LIMIT if alpha is None else below(alpha)
+
+
+def said(given: Limit, unit: str, otherwise: str) -> str:
+    """The limit in a few words."""
+    if given == UNLIMITED:
+        return "no limit: a hand can take out any energy"
+    return f"at most {otherwise if given is None else f'{float(given):g} {unit}'}"
