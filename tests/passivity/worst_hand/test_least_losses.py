@@ -87,7 +87,7 @@ def test_smooth_motions_by_quadrature(seed):
 
 @pytest.mark.parametrize("end", [1e-2, 1e-4, 1e-6])
 def test_given_speeds_at_the_ends_are_approached_and_not_attained(end):
-    """In from 2 m/s and out at −1 m/s: the excess falls in proportion to the time in which the speed changes."""
+    """In from 2 m/s and out at −1 m/s: the excess falls with the time of the change."""
     before, after, far, t = 2.0, -1.0, 1e-3, float(PERIOD)
     short = end * t
     middle = (far - short * (before + after) / 2) / (t - short)
