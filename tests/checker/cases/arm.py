@@ -1,7 +1,7 @@
 """Arms: δ − JᵀRJ ≻ 0 at one place or in a region, R = (2d + 1) KT/2 + A.
 
-`arms.json` has arms at one place, with the damping of the first joint or leg at which the matrix is
-singular there:
+`arms.json` has arms at one place, with the damping of the first joint or leg, or the first entry of the
+matrix of those that damp each other, at which the matrix is singular there:
 from Jacobians by differences in 40 digits, of homogeneous matrices, and of a leg's angle by arcs.
 """
 
@@ -23,6 +23,8 @@ LONGER = 1 + Fraction(1, 10**6)
 def first_damping(document: Any) -> str:
     """Where the damping of the first joint or leg stands."""
     arm = document["arm"]
+    if matrix := [key for key in arm if key.startswith("damping")]:
+        return f"arm.{matrix[0]}.0.0"
     part = "joints" if "joints" in arm else "legs"
     key = next(key for key in arm[part][0] if key.startswith("damping"))
     return f"arm.{part}.0.{key}"
