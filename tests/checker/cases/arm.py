@@ -614,6 +614,14 @@ CASES = [
     refused(
         "held, without the largest force", without(HELD, "loop.largest_force_N"), "largest_force_N is missing"
     ),
+    *(
+        refused(f"a leg, {key} {what}", put(TWO, {f"{LEG}{key}": value}), "of length 1, at right angles")
+        for key, value, what in (
+            ("out", ["1.00000001", "0"], "is too long"),
+            ("up", ["0", "0.99999999"], "is too short"),
+            ("up", ["0.00000001", "1"], "leans"),
+        )
+    ),
     refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "arm.legs must have 2 to 3 entries"),
     refused("a region turned round", put(TWO, {"arm.low_m": ["0.03", "0.09"]}), "low ≤ high"),
     *(

@@ -79,6 +79,7 @@ CASES: list[Case] = [
     refused("not symmetric", table(1, **{f"{MATRIX}.0": ["0.59", "0.0600000001"]}), "not symmetric"),
     refused("a row too many", table(1, **{MATRIX: [["9", "0"], ["0", "9"], ["0", "0"]]}), "has 2 rows"),
     refused("a row too few", table(1, **{MATRIX: [["9", "0"]]}), "has 2 rows"),
+    refused("a row too short", table(1, **{f"{MATRIX}.1": ["9"]}), "has 2 rows"),
     refused("a row too long", table(1, **{f"{MATRIX}.0": ["9", "0", "0"]}), "has 2 rows"),
     refused("a negative eigenvalue", table(1, 9), "not positive definite"),
     refused(

@@ -107,11 +107,11 @@ def legs_surplus(
 
     def surplus(position: Sequence[Enclosed]) -> list[list[Enclosed]]:
         found = [[-r for r in row[i:]] for i, row in enumerate(need)]
-        seen = [_normal(leg, position) for leg in arm.legs]
-        for (i, (normal, _)), (j, (other, _)) in combinations_with_replacement(enumerate(seen), 2):
+        normals, levers = zip(*(_normal(leg, position) for leg in arm.legs), strict=True)
+        for (i, normal), (j, other) in combinations_with_replacement(enumerate(normals), 2):
             if not arm.damping[i][j]:
                 continue
-            weight = _over_levers(arm.legs, seen, i, j) * constant(arm.damping[i][j])
+            weight = _over_levers(arm.legs, levers, i, j) * constant(arm.damping[i][j])
             for r, row in enumerate(found):
                 for k, c in enumerate(range(r, len(found))):
                     row[k] = row[k] + _pair(normal, other, r, c, i == j) * weight
@@ -120,13 +120,11 @@ def legs_surplus(
     return surplus
 
 
-def _over_levers(
-    legs: Sequence[Leg], seen: Sequence[tuple[list[Enclosed], Enclosed]], i: int, j: int
-) -> Enclosed:
+def _over_levers(legs: Sequence[Leg], levers: Sequence[Enclosed], i: int, j: int) -> Enclosed:
     """1/((n_i · e_i⊥)(n_j · e_j⊥)), from H²."""
     if i == j:
-        return inverse(seen[i][1])
-    both = inverse(root(seen[i][1]) * root(seen[j][1]))
+        return inverse(levers[i])
+    both = inverse(root(levers[i]) * root(levers[j]))
     return both if legs[i].bend == legs[j].bend else -both
 
 
