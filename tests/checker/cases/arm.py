@@ -597,6 +597,11 @@ CASES = [
         put(TWO, {"arm.low_m": ["0.02", "0.09", "0"], "arm.high_m": ["0.02", "0.09", "0"]}),
         "as many legs as its places have coordinates",
     ),
+    refused(
+        "three legs, a region of two coordinates",
+        put(THREE, {"arm.low_m": ["0.02", "0.09"], "arm.high_m": ["0.02", "0.09"]}),
+        "as many legs as its places have coordinates",
+    ),
     refused("a wall of three coordinates, two legs", {**TWO, "wall": MIXED["wall"]}, "as many coordinates"),
     refused(
         "legs, held",
@@ -615,12 +620,18 @@ CASES = [
         "held, without the largest force", without(HELD, "loop.largest_force_N"), "largest_force_N is missing"
     ),
     *(
-        refused(f"a leg, {key} {what}", put(TWO, {f"{LEG}{key}": value}), "of length 1, at right angles")
-        for key, value, what in (
-            ("out", ["1.00000001", "0"], "is too long"),
-            ("up", ["0", "0.99999999"], "is too short"),
-            ("up", ["0.00000001", "1"], "leans"),
+        refused(
+            f"a leg, {key} of length {length}",
+            put(TWO, {f"{LEG}{key}": [Fraction(x) * Fraction(length) for x in TWO["arm"]["legs"][0][key]]}),
+            "of length 1, at right angles",
         )
+        for key in ("out", "up")
+        for length in ("1.00000001", "0.99999999")
+    ),
+    refused(
+        "a leg whose axes lean",
+        put(TWO, {f"{LEG}up": [Fraction(x) * (1 - TINY) for x in TWO["arm"]["legs"][0]["out"]]}),
+        "of length 1, at right angles",
     ),
     refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "arm.legs must have 2 to 3 entries"),
     refused("a region turned round", put(TWO, {"arm.low_m": ["0.03", "0.09"]}), "low ≤ high"),

@@ -57,6 +57,14 @@ def one_by_one(document: Any) -> Any:
     return put(without(document, *keys), {f"arm.{name}": matrix})
 
 
+def turned_round(document: Any) -> Any:
+    """The same arm, its legs told from the last to the first."""
+    legs, matrix = document["arm"]["legs"], document["arm"]["damping_N_m_s_per_rad"]
+    told = {"arm.legs": legs[::-1], "arm.damping_N_m_s_per_rad": [row[::-1] for row in matrix[::-1]]}
+    return put(document, told)
+
+
+APART = "coupled legs, elbows apart"
 MATRIX = "arm.damping_N_m_s_rad"
 CASES: list[Case] = [
     *(case for name in ARMS if "coupled" in name for case in of(name)),
@@ -68,6 +76,8 @@ CASES: list[Case] = [
         refused(f"{name}, told as a matrix, but for a hair", one_by_one(damped(name, 1 - TINY)), LESS)
         for name in ("mixed", "two legs")
     ),
+    accepted("the other leg first", turned_round(damped(APART, 1 + TINY))),
+    refused("the other leg first, but for a hair", turned_round(damped(APART, 1 - TINY)), LESS),
     accepted("two slides that damp each other", table(ENOUGH * (1 + TINY))),
     refused("two slides, but for a hair", table(ENOUGH * (1 - TINY)), LESS),
     accepted("two slides, the other way round", table(ENOUGH * (1 + TINY), -COUPLED)),
@@ -77,6 +87,11 @@ CASES: list[Case] = [
     refused("neither", without(table(1), MATRIX), "damping of each joint is missing"),
     refused("a number of one joint alone", without(MIXED, "arm.joints.1.damping_N_s_per_m"), "is missing"),
     refused("not symmetric", table(1, **{f"{MATRIX}.0": ["0.59", "0.0600000001"]}), "not symmetric"),
+    refused(
+        "one of three pairs not symmetric",
+        put(damped("coupled chain", 9), {f"{MATRIX}.2.1": "0.0001"}),
+        "not symmetric",
+    ),
     refused("a row too many", table(1, **{MATRIX: [["9", "0"], ["0", "9"], ["0", "0"]]}), "has 2 rows"),
     refused("a row too few", table(1, **{MATRIX: [["9", "0"]]}), "has 2 rows"),
     refused("a row too short", table(1, **{f"{MATRIX}.1": ["9"]}), "has 2 rows"),
