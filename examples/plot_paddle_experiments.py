@@ -9,6 +9,7 @@ beside what the simulation gives.
 """
 
 import matplotlib.pyplot as plt
+import numba
 import numpy as np
 
 import zwidth as zw
@@ -88,6 +89,7 @@ fine_limit, coarse_limit = dowel_limit(paddle), dowel_limit(coarse)
 forces = (0.125, 0.135, 0.15)
 limits = [soft_limit(coarse, force) for force in forces]
 slow_limits = [soft_limit(slow, force) for force in forces]
+slower_by = [100 * (a / b - 1) for a, b in zip(slow_limits, limits, strict=True)]
 passive = zw.check(coarse, zw.Wall(90))
 
 # %%
@@ -154,8 +156,9 @@ table = [
     ),
     (
         "T = 3 ms moves the second mode by about 10 %",
-        f"{', '.join(f'{k:.0f}' for k in slow_limits)} N/m against {', '.join(f'{k:.0f}' for k in limits)}",
-        yes(all(abs(a / b - 1) < 0.1 for a, b in zip(slow_limits, limits, strict=True))),
+        f"{', '.join(f'{k:.0f}' for k in slow_limits)} N/m against {', '.join(f'{k:.0f}' for k in limits)}: "
+        f"{max(map(abs, slower_by)):.0f} %",
+        yes(all(5 < abs(by) < 15 for by in slower_by)),
     ),
     (
         "T = 3 ms: lower frequency, larger amplitude",
@@ -168,14 +171,97 @@ for statement, simulated, verdict in table:
     print(f"{verdict:8} {statement}\n         simulated: {simulated}")
 
 # %%
-# One statement differs.  At 90 N/m the model is passive, proved, so that no touch
-# whatever buzzes; the paper's paddle did, with effort, and the paper suspects
-# its friction model: at an edge a push is small and slow, and friction at the
-# asperities gives some energy back.  A buzz that ends between 80 and 90 N/m
-# would need a friction of K Δ/2 at the edge:
+# Two statements differ, and both are about the boundary of the buzz.  At 90 N/m the model is
+# passive, proved, so that no touch whatever buzzes; the paper's paddle did, with
+# effort, and the paper suspects its friction model.  A buzz that ends between 80 and
+# 90 N/m would need a friction of K Δ/2 at the edge:
 
 needed = [k * 2.24e-3 / 2 for k in (80, 90)]
 print(f"friction at the edge: {needed[0]:.3f} to {needed[1]:.3f} N, in the place of the fitted 0.12 N")
+
+# %%
+# And the paper's boundary moves with T, which neither 2f_c/Δ nor (F + f_c)/Δ contains.  In the
+# model nothing makes it: not the finger's own spring, not a late force, not more or
+# less damping, mass or friction.  What T changes is how large the buzz is.
+
+step = np.arange(95.0, 161.0, 0.5)
+SPRING = {"stiffness": 500.0, "speed": 0.002, "start": -0.001}  # reaches the edge with F
+changes = {
+    "a push alone": (soft, {}),
+    "a finger of 500 N/m": (hands.Finger(force=0.135 + 500 * 2.24e-3, **SPRING), {}),
+    "a finger without damping": (hands.SoftTouch(damping=0.0), {}),
+    "force 0.15 ms late, as the slowest rise": (soft, {"delay": "0.15 ms"}),
+    "force 1 ms late": (soft, {"delay": "1 ms"}),
+    "b doubled": (soft, {"damping": 0.3}),
+    "m doubled": (soft, {"mass": 0.072}),
+    "f_c = 0.10 N": (soft, {"coulomb_friction": 0.10}),
+}
+
+
+def begins(device, hand, swing):
+    """The softest wall on which the last second still swings by so much [N/m]."""
+    batch = zw.simulate_batch(device, zw.Wall(1), hand, 3.0, vary={"environment.stiffness": step})
+    found = batch.swing.values > swing
+    return step[np.argmax(found)] if found.any() else np.nan
+
+
+for name, (hand, change) in changes.items():
+    begin = [
+        [begins(device.replace(**change), hand, swing) for device in (coarse, slow)] for swing in (1e-8, 1e-6)
+    ]
+    by = [100 * (late / soon - 1) for soon, late in begin]
+    print(f"{name:40} {begin[0][0]:5.1f} N/m, at 3 ms {by[0]:+.0f} %; felt from 1 µm on {by[1]:+.0f} %")
+
+# %%
+# So if a hand feels only what swings by 1 µm and more, the boundary that it reports is 0 to 12 %
+# *lower* at 3 ms, because the buzz there is larger.  The paper does not say in which direction
+# its 10 % goes.
+#
+# The paper's own suspicion does better.  Let asperities bend: friction is a spring until it
+# has bent by δ, and slips at f_c.  A small swing then only bends them and loses
+# nothing.  At 3 ms the wall throws the handle back for longer, the swing is larger, and
+# friction is more of what was fitted.
+
+
+@numba.njit
+def changes_of_force(stiffness, period, push, bend):
+    """Of the last second of two; semi-implicit Euler, 10 µs."""
+    mass, drag, friction, count, dt = 0.042, 1.85, 0.12, 2.24e-3, 1e-5  # handle and finger
+    x, v, z, wall, before, found = count - 5e-5, 0.0, 0.0, 0.0, 0.0, 0
+    for i in range(200_000):
+        if i % round(period / dt) == 0:
+            wall = max(0.0, stiffness * count * np.floor(x / count))
+            found += i >= 100_000 and wall != before
+            before = wall
+        net = push * min(i * dt / 0.5, 1.0) - wall - friction / bend * z - drag * v
+        v += net / mass * dt
+        x, z = x + v * dt, min(max(z + v * dt, -bend), bend)
+    return found
+
+
+def bent_limit(period, push, bend):
+    return next(k for k in np.arange(60.0, 161.0) if changes_of_force(k, period, push, bend) > 10)
+
+
+print("asperities bend by   push     boundary at 1 ms, at 3 ms")
+for bend in (0.3e-6, 0.5e-6, 1e-6, 2e-6):
+    for push in forces:
+        soon, late = (bent_limit(period, push, bend) for period in (0.001, 0.003))
+        by = 100 * (late / soon - 1)
+        print(f"{1e6 * bend:4.1f} µm              {push} N   {soon:.0f}, {late:.0f} N/m: {by:+.0f} %")
+
+# %%
+# Asperities that bend by 0.3 to 1 µm move the boundary by 7 to 23 %, to stiffer walls at
+# 3 ms, and at 1 ms bring it down to 86 to 109 N/m: *both* statements that differ come from one
+# cause.  That is possible, not shown: nobody has measured the paddle below a micrometre.  And
+# two plainer causes are as large: a hand that pushes with 25 mN more in one experiment than
+# in the other, for (F + f_c)/Δ, and the stiffnesses that were tried, since from 80 to 90 N/m is 12 %.
+#
+# Friction that bends is not in the model of the bound: with it 2f_c/Δ is no proof of
+# passivity any more, since the smallest motions lose nothing.  See :doc:`/theory/papers`.
+
+more = 0.1 * limits[1] * 2.24e-3
+print(f"10 % of {limits[1]:.0f} N/m is {1e3 * more:.0f} mN of the push; from 80 to 90 N/m is {100 / 8:.0f} %")
 
 # %%
 # What the table rests on: the force of hand and dowel is not printed in the paper and
@@ -209,5 +295,5 @@ for trace, row, k in ((second[120], axes[1, 0], 120), (second[80], axes[1, 1], 8
 # The number: how many of the paper's statements the model reproduces.
 
 agreeing = sum(verdict == "agrees" for *_, verdict in table)
-print(f"{agreeing} of {len(table)} statements agree; the other is the boundary at 90 N/m")
+print(f"{agreeing} of {len(table)} statements agree; the others are the boundary at 90 N/m and at 3 ms")
 plt.show()

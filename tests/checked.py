@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from zwidth.checker.arm.chain import constant
+from zwidth.checker.arm.damping import constant
 from zwidth.checker.arm.region import Claim, claim_of
 from zwidth.checker.document.fields import Read, read_document
 from zwidth.checker.kinds import fields_of, kind_of

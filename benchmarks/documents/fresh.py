@@ -854,6 +854,17 @@ def _contact_motion(rng: Random) -> Document:
     return {**document, "switch_positions_m": texts(y)} if part < 1 else document
 
 
+def _shared(rng: Random, joints: list[Document]) -> list[list[str]]:
+    """In the place of the joints' own damping a matrix, each coupling less than what leaves it positive."""
+    keys = [next(key for key in joint if key.startswith("damping")) for joint in joints]
+    own = [Fraction(joint.pop(key)) for joint, key in zip(joints, keys, strict=True)]
+    rows = [[b if i == k else Fraction(0) for k in range(len(own))] for i, b in enumerate(own)]
+    for i, a in enumerate(own):
+        for k, b in enumerate(own[:i]):
+            rows[i][k] = rows[k][i] = Fraction(rng.randint(-45, 45), 100) * min(a, b)
+    return [texts(row) for row in rows]
+
+
 def _arm(rng: Random) -> Document:
     """Two or three joints of any placement, the wall nearly as stiff as some places allow."""
     joints = []
@@ -874,12 +885,14 @@ def _arm(rng: Random) -> Document:
         "joints": joints,
         "end_m": texts([Fraction(rng.randint(1, 15), 100) for _ in range(3)]),
     }
+    if rng.random() < 0.5:
+        machine |= {"damping_N_m_s_rad": _shared(rng, joints)}
     size, chain = rng.randint(1, 3), Chain(machine)
     most, places = np.inf, np.random.default_rng(rng.randrange(2**31))
     for k in range(16):
         share = places.integers(0, 2, len(joints)) if k < 8 else places.random(len(joints))
         j = chain.jacobian(chain.low + share * (chain.high - chain.low), lambda q: chain.placed(q)[0][:size])
-        load = np.linalg.eigvalsh(j @ np.diag(1 / chain.damping) @ j.T)[-1]
+        load = np.linalg.eigvalsh(j @ np.linalg.inv(chain.damping) @ j.T)[-1]
         most = min(most, 1 / load if load > 0 else np.inf)
     share = rng.choice((Fraction(1, 2), Fraction(4, 5), Fraction(9, 10), Fraction(51, 50), Fraction(11, 10)))
     k = share * Fraction(f"{min(2000 * most, 1e6):.9g}")  # nearer to the limit, cells are many

@@ -334,3 +334,64 @@ def test_a_wall_in_pose_is_reported_and_drawn(run: Run, tmp_path: Path) -> None:
     assert re.search("stiffness 0.9[0-9]* times everywhere", words)
     assert "its stiffness times 0.9" in words
     assert (tmp_path / "map.png").stat().st_size > 10_000
+
+
+JOINTS = """[joints]
+damping = [["20 N*mm*s/rad", 0.005], [0.005, 0.01]]
+torque_limit = [0.5, 0.4]
+"""
+TWO_LINK = ("workspace", "two-link", "--points", "10", "--stiffness", "200")
+
+
+def test_joints_that_damp_each_other_come_from_a_file(run: Run) -> None:
+    """A matrix in [joints], in the report and in JSON; the proof is of it."""
+    Path("joints.toml").write_text(JOINTS)
+    status, out, _ = run(*TWO_LINK, "--joints", "joints.toml", "-o", "proof.json")
+    assert status == 0
+    assert "joint damping [[0.02, 0.005], [0.005, 0.01]] N, m, s, rad" in " ".join(out.split())
+    told = json.loads(Path("proof.json").read_text())
+    assert told["joint_damping_N_m_s_rad"] == [[0.02, 0.005], [0.005, 0.01]]
+    assert told["certificate"]["arm"]["damping_N_m_s_rad"] == [["0.02", "0.005"], ["0.005", "0.01"]]
+    status, out, _ = run("verify", "proof.json")
+    assert status == 0
+    assert "[[0.02, 0.005], [0.005, 0.01]] in N, m, s, rad" in out
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "words"),
+    [
+        ("[joints]\ndamping = [[0.02, 0.005], [0.006, 0.01]]", (), "symmetric"),
+        ("[joints]\ndamping = [[0.02, 0.0145], [0.0145, 0.01]]", (), "no negative eigenvalue"),
+        (
+            "[joints]\ndamping = [[0.02, 0.005], 0.01]",
+            (),
+            "joints.toml: [joints]: damping is one number for each",
+        ),
+        ("[joints]\ndamping = 0.02", (), "joints.toml: [joints]: damping is a list"),
+        ("[joints]\nfriction = [0.02, 0.01]", (), "friction"),
+        ("[wall]\nstiffness = [[1]]", (), "joints.toml"),
+        (
+            JOINTS,
+            ("--joint-damping", "0.02"),
+            "--joints FILE says damping already; leave out --joint-damping",
+        ),
+        ("[joints]\ntorque_limit = [1, 1]", (), "no source gives the joint damping of two-link"),
+    ],
+)
+def test_files_of_joints_that_cannot_be_used(
+    run: Run, text: str, options: tuple[str, ...], words: str
+) -> None:
+    """One line each, status 2."""
+    Path("joints.toml").write_text(text)
+    status, _, err = run(*TWO_LINK, "--joints", "joints.toml", *options)
+    assert status == 2
+    assert words in err
+    assert err.count("\n") == 1
+
+
+def test_joints_by_file_and_by_options(run: Run) -> None:
+    """What the file leaves out may come from options."""
+    Path("joints.toml").write_text("[joints]\ncoulomb_friction = [0.01, 0.01]")
+    status, out, _ = run(*TWO_LINK, "--joints", "joints.toml", "--joint-damping", "0.02,0.01")
+    assert status == 0
+    assert "joint damping 0.02, 0.01 N, m, s, rad" in " ".join(out.split())

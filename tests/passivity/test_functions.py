@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from zwidth.checker.arm.chain import constant
+from zwidth.checker.arm.damping import constant
 from zwidth.checker.document.refusal import Invalid
 from zwidth.checker.exact.enclosed import Enclosed, dot, known
 from zwidth.checker.exact.functions import NotPositive, inverse, root, sine_cosine

@@ -51,6 +51,14 @@ def _arm(document: Document, rng: Rng) -> Opinion:
     return _chain(document, need, period, rng)
 
 
+def _damping(arm: Document, parts: list[Document]) -> Array:
+    """A matrix, of joints or legs that damp each other or of numbers of their own."""
+    whole = [value for key, value in arm.items() if key.startswith("damping_")]
+    if whole:
+        return _matrix(whole[0])
+    return np.diag([_number(v) for part in parts for k, v in part.items() if k.startswith("damping_")])
+
+
 class Chain:
     """Joints as in the document."""
 
@@ -59,10 +67,9 @@ class Chain:
         self.end = np.array([_number(x) for x in arm["end_m"]])
         self.slides = [j["kind"] == "prismatic" for j in self.joints]
         unit = ["m" if s else "rad" for s in self.slides]
-        per = ["N_s_per_m" if s else "N_m_s_per_rad" for s in self.slides]
         self.low = np.array([_number(j[f"low_{u}"]) for j, u in zip(self.joints, unit, strict=True)])
         self.high = np.array([_number(j[f"high_{u}"]) for j, u in zip(self.joints, unit, strict=True)])
-        self.damping = np.array([_number(j[f"damping_{p}"]) for j, p in zip(self.joints, per, strict=True)])
+        self.damping = _damping(arm, self.joints)
         self.frames = [
             (_matrix(j["rotation"]), np.array([_number(x) for x in j["translation_m"]])) for j in self.joints
         ]
@@ -107,7 +114,7 @@ def _chain(document: Document, need: Array, period: float, rng: Rng) -> Opinion:
         else:
             of = lambda v: arm.placed(v)[0][: len(need)]  # noqa: E731
         j = arm.jacobian(q, of)
-        surplus = np.diag(arm.damping) - j.T @ need @ j
+        surplus = arm.damping - j.T @ need @ j
         if held:
             surplus -= np.eye(len(q)) * _price(arm, q, limits, period, turns)
         least, size = np.linalg.eigvalsh(surplus)[0], np.abs(arm.damping).max() + np.abs(j.T @ need @ j).max()
@@ -180,7 +187,7 @@ def _friction(
 
 def _legs(arm: Document, need: Array, rng: Rng) -> Opinion:
     low, high = (np.array([_number(x) for x in arm[n]]) for n in ("low_m", "high_m"))
-    damping = np.array([_number(leg["damping_N_m_s_per_rad"]) for leg in arm["legs"]])
+    damping = _damping(arm, arm["legs"])
     for leg in arm["legs"]:
         axes = np.array([[_number(x) for x in leg[n]] for n in ("out", "up")])
         if np.abs(axes @ axes.T - np.eye(2)).max() > SLACK:
@@ -199,7 +206,7 @@ def _legs(arm: Document, need: Array, rng: Rng) -> Opinion:
             return false(f"the arm does not reach {np.round(p, 6).tolist()}")
         if np.abs(gradients).max() > 1e5:
             return cannot_say("too close to a singular place")
-        surplus = gradients.T @ np.diag(damping) @ gradients - need
+        surplus = gradients.T @ damping @ gradients - need
         if np.linalg.eigvalsh(surplus)[0] < -10 * SLACK * (np.abs(surplus).max() + np.abs(need).max()):
             return false(f"the damping is not enough at {np.round(p, 6).tolist()}")
     return agrees()

@@ -14,6 +14,7 @@ from zwidth.bench import scores
 from zwidth.bench.adversary import FASTEST, Attack, attack
 from zwidth.bench.laws import standard_laws
 from zwidth.bench.motions import found_motions
+from zwidth.bench.perceived import SOURCE, WEBER, noticeable_differences
 from zwidth.bench.standing import Standing, standing
 from zwidth.bench.touches import Touch, standard_touches
 from zwidth.device.device import Device
@@ -67,6 +68,7 @@ class LawComparison:
     ----------
     scores
         Dimension `law`; the variables of `SCORES`, units and meanings in the attributes, and
+        `stiffness_jnds`, just-noticeable differences between what is felt and what was wanted,
         `gain`, energy that the worst motion takes out in a round [J], `step_time` [s],
         `status`: "passive" with a certificate, "theorem" by a proof on paper, no certificate, "active" with
         a motion, or "undecided".
@@ -179,7 +181,7 @@ def compare(
     if progress is not None:
         progress(len(chosen), len(chosen))
     return LawComparison(
-        scores=_dataset(traces, attacks, known_of, times),
+        scores=_dataset(traces, attacks, known_of, times, float(wall.stiffness)),  # type: ignore[arg-type]
         attacks=attacks,
         standings=known_of,
         traces=traces,
@@ -210,6 +212,7 @@ def _dataset(
     attacks: Mapping[str, Attack],
     standings: Mapping[str, Standing],
     times: Mapping[str, float],
+    wanted: float,
 ) -> xr.Dataset:
     import xarray as xr
 
@@ -219,6 +222,13 @@ def _dataset(
         values = [score.of(traces[name][score.touch]) for name in names]
         data[key] = ("law", np.array(values, dtype=float))
         data[key].attrs = {"units": score.unit, "long_name": score.meaning, "touch": score.touch}
+    steps = [noticeable_differences(felt, wanted) for felt in data["static_stiffness"].values.tolist()]
+    data["stiffness_jnds"] = ("law", steps)
+    data["stiffness_jnds"].attrs = {
+        "units": "1",
+        "long_name": f"felt over wanted stiffness, in steps of {WEBER:.0%} ({SOURCE})",
+        "touch": "press",
+    }
     gains = [a.gain if a.extracts else min(a.gain, 0.0) for a in (attacks[name] for name in names)]
     data["gain"] = ("law", gains)
     data["gain"].attrs = {"units": "J", "long_name": "taken out by a round of the worst motion"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isfinite, isinf
 from typing import TYPE_CHECKING, NamedTuple
 
+from zwidth.bench.perceived import SOURCE, WEBER
 from zwidth.showing import Html, element, printable, row
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ class Column(NamedTuple):
 
 COLUMNS = (
     Column("felt", "static_stiffness", 1.0, "N/m"),
+    Column("JNDs", "stiffness_jnds", 1.0, ""),
     Column("hardness", "rate_hardness", 1.0, "N/m"),
     Column("depth", "penetration", 1e3, "mm"),
     Column("chatter", "tap_chatter", 1e3, "mN"),
@@ -56,9 +58,11 @@ def rows(comparison: LawComparison) -> list[list[str]]:
 
 
 def legend(comparison: LawComparison) -> str:
-    """What a word of the table means that is not clear by itself; empty where none is there."""
+    """What the words of the table mean that are not clear by themselves."""
     on_paper = (comparison.scores["status"] == "theorem").any()
-    return f"{ON_PAPER}: a theorem, by a proof on paper, no certificate" if on_paper else ""
+    paper = f"{ON_PAPER}: a theorem, by a proof on paper, no certificate; " if on_paper else ""
+    steps = f"just-noticeable differences of {WEBER:.0%} ({SOURCE})"
+    return f"{paper}JNDs: felt against the stiffness that is wanted, in {steps}; below 0 it is softer"
 
 
 def as_text(comparison: LawComparison) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 
 from zwidth.cli.options import Once
 from zwidth.cli.output import print_json, targets, writing
+from zwidth.cli.workspace_joints import add_joint_options, joints_of
 from zwidth.cli.workspace_report import print_workspace
 from zwidth.cli.workspace_wall import WALL_OPTIONS, wall_of
 from zwidth.errors import InputError
@@ -17,27 +18,19 @@ from zwidth.quantity.units import parse_number
 _RATE = "1 kHz"
 _SAVED = (".json", ".nc")
 
-_JOINT_OPTIONS = (
-    ("--joint-damping", "damping", "N*m*s/rad", "viscous friction of the joints"),
-    ("--joint-friction", "coulomb_friction", "N*m", "Coulomb friction of the joints"),
-    ("--joint-resolution", "resolution", "rad", "encoder step of the joints"),
-    ("--torque-limit", "torque_limit", "N*m", "largest torque of the motors"),
-)
-
 
 def configure_workspace(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth workspace`."""
     parser.usage = (
         "%(prog)s ARM --stiffness K [--pose --rotational-stiffness K] [--wall FILE] [--joint-damping B] "
-        "[--joint-friction F] [--joint-resolution STEP] [--largest-force FORCE] [--rate RATE] "
-        "[--virtual-damping B] [--delay TIME] [--points N] [--json] [--plot FILE] [-o FILE] [--force]"
+        "[--joint-friction F] [--joint-resolution STEP] [--joints FILE] [--largest-force FORCE] "
+        "[--rate RATE] [--virtual-damping B] [--delay TIME] [--points N] [--json] [--plot FILE] [-o FILE] "
+        "[--force]"
     )
     parser.add_argument(
         "arm", metavar="ARM", help="hapkit, two-link, haply-2diy, falcon, or a .urdf, .xml or .mjcf file"
     )
-    for option, _, unit, meaning in _JOINT_OPTIONS:
-        words = f"{meaning}, one value for all or one for each: 0.001,0.002 [{unit}]"
-        parser.add_argument(option, metavar="VALUES", action=Once, help=words)
+    add_joint_options(parser)
     for option, metavar, meaning in (
         ("--frame", "NAME", "frame of the description at which the hand is (default: the last)"),
         ("--hold", "JOINTS", "joints of the description that stay, as in wrist=0.2,grip=0 [rad; m]"),
@@ -124,11 +117,7 @@ def run_workspace(arguments: argparse.Namespace) -> int:
 def _arm(arguments: argparse.Namespace) -> Any:
     from zwidth.device.arm import BUILT_IN, built_in, read_arm
 
-    given: dict[str, Any] = {
-        key: _values(text, unit, option[2:])
-        for option, key, unit, _ in _JOINT_OPTIONS
-        if (text := getattr(arguments, option[2:].replace("-", "_"))) is not None
-    }
+    given = joints_of(arguments)
     if arguments.rest is not None and not arguments.pose:
         raise InputError("--rest is where the rotation of a wall in pose rests; add --pose")
     single = {key: v[0] if len(v) == 1 else v for key, v in given.items()}
@@ -155,10 +144,6 @@ def _arm(arguments: argparse.Namespace) -> Any:
         rest={} if arguments.rest == "middle" else _by_name(arguments.rest, "rest"),
         **given,
     )
-
-
-def _values(text: str, unit: str, what: str) -> list[float]:
-    return [float(parse_number(part.strip(), unit, what)) for part in text.split(",")]
 
 
 def _by_name(text: str | None, option: str) -> dict[str, float] | None:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from math import isfinite
 from typing import TYPE_CHECKING
 
+from zwidth.cli.workspace_joints import damping_in_words
 from zwidth.cli.workspace_wall import wall_in_words
 
 if TYPE_CHECKING:
@@ -81,6 +82,7 @@ def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
 
     count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
     yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
+    yield "joint damping", damping_in_words(space.arm.damping)
     yield "region", space.region
     yield "wall", wall_in_words(space.wall)
     if space.delay_samples:

@@ -111,9 +111,10 @@ def wall_in_words(wall: Wall | MatrixWall) -> str:
 
     units = ("N, m, rad", "N, m, s, rad") if wall.turns else ("N/m", "N·s/m")
     matrix = np.asarray(wall.damping)
-    more = f"; virtual damping {_rows(matrix)} {units[1]}" if matrix.any() else ""
-    return f"stiffness {_rows(np.asarray(wall.stiffness))} {units[0]}{more}"
+    more = f"; virtual damping {rows_in_words(matrix)} {units[1]}" if matrix.any() else ""
+    return f"stiffness {rows_in_words(np.asarray(wall.stiffness))} {units[0]}{more}"
 
 
-def _rows(matrix: Any) -> str:
+def rows_in_words(matrix: Any) -> str:
+    """A matrix on one line."""
     return "[" + ", ".join("[" + ", ".join(f"{x:g}" for x in row) + "]" for row in matrix) + "]"

@@ -1,4 +1,4 @@
-"""`trace.zwidth`: the ledger, the plot, the files and the sound of a trace."""
+"""`trace.zwidth`: the ledger, the stiffness felt, the plot, the files and the sound of a trace."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from zwidth.bench.perceived import WEBER, noticeable_differences
+from zwidth.bench.scores import static_stiffness
 from zwidth.energy import Ledger, ledger
 from zwidth.errors import InputError
 from zwidth.loop.trace import FORMAT
@@ -40,6 +42,18 @@ class TraceAccessor:
     def energy(self) -> Ledger:
         """The energy ledger."""
         return ledger(self._trace)
+
+    @property
+    def felt_stiffness(self) -> float:
+        """Mean force of the wall over mean depth in the last half, when the hand rests [N/m; N·m/rad].
+
+        nan where that is not contact.
+        """
+        return static_stiffness(self._trace)
+
+    def stiffness_jnds(self, wanted: float, weber: float = WEBER) -> float:
+        """How many just-noticeable differences this is from a stiffness, see `noticeable_differences`."""
+        return noticeable_differences(self.felt_stiffness, wanted, weber)
 
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """Position, force and energy against time, as the papers draw them; saved if a path is given."""

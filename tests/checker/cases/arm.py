@@ -1,7 +1,7 @@
 """Arms: δ − JᵀRJ ≻ 0 at one place or in a region, R = (2d + 1) KT/2 + A.
 
-`arms.json` has arms at one place, with the damping of the first joint or leg at which the matrix is
-singular there:
+`arms.json` has arms at one place, with the damping of the first joint or leg, or the first entry of the
+matrix of those that damp each other, at which the matrix is singular there:
 from Jacobians by differences in 40 digits, of homogeneous matrices, and of a leg's angle by arcs.
 """
 
@@ -23,6 +23,8 @@ LONGER = 1 + Fraction(1, 10**6)
 def first_damping(document: Any) -> str:
     """Where the damping of the first joint or leg stands."""
     arm = document["arm"]
+    if matrix := [key for key in arm if key.startswith("damping")]:
+        return f"arm.{matrix[0]}.0.0"
     part = "joints" if "joints" in arm else "legs"
     key = next(key for key in arm[part][0] if key.startswith("damping"))
     return f"arm.{part}.0.{key}"
@@ -595,6 +597,11 @@ CASES = [
         put(TWO, {"arm.low_m": ["0.02", "0.09", "0"], "arm.high_m": ["0.02", "0.09", "0"]}),
         "as many legs as its places have coordinates",
     ),
+    refused(
+        "three legs, a region of two coordinates",
+        put(THREE, {"arm.low_m": ["0.02", "0.09"], "arm.high_m": ["0.02", "0.09"]}),
+        "as many legs as its places have coordinates",
+    ),
     refused("a wall of three coordinates, two legs", {**TWO, "wall": MIXED["wall"]}, "as many coordinates"),
     refused(
         "legs, held",
@@ -611,6 +618,20 @@ CASES = [
     ),
     refused(
         "held, without the largest force", without(HELD, "loop.largest_force_N"), "largest_force_N is missing"
+    ),
+    *(
+        refused(
+            f"a leg, {key} of length {length}",
+            put(TWO, {f"{LEG}{key}": [Fraction(x) * Fraction(length) for x in TWO["arm"]["legs"][0][key]]}),
+            "of length 1, at right angles",
+        )
+        for key in ("out", "up")
+        for length in ("1.00000001", "0.99999999")
+    ),
+    refused(
+        "a leg whose axes lean",
+        put(TWO, {f"{LEG}up": [Fraction(x) * (1 - TINY) for x in TWO["arm"]["legs"][0]["out"]]}),
+        "of length 1, at right angles",
     ),
     refused("one leg", put(TWO, {"arm.legs": TWO["arm"]["legs"][:1]}), "arm.legs must have 2 to 3 entries"),
     refused("a region turned round", put(TWO, {"arm.low_m": ["0.03", "0.09"]}), "low ≤ high"),

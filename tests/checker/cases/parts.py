@@ -322,7 +322,7 @@ def rotations_are_those_of_their_quaternions() -> str:
 def turns_are_bounded() -> str:
     """Half for every joint that turns, where the hand turns in space; how many rows a wall has."""
     pose, chain = part("arm.pose"), part("arm.chain")
-    told = chain.Chain([SimpleNamespace(slides=s) for s in (False, True, False, False)], [])
+    told = chain.Chain([SimpleNamespace(slides=s) for s in (False, True, False, False)], [], [])
     found = [pose.turning_bend(told, pose.Pose(turns, True)) for turns in (0, 1, 3)]
     if found != [0, 0, Fraction(3, 2)]:
         return f"{found}"
@@ -336,7 +336,7 @@ def turns_are_bounded() -> str:
     if not chain.NOTHING.is_zero:
         return "nothing is something"
     links = [SimpleNamespace(slides=False, low=0, high=0, translation=[Fraction(k), 0, 0]) for k in (9, 2, 4)]
-    bends = chain.bends(chain.Chain(links, [Fraction(8), 0, 0]))
+    bends = chain.bends(chain.Chain(links, [Fraction(8), 0, 0], []))
     if [row[0] / chain.LONGER for row in bends] != [14, 12, 8]:
         return f"bends {bends}"
     said = pose.in_words(stiffness, pose.Pose(3, True))

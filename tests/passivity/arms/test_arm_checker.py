@@ -14,7 +14,7 @@ from checked import claim, matrix_at
 from zwidth import checker
 from zwidth.checker.arm import cells as arm_cells
 from zwidth.checker.arm.cells import BITS
-from zwidth.checker.arm.chain import constant
+from zwidth.checker.arm.damping import constant
 from zwidth.checker.exact.enclosed import Enclosed
 from zwidth.device.arm import Leg, LeggedArm
 

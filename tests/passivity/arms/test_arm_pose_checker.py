@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker.arm.cells import BITS
-from zwidth.checker.arm.chain import constant
+from zwidth.checker.arm.damping import constant
 from zwidth.checker.arm.pose import _quaternion, _rotation
 from zwidth.checker.exact.enclosed import Enclosed
 from zwidth.device.arm import PlanarChain, read_arm

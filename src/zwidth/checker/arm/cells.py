@@ -109,11 +109,17 @@ def _require_at_middle(cell: Cell, matrix: Function, fails: str) -> None:
     middle = [Enclosed(BITS, (low + high) // 2, (), 0 if _moves((low, high)) else 1) for low, high in cell]
     place = ", ".join(f"{x.middle / (1 << BITS):.6g}" for x in middle)
     try:
-        start, rest, _ = _parted(matrix(middle), 0)
+        found = matrix(middle)
     except NotPositive:
         raise Invalid(f"the arm does not reach {place}") from None
-    if not _positive(_less(start, rest)):
+    if not positive(found):
         raise Invalid(f"{fails} at {place}")
+
+
+def positive(upper: Sequence[Sequence[Enclosed]]) -> bool:
+    """A symmetric matrix of numbers without slopes is ≻ 0; it is given from the diagonal on."""
+    start, rest, _ = _parted(upper, 0)
+    return _positive(_less(start, rest))
 
 
 def _parted(upper: Sequence[Sequence[Enclosed]], moving: int) -> tuple[Whole, Whole, list[Whole]]:

@@ -22,6 +22,7 @@ from ..document.unit import always
 from ..exact.enclosed import Enclosed, dot, known
 from ..exact.functions import sine_cosine
 from .cells import BITS
+from .damping import constant, damping_matrix, damping_of
 
 MOST_JOINTS = 16
 _METRES, _RADIANS = always("m"), always("rad")
@@ -39,7 +40,7 @@ def _joint(length: str, force: str, damping: str, **more: Field) -> Record:
             "translation": vector(3, "m"),
             "low": Number(always(length)),
             "high": Number(always(length)),
-            "damping": Number(always(damping), least=0),
+            "damping": Number(always(damping), least=0, default=None),
             "resolution": Number(always(length), least=0, default=None),
             "coulomb_friction": Number(always(force), least=0, default=None),
             **more,
@@ -60,10 +61,16 @@ _JOINT = OneOf(
         "prismatic": _joint("m", "N", "N_s_per_m"),
     },
 )
-CHAIN = Record({"joints": List(_JOINT, least=1, most=MOST_JOINTS), "end": vector(3, "m")})
-"""From the base: the placement of each joint, its range and damping; the hand in the frame of the last."""
+CHAIN = Record(
+    {
+        "joints": List(_JOINT, least=1, most=MOST_JOINTS),
+        "end": vector(3, "m"),
+        "damping": damping_matrix("N_m_s_rad", MOST_JOINTS),
+    }
+)
+"""From the base: the placement of each joint, its range and damping; the hand in the frame of the last.
+Joints that damp each other have a matrix in the place of their own damping."""
 
-LARGEST = 1 << 64
 NEARLY = Fraction(1, 10**9)
 LONGER = 1 + Fraction(1, 10**6)
 """What 16 matrices that are nearly rotations can lengthen, and more."""
@@ -73,7 +80,6 @@ class Joint(NamedTuple):
     slides: bool
     rotation: list[list[Fraction]]
     translation: list[Fraction]
-    damping: Fraction
     low: Fraction
     high: Fraction
 
@@ -81,11 +87,12 @@ class Joint(NamedTuple):
 class Chain(NamedTuple):
     joints: list[Joint]
     end: list[Fraction]
+    damping: list[list[Fraction]]
 
 
 def chain_of(told: Read) -> Chain:
     """The chain of a document."""
-    return Chain([_joint_of(joint) for joint in told.joints], told.end)
+    return Chain([_joint_of(joint) for joint in told.joints], told.end, damping_of(told, told.joints))
 
 
 def _joint_of(told: Read) -> Joint:
@@ -96,18 +103,11 @@ def _joint_of(told: Read) -> Joint:
                 raise Invalid("a rotation is not one")
     if told.low > told.high:
         raise Invalid("a joint needs low ≤ high")
-    return Joint(told.kind == "prismatic", rotation, told.translation, told.damping, told.low, told.high)
+    return Joint(told.kind == "prismatic", rotation, told.translation, told.low, told.high)
 
 
 NOTHING = Enclosed(BITS, 0)
 UNIT = known(Fraction(1), BITS)
-
-
-def constant(x: Fraction) -> Enclosed:
-    """A number of the document."""
-    if abs(x) > LARGEST:
-        raise Invalid("a number is too large")
-    return known(x, BITS)
 
 
 def chain_surplus(
@@ -119,7 +119,10 @@ def chain_surplus(
     """δ_m − c − JᵀRJ, its rows from the diagonal on; R of the hand's first coordinates, c of every joint.
     `turning` gives what comes after the point in each column of J."""
     fixed = _placements(chain)
-    own = [constant(joint.damping - price) for joint in chain.joints]
+    own = [
+        [constant(x - price if k == 0 else x) for k, x in enumerate(row[i:])]
+        for i, row in enumerate(chain.damping)
+    ]
     end = [constant(x) for x in chain.end]
 
     def surplus(joints: Sequence[Enclosed]) -> list[list[Enclosed]]:
@@ -136,7 +139,7 @@ def chain_surplus(
         ]
         loads = [[dot(v, row) for row in need] for v in columns]
         return [
-            [(own[i] if k == 0 else NOTHING) - dot(v, load) for k, load in enumerate(loads[i:])]
+            [damping - dot(v, load) for damping, load in zip(own[i], loads[i:], strict=True)]
             for i, v in enumerate(columns)
         ]
 

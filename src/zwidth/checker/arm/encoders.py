@@ -19,7 +19,8 @@ from ..document.fields import Read, only_if
 from ..document.number import up
 from ..document.refusal import Invalid
 from ..exact.enclosed import Enclosed
-from .chain import LONGER, NOTHING, UNIT, Chain, constant, levers, root_above
+from .chain import LONGER, NOTHING, UNIT, Chain, levers, root_above
+from .damping import constant
 from .pose import Pose
 
 Matrix = list[list[Fraction]]
@@ -58,7 +59,7 @@ def with_steps(chain: Chain, encoders: Encoders) -> Chain:
         joint._replace(low=joint.low - step, high=joint.high + step)
         for joint, step in zip(chain.joints, encoders.steps, strict=True)
     ]
-    return Chain(joints, chain.end)
+    return chain._replace(joints=joints)
 
 
 def columns_below(chain: Chain, encoders: Encoders) -> Callable[[Sequence[Enclosed]], list[list[Enclosed]]]:

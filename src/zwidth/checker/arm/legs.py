@@ -1,4 +1,4 @@
-"""A parallel arm: each leg's elbow from where the hand is, and Σ b_i w_i w_iᵀ − R with its slopes.
+"""A parallel arm: each leg's elbow from where the hand is, and Σ δ_ij w_i w_jᵀ − R with its slopes.
 
 A leg sees the hand at P = (u, w) in its plane and v across it. Its link l ends at the elbow e, and the rod
 goes on from there:
@@ -9,13 +9,17 @@ goes on from there:
 σ = ±1 says which elbow; as long as H > 0 it stays the same one. The closure |P − e|² = ℓ² gives the angle
 of the link as a function of the hand, with the gradient
 
-    w = n/(n · e⊥),    n = (P − e) in the plane + ℓ v/√(b² − v²) across,    |n · e⊥| = H
+    w = n/(n · e⊥),    n = (P − e) in the plane + ℓ v/√(b² − v²) across,    n · e⊥ = −σ H
+
+e⊥ = (A P⊥ − σ H P)/|P|² is e turned by a right angle, and e · e⊥ = 0. δ is diagonal, with b_i, unless motors
+damp each other; only then the sign plays a part.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from itertools import combinations_with_replacement
 from typing import NamedTuple
 
 from ..document.fields import Choice, List, Number, Read, Record, numbers
@@ -23,7 +27,8 @@ from ..document.refusal import Invalid
 from ..document.unit import always
 from ..exact.enclosed import Enclosed, dot
 from ..exact.functions import inverse, root
-from .chain import NEARLY, NOTHING, constant
+from .chain import NEARLY, NOTHING
+from .damping import constant, damping_matrix, damping_of
 
 _METRES = always("m")
 
@@ -41,11 +46,19 @@ _LEG = Record(
         "rod": Number(_METRES, above=0),
         "offset": Number(_METRES, least=0),
         "bend": Choice(-1, 1),
-        "damping": Number(always("N_m_s_per_rad"), least=0),
+        "damping": Number(always("N_m_s_per_rad"), least=0, default=None),
     }
 )
-LEGS = Record({"legs": List(_LEG, least=2, most=3), "low": _place(), "high": _place()})
-"""Two legs in the plane or three in space; opposite corners of the region."""
+LEGS = Record(
+    {
+        "legs": List(_LEG, least=2, most=3),
+        "low": _place(),
+        "high": _place(),
+        "damping": damping_matrix("N_m_s_per_rad", 3),
+    }
+)
+"""Two legs in the plane or three in space; opposite corners of the region. Motors that damp each other have a
+matrix in the place of their own damping."""
 
 
 class Leg(NamedTuple):
@@ -55,13 +68,13 @@ class Leg(NamedTuple):
     rod: Fraction
     offset: Fraction
     bend: int
-    damping: Fraction
 
 
 class Legs(NamedTuple):
     legs: list[Leg]
     low: list[Fraction]
     high: list[Fraction]
+    damping: list[list[Fraction]]
 
 
 def legs_of(told: Read) -> Legs:
@@ -72,7 +85,8 @@ def legs_of(told: Read) -> Legs:
         raise Invalid("an arm has as many legs as its places have coordinates")
     if any(a > b for a, b in zip(told.low, told.high, strict=True)):
         raise Invalid("the region needs low ≤ high")
-    return Legs([_leg(leg, size) for leg in told.legs], told.low, told.high)
+    legs = [_leg(leg, size) for leg in told.legs]
+    return Legs(legs, told.low, told.high, damping_of(told, told.legs))
 
 
 def _leg(told: Read, size: int) -> Leg:
@@ -83,7 +97,7 @@ def _leg(told: Read, size: int) -> Leg:
         for j, b in enumerate((out, up)):
             if abs(sum((x * y for x, y in zip(a, b, strict=True)), Fraction(-(i == j)))) > NEARLY:
                 raise Invalid("out and up must be of length 1, at right angles")
-    return Leg(told.base, axes, told.link, told.rod, told.offset, told.bend, told.damping)
+    return Leg(told.base, axes, told.link, told.rod, told.offset, told.bend)
 
 
 def legs_surplus(
@@ -93,15 +107,30 @@ def legs_surplus(
 
     def surplus(position: Sequence[Enclosed]) -> list[list[Enclosed]]:
         found = [[-r for r in row[i:]] for i, row in enumerate(need)]
-        for leg in arm.legs:
-            normal, lever = _normal(leg, position)
-            weight = inverse(lever) * constant(leg.damping)
-            for i, x in enumerate(normal):
-                for k, y in enumerate(normal[i:]):
-                    found[i][k] = found[i][k] + x * y * weight
+        normals, levers = zip(*(_normal(leg, position) for leg in arm.legs), strict=True)
+        for (i, normal), (j, other) in combinations_with_replacement(enumerate(normals), 2):
+            if not arm.damping[i][j]:
+                continue
+            weight = _over_levers(arm.legs, levers, i, j) * constant(arm.damping[i][j])
+            for r, row in enumerate(found):
+                for k, c in enumerate(range(r, len(found))):
+                    row[k] = row[k] + _pair(normal, other, r, c, i == j) * weight
         return found
 
     return surplus
+
+
+def _over_levers(legs: Sequence[Leg], levers: Sequence[Enclosed], i: int, j: int) -> Enclosed:
+    """1/((n_i · e_i⊥)(n_j · e_j⊥)), from H²."""
+    if i == j:
+        return inverse(levers[i])
+    both = inverse(root(levers[i]) * root(levers[j]))
+    return both if legs[i].bend == legs[j].bend else -both
+
+
+def _pair(a: Sequence[Enclosed], b: Sequence[Enclosed], r: int, c: int, same: bool) -> Enclosed:
+    """The entry of a aᵀ, or of a bᵀ + b aᵀ."""
+    return a[r] * a[c] if same else a[r] * b[c] + b[r] * a[c]
 
 
 def _normal(leg: Leg, position: Sequence[Enclosed]) -> tuple[list[Enclosed], Enclosed]:

@@ -23,7 +23,8 @@ from ..document.number import about
 from ..document.refusal import Invalid
 from ..exact.enclosed import Enclosed, dot
 from ..exact.functions import inverse, root, sine_cosine
-from .chain import NOTHING, UNIT, Chain, about_z, constant
+from .chain import NOTHING, UNIT, Chain, about_z
+from .damping import constant
 
 Matrix = list[list[Fraction]]
 Columns = Callable[[Sequence[Enclosed]], list[list[Enclosed]]]

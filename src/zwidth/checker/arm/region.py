@@ -1,6 +1,6 @@
 """An arm of several joints renders a linear wall passively wherever it is in its region.
 
-    δ_m − c ≻ Jᵀ R J    or, for a parallel arm, at the hand    Σ b_i w_i w_iᵀ ≻ R    in the whole region
+    δ_m − c ≻ Jᵀ R J    or, for a parallel arm, at the hand    Σ δ_ij w_i w_jᵀ ≻ R    in the whole region
     R = (2d + 1) KT/2 + A,    K ⪰ 0,    A ⪰ B,    A ⪰ −B
 
 K and B of the wall, d whole samples of delay, T the period. A stands for |B|: all that the proof takes from
@@ -24,7 +24,8 @@ from ..document.refusal import Invalid
 from ..document.unit import SECONDS, always
 from ..exact.enclosed import Enclosed
 from .cells import BITS, Function, Range, positive_in
-from .chain import CHAIN, LARGEST, Chain, bends, chain_of, chain_surplus, constant
+from .chain import CHAIN, Chain, bends, chain_of, chain_surplus
+from .damping import LARGEST, constant
 from .encoders import columns_below, encoders_of, require_friction, require_no_encoders, with_steps
 from .legs import LEGS, legs_of, legs_surplus
 from .pose import Pose, for_every_rest, in_words, pose_of, turning, turning_bend

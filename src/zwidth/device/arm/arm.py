@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from zwidth.device.arm.joint_damping import Damping, joint_damping
 from zwidth.errors import InputError
 
 Array = npt.NDArray[np.float64]
@@ -56,7 +57,9 @@ class Arm(ABC):
     Parameters
     ----------
     damping
-        Viscous friction b_i of each joint, ≥ 0 [N·m·s/rad; N·s/m of a sliding joint].
+        Viscous friction b_i of each joint, ≥ 0 [N·m·s/rad; N·s/m of a sliding joint]; or, of joints that damp
+        each other by belts, differentials or tendons, the matrix δ_m ⪰ 0, m × m and symmetric [also
+        N·s/rad between the two]. A diagonal matrix is kept as its diagonal.
     coulomb_friction
         Coulomb friction f_c,i of each joint, ≥ 0 [N·m; N]; empty: none.
     resolution
@@ -69,10 +72,11 @@ class Arm(ABC):
     Raises
     ------
     InputError
-        If a number is missing, not finite or outside its bound.
+        If a number is missing, not finite or outside its bound, or a matrix is no symmetric one without
+        negative eigenvalues.
     """
 
-    damping: Sequence[float]
+    damping: Damping
     coulomb_friction: Sequence[float] = ()
     resolution: Sequence[float] = ()
     torque_limit: Sequence[float] = ()
@@ -80,7 +84,7 @@ class Arm(ABC):
 
     def __post_init__(self) -> None:
         m = self.joint_count
-        object.__setattr__(self, "damping", _numbers(self.damping, "damping", m, needed=True))
+        object.__setattr__(self, "damping", joint_damping(self.damping, m))
         for key in ("coulomb_friction", "resolution", "torque_limit"):
             object.__setattr__(self, key, _numbers(getattr(self, key), key, m))
         if any(limit == 0 for limit in self.torque_limit):
@@ -149,12 +153,12 @@ def middles(low: float, high: float, count: int) -> Array:
     return low + (high - low) * (np.arange(count) + 0.5) / count
 
 
-def _numbers(values: Sequence[float], key: str, count: int, needed: bool = False) -> tuple[float, ...]:
+def _numbers(values: Sequence[float], key: str, count: int) -> tuple[float, ...]:
     try:
         numbers = tuple(float(v) for v in np.atleast_1d(np.asarray(values, dtype=np.float64)))
     except (TypeError, ValueError):
         raise InputError(f"{key}: one number for each joint, got {values!r}") from None
-    if not numbers and not needed:
+    if not numbers:
         return ()
     if len(numbers) != count:
         raise InputError(f"{key}: give one for each joint, {count} in all; got {len(numbers)}")

@@ -14,18 +14,19 @@ The regions of work are choices of this project, inside the reach of each.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from math import cos, pi, radians, sin
 from types import MappingProxyType
 from typing import Any
 
 from zwidth.device.arm.arm import Arm
 from zwidth.device.arm.chain import PlanarChain
+from zwidth.device.arm.joint_damping import Damping
 from zwidth.device.arm.legs import Leg, LeggedArm
 from zwidth.errors import InputError
 
 
-def built_in(name: str, *, damping: float | Sequence[float], **numbers: Any) -> Arm:
+def built_in(name: str, *, damping: float | Damping, **numbers: Any) -> Arm:
     """An arm with published geometry.
 
     Parameters
@@ -33,7 +34,8 @@ def built_in(name: str, *, damping: float | Sequence[float], **numbers: Any) -> 
     name
         "hapkit", "two-link", "haply-2diy" or "falcon".
     damping
-        Viscous friction of each joint, or one number for all [N·m·s/rad]; no source gives it.
+        Viscous friction of each joint, one number for all, or a matrix as of `Arm` [N·m·s/rad]; no source
+        gives it.
     numbers
         Other arguments of the arm: coulomb_friction [N·m], resolution [rad], torque_limit [N·m], or what
         belongs to its geometry, such as `lower` and `upper` [m], `joint_range` [rad] or `pose`, of a chain.

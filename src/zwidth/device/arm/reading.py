@@ -14,6 +14,7 @@ import numpy as np
 
 from zwidth.device.arm.described import DescribedArm, slides, unit_of
 from zwidth.device.arm.description_file import read_model
+from zwidth.device.arm.joint_damping import Damping
 from zwidth.device.arm.posed import PosedArm
 from zwidth.errors import InputError
 
@@ -23,7 +24,7 @@ def read_arm(
     *,
     frame: str | None = None,
     hold: dict[str, float] | None = None,
-    damping: Sequence[float] | None = None,
+    damping: Damping | None = None,
     coulomb_friction: Sequence[float] | None = None,
     resolution: Sequence[float] = (),
     torque_limit: Sequence[float] | None = None,
@@ -42,7 +43,8 @@ def read_arm(
         Joints that stay at a value [rad; m], by name; the map moves two joints at most.
         None: of more than two joints, all but the first two are held in the middle of their ranges.
     damping, coulomb_friction, torque_limit
-        Of each joint [N·m·s/rad], [N·m], [N·m]; None: those of the description.
+        Of each joint [N·m·s/rad], [N·m], [N·m]; None: those of the description. Damping may be a
+        matrix, as of `Arm`, in the order of the description's joints.
     resolution
         Encoder step of each joint [rad; m]; descriptions have none.
     pose
@@ -64,8 +66,8 @@ def read_arm(
     frames = [str(f.name) for f in model.frames]
     if frame is not None and frame not in frames:
         raise InputError(f"{path.name} has no frame {frame!r}; it has {', '.join(frames[1:21])}")
-    b = tuple(model.damping) if damping is None else tuple(damping)
-    if not any(b):
+    b: Damping = tuple(model.damping) if damping is None else damping
+    if not np.any(b):
         raise InputError(
             f"{path.name} gives no joint any damping, and without damping no wall is passive; "
             "measure it and give damping, or write <dynamics damping=…/> in the description"

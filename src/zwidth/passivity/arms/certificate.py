@@ -8,6 +8,7 @@ anywhere.  A stands for |B|: any A with A ± B ⪰ 0 does.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import combinations
 from typing import Any
@@ -57,6 +58,8 @@ def arm_certificate(
     """
     if not isinstance(arm, (LeggedArm, PlanarChain, DescribedArm)):
         return None, "arms of this kind have no certificate"
+    if _beside(arm):
+        return None, "joints on the way to the hand are damped together with joints beside it"
     document: dict[str, Any] = {
         "format": FORMAT,
         "kind": "arm",
@@ -127,11 +130,12 @@ def _legs_document(arm: LeggedArm) -> dict[str, Any]:
             "rod_m": _text(leg.rod),
             "offset_m": _text(leg.offset),
             "bend": leg.bend,
-            "damping_N_m_s_per_rad": _text(b),
+            **_own_damping(arm, i, "N_m_s_per_rad"),
         }
-        for leg, b in zip(arm.legs, arm.damping, strict=True)
+        for i, leg in enumerate(arm.legs)
     ]
-    return {"geometry": "legs", "legs": legs, "low_m": _texts(low), "high_m": _texts(high)}
+    corners = {"low_m": _texts(low), "high_m": _texts(high)}
+    return {"geometry": "legs", "legs": legs, **corners, **_shared_damping(arm, "N_m_s_per_rad")}
 
 
 def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
@@ -146,11 +150,42 @@ def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
             "translation_m": _texts(at.translation),
             f"low_{unit}": _text(low),
             f"high_{unit}": _text(high),
-            f"damping_{per}": _text(arm.damping[at.joint]),
+            **_own_damping(arm, at.joint, per),
         }
         rest = arm.rest if isinstance(arm, PosedArm) else None
         joints.append(joint if rest is None or at.slides else {**joint, "rest_rad": _text(rest[at.joint])})
-    return {"geometry": "chain", "joints": joints, "end_m": _texts(end)}
+    own = [at.joint for at in placements]
+    return {
+        "geometry": "chain",
+        "joints": joints,
+        "end_m": _texts(end),
+        **_shared_damping(arm, "N_m_s_rad", own),
+    }
+
+
+def _own_damping(arm: Arm, joint: int, unit: str) -> dict[str, str]:
+    """Of one joint; nothing where joints damp each other."""
+    b = np.asarray(arm.damping)
+    return {f"damping_{unit}": _text(b[joint])} if b.ndim == 1 else {}
+
+
+def _shared_damping(arm: Arm, unit: str, own: Sequence[int] | None = None) -> dict[str, list[list[str]]]:
+    """The matrix of joints that damp each other, of those that move the hand; nothing of others."""
+    b = np.asarray(arm.damping)
+    rows = b if own is None or b.ndim == 1 else b[np.ix_(own, own)]
+    return {f"damping_{unit}": _matrix(rows)} if b.ndim == 2 else {}
+
+
+def _beside(arm: Written) -> bool:
+    """Whether a joint that moves the hand is damped together with one that does not.
+
+    Then the part of the matrix that a document has is more than is lost: the other joint may go along.
+    """
+    if isinstance(arm, LeggedArm):
+        return False
+    own = [at.joint for at in arm.placements()[0]]
+    others = [i for i in range(arm.joint_count) if i not in own]
+    return bool(as_matrix(arm.damping)[np.ix_(own, others)].any())
 
 
 def _add_steps(document: dict[str, Any], arm: Chain, steps: EncoderSteps, limits: tuple[float, ...]) -> None:

@@ -60,7 +60,7 @@ def joint_margin(jacobian: Array, damping: npt.ArrayLike, need: Array) -> tuple[
     jacobian
         J (…, n, m) [m/rad].
     damping
-        b_i of each joint, or δ_m [N·m·s/rad].
+        b_i of each joint, or the matrix δ_m [N·m·s/rad].
     need
         R, n × n, from `wall_need` [N·s/m].
     """

@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from zwidth.passivity.arms.need import wall_matrices
 
 if TYPE_CHECKING:
@@ -23,6 +25,7 @@ def workspace_document(space: Workspace) -> dict[str, Any]:
         "claim": space.claim,
         "scope": space.scope.to_dict(),
         "arm": space.arm.name,
+        "joint_damping_N_m_s_rad": np.asarray(space.arm.damping).tolist(),
         "region": space.region,
         "wall": _wall(space),
         "torque": space.torque,
