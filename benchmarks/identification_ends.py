@@ -32,7 +32,10 @@ Array = np.ndarray
 Recording = dict[str, Array]
 Rng = np.random.Generator
 
-NAMES = {"finger": ("mass", "damping", "stiffness"), "tissue": ("stiffness", "branch_stiffness", "branch_damping")}
+NAMES = {
+    "finger": ("mass", "damping", "stiffness"),
+    "tissue": ("stiffness", "branch_stiffness", "branch_damping"),
+}
 FINE = 8
 """Instants of a tissue's true motion in each sample."""
 
@@ -92,10 +95,12 @@ def finger(rng: Rng, seconds: float = 20.0) -> tuple[Recording, tuple[float, ...
     )
     far = zw.Wall(stiffness=1)  # a metre away
     trace = zw.simulate(paddle(), far, hand, seconds, initial_position=wanted[0])
+    force = trace.hand_force.values[:samples] - push
     recording = {
         "time": time[:samples],
         "position": trace.measured_position.values[:samples],
-        "force": trace.hand_force.values[:samples] - push,
+        "force": force,  # just after the actuator's step, and just before
+        "before": force - true[0] / (true[0] + 0.036) * np.diff(-push, prepend=-push[0]),
         "actuator_force": -push,
     }
     return recording, true
@@ -123,10 +128,18 @@ def late(seconds: float, r: Recording) -> Recording:
 
 
 def filtered(seconds: float, r: Recording) -> Recording:
-    """The force goes through a filter of the first order with this time constant."""
-    keep = np.exp(-(r["time"][1] - r["time"][0]) / seconds)
-    start = [keep * r["force"][0]]
-    return {**r, "force": lfilter([1 - keep], [1, -keep], r["force"], zi=start)[0]}
+    """The force goes through a filter of the first order with this time constant.
+
+    y ← e y + (φ − e) f + (1 − φ) f₊,   e = exp(−T/τ),  φ = (1 − e) τ/T, for a force that is straight from f at a
+    sample to f₊ just before the next one.
+    """
+    x = (r["time"][1] - r["time"][0]) / seconds
+    e, share = np.exp(-x), -np.expm1(-x) / x
+    ends = r.get("before", r["force"])
+    pushed = (share - e) * r["force"][:-1] + (1 - share) * ends[1:]
+    rest = r["force"][0]
+    y = lfilter([1.0], [1, -e], pushed, zi=[e * rest])[0]
+    return {**r, "force": np.concatenate([[rest], y])}
 
 
 def saturated(share: float, scatter: float, rng: Rng, r: Recording) -> Recording:
@@ -177,7 +190,7 @@ def times(factor: float, name: str, r: Recording) -> Recording:
 
 def stepped(step: float, name: str, r: Recording) -> Recording:
     """One column is read in steps."""
-    return {**r, name: np.floor(r[name] / step) * step}
+    return {**r, name: np.rint(r[name] / step) * step}
 
 
 Fault = Callable[[Rng, Recording], Recording]
@@ -186,6 +199,7 @@ BEFORE: dict[str, Fault] = {  # what happens to the true force
     "2 to 5 ms late": lambda rng, r: late(rng.uniform(0.002, 0.005), r),
     "filter of 1 ms": lambda rng, r: filtered(0.001, r),
     "filter of 2 to 5 ms": lambda rng, r: filtered(rng.uniform(0.002, 0.005), r),
+    "force before the step": lambda rng, r: {**r, "force": r.get("before", r["force"])},
 }
 AFTER: dict[str, Fault] = {  # what happens to what was read
     "plain": lambda rng, r: r,
@@ -209,7 +223,6 @@ AFTER: dict[str, Fault] = {  # what happens to what was read
     "position in 0.1 mm": lambda rng, r: stepped(1e-4, "position", r),
 }
 OF_FINGERS: dict[str, Fault] = {
-    "force before the step": lambda rng, r: r,
     "actuator turned round": lambda rng, r: times(-1, "actuator_force", r),
     "actuator x 1000": lambda rng, r: times(1e3, "actuator_force", r),
 }
@@ -225,7 +238,7 @@ def faulty(name: str, rng: Rng, r: Recording, noise: float, every: int) -> Recor
     """The recording with one fault, its noise and its samples."""
     if name in BEFORE:
         r = BEFORE[name](rng, r)
-    r = {key: values[::every].copy() for key, values in r.items()}
+    r = {key: values[::every].copy() for key, values in r.items() if key != "before"}
     r["force"] += noise * rng.normal(size=r["force"].size)
     return {**AFTER, **OF_FINGERS}.get(name, AFTER["plain"])(rng, r)
 
@@ -237,9 +250,6 @@ def of_finger(name: str, way: str, seed: int) -> Outcome:
     """One finger, identified."""
     rng = np.random.default_rng([seed, 1])
     r, true = finger(rng)
-    if name == "force before the step":
-        share = true[0] / (true[0] + 0.036)
-        r["force"] = r["force"] - share * np.diff(r["actuator_force"], prepend=r["actuator_force"][0])
     r = faulty(name, rng, r, 0.02, 1)
     without, known = WAYS[way]
     kept = {("hand_force" if k == "force" else k): v for k, v in r.items() if k not in without}
@@ -349,8 +359,7 @@ def main() -> None:
         if given.cause:
             causes = ["plain", given.cause]
         for way in (WAYS if given.way is None else (given.way,)) if fingers else ("",):
-            own = [c for c in causes if "hand" not in WAYS[way][0] or c != "x"] if fingers else causes
-            table(end, way, given.runs, given.seed, own)
+            table(end, way, given.runs, given.seed, causes)
 
 
 if __name__ == "__main__":

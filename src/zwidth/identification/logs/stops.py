@@ -70,6 +70,12 @@ class Stops:
         return float(self._ends[-1][0][0] + self._ends[1][0][0])
 
 
+def beyond(force: Array, stops: tuple[float, float]) -> NDArray[np.bool_]:
+    """Where a force is at one of its stops, or further out."""
+    found: NDArray[np.bool_] = (force <= stops[0]) | (force >= stops[1])
+    return found
+
+
 def _piles_up(counts: NDArray[np.int64], k: int) -> bool:
     beside = counts[k + 1 : k + 1 + _BESIDE]
     return beside.size > 1 and bool(counts[k] >= max(_FEWEST, _OFTEN * np.median(beside)))
