@@ -48,7 +48,7 @@ from zwidth.identification.finger.doubts import (
 )
 from zwidth.identification.finger.fit import TERMS, Fit, fitted
 from zwidth.identification.finger.identified import IdentifiedFinger
-from zwidth.identification.finger.lag import lag_of
+from zwidth.identification.finger.lag import lag_of, lag_without_actuator
 from zwidth.identification.finger.means import Means, Pieces, means, pieces_of, response
 from zwidth.identification.finger.weights import Weights, weights
 from zwidth.identification.logs import Finding, Log
@@ -255,9 +255,13 @@ def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Find
     stiffness = _stiffnesses(task, road)
     if road.total is not None:
         _refuse(disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], False))
-    total = None if road.total is None else road.total.fit
-    lag = lag_of(road.pieces, ways.shape, total, task.late, log.sample_period)
-    if lag is not None and lag.seen and (lag.sure or (task.known and total is not None)):
+    period = log.sample_period
+    lag = (
+        lag_without_actuator(road.pieces, period)
+        if road.total is None
+        else lag_of(road.pieces, ways.shape, road.total.fit, task.late, period)
+    )
+    if lag is not None and lag.seen and (lag.sure or (task.known and road.total is not None)):
         raise late(log, lag)
     said = list(doubts(lag)) if lag is not None and lag.seen else []
     shift = widened(ways.fit, lag)

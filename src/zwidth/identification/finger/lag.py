@@ -6,12 +6,14 @@ left tells τ: by ẍ of the equation of motion of device and finger, M = m + m_
     −ḟ_h = m_h x⃛ + c ẍ + k ẋ,    M x⃛ = −ḟ_a − (b + c) ẍ − k ẋ
     f_h (t − τ) = … + γ ḟ_a,      γ = τ m_h/M                                                     (1)
 
-so with the actuator's force its steps are what is seen late; without it ẋ, ẍ, x and −ḟ_h are fitted together (2).
+so the actuator's steps are what is seen late, and tremor, which is not in ḟ_a, does not matter.  Where it is not
+logged the force of the hand is read later, sample by sample, and what the fit leaves of each piece is held
+against what it leaves of the same piece at the best moment: every moment that is not surely worse, by Student's t
+of the differences, may be the right one.
 
 A force that steps at a sample may be read before the step or after it: straight between samples, it then
-steps half a sample late or early, and nothing in a log tells which.  So what (1) and (2) show is τ within half
-a sample, unless the actuator is known to step between two samples.  A large τ is looked for by reading the
-force later, until the rest is smallest.  Derived here; checked on simulated recordings.
+steps half a sample late or early, and nothing in a log tells which.  So both show τ within half a sample only,
+unless the actuator is known to step between two samples.  Derived here; checked on simulated recordings.
 """
 
 from __future__ import annotations
@@ -22,13 +24,21 @@ from typing import NamedTuple
 import numpy as np
 from scipy import stats
 
+from zwidth.compiled import Array
 from zwidth.identification.device.choice import LONGER, SAFETY, SURE
-from zwidth.identification.finger.fit import FEWEST, TERMS, Fit, fitted, solved, without_slow
+from zwidth.identification.finger.fit import FEWEST, Fit, fitted, without_slow
 from zwidth.identification.finger.means import Means, Pieces, later, means
 from zwidth.identification.finger.weights import Weights, weights
 
 LATER = (0.0, 1e-3, 2e-3, 3e-3, 5e-3, 8e-3, 12e-3)
 """By which the force is read later, in search of a large τ [s]."""
+
+
+SHORTEST = 4
+"""Samples of a quarter of a pulse: the shorter, the more is seen of the moment."""
+
+SURELY = 2.0
+"""Times the reach of 99.9 % beyond which a force is late even if it was read before the step."""
 
 
 class Lag(NamedTuple):
@@ -52,8 +62,8 @@ class Lag(NamedTuple):
     sure: bool
 
 
-def lag_of(pieces: Pieces, shape: Weights, total: Fit | None, delay: float, period: float) -> Lag | None:
-    """How late the force of the hand is; None where nothing tells.
+def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: float) -> Lag | None:
+    """How late the force of the hand is beside the actuator's; None where nothing tells.
 
     Parameters
     ----------
@@ -62,7 +72,7 @@ def lag_of(pieces: Pieces, shape: Weights, total: Fit | None, delay: float, peri
     shape
         The pulse.
     total
-        Mass, damping and stiffness of device and finger by the actuator's force; None where it is not logged.
+        Mass, damping and stiffness of device and finger by the actuator's force.
     delay
         From a sample to its actuator force [samples].
     period
@@ -80,7 +90,7 @@ def lag_of(pieces: Pieces, shape: Weights, total: Fit | None, delay: float, peri
         return None
     apart = SAFETY * abs(here[0] - there[0])
     reach = float(stats.t.ppf(0.5 + SURE / 2, max(here[2], FEWEST))) * here[1] + apart
-    early, late = _moments(delay if total is not None else 0.0)
+    early, late = _moments(delay)
     value = here[0] + best * period
     low, high = value - late * period, value - early * period
     return Lag(max(low - reach, 0.0), max(high + reach, 0.0), high - reach > 0, low - reach > 0)
@@ -91,28 +101,62 @@ def _explained(rows: Means) -> float:
     return -np.inf if fit is None else fit.explained
 
 
-def _apparent(rows: Means, total: Fit | None, period: float) -> tuple[float, float, int] | None:
-    """τ as it looks, its standard error, and of how many pieces."""
-    fit = fitted(rows, True, 0.0) if total is not None else _with_slope(rows)
+def _apparent(rows: Means, total: Fit, period: float) -> tuple[float, float, int] | None:
+    """τ as the actuator's steps have it, its standard error, and of how many pieces."""
+    fit = fitted(rows, True, 0.0)
     if fit is None:
         return None
-    if total is None:
-        return -fit.further, fit.further_error, fit.pieces
     part = max(abs(fit.values[0]), 1e-9) / max(total.values[0], 1e-9)
     return fit.further / part, fit.further_error / part, fit.pieces
 
 
-def _with_slope(rows: Means) -> Fit | None:
-    """Mass, damping, stiffness and −τ by the even and the odd samples."""
-    assert rows.hand is not None and rows.hand_slope is not None  # noqa: PT018
+def lag_without_actuator(pieces: Pieces, period: float) -> Lag | None:
+    """How late the force of the hand is, where it alone is logged; None where nothing tells.
+
+    Parameters
+    ----------
+    pieces
+        The recording.
+    period
+        T [s].
+    """
+    shape = weights(SHORTEST, 0.0)
+    rows = means(pieces, shape, period)
+    if rows is None:
+        return None
+    left = {round(seconds / period): np.empty(0) for seconds in LATER}
+    left |= {samples: _left(later(rows, pieces, shape, samples)) for samples in left}
+    middle = min(left, key=lambda samples: float(left[samples].sum()))
+    near = {0, 1, *range(max(middle - 2, 0), middle + 3)} - set(left)
+    left |= {samples: _left(later(rows, pieces, shape, samples)) for samples in near}
+    best = min(left, key=lambda samples: float(left[samples].sum()))
+    if left[best].size < FEWEST:
+        return None
+    worse = {samples: _worse(rest - left[best]) for samples, rest in left.items()}
+    reach = float(stats.t.ppf(0.5 + SURE / 2, left[best].size - 1))
+    inside = [samples for samples, t in worse.items() if t <= reach]
+    sure = min(inside) > 0 and worse.get(0, 0.0) > SURELY * reach
+    least, most = max(min(inside) - 1, 0) * period, (max(inside) + 0.5) * period
+    return Lag(least, most, max(inside) > 0, sure)
+
+
+def _left(rows: Means) -> Array:
+    """What the fit leaves of each piece, a mean over its pulses; a product of two halves, which noise is not in."""
+    assert rows.hand is not None  # it is what may be late
     columns, piece = without_slow(
-        np.column_stack([rows.even, -rows.hand_slope[:, :1], rows.odd, -rows.hand_slope[:, 1:], -rows.hand]),
-        rows.piece,
-        np.arange(rows.piece.size),
+        np.column_stack([rows.even, rows.odd, -rows.hand]), rows.piece, np.arange(rows.piece.size)
     )
-    count = len(TERMS) + 1
-    even, odd = columns[:, :count], columns[:, count:-1]
-    return solved([(even / 2, odd), (odd / 2, even)], columns[:, -1], piece)
+    even, odd, y = columns[:, :3], columns[:, 3:6], columns[:, 6]
+    values = np.linalg.lstsq(even.T @ odd + odd.T @ even, (even + odd).T @ y, rcond=None)[0]
+    starts = np.flatnonzero(np.diff(piece, prepend=-1))
+    found: Array = np.add.reduceat((y - even @ values) * (y - odd @ values), starts)
+    return found / np.diff(np.append(starts, piece.size))
+
+
+def _worse(more: Array) -> float:
+    """By how many standard errors more is left."""
+    spread = float(more.std(ddof=1)) / np.sqrt(more.size)
+    return float(more.mean()) / spread if spread > 0 else 0.0
 
 
 def _moments(delay: float) -> tuple[float, float]:

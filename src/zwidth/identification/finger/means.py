@@ -59,8 +59,8 @@ class Means(NamedTuple):
         ẍ, ẋ, x by the even and by the odd samples.
     expected
         The same as the perturbation alone would have it; None where it is not known.
-    hand, hand_slope
-        f_h; its rate by the even and by the odd samples.
+    hand
+        f_h.
     actuator, actuator_slope
         f_a as it was held, and its rate.
     side, turning, moving
@@ -73,7 +73,6 @@ class Means(NamedTuple):
     odd: Array
     expected: Array | None
     hand: Array | None
-    hand_slope: Array | None
     actuator: Array | None
     actuator_slope: Array | None
     side: Array
@@ -201,11 +200,6 @@ def means(pieces: Pieces, shape: Weights, period: float) -> Means | None:
         motion(pieces.position, 2 * odd),
         None if pieces.expected is None else motion(pieces.expected, 1.0),
         None if hand is None else mean(hand, shape.force),
-        None
-        if hand is None
-        else np.stack(
-            [mean(hand, some * shape.motion[1]) / period for some in (2 * (1 - odd), 2 * odd)], axis=1
-        ),
         None if actuator is None else mean(actuator, shape.held, start),
         None if actuator is None else mean(actuator, shape.steps, start) / period,
         mean(pieces.side, shape.force),
