@@ -57,7 +57,11 @@ class Faults(NamedTuple):
     def zero(self, time: Array) -> Array:
         """The columns that a zero may be made of, each from 0 to 1."""
         columns = [np.ones(time.size)] if self.offset or self.drift else []
-        return np.stack([*columns, *(_wandering(time) if self.drift else [])], axis=1) if columns else _none(time)
+        return (
+            np.stack([*columns, *(_wandering(time) if self.drift else [])], axis=1)
+            if columns
+            else _none(time)
+        )
 
     def delayed(self, predicted: Array, time: Array, late: float) -> Array:
         """A prediction as it is recorded late by so much [s]."""

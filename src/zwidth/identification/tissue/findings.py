@@ -118,5 +118,7 @@ def _lateness(kind: str, late: float) -> Finding:
         )
         return Finding(kind="force early", text=text)
     how = "a delay" if kind == "delay" else "a filter of the first order with this time constant"
-    text = f"the force is recorded {1e3 * late:.3g} ms late, or the model has too few elements; fitted as {how}"
+    text = (
+        f"the force is recorded {1e3 * late:.3g} ms late, or the model has too few elements; fitted as {how}"
+    )
     return Finding(kind="force late", text=text)
