@@ -295,7 +295,7 @@ def of_track(name: str, way: str, seed: int) -> Outcome:
 
 
 def _tracked(tracker: zw.tissue.RecursiveSolid, r: Recording) -> zw.tissue.Track:
-    return tracker.track(r["position"], r["force"])
+    return tracker.track(r["position"], r["force"], r["time"])
 
 
 def _outcome(intervals: Iterable[tuple[float, float]], true: Iterable[float], said: Iterable[str]) -> Outcome:

@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import stats
+from scipy.interpolate import CubicHermiteSpline
 from scipy.signal import lfilter
 
 from zwidth.compiled import Array
@@ -37,6 +38,13 @@ HOLE = 2.5
 
 MOST_HOLES = 50
 """Beyond, what is left between them says little."""
+
+
+HELD = 0.02
+"""Part of the position's range within which a probe is held, and the force may stay as it is."""
+
+THRESHOLD = 1.0 - SURE
+"""Chance below which a fault is believed to be there."""
 
 
 class Faults(NamedTuple):
@@ -66,7 +74,7 @@ class Faults(NamedTuple):
     def delayed(self, predicted: Array, time: Array, late: float) -> Array:
         """A prediction as it is recorded late by so much [s]."""
         if self.late == "delay":
-            return np.interp(time - late, time, predicted)
+            return np.asarray(CubicHermiteSpline(time, predicted, np.gradient(predicted, time))(time - late))
         if self.late == "filter" and late > 1e-12:
             return predicted - decaying(np.diff(time), np.diff(predicted), 1.0 / late)
         return predicted
@@ -140,6 +148,3 @@ def sudden(model: Model, p: list[float], record: Record, left: Array) -> int | N
     score = np.abs(ahead) / np.sqrt(weight)
     score[:2] = score[-8:] = 0.0
     return int(np.argmax(score))
-
-
-THRESHOLD = 1.0 - SURE

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from math import sqrt
 
 import numpy as np
 
 from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.identification.logs import Finding
+from zwidth.identification.logs.steps import grid_of
 from zwidth.identification.tissue.faults import Faults
 from zwidth.identification.tissue.model import Record
 
@@ -17,6 +19,9 @@ SOFTEST, STIFFEST = 5.0, 5e4
 
 DEEPEST, SHALLOWEST = 0.5, 2e-5
 """Between them lies how deep a probe goes [m]."""
+
+SHARE = 0.5
+"""Of what is left, which the steps of the position may make before it is said."""
 
 POOR, GOOD = 0.5, 0.8
 """Of the variance, explained below which a sign is doubted, and above which the other one is believed."""
@@ -31,6 +36,26 @@ def unlikely_units(stiffness: float, depth: float) -> Iterator[str]:
         )
     if depth > DEEPEST or 0 < depth < SHALLOWEST:
         yield f"positions up to {depth:.3g} are hardly metres inside a tissue: most likely their unit is another"
+
+
+def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
+    """Why intervals are too narrow: most of what the fit leaves may be the position's steps.
+
+    Parameters
+    ----------
+    position
+        As it was read [m; rad].
+    stiffness
+        At once [N/m; N·m/rad].
+    rms
+        Of what the fit leaves [N; N·m].
+    """
+    grid = grid_of(position)
+    if grid is not None and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
+        yield (
+            f"the position is read in steps of {grid.step:.3g}, and most of what the fit leaves may come from them: "
+            "the intervals take the position for exact and are too narrow; move further, or read it more finely"
+        )
 
 
 def refuse_sign(record: Record, left: Array, size: float, again: Callable[[Record], Array]) -> None:

@@ -15,7 +15,7 @@ from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.identification.logs import Finding
-from zwidth.identification.tissue.findings import unlikely_units
+from zwidth.identification.tissue.findings import coarse, unlikely_units
 from zwidth.identification.tissue.model import Model, unit_of
 from zwidth.identification.tissue.table import html_of, lines_of
 from zwidth.quantity.exact import Interval
@@ -66,8 +66,8 @@ class TissueFit:
         How many other numbers were fitted, for what was found in the record.
     findings
         What was found in the record, and what was done about it.
-    depth
-        The largest of the positions [m; rad].
+    position
+        As it was read [m; rad]; None where it is not known.
     """
 
     model: Model
@@ -82,7 +82,7 @@ class TissueFit:
     motion: str
     further: int = 0
     findings: tuple[Finding, ...] = ()
-    depth: float = 0.0
+    position: Array | None = None
 
     @cached_property
     def values(self) -> Mapping[str, float]:
@@ -184,8 +184,11 @@ class TissueFit:
             )
         if self.model.name == "hunt-crossley" and self["exponent"] < 1:
             said.append("an exponent below 1 is no Hunt–Crossley contact: stiffest where it begins")
-        if self.motion == "linear" and self.model.linear:
-            said.extend(unlikely_units(self._at_once, self.depth))
+        if self.position is not None and self.model.linear:
+            if self.motion == "linear":
+                said.extend(unlikely_units(self._at_once, float(np.abs(self.position).max())))
+            if self.response == "force":
+                said.extend(coarse(self.position, self._at_once, self.rms))
         return tuple(said)
 
     @property

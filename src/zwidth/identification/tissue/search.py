@@ -14,7 +14,7 @@ import numpy as np
 
 from zwidth.compiled import Array
 from zwidth.errors import InputError
-from zwidth.identification.tissue.faults import THRESHOLD, Faults, stops_of, sudden, unlikely
+from zwidth.identification.tissue.faults import HELD, THRESHOLD, Faults, stops_of, sudden, unlikely
 from zwidth.identification.tissue.findings import findings, refuse_sign
 from zwidth.identification.tissue.model import Model, Record
 from zwidth.identification.tissue.result import TissueFit
@@ -184,7 +184,10 @@ def _within(task: Task, stops: tuple[float, float]) -> tuple[Task, Solved, tuple
     """
     force = task.record.force
     at_low, at_high = force <= stops[0], force >= stops[1]
-    task, solved = _searched(task._replace(used=_enough(task, ~(at_low | at_high))))
+    at = at_low | at_high
+    if not _plenty(task, ~at) and np.ptp(task.record.position[at]) <= HELD * np.ptp(task.record.position):
+        return None
+    task, solved = _searched(task._replace(used=_enough(task, ~at)))
     spread = 3.0 * float(np.sqrt(np.mean(solved.left**2))) * task.size
     predicted = _predicted(task, solved.theta)
     low, high = stops
@@ -199,8 +202,12 @@ def _within(task: Task, stops: tuple[float, float]) -> tuple[Task, Solved, tuple
     return task, _solve(task, [np.exp(solved.theta[: task.count])]), (low, high)
 
 
+def _plenty(task: Task, used: Array) -> bool:
+    return bool(np.count_nonzero(used) >= max(0.3 * used.size, 4 * task.count))
+
+
 def _enough(task: Task, used: Array) -> Array:
-    if np.count_nonzero(used) < max(0.3 * used.size, 4 * task.count):
+    if not _plenty(task, used):
         raise InputError(
             f"in {used.size - np.count_nonzero(used)} of {used.size} samples the force is at an end of the sensor's "
             "range, and what is left shows too little: press less, or take a larger load cell"
@@ -239,7 +246,7 @@ def _result(task: Task, solved: Solved, stops: tuple[float, float], motion: str)
                 motion,
             )
         ),
-        depth=float(np.abs(task.record.position).max()),
+        position=task.record.position,
     )
 
 
