@@ -8,8 +8,8 @@ rest, 0.2 to 1.5 times that in the branch and 20 to 300 ms of relaxation are mov
 at 500 Hz, with noise of 1 % of the force.  All are drawn at random, and every cause by itself is put into a
 recording whose truth is known.  A line tells, of all recordings with one cause: how many were refused; of the
 95 % intervals of those that were answered, how many missed the truth; the median width of an interval,
-and the error at the worst of twenty, both as parts of the true number; and how often something was said that is not said of
-the same recording without the fault.
+and the error at the worst of twenty, both as parts of the true number; and how often something was said
+that is not said of the same recording without the fault.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def tissue(rng: Rng, seconds: float = 10.0) -> tuple[Recording, tuple[float, ...
     branch = rest * rng.uniform(0.2, 1.5)
     true = rest, branch, branch * np.exp(rng.uniform(np.log(0.02), np.log(0.3)))
     time = np.arange(round(seconds * 500) * FINE) * 2e-3 / FINE
-    waves = zip(rng.normal(size=12), np.exp(rng.uniform(np.log(0.3), np.log(20), 12)), strict=True)
+    waves = zip(rng.normal(size=12), np.exp(rng.uniform(np.log(0.3), np.log(10), 12)), strict=True)
     path = sum(a * np.sin(2 * np.pi * f * time + rng.uniform(0, 6.28)) / np.sqrt(f) for a, f in waves)
     path = 0.006 + 0.0012 * path / path.std()
     force = zw.tissue.force_response(zw.StandardLinearSolid(*true), time, path)
@@ -130,8 +130,8 @@ def late(seconds: float, r: Recording) -> Recording:
 def filtered(seconds: float, r: Recording) -> Recording:
     """The force goes through a filter of the first order with this time constant.
 
-    y ← e y + (φ − e) f + (1 − φ) f₊,   e = exp(−T/τ),  φ = (1 − e) τ/T, for a force that is straight from f at a
-    sample to f₊ just before the next one.
+    y ← e y + (φ − e) f + (1 − φ) f₊,   e = exp(−T/τ),  φ = (1 − e) τ/T, for a force that is straight from f
+    at a sample to f₊ just before the next one.
     """
     x = (r["time"][1] - r["time"][0]) / seconds
     e, share = np.exp(-x), -np.expm1(-x) / x
@@ -329,7 +329,8 @@ def line(name: str, outcomes: list[Outcome], plain: list[Outcome]) -> str:
     most = ", ".join(f"{w} {n}" for w, n in words.most_common(3))
     misses = " ".join(f"{100 * m:3.0f}" for m in 1 - held.mean(axis=0))
     widths = " ".join(f"{100 * w:5.1f}" for w in width)
-    return f"{name:26} {refused:4d}   {misses}   {widths}   {100 * error:8.1f}   {sum(map(bool, new)):4d}   {most}"
+    numbers = f"{misses}   {widths}   {100 * error:8.1f}   {sum(map(bool, new)):4d}"
+    return f"{name:26} {refused:4d}   {numbers}   {most}"
 
 
 def table(end: str, way: str, runs: int, seed: int, causes: list[str]) -> None:

@@ -1,4 +1,5 @@
-"""Faulty recordings of a finger: the answer holds the truth and says so, or there is none and the cause is named."""
+"""Faulty recordings of a finger: the answer holds the truth and says so, or there is none and the cause is
+named."""
 
 from __future__ import annotations
 
@@ -46,7 +47,7 @@ def test_a_late_load_cell_is_refused_and_its_lateness_said(arrays):
     """Three milliseconds, with and without the actuator's force."""
     late = later(arrays["hand_force"], 3)
     for without in ((), ("actuator_force",)):
-        with pytest.raises(zw.InputError, match="recorded late, by .* ms"):
+        with pytest.raises(zw.InputError, match=r"recorded late, by .* ms"):
             identified(arrays, without=without, hand_force=late)
 
 
@@ -59,7 +60,8 @@ def test_a_load_cells_filter_is_refused(arrays):
 
 @pytest.mark.parametrize("without", [(), ("actuator_force",)])
 def test_a_sample_late_or_read_before_the_step(arrays, without):
-    """The two look alike, and the interval of the damping holds both; that of the stiffness stays as it was."""
+    """The two look alike, and the interval of the damping holds both; that of the stiffness stays as it
+    was."""
     before = arrays["hand_force"] - STEP * np.diff(arrays["actuator_force"], prepend=0.0)
     plain = identified(arrays, without=without)
     for force in (later(arrays["hand_force"], 1), before):

@@ -1,7 +1,7 @@
 """What a recording of a finger cannot be, and the likeliest reason: signs, units, forces that do not agree.
 
-A finger is a mass on a spring and a damper, all three > 0.  Numbers below 0 are of no finger, and neither is a
-stiffness a thousand times that of one: fingers and wrists have some hundred newtons per metre (500 N/m,
+A finger is a mass on a spring and a damper, all three > 0.  Numbers below 0 are of no finger, and neither
+is a stiffness a thousand times that of one: fingers and wrists have some hundred newtons per metre (500 N/m,
 Gillespie & Cutkosky 1996, as told by others), a whole arm some thousands at the most.
 """
 
@@ -47,7 +47,8 @@ def scale_wrong(log: Log, pieces: Pieces, stiffness: Estimate) -> str | None:
         return None
     return (
         f"{log.source}: stiffness comes out as {stiffness}, and no finger, hand or arm has that "
-        f"({SOFTEST:g} to {STIFFEST:g} N/m at the most): {_ranges(log, pieces)}; most likely a unit is off by 1000, "
+        f"({SOFTEST:g} to {STIFFEST:g} N/m at the most): {_ranges(log, pieces)}; most likely a unit "
+        f"is off by 1000, "
         'such as mm read as m or mN as N: state it with units={"position": "mm"}, or with scale'
     )
 
@@ -88,9 +89,12 @@ def disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_known: b
     if low <= apart * most and least <= apart * high:
         return None
     return (
-        f"{log.source}: the two forces are not of one finger: its stiffness is {hand} by the hand's force and "
-        f"{actuator} by the actuator's, {hand.value / actuator.value:.3g} times as much; most likely one of them has "
-        "another unit or scale than was stated, the load cell is at the end of its range, or more than the actuator "
+        f"{log.source}: the two forces are not of one finger: its stiffness is {hand} by the hand's "
+        f"force and "
+        f"{actuator} by the actuator's, {hand.value / actuator.value:.3g} times as much; most likely "
+        f"one of them has "
+        "another unit or scale than was stated, the load cell is at the end of its range, or more "
+        "than the actuator "
         "and the finger act on the device; check both with a known weight, or leave one out with "
         'columns={"hand_force": None} and the device given'
     )
@@ -103,8 +107,10 @@ class LoadCellError(InputError):
 def late(log: Log, lag: Lag) -> LoadCellError:
     """What is said of a load cell that is late."""
     return LoadCellError(
-        f"{log.source}: the force of the hand is recorded late, by {1e3 * lag.least:.2g} to {1e3 * lag.most:.2g} ms: "
-        "each millisecond takes as much damping from the finger as its spring gives in it, and mass too; give "
+        f"{log.source}: the force of the hand is recorded late, by {1e3 * lag.least:.2g} to "
+        f"{1e3 * lag.most:.2g} ms: "
+        "each millisecond takes as much damping from the finger as its spring gives in it, and mass "
+        "too; give "
         "the device and log the actuator's force, which tell the finger without the load cell; or take the "
         "filter of the load cell away, or shift its samples by what it is late"
     )
@@ -115,8 +121,10 @@ def at_the_stop(log: Log) -> LoadCellError | None:
     for finding in log.findings:
         if finding.kind == "saturated":
             return LoadCellError(
-                f"{log.source}: {finding.text}, and what is left shows too little: shake less strongly, take a "
-                "larger load cell, or give the device and log the actuator's force, which tell the finger without it"
+                f"{log.source}: {finding.text}, and what is left shows too little: shake less "
+                f"strongly, take a "
+                "larger load cell, or give the device and log the actuator's force, which tell the "
+                "finger without it"
             )
     return None
 
@@ -125,8 +133,10 @@ def doubts(lag: Lag) -> Iterator[Finding]:
     """What the lag that may be there makes of the intervals."""
     yield Finding(
         kind="late, or read before the step",
-        text=f"the force of the hand shows the actuator's steps late: either it is read before them, and in time, "
-        f"or it is recorded up to {1e3 * lag.most:.2g} ms late; nothing in the log tells which, and the intervals of mass "
+        text=f"the force of the hand shows the actuator's steps late: either it is read before them, "
+        f"and in time, "
+        f"or it is recorded up to {1e3 * lag.most:.2g} ms late; nothing in the log tells which, and "
+        f"the intervals of mass "
         "and damping hold both; give the device or the actuator's delay, and they will not have to",
     )
 
@@ -157,7 +167,8 @@ def apart(log: Log, hand: Estimate, actuator: Estimate) -> tuple[float, Finding]
         return None
     finding = Finding(
         kind="dampings apart",
-        text=f"damping is {hand} by the hand's force and {actuator} by the actuator's: the load cell is a little "
+        text=f"damping is {hand} by the hand's force and {actuator} by the actuator's: the load cell "
+        f"is a little "
         "late, or the device is not as it is said to be; the intervals hold both",
     )
     return abs(hand.value - actuator.value), finding

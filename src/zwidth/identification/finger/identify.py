@@ -86,7 +86,8 @@ def identify_finger(
         The position, and the force of the hand, or of the actuator, or both.
     device
         With mass, damping and Coulomb friction, perhaps intervals; needed where the force of the hand was
-        not measured, else not looked at.
+        not measured. Where both forces were, the load cell is held against it, and the actuator's force
+        answers alone where the load cell is late or at the end of its range.
     piece
         Time over which what the finger wants is a cubic, > 0 [s].
     delay
@@ -98,7 +99,8 @@ def identify_finger(
     Raises
     ------
     InputError
-        If the log shows too little, or a number is outside its bound.
+        If the log shows too little, or a number is outside its bound; or if it is of no finger: a force that
+        is late, at the end of its range, or of another sign or unit than was said.
     """
     instrument = _checked(log, device, piece, delay, instrument)
     task = _Task(log, device, piece, delay, instrument, "hand_force" in log.channels)
@@ -142,7 +144,8 @@ class _Task(NamedTuple):
 
 
 class _Road(NamedTuple):
-    """The pieces, the fits by the force that answers, and those of device and finger by the actuator's beside."""
+    """The pieces, the fits by the force that answers, and those of device and finger by the actuator's
+    beside."""
 
     pieces: Pieces
     ways: Ways

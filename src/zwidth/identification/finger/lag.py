@@ -6,14 +6,15 @@ left tells τ: by ẍ of the equation of motion of device and finger, M = m + m_
     −ḟ_h = m_h x⃛ + c ẍ + k ẋ,    M x⃛ = −ḟ_a − (b + c) ẍ − k ẋ
     f_h (t − τ) = … + γ ḟ_a,      γ = τ m_h/M                                                     (1)
 
-so the actuator's steps are what is seen late, and tremor, which is not in ḟ_a, does not matter.  Where it is not
-logged the force of the hand is read later, sample by sample, and what the fit leaves of each piece is held
-against what it leaves of the same piece at the best moment: every moment that is not surely worse, by Student's t
-of the differences, may be the right one.
+so the actuator's steps are what is seen late, and tremor, which is not in ḟ_a, does not matter.  Where it
+is not logged the force of the hand is read later, sample by sample, and what the fit leaves of each piece
+is held against what it leaves of the same piece at the best moment: every moment that is not surely worse, by
+Student's t of the differences, may be the right one.
 
 A force that steps at a sample may be read before the step or after it: straight between samples, it then
-steps half a sample late or early, and nothing in a log tells which.  So both show τ within half a sample only,
-unless the actuator is known to step between two samples.  Derived here; checked on simulated recordings.
+steps half a sample late or early, and nothing in a log tells which.  So both show τ within half a sample
+only, unless the actuator is known to step between two samples.  Derived here; checked on simulated
+recordings.
 """
 
 from __future__ import annotations
@@ -141,7 +142,8 @@ def lag_without_actuator(pieces: Pieces, period: float) -> Lag | None:
 
 
 def _left(rows: Means) -> Array:
-    """What the fit leaves of each piece, a mean over its pulses; a product of two halves, which noise is not in."""
+    """What the fit leaves of each piece, a mean over its pulses; a product of two halves, which noise is
+    not in."""
     assert rows.hand is not None  # it is what may be late
     columns, piece = without_slow(
         np.column_stack([rows.even, rows.odd, -rows.hand]), rows.piece, np.arange(rows.piece.size)
@@ -160,9 +162,10 @@ def _worse(more: Array) -> float:
 
 
 def _moments(delay: float) -> tuple[float, float]:
-    """By how much a step of the actuator looks late where the force is in time, at least and at most [samples].
+    """By how much the actuator's steps look late where the force is in time: least and most [samples].
 
-    Read first at the sample after it, and straight between samples, a step is half a sample before that sample.
+    Read first at the sample after it, and straight between samples, a step is half a sample before that
+    sample.
     """
     if delay == int(delay):
         return -0.5, 0.5

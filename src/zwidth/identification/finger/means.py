@@ -103,7 +103,8 @@ def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
     runs = [run for run in _whole_runs(log) if len(run[0]) >= size]
     if not runs:
         raise InputError(
-            f"{log.source} has no run of {seconds:g} s without a hole: {log.runs} runs in {log.duration:.3g} s; "
+            f"{log.source} has no run of {seconds:g} s without a hole: {log.runs} runs in "
+            f"{log.duration:.3g} s; "
             "record a minute, lose no samples, or take shorter pieces"
         )
 
@@ -115,9 +116,9 @@ def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
     assert position is not None  # every log has positions
     assert side is not None
     hand, actuator = (rows(r[n] for r in runs) for n in (1, 2))
-    clear = np.ones(len(position), dtype=bool)
+    clear: NDArray[np.bool_] = np.ones(len(position), dtype=bool)
     if by_hand and hand is not None:
-        clear = ~beyond(hand, log.stops).any(axis=1)
+        clear = np.logical_not(np.any(beyond(hand, log.stops), axis=1))
     return Pieces(position, None, hand, actuator, side, tuple(len(r[0]) // size for r in runs), clear)
 
 
@@ -210,7 +211,8 @@ def means(pieces: Pieces, shape: Weights, period: float) -> Means | None:
 
 
 def later(rows: Means, pieces: Pieces, shape: Weights, samples: int) -> Means:
-    """The same means with the force of the hand read so many samples later, where the pieces go on so long."""
+    """The same means with the force of the hand read so many samples later, where the pieces go on so
+    long."""
     assert pieces.hand is not None  # it is what may be late
     size, reach = pieces.position.shape[1], shape.reach
     centres = _centres(size, shape)

@@ -47,6 +47,13 @@ THRESHOLD = 1.0 - SURE
 """Chance below which a fault is believed to be there."""
 
 
+FINER = 4
+"""Instants in each interval at which a filter is reckoned."""
+
+LEAST = 1e-9
+"""A filter that is quicker is a delay [s]."""
+
+
 class Faults(NamedTuple):
     """What is fitted beside the tissue.
 
@@ -72,12 +79,15 @@ class Faults(NamedTuple):
         )
 
     def delayed(self, predicted: Array, time: Array, late: float) -> Array:
-        """A prediction as it is recorded late by so much [s]."""
-        if self.late == "delay":
-            return np.asarray(CubicHermiteSpline(time, predicted, np.gradient(predicted, time))(time - late))
-        if self.late == "filter" and late > 1e-12:
-            return predicted - decaying(np.diff(time), np.diff(predicted), 1.0 / late)
-        return predicted
+        """A prediction as it is recorded late by so much [s]; smooth between its samples."""
+        if not self.late:
+            return predicted
+        smooth = CubicHermiteSpline(time, predicted, np.gradient(predicted, time))
+        if self.late == "delay" or late < LEAST:
+            return np.asarray(smooth(time - late))
+        fine = np.interp(np.arange(FINER * (time.size - 1) + 1) / FINER, np.arange(time.size), time)
+        values = smooth(fine)
+        return np.asarray((values - decaying(np.diff(fine), np.diff(values), 1.0 / late))[::FINER])
 
 
 def _none(time: Array) -> Array:
@@ -106,7 +116,8 @@ def hole_places(time: Array, position: Array, source: str = "the record") -> tup
     holes = holes[(holes > 1) & (holes < time.size - 1)]
     if holes.size > MOST_HOLES:
         raise InputError(
-            f"{source} has {holes.size} holes in time, the first after t = {time[holes[0] - 1]:.6g} s: what a tissue "
+            f"{source} has {holes.size} holes in time, the first after t = {time[holes[0] - 1]:.6g} "
+            f"s: what a tissue "
             "holds after each is not known; record without losing samples, or give a part with fewer"
         )
     return tuple(holes.tolist())
@@ -135,7 +146,7 @@ def unlikely(jacobian: Array, left: Array, columns: Array, noise: Noise) -> floa
 
 
 def sudden(model: Model, p: list[float], record: Record, left: Array) -> int | None:
-    """The sample at which a branch most likely changed with nothing to see of it; None where it has no memory.
+    """The sample at which a branch most likely changed unseen; None where it has no memory.
 
     By correlating what is left with exp(−t/τ) from each sample on.
     """

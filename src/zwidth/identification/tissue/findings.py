@@ -35,7 +35,10 @@ def unlikely_units(stiffness: float, depth: float) -> Iterator[str]:
             f"{SOFTEST:g} to {STIFFEST:g} N/m: most likely a unit is off by 1000, mm for m or mN for N"
         )
     if depth > DEEPEST or 0 < depth < SHALLOWEST:
-        yield f"positions up to {depth:.3g} are hardly metres inside a tissue: most likely their unit is another"
+        yield (
+            f"positions up to {depth:.3g} are hardly metres inside a tissue: most likely their unit is "
+            "another"
+        )
 
 
 def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
@@ -53,8 +56,10 @@ def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
     grid = grid_of(position)
     if grid is not None and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
         yield (
-            f"the position is read in steps of {grid.step:.3g}, and most of what the fit leaves may come from them: "
-            "the intervals take the position for exact and are too narrow; move further, or read it more finely"
+            f"the position is read in steps of {grid.step:.3g}, and most of what the fit leaves may "
+            f"come from them: "
+            "the intervals take the position for exact and are too narrow; move further, or read it "
+            "more finely"
         )
 
 
@@ -82,8 +87,10 @@ def refuse_sign(record: Record, left: Array, size: float, again: Callable[[Recor
         return
     if float(np.mean(again(record._replace(force=-record.force)) ** 2)) < (1 - GOOD) * spread:
         raise InputError(
-            "no tissue pulls the probe in: with the sign of the force turned round, or that of the position, the record "
-            "is of one; give positions that are positive inside the tissue and forces that are positive out of it"
+            "no tissue pulls the probe in: with the sign of the force turned round, or that of the "
+            "position, the record "
+            "is of one; give positions that are positive inside the tissue and forces that are "
+            "positive out of it"
         )
 
 
@@ -116,17 +123,24 @@ def findings(
         unit = "rad" if motion == "rotary" else "m"
     if np.isfinite(stops).any():
         ends = " and at ".join(f"{end:.4g} {unit}" for end in stops if np.isfinite(end))
-        text = f"the force stays at {ends}: the sensor is at an end of its range; {left_out} samples do not count"
+        text = (
+            f"the force stays at {ends}: the sensor is at an end of its range; {left_out} samples do "
+            "not count"
+        )
         yield Finding(kind="saturated", text=text, samples=left_out)
     if record.begins:
         places = ", ".join(f"{record.time[b]:.4g} s" for b in record.begins[:3])
         text = (
-            f"{len(record.begins)} holes, before t = {places}{' …' if len(record.begins) > 3 else ''}: what the branches "
+            f"{len(record.begins)} holes, before t = "
+            f"{places}{' …' if len(record.begins) > 3 else ''}: what the branches "
             "held after each was fitted"
         )
         yield Finding(kind="hole", text=text)
     if faults.drift:
-        text = f"the zero drifts: from {zero[0]:.3g} {unit} at the start by {zero[-1]:.3g} {unit}; fitted besides"
+        text = (
+            f"the zero drifts: from {zero[0]:.3g} {unit} at the start by {zero[-1]:.3g} {unit}; "
+            "fitted besides"
+        )
         yield Finding(kind="drift", text=text)
     elif faults.offset:
         text = f"the zero is off by {zero[0]:.3g} {unit}; fitted besides"
@@ -138,7 +152,8 @@ def findings(
 def _lateness(kind: str, late: float) -> Finding:
     if late < 0:
         text = (
-            f"the force looks {-1e3 * late:.3g} ms early: the position is recorded late, or the model has too few "
+            f"the force looks {-1e3 * late:.3g} ms early: the position is recorded late, or the model "
+            f"has too few "
             "elements; fitted as a delay"
         )
         return Finding(kind="force early", text=text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,12 +20,15 @@ if TYPE_CHECKING:
 AGAINST = -0.5
 """Correlation of depth and force, inside, below which a record is of no tissue: a solid resists."""
 
+FAR = 100.0
+"""Times by which a start may be wrong before its units are doubted."""
+
 FEWEST = 30
 """Samples inside below which nothing is said of the sign."""
 
 
 def passed_over(
-    position: Array, force: Array, time: ArrayLike | None, period: float
+    position: Array, force: Array, time: ArrayLike | None, period: float, stiffness: float
 ) -> tuple[NDArray[np.bool_], tuple[Finding, ...]]:
     """Which samples are passed over, and why.
 
@@ -36,6 +40,8 @@ def passed_over(
         Of the samples [s]; None: without holes.
     period
         T [s].
+    stiffness
+        At once, of the solid that the tracker starts from [N/m; N·m/rad].
 
     Raises
     ------
@@ -43,7 +49,7 @@ def passed_over(
         If the tissue pulls the probe in, or the times are no such samples.
     """
     _check_sign(position, force)
-    passed, findings = np.zeros(force.size, dtype=bool), []
+    passed, findings = np.zeros(force.size, dtype=bool), [*_units(position, force, stiffness)]
     stopped = _stopped(position, force)
     if stopped.any():
         passed |= stopped
@@ -68,6 +74,27 @@ def _stopped(position: Array, force: Array) -> NDArray[np.bool_]:
     return found
 
 
+def _units(position: Array, force: Array, stiffness: float) -> Iterator[Finding]:
+    """Said where the force goes about by far more or less than the start would make of the motion."""
+    inside = position > 0
+    moved = float(np.ptp(position[inside])) if inside.any() else 0.0
+    if position.size >= FEWEST and not inside.any():
+        text = (
+            "the position is never inside the tissue, x > 0: nothing is learnt; does it count the other way?"
+        )
+        yield Finding(kind="outside", text=text)
+    if not moved:
+        return
+    times = float(np.ptp(force[inside])) / moved / stiffness
+    if not 1 / FAR <= times <= FAR:
+        text = (
+            f"the force goes about {times:.3g} times as much as that of the solid at the start: most "
+            f"likely a unit is "
+            "off by 1000, mm for m or mN for N"
+        )
+        yield Finding(kind="units", text=text)
+
+
 def _check_sign(position: Array, force: Array) -> None:
     inside = position > 0
     if np.count_nonzero(inside) < FEWEST:
@@ -76,6 +103,7 @@ def _check_sign(position: Array, force: Array) -> None:
     if np.std(depth) == 0 or np.std(push) == 0 or np.corrcoef(depth, push)[0, 1] > AGAINST:
         return
     raise InputError(
-        "the force falls where the probe goes deeper, and no tissue pulls it in: give positions that are positive "
+        "the force falls where the probe goes deeper, and no tissue pulls it in: give positions that "
+        "are positive "
         "inside the tissue and forces that are positive out of it; one of the two counts the other way"
     )

@@ -37,8 +37,9 @@ _SLOWEST = 1e5
 
 
 class Track(NamedTuple):
-    """The solid after each sample, ε the error of prediction, the trace of P (see `RecursiveSolid`), and what was
-    found in the record: samples that were passed over."""
+    """The solid after each sample, ε the error of prediction, the trace of P (see `RecursiveSolid`), and what
+    was found in the record: samples that were passed over.
+    """
 
     stiffness: Array
     branch_stiffness: Array
@@ -163,7 +164,8 @@ class RecursiveSolid:
         Raises
         ------
         InputError
-            If they are not arrays of one length, finite, or the record is of no tissue: it pulls the probe in.
+            If they are not arrays of one length, finite, or the record is of no tissue: it pulls the probe
+            in.
         """
         return self.start().track(position, force, time)
 
@@ -236,10 +238,12 @@ class Tracker:
         if x.ndim != 1 or x.shape != f.shape or not (np.isfinite(x).all() and np.isfinite(f).all()):
             raise InputError("position and force are two arrays of one length, of finite numbers")
         out = np.empty((5, x.size))
-        passed, findings = passed_over(x, f, time, float(self.settings.sample_period))
+        passed, findings = passed_over(
+            x, f, time, float(self.settings.sample_period), self._numbers[recursion.SCALE]
+        )
         f[passed] = np.nan
         recursion.run(self._numbers, self._memory, x, f, out)
-        return Track(*out, findings)
+        return Track(out[0], out[1], out[2], out[3], out[4], findings)
 
     @property
     def solid(self) -> Solid:

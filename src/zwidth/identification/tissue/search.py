@@ -1,14 +1,15 @@
 """The search for a tissue's parameters, again for each fault that what is left over shows.
 
-First the tissue alone.  Then whatever of offset, drift, lateness and a hole without stamps is least likely to be
-there by chance is fitted too, until nothing is left at 99.9 %.  Samples at an end of the sensor's range count
-nothing; which samples those are is decided by what is predicted, not by what was read, so that noise does not choose.
+First the tissue alone.  Then whatever of offset, drift, lateness and a hole without stamps is least likely
+to be there by chance is fitted too, until nothing is left at 99.9 %.  Samples at an end of the sensor's
+range count nothing; which samples those are is decided by what is predicted, not by what was read, so that
+noise does not choose.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,6 +31,9 @@ ROUNDS = 8
 TRIES = 50
 """Evaluations of a search with faults, at the most: it begins near where the last one ended."""
 
+TOLD_APART = 40.0
+"""Of twice the logarithm of the likelihood, beyond which a delay and a filter are told apart."""
+
 FEW = 30.0
 """Independent samples below which the noise may be a drift."""
 
@@ -39,17 +43,21 @@ EXACT = 1e-7
 """Residuals below this part of the largest output are rounding."""
 
 
+Mask = np.ndarray[Any, np.dtype[np.bool_]]
+
+
 class Task(NamedTuple):
-    """A model, a record, the samples that count, what is fitted besides, and the memory that noise may have."""
+    """A model, a record, the samples that count, what is fitted besides, and the memory that noise may
+    have."""
 
     model: Model
     record: Record
-    used: Array
+    used: Mask
     faults: Faults
     largest_order: int
 
     @property
-    def count(self) -> int:
+    def own(self) -> int:
         """Parameters of the model."""
         return len(self.model.parameters)
 
@@ -110,7 +118,7 @@ def _searched(task: Task) -> tuple[Task, Solved]:
 
 def _starts(task: Task, before: Solved) -> list[Array]:
     """Where the search went before, and where it would begin without the zero."""
-    own = np.exp(before.theta[: task.count])
+    own = np.exp(before.theta[: task.own])
     zero = task.faults.zero(task.record.time)
     if not zero.size or not task.model.linear or task.record.response == "position":
         return [own]
@@ -137,7 +145,8 @@ def _fault(task: Task, solved: Solved) -> Task | None:
 
 
 def _hidden_drift(task: Task, solved: Solved) -> Task | None:
-    """The task with a drift, where the noise took it for its own memory and says less of it once it is fitted."""
+    """The task with a drift, where the noise took it for its own memory and says less of it once it is
+    fitted."""
     if task.faults.drift or solved.noise.samples > FEW:
         return None
     other = task._replace(faults=task.faults._replace(drift=True))
@@ -199,24 +208,25 @@ def _within(task: Task, stops: tuple[float, float]) -> tuple[Task, Solved, tuple
         return None
     inside = (predicted > low + spread) & (predicted < high - spread) & (force > low) & (force < high)
     task = task._replace(used=_enough(task, inside))
-    return task, _solve(task, [np.exp(solved.theta[: task.count])]), (low, high)
+    return task, _solve(task, [np.exp(solved.theta[: task.own])]), (low, high)
 
 
-def _plenty(task: Task, used: Array) -> bool:
-    return bool(np.count_nonzero(used) >= max(0.3 * used.size, 4 * task.count))
+def _plenty(task: Task, used: Mask) -> bool:
+    return bool(np.count_nonzero(used) >= max(0.3 * used.size, 4 * task.own))
 
 
-def _enough(task: Task, used: Array) -> Array:
+def _enough(task: Task, used: Mask) -> Mask:
     if not _plenty(task, used):
         raise InputError(
-            f"in {used.size - np.count_nonzero(used)} of {used.size} samples the force is at an end of the sensor's "
+            f"in {used.size - np.count_nonzero(used)} of {used.size} samples the force is at an end "
+            f"of the sensor's "
             "range, and what is left shows too little: press less, or take a larger load cell"
         )
     return used
 
 
 def _result(task: Task, solved: Solved, stops: tuple[float, float], motion: str) -> TissueFit:
-    count, size = task.count, task.size
+    count, size = task.own, task.size
     zero = task.faults.zero(task.record.time).shape[1]
     own = count + (zero > 0)
     spread, condition = covariance(_alike(solved.jacobian, own), solved.noise)
@@ -226,7 +236,7 @@ def _result(task: Task, solved: Solved, stops: tuple[float, float], motion: str)
     return TissueFit(
         model=task.model,
         estimates=estimates,
-        covariance=spread[:own, :own] * np.outer(scale, scale),
+        covariance=(spread[:own, :own] + _either(task, solved, own)) * np.outer(scale, scale),
         residuals=-solved.left * size,
         output=task.record.output[task.used],
         response=task.record.response,
@@ -250,6 +260,21 @@ def _result(task: Task, solved: Solved, stops: tuple[float, float], motion: str)
     )
 
 
+def _either(task: Task, solved: Solved, own: int) -> Array:
+    """What the tissue would be by a filter instead of a delay, or the reverse, squared, where both fit as
+    well."""
+    if not task.faults.late:
+        return np.zeros((own, own))
+    other = task._replace(
+        faults=task.faults._replace(late="filter" if task.faults.late == "delay" else "delay")
+    )
+    found = _solve(other, _starts(other, solved))
+    if solved.left.size * np.log(found.noise.variance / solved.noise.variance) > TOLD_APART:
+        return np.zeros((own, own))
+    apart = found.theta[:own] - solved.theta[:own]
+    return np.asarray(np.outer(apart, apart))
+
+
 def _alike(jacobian: Array, own: int) -> Array:
     """The derivatives by what was fitted besides, of the size of the others: their units mean nothing."""
     size = np.linalg.norm(jacobian, axis=0)
@@ -259,28 +284,29 @@ def _alike(jacobian: Array, own: int) -> Array:
 
 
 def _values(task: Task, theta: Array) -> list[float]:
-    return [float(v) for v in np.exp(theta[: task.count])]
+    return [float(v) for v in np.exp(theta[: task.own])]
 
 
 def _late(task: Task, theta: Array) -> float:
     """How late the force is [s]; the number after those of the zero, in sample periods."""
     if not task.faults.late:
         return 0.0
-    place = task.count + task.faults.zero(task.record.time).shape[1]
+    place = task.own + task.faults.zero(task.record.time).shape[1]
     return float(theta[place]) * float(np.median(np.diff(task.record.time)))
 
 
 def _predicted(task: Task, theta: Array) -> Array:
-    """The output [N; N·m, or m; rad]: θ is the tissue, then zero, lateness and what the branches held at holes."""
+    """The output [N; N·m, or m; rad]: θ is the tissue, then zero, lateness and what the branches held at
+    holes."""
     values, record, size = _values(task, theta), task.record, task.size
     zero = task.faults.zero(record.time)
-    after = task.count + zero.shape[1]
+    after = task.own + zero.shape[1]
     found = task.model.predict(values, record)
     columns = [c for begin in record.begins for c in task.model.fading(values, record, begin)]
     for held, column in zip(theta[after + bool(task.faults.late) :], columns, strict=True):
         found = found + size * held * column
     found = task.faults.delayed(found, record.time, _late(task, theta))
-    return np.asarray(found + zero @ (size * theta[task.count : after]))
+    return np.asarray(found + zero @ (size * theta[task.own : after]))
 
 
 def _further(task: Task) -> Array:
@@ -301,7 +327,7 @@ def _solve(task: Task, starts: list[Array]) -> Solved:
         found: Array = (_predicted(task, theta) - output)[used] / size
         return found
 
-    reach = np.append(np.full(task.count, DECADES), np.full(further.size, np.inf))
+    reach = np.append(np.full(task.own, DECADES), np.full(further.size, np.inf))
     best = None
     for start in starts:
         theta = np.append(np.log(start), further)
