@@ -38,6 +38,9 @@ LATER = (0.0, 1e-3, 2e-3, 3e-3, 5e-3, 8e-3, 12e-3)
 SHORTEST = 4
 """Samples of a quarter of a pulse: the shorter, the more is seen of the moment."""
 
+LEAST = 0.5
+"""Parts of a sample below which a lateness is not told from what friction and curves do to the fit."""
+
 SURELY = 2.0
 """Times the reach of 99.9 % beyond which a force is late even if it was read before the step."""
 
@@ -94,7 +97,8 @@ def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: flo
     early, late = _moments(delay)
     value = here[0] + best * period
     low, high = value - late * period, value - early * period
-    return Lag(max(low - reach, 0.0), max(high + reach, 0.0), high - reach > 0, low - reach > 0)
+    seen = high > max(reach, LEAST * period)
+    return Lag(max(low - reach, 0.0), max(high + reach, 0.0), seen, low - reach > 0)
 
 
 def _explained(rows: Means) -> float:
