@@ -1,7 +1,7 @@
-"""Numbers that no device has, m < 0 or b < 0, and what most likely made them.
+"""Numbers that no device and no finger has, m < 0, b < 0 or k < 0, and what most likely made them.
 
-Turn the sign of every force round, and m, b and f_c change theirs: a sensor that counts the other way
-gives all three below 0.  Where a hand's force and an actuator's are both logged, each sign is tried.
+Turn the sign of every force round, and m, b, f_c and k change theirs: a sensor that counts the other way
+gives all of them below 0.  Where a hand's force and an actuator's are both logged, each sign is tried.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
+from typing import NamedTuple
 
 from zwidth.identification.device.identified import Estimate
 from zwidth.identification.logs import Log
@@ -16,14 +17,41 @@ from zwidth.identification.logs.log import Block
 
 Estimates = Mapping[str, Estimate]
 
-_OTHER_CAUSES = (
+
+class Bounds(NamedTuple):
+    """What cannot be below 0.
+
+    Parameters
+    ----------
+    whose
+        "device" or "finger".
+    above
+        The names that are > 0 in every one.
+    sure
+        Of these, those that a log must show to be > 0 for its signs to be the right ones.
+    causes
+        What else may be wrong, where no sign helps.
+    """
+
+    whose: str
+    above: tuple[str, ...]
+    sure: tuple[str, ...]
+    causes: str
+
+
+DEVICE = Bounds(
+    "device",
+    ("mass", "damping"),
+    ("mass", "damping"),
     "no sign that is turned round makes a device of it: is an actuator at work whose force is not in the "
-    "log, is friction compensated, does it fall with speed, or are force and position not of one moment?"
+    "log, is friction compensated, does it fall with speed, or are force and position not of one moment?",
 )
 
 
-def impossible(log: Log, estimates: Estimates, again: Callable[[Log], Estimates | None]) -> str | None:
-    """What is wrong with a log that shows a mass or a damping below 0, surely; None where neither is.
+def impossible(
+    log: Log, estimates: Estimates, again: Callable[[Log], Estimates | None], bounds: Bounds = DEVICE
+) -> str | None:
+    """What is wrong with a log that shows what is surely below 0 and cannot be; None where nothing is.
 
     Parameters
     ----------
@@ -33,18 +61,20 @@ def impossible(log: Log, estimates: Estimates, again: Callable[[Log], Estimates 
         What it shows.
     again
         What a log with other signs shows, fitted likewise; None if nothing.
+    bounds
+        What cannot be below 0.
     """
-    above = [name for name in ("mass", "damping") if name in estimates]
-    below = [name for name in above if estimates[name].interval()[1] < 0]
+    below = [name for name in bounds.above if name in estimates and estimates[name].interval()[1] < 0]
+    sure = [name for name in bounds.sure if name in estimates]
     if not below:
         return None
     said = " and ".join(f"{name} comes out as {estimates[name]}" for name in below)
-    said = f"{log.source}: {said}, and no device has that"
+    said = f"{log.source}: {said}, and no {bounds.whose} has that"
     for channels in _subsets(log.channels):
         found = again(_turned(log, channels))
-        if found is not None and all(found[name].interval()[0] > 0 for name in above):
+        if found is not None and all(found[name].interval()[0] > 0 for name in sure):
             return f"{said}; {_flipped(log, channels, found, below)}"
-    return f"{said}; {_OTHER_CAUSES}"
+    return f"{said}; {bounds.causes}"
 
 
 def _flipped(log: Log, channels: tuple[str, ...], found: Estimates, below: list[str]) -> str:

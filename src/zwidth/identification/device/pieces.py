@@ -18,6 +18,7 @@ from zwidth.identification.device.strokes import (
     positions,
 )
 from zwidth.identification.logs import Block, Log
+from zwidth.identification.logs.stops import beyond
 
 SECONDS = 10.0
 """Length of a piece: within it the zero of the load cell may drift along a straight line [s]."""
@@ -76,8 +77,8 @@ def _within_range(strokes: Strokes, block: Block, stops: tuple[float, float]) ->
     """
     if block.hand_force is None or not np.isfinite(stops).any():
         return strokes
-    beyond = np.cumsum((block.hand_force <= stops[0]) | (block.hand_force >= stops[1]))
-    clear = beyond[strokes.last] == np.where(strokes.first > 0, beyond[strokes.first - 1], 0)
+    so_far = np.cumsum(beyond(block.hand_force, stops))
+    clear = so_far[strokes.last] == np.where(strokes.first > 0, so_far[strokes.first - 1], 0)
     return strokes._replace(first=strokes.first[clear], last=strokes.last[clear], side=strokes.side[clear])
 
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -40,6 +41,8 @@ class Fit(NamedTuple):
         How many they rest on.
     explained
         r².
+    further, further_error
+        What was fitted besides, and its standard error; 0 where nothing was.
     """
 
     values: Array
@@ -47,6 +50,8 @@ class Fit(NamedTuple):
     pieces: int
     pulses: int
     explained: float
+    further: float = 0.0
+    further_error: float = 0.0
 
     @property
     def errors(self) -> Array:
@@ -78,16 +83,17 @@ def fitted(rows: Means | None, by_hand: bool, friction: float, resting: bool = F
     force = -force - friction * (rows.side if resting else rows.turning) if sliding else -force
     steps = [rows.actuator_slope] if by_hand and rows.actuator_slope is not None else []
     groups = [rows.even, rows.odd, rows.expected if rows.expected is not None else rows.odd]
-    columns, piece = _without_slow(
+    columns, piece = without_slow(
         np.column_stack([*groups, *steps, force])[kept], rows.piece[kept], np.flatnonzero(kept)
     )
     even, odd, expected = (np.column_stack([columns[:, k : k + 3], columns[:, 9:-1]]) for k in (0, 3, 6))
     if rows.expected is not None:
-        return _solved([(expected, (even + odd) / 2)], columns[:, -1], piece)
-    return _solved([(even / 2, odd), (odd / 2, even)], columns[:, -1], piece)
+        return solved([(expected, (even + odd) / 2)], columns[:, -1], piece)
+    return solved([(even / 2, odd), (odd / 2, even)], columns[:, -1], piece)
 
 
-def _solved(pairs: list[tuple[Array, Array]], y: Array, piece: NDArray[np.int64]) -> Fit | None:
+def solved(pairs: list[tuple[Array, Array]], y: Array, piece: NDArray[np.int64]) -> Fit | None:
+    """θ of y = aᵀ θ by pairs of instruments z and regressors a; None where too little is known."""
     starts = np.flatnonzero(np.diff(piece, prepend=-1))
     count = pairs[0][0].shape[1]
     if starts.size < FEWEST + count:
@@ -105,10 +111,20 @@ def _solved(pairs: list[tuple[Array, Array]], y: Array, piece: NDArray[np.int64]
     covariance: Array = few * inverse @ (each.T @ each) @ inverse.T
     left = np.mean([y - a @ values for _, a in pairs], axis=0)
     some = slice(len(TERMS))
-    return Fit(values[some], covariance[some, some], starts.size, y.size, float(1 - left @ left / (y @ y)))
+    besides = (float(values[-1]), float(np.sqrt(covariance[-1, -1]))) if count > len(TERMS) else (0.0, 0.0)
+    explained = float(1 - left @ left / (y @ y))
+    return Fit(values[some], covariance[some, some], starts.size, y.size, explained, *besides)
 
 
-def _without_slow(
+@lru_cache(maxsize=64)
+def _cubic(place: tuple[int, ...]) -> Array:
+    """Cubics of time, orthonormal; most pieces have their pulses at the same places."""
+    time = np.array(place) - np.mean(place)
+    found: Array = np.linalg.qr(np.vander(time / np.abs(time).max(), SLOW))[0]
+    return found
+
+
+def without_slow(
     columns: Array, piece: NDArray[np.int64], place: NDArray[np.int64]
 ) -> tuple[Array, NDArray[np.int64]]:
     """The columns less a cubic of time in each piece that is long enough, and the pieces they are of."""
@@ -116,8 +132,7 @@ def _without_slow(
     for rows in np.split(np.arange(len(columns)), np.flatnonzero(np.diff(piece)) + 1):
         if rows.size <= SLOW + 1:
             continue
-        time = place[rows] - place[rows].mean()
-        basis = np.linalg.qr(np.vander(time / np.abs(time).max(), SLOW))[0]
+        basis = _cubic(tuple((place[rows] - place[rows[0]]).tolist()))
         found.append(columns[rows] - basis @ (basis.T @ columns[rows]))
         pieces.append(piece[rows])
     return np.concatenate(found), np.concatenate(pieces)

@@ -22,6 +22,7 @@ of the bias of the counts, not of that of tremor.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -31,9 +32,23 @@ from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.identification.device.choice import LENGTHS, LONGER, SAFETY
 from zwidth.identification.device.identified import Estimate
+from zwidth.identification.device.impossible import impossible
 from zwidth.identification.device.pulses import PIECES
+from zwidth.identification.finger.doubts import (
+    BY_ACTUATOR,
+    FINGER,
+    LoadCellError,
+    apart,
+    at_the_stop,
+    disagreement,
+    doubts,
+    late,
+    scale_wrong,
+    widened,
+)
 from zwidth.identification.finger.fit import TERMS, Fit, fitted
 from zwidth.identification.finger.identified import IdentifiedFinger
+from zwidth.identification.finger.lag import lag_of, lag_without_actuator
 from zwidth.identification.finger.means import Means, Pieces, means, pieces_of, response
 from zwidth.identification.finger.weights import Weights, weights
 from zwidth.identification.logs import Finding, Log
@@ -71,7 +86,8 @@ def identify_finger(
         The position, and the force of the hand, or of the actuator, or both.
     device
         With mass, damping and Coulomb friction, perhaps intervals; needed where the force of the hand was
-        not measured, else not looked at.
+        not measured. Where both forces were, the load cell is held against it, and the actuator's force
+        answers alone where the load cell is late or at the end of its range.
     piece
         Time over which what the finger wants is a cubic, > 0 [s].
     delay
@@ -83,35 +99,192 @@ def identify_finger(
     Raises
     ------
     InputError
-        If the log shows too little, or a number is outside its bound.
+        If the log shows too little, or a number is outside its bound; or if it is of no finger: a force that
+        is late, at the end of its range, or of another sign or unit than was said.
     """
     instrument = _checked(log, device, piece, delay, instrument)
-    by_hand = "hand_force" in log.channels
-    pieces = pieces_of(log, piece)
-    known = {} if by_hand else _known(device)
-    least, most = known.get("coulomb_friction", (0.0, 0.0))
-    friction = (least + most) / 2
-    ways = _chosen(pieces, log, delay / log.sample_period, by_hand, friction)
-    if instrument == "perturbation":
-        pieces = _perturbed(pieces, log, ways.shape, delay, friction)
-        ways = _again(pieces, log, ways.shape, delay / log.sample_period, by_hand, friction)
-    shift = SAFETY * np.abs(ways.fit.values - ways.longer.values)
-    if most > 0:
-        shift = shift + _doubt(ways, means(pieces, ways.shape, log.sample_period), friction, most)
-    if "actuator_force" not in log.channels:
-        shift = shift + _half_a_sample(ways.fit.values, log.sample_period)
-    estimates = _estimates(ways.fit, shift, known, log.motion)
+    task = _Task(log, device, piece, delay, instrument, "hand_force" in log.channels)
+    try:
+        return _identified(task)
+    except LoadCellError as error:
+        if "actuator_force" not in log.channels or device is None or device.mass is None:
+            raise
+        found = _identified(task._replace(by_hand=False))
+        said = Finding(
+            kind="load cell not used",
+            text=f"the numbers are by the actuator's force and the device, without the load cell: {error}",
+        )
+        return replace(found, findings=(*found.findings, said))
+
+
+class _Task(NamedTuple):
+    """What was asked for, and by which force it is answered."""
+
+    log: Log
+    device: Device | None
+    piece: float
+    delay: float
+    instrument: Instrument
+    by_hand: bool
+
+    @property
+    def late(self) -> float:
+        """The actuator's delay [samples]."""
+        return self.delay / self.log.sample_period
+
+    @property
+    def known(self) -> dict[str, tuple[float, float]]:
+        """The ends of what the device takes of the actuator's force; nothing where no mass is known."""
+        return {} if self.device is None or self.device.mass is None else _known(self.device)
+
+    @property
+    def friction(self) -> float:
+        """f_c of the device [N; N·m], 0 where it is not known."""
+        return sum(self.known.get("coulomb_friction", (0.0, 0.0))) / 2
+
+
+class _Road(NamedTuple):
+    """The pieces, the fits by the force that answers, and those of device and finger by the actuator's
+    beside."""
+
+    pieces: Pieces
+    ways: Ways
+    total: Ways | None
+
+
+def _identified(task: _Task) -> IdentifiedFinger:
+    log = task.log
+    road = _begun(task)
+    wrong = impossible(log, _stiffnesses(task, road), lambda other: _turned(task, other), FINGER)
+    if wrong is not None:
+        raise InputError(wrong)
+    road = _finished(task, road)
+    shift, said = _against_the_other_force(task, road)
+    estimates = _estimates(
+        road.ways.fit, _shift(task, road) + shift, {} if task.by_hand else task.known, log.motion
+    )
+    wrong = scale_wrong(log, road.pieces, estimates["stiffness"]) or impossible(
+        log, estimates, lambda _: None, FINGER
+    )
+    if wrong is not None:
+        raise InputError(wrong)
+    fit = road.ways.fit
     return IdentifiedFinger(
         estimates=estimates,
-        instrument=instrument,
-        explained=ways.fit.explained,
-        pulse_length=PIECES * ways.shape.piece * log.sample_period,
-        pieces=ways.fit.pieces,
-        pulses=ways.fit.pulses,
+        instrument=task.instrument,
+        explained=fit.explained,
+        pulse_length=PIECES * road.ways.shape.piece * log.sample_period,
+        pieces=fit.pieces,
+        pulses=fit.pulses,
         motion=log.motion,
         source=log.source,
-        findings=(*log.findings, *_findings(estimates, by_hand, instrument)),
+        findings=(*log.findings, *said, *_findings(estimates, task.by_hand, task.instrument)),
     )
+
+
+def _begun(task: _Task) -> _Road:
+    """The fits by the even and the odd samples, which take the motion as it was, whatever the signs."""
+    pieces = pieces_of(task.log, task.piece, task.by_hand)
+    try:
+        ways = _chosen(pieces, task.log, task.late, task.by_hand, task.friction)
+    except InputError as error:
+        raise (at_the_stop(task.log) if task.by_hand else None) or error from None
+    return _Road(pieces, ways, _total(task, pieces, ways.shape))
+
+
+def _finished(task: _Task, road: _Road) -> _Road:
+    """The fits with the instrument that was asked for."""
+    if task.instrument != "perturbation":
+        return road
+    shape = road.ways.shape
+    pieces = _perturbed(road.pieces, task.log, shape, task.delay, task.friction)
+    ways = _again(pieces, task.log, shape, task.late, task.by_hand, task.friction)
+    return _Road(pieces, ways, _total(task, pieces, shape))
+
+
+def _total(task: _Task, pieces: Pieces, shape: Weights) -> Ways | None:
+    """Of device and finger by the actuator's force, where the hand's answers and both are logged."""
+    if not task.by_hand or "actuator_force" not in task.log.channels:
+        return None
+    return _again(pieces, task.log, shape, task.late, False, task.friction)
+
+
+def _turned(task: _Task, other: Log) -> dict[str, Estimate] | None:
+    """The stiffnesses that a log with other signs shows."""
+    turned = task._replace(log=other)
+    return _stiffnesses(turned, _begun(turned))
+
+
+def _stiffnesses(task: _Task, road: _Road) -> dict[str, Estimate]:
+    """By the hand's force, and by the actuator's."""
+    own = _estimates(road.ways.fit, _apart(road.ways), {}, task.log.motion)["stiffness"]
+    if not task.by_hand:
+        return {BY_ACTUATOR: own}
+    if road.total is None:
+        return {"stiffness": own}
+    other = _estimates(road.total.fit, _apart(road.total), {}, task.log.motion)["stiffness"]
+    return {"stiffness": own, BY_ACTUATOR: other}
+
+
+def _shift(task: _Task, road: _Road) -> Array:
+    """What the method may be off."""
+    shift = _apart(road.ways)
+    least, most = task.known.get("coulomb_friction", (0.0, 0.0))
+    if most > 0 and not task.by_hand:
+        rows = means(road.pieces, road.ways.shape, task.log.sample_period)
+        shift = shift + _doubt(road.ways, rows, (least + most) / 2, most)
+    if "actuator_force" not in task.log.channels:
+        shift = shift + _half_a_sample(road.ways.fit.values, task.log.sample_period)
+    return shift
+
+
+def _apart(ways: Ways) -> Array:
+    """What pulses twice as long change, and more, since they are not endless."""
+    found: Array = SAFETY * np.abs(ways.fit.values - ways.longer.values)
+    return found
+
+
+def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Finding]]:
+    """What the hand's force may be off beside the actuator's: in its scale and in time.
+
+    Raises
+    ------
+    InputError
+        If the two are not of one finger, or the hand's is late.
+    """
+    nothing, log, ways = np.zeros(len(TERMS)), task.log, road.ways
+    if not task.by_hand:
+        return nothing, []
+    stiffness = _stiffnesses(task, road)
+    if road.total is not None:
+        _refuse(disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], False))
+    period = log.sample_period
+    lag = (
+        lag_without_actuator(road.pieces, period)
+        if road.total is None
+        else lag_of(road.pieces, ways.shape, road.total.fit, task.late, period)
+    )
+    if lag is not None and lag.seen and (lag.sure or (task.known and road.total is not None)):
+        raise late(log, lag)
+    said = list(doubts(lag)) if lag is not None and lag.seen else []
+    shift = widened(ways.fit, lag)
+    if road.total is None or not task.known:
+        return shift, said
+    _refuse(disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], True))
+    hand = _estimates(ways.fit, _shift(task, road), {}, log.motion)["damping"]
+    by_actuator = task._replace(by_hand=False)
+    other = _estimates(
+        road.total.fit, _shift(by_actuator, road._replace(ways=road.total)), task.known, log.motion
+    )
+    found = apart(log, hand, other["damping"])
+    if found is not None:
+        shift, said = shift + np.array([0.0, found[0], 0.0]), [*said, found[1]]
+    return shift, said
+
+
+def _refuse(wrong: str | None) -> None:
+    if wrong is not None:
+        raise InputError(wrong)
 
 
 def _checked(

@@ -18,6 +18,7 @@ from zwidth.errors import InputError
 from zwidth.identification.device.strokes import count_without_steps, find_strokes
 from zwidth.identification.finger.weights import Weights
 from zwidth.identification.logs import Block, Log
+from zwidth.identification.logs.stops import beyond
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,6 +37,8 @@ class Pieces(NamedTuple):
         sgn ẋ inside strokes; 0 between, where the device turns or rests.
     runs
         How many pieces of each run follow each other.
+    clear
+        Of which pieces the means are taken.
     """
 
     position: Array
@@ -44,6 +47,7 @@ class Pieces(NamedTuple):
     actuator: Array | None
     side: Array
     runs: tuple[int, ...]
+    clear: NDArray[np.bool_]
 
 
 class Means(NamedTuple):
@@ -77,8 +81,18 @@ class Means(NamedTuple):
     piece: NDArray[np.int64]
 
 
-def pieces_of(log: Log, seconds: float) -> Pieces:
+def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
     """The log cut into pieces of so many seconds, each within a run; what is left over is not used.
+
+    Parameters
+    ----------
+    log
+        What was recorded.
+    seconds
+        Of a piece.
+    by_hand
+        True: no means are taken of a piece in which the sensor of the hand's force is at an end of its range;
+        as a whole, since which of its pulses stay must not depend on the force that they show.
 
     Raises
     ------
@@ -88,7 +102,11 @@ def pieces_of(log: Log, seconds: float) -> Pieces:
     size = round(seconds / log.sample_period)
     runs = [run for run in _whole_runs(log) if len(run[0]) >= size]
     if not runs:
-        raise InputError(f"{log.source} has no run of {seconds:g} s: record a minute, or take shorter pieces")
+        raise InputError(
+            f"{log.source} has no run of {seconds:g} s without a hole: {log.runs} runs in "
+            f"{log.duration:.3g} s; "
+            "record a minute, lose no samples, or take shorter pieces"
+        )
 
     def rows(columns: Iterable[Array | None]) -> Array | None:
         parts = [_cut(c, size) for c in columns if c is not None]
@@ -98,7 +116,10 @@ def pieces_of(log: Log, seconds: float) -> Pieces:
     assert position is not None  # every log has positions
     assert side is not None
     hand, actuator = (rows(r[n] for r in runs) for n in (1, 2))
-    return Pieces(position, None, hand, actuator, side, tuple(len(r[0]) // size for r in runs))
+    clear: NDArray[np.bool_] = np.ones(len(position), dtype=bool)
+    if by_hand and hand is not None:
+        clear = np.logical_not(np.any(beyond(hand, log.stops), axis=1))
+    return Pieces(position, None, hand, actuator, side, tuple(len(r[0]) // size for r in runs), clear)
 
 
 def response(log: Log, pieces: Pieces, total: Array, delay: float) -> Array:
@@ -158,14 +179,15 @@ def means(pieces: Pieces, shape: Weights, period: float) -> Means | None:
     """Over every pulse inside the pieces; None where none fits."""
     reach = shape.reach
     start = reach + shape.lag
-    centres = np.arange(start, pieces.position.shape[1] - reach, shape.piece)
-    if not centres.size:
+    centres = _centres(pieces.position.shape[1], shape)
+    if not centres.size or not pieces.clear.any():
         return None
     odd = (np.arange(-reach, reach + 1) & 1).astype(float)
     hand, actuator = pieces.hand, pieces.actuator
+    clear = slice(None) if pieces.clear.all() else pieces.clear  # without a copy where none is left out
 
     def mean(rows: Array, weights: Array, before: int = reach) -> Array:
-        windows = sliding_window_view(rows, weights.size, axis=1)[:, centres - before]
+        windows = sliding_window_view(rows[clear], weights.size, axis=1)[:, centres - before]
         found: Array = (windows @ weights).ravel()
         return found
 
@@ -184,8 +206,27 @@ def means(pieces: Pieces, shape: Weights, period: float) -> Means | None:
         mean(pieces.side, shape.force),
         mean(_turning(pieces.side), shape.force),
         mean(np.abs(pieces.side), shape.force),
-        np.repeat(np.arange(len(pieces.position)), centres.size),
+        np.repeat(np.flatnonzero(pieces.clear), centres.size),
     )
+
+
+def later(rows: Means, pieces: Pieces, shape: Weights, samples: int) -> Means:
+    """The same means with the force of the hand read so many samples later, where the pieces go on so
+    long."""
+    assert pieces.hand is not None  # it is what may be late
+    size, reach = pieces.position.shape[1], shape.reach
+    centres = _centres(size, shape)
+    inside = centres + reach + samples < size
+    hand = pieces.hand[pieces.clear]
+    windows = sliding_window_view(hand, shape.force.size, axis=1)[:, centres[inside] - reach + samples]
+    kept = np.tile(inside, len(hand))
+    found = Means(*(None if column is None else column[kept] for column in rows))  # type: ignore[arg-type]
+    return found._replace(hand=(windows @ shape.force).ravel())
+
+
+def _centres(size: int, shape: Weights) -> NDArray[np.int64]:
+    """The samples in the middle of the pulses of a piece."""
+    return np.arange(shape.reach + shape.lag, size - shape.reach, shape.piece)
 
 
 def _turning(side: Array) -> Array:

@@ -28,6 +28,9 @@ _OFTEN = 10
 _FEWEST = 30
 """Samples of one reading below which nothing is said."""
 
+_FEWEST_WITHOUT_STEPS = 8
+"""The same where no other reading beside it comes twice."""
+
 
 class Stops:
     """How often the outermost readings of a force come, block by block."""
@@ -70,6 +73,16 @@ class Stops:
         return float(self._ends[-1][0][0] + self._ends[1][0][0])
 
 
+def beyond(force: Array, stops: tuple[float, float]) -> NDArray[np.bool_]:
+    """Where a force is at one of its stops, or further out."""
+    found: NDArray[np.bool_] = (force <= stops[0]) | (force >= stops[1])
+    return found
+
+
 def _piles_up(counts: NDArray[np.int64], k: int) -> bool:
     beside = counts[k + 1 : k + 1 + _BESIDE]
-    return beside.size > 1 and bool(counts[k] >= max(_FEWEST, _OFTEN * np.median(beside)))
+    if beside.size < 2:
+        return False
+    alone = beside.size == _BESIDE and bool((beside == 1).all())
+    fewest = _FEWEST_WITHOUT_STEPS if alone else max(_FEWEST, _OFTEN * float(np.median(beside)))
+    return bool(counts[k] >= fewest)

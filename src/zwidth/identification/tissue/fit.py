@@ -2,6 +2,9 @@
 
     min over p of  Σ (y_k − ŷ_k(p))²
 
+What a recording adds to the tissue, a zero that drifts, a late force, holes, an end of the sensor's range, is
+looked for in what is left, and fitted, left out or refused; `search` has how.
+
 ŷ is the force of the continuous-time model under the measured position, linear between its samples, or the
 position under the force (creep): simulated without error, so that no sample period and no discretization
 enters the parameters.  The search runs over their logarithms: they stay positive, and their scales do not
@@ -14,21 +17,17 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from zwidth.compiled import Array
 from zwidth.environment.modes import samples
 from zwidth.errors import InputError
 from zwidth.identification.tissue.comparison import TissueComparison
-from zwidth.identification.tissue.model import Model, Record, Response, as_model
+from zwidth.identification.tissue.faults import hole_places
+from zwidth.identification.tissue.model import Record, Response, as_model
 from zwidth.identification.tissue.result import TissueFit
-from zwidth.identification.tissue.start import starting_points
-from zwidth.identification.tissue.uncertainty import LARGEST_ORDER, covariance, noise_of
+from zwidth.identification.tissue.search import fitted
 
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike
-
-_DECADES = 30.0
-"""How far the logarithm of a parameter may go from where it began."""
 
 STANDARD_MODELS = ("kelvin-voigt", "maxwell", "standard-linear-solid", "generalized-maxwell")
 
@@ -77,8 +76,8 @@ def fit_tissue(
     Raises
     ------
     InputError
-        If the samples, the model or an option is not one of these, or there are fewer samples than
-        parameters.
+        If the samples, the model or an option is not one of these, there are fewer samples than parameters,
+        or the record is of no tissue: a sign turned round, too little within the sensor's range.
 
     Notes
     -----
@@ -95,7 +94,7 @@ def fit_tissue(
         raise InputError(
             f"{record.time.size} samples do not fix {count} parameters; give {2 * count} at the least"
         )
-    return _fitted(chosen, record, bool(offset), noise, motion)
+    return fitted(chosen, record, bool(offset), noise, motion)
 
 
 def compare_tissues(
@@ -151,7 +150,14 @@ def _record(time: Any, position: Any, force: Any, response: object, rest: float 
             "the position never changes, so it says nothing: give a record of motion, or for a relaxation "
             "test the position before its step as rest=0"
         )
-    return Record(t, x, f, response, None if rest is None else float(rest))
+    begins = hole_places(t, x if response == "force" else f)
+    if begins and response == "position":
+        raise InputError(
+            f"the record has a hole in time after t = {t[begins[0] - 1]:.6g} s, across which the "
+            f"force changes: how the "
+            "tissue crept meanwhile is not known; give the part before it or after it"
+        )
+    return Record(t, x, f, response, None if rest is None else float(rest), begins)
 
 
 def _from_dataset(data: Any, position: Any, force: Any) -> tuple[Any, Any, Any]:
@@ -163,48 +169,3 @@ def _from_dataset(data: Any, position: Any, force: Any) -> tuple[Any, Any, Any]:
                 f"the Dataset has no variable {name!r}; it has {', '.join(map(str, data.data_vars))}"
             )
     return data["time"].values, data[names[0]].values, data[names[1]].values
-
-
-def _fitted(model: Model, record: Record, offset: bool, noise: str, motion: str) -> TissueFit:
-    from scipy.optimize import least_squares
-
-    output = record.output
-    size = float(np.abs(output).max()) or 1.0
-    count = len(model.parameters)
-
-    def residuals(theta: Array) -> Array:
-        predicted = model.predict([float(v) for v in np.exp(theta[:count])], record) / size
-        return predicted + (theta[count] if offset else 0.0) - output / size
-
-    best = None
-    for start in starting_points(model, record):
-        theta = np.append(np.log(start), np.zeros(int(offset)))
-        found = least_squares(
-            residuals,
-            theta,
-            jac="3-point",
-            bounds=(theta - _DECADES, theta + _DECADES),
-            x_scale="jac",
-            xtol=1e-12,
-            ftol=1e-12,
-        )
-        best = found if best is None or found.cost < best.cost else best
-    assert best is not None
-    left = best.fun
-    memory = noise_of(left, 0 if noise == "white" else LARGEST_ORDER)
-    spread, condition = covariance(best.jac, memory)
-    scale = np.ones(count + int(offset))
-    scale[count:] = size
-    estimates = np.append(best.x[:count], best.x[count:] * size)
-    return TissueFit(
-        model=model,
-        estimates=estimates,
-        covariance=spread * np.outer(scale, scale),
-        residuals=-left * size,
-        output=output,
-        response=record.response,
-        condition=condition,
-        noise_order=memory.order,
-        independent_samples=memory.samples,
-        motion=motion,
-    )

@@ -41,13 +41,20 @@ MOST_BRANCHES = 6
 
 class Record(NamedTuple):
     """What was measured: times [s], positions [m; rad], forces [N; N·m]; which of the two is predicted from
-    the other; and the other's value before the first sample."""
+    the other; the other's value before the first sample; and the samples that come after a hole."""
 
     time: Array
     position: Array
     force: Array
     response: Response
     rest: float | None
+    begins: tuple[int, ...] = ()
+
+    @property
+    def runs(self) -> list[slice]:
+        """The stretches without a hole."""
+        ends = (0, *self.begins, self.time.size)
+        return [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
 
     @property
     def output(self) -> Array:
@@ -86,14 +93,33 @@ class Model:
         return Elements(p[0], 0.0, tuple(zip(p[1::2], p[2::2], strict=True)))
 
     def predict(self, p: Sequence[float], record: Record) -> Array:
-        """The output of the record as the model has it."""
+        """The output of the record as the model has it; after a hole as if it had been at rest there."""
         if not self.linear:
             depth = np.maximum(record.position, 0.0)
-            speed = np.gradient(record.position, record.time)
+            speed = np.concatenate([np.gradient(record.position[r], record.time[r]) for r in record.runs])
             return np.asarray(p[0] * depth ** p[1] * (1.0 + p[2] * speed))
-        if record.response == "force":
-            return force_response(self.elements(p), record.time, record.position, record.rest)
-        return position_response(self.elements(p), record.time, record.force, record.rest)
+        if record.response == "position":
+            return position_response(self.elements(p), record.time, record.force, record.rest)
+        rests = (record.rest, *(None for _ in record.begins))
+        return np.concatenate(
+            [
+                force_response(self.elements(p), record.time[r], record.position[r], rest)
+                for r, rest in zip(record.runs, rests, strict=True)
+            ]
+        )
+
+    def fading(self, p: Sequence[float], record: Record, begin: int) -> list[Array]:
+        """What each branch may still hold after a hole, exp(−t/τᵢ) from the sample on until the next hole."""
+        if not self.linear:
+            return []
+        end = min((b for b in record.begins if b > begin), default=record.time.size)
+        since = record.time[begin:end] - record.time[begin]
+        found = []
+        for mu, eta in self.elements(p).branches:
+            column = np.zeros(record.time.size)
+            column[begin:end] = np.exp(-since * mu / eta)
+            found.append(column)
+        return found
 
     def environment(
         self, values: Sequence[Parameter], discretization: Discretization, clamped: bool

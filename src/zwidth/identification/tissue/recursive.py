@@ -21,8 +21,10 @@ import numpy as np
 
 from zwidth.compiled import Array
 from zwidth.errors import InputError
+from zwidth.identification.logs import Finding
 from zwidth.identification.tissue import recursion
 from zwidth.identification.tissue.first_order import RULES, Rule, Solid, as_rule, coefficients
+from zwidth.identification.tissue.passing import passed_over
 from zwidth.quantity.exact import Exact, RealLike
 
 if TYPE_CHECKING:
@@ -35,13 +37,16 @@ _SLOWEST = 1e5
 
 
 class Track(NamedTuple):
-    """The solid after each sample, ε the error of prediction, and the trace of P (see `RecursiveSolid`)."""
+    """The solid after each sample, ε the error of prediction, the trace of P (see `RecursiveSolid`), and what
+    was found in the record: samples that were passed over.
+    """
 
     stiffness: Array
     branch_stiffness: Array
     branch_damping: Array
     error: Array
     trace: Array
+    findings: tuple[Finding, ...] = ()
 
 
 @dataclass(frozen=True, init=False)
@@ -141,8 +146,11 @@ class RecursiveSolid:
         """A tracker that has seen nothing yet, to be fed sample by sample."""
         return Tracker(self)
 
-    def track(self, position: ArrayLike, force: ArrayLike) -> Track:
+    def track(self, position: ArrayLike, force: ArrayLike, time: ArrayLike | None = None) -> Track:
         """The solid after each sample of a record.
+
+        Samples at an end of the sensor's range teach nothing; after them, and after a hole in time, the
+        tracker begins anew with what it knows.
 
         Parameters
         ----------
@@ -150,13 +158,16 @@ class RecursiveSolid:
             x, positive inside [m; rad].
         force
             With which the tissue resists [N; N·m].
+        time
+            Of the samples [s], to see holes; None: there are none.
 
         Raises
         ------
         InputError
-            If they are not two arrays of one length, finite.
+            If they are not arrays of one length, finite, or the record is of no tissue: it pulls the probe
+            in.
         """
-        return self.start().track(position, force)
+        return self.start().track(position, force, time)
 
     def numbers(self) -> Array:
         """As the compiled step reads them."""
@@ -215,20 +226,24 @@ class Tracker:
         recursion.step(self._numbers, self._memory, float(position), float(force))
         return self.solid
 
-    def track(self, position: ArrayLike, force: ArrayLike) -> Track:
+    def track(self, position: ArrayLike, force: ArrayLike, time: ArrayLike | None = None) -> Track:
         """The solid after each sample of a record that goes on where the last one ended.
 
         Parameters
         ----------
-        position, force
-            As for `update`, arrays.
+        position, force, time
+            As for `RecursiveSolid.track`.
         """
-        x, f = (np.ascontiguousarray(part, dtype=float) for part in (position, force))
+        x, f = (np.array(part, dtype=float, order="C") for part in (position, force))
         if x.ndim != 1 or x.shape != f.shape or not (np.isfinite(x).all() and np.isfinite(f).all()):
             raise InputError("position and force are two arrays of one length, of finite numbers")
         out = np.empty((5, x.size))
+        passed, findings = passed_over(
+            x, f, time, float(self.settings.sample_period), self._numbers[recursion.SCALE]
+        )
+        f[passed] = np.nan
         recursion.run(self._numbers, self._memory, x, f, out)
-        return Track(*out)
+        return Track(out[0], out[1], out[2], out[3], out[4], findings)
 
     @property
     def solid(self) -> Solid:

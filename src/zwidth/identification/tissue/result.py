@@ -14,6 +14,8 @@ from zwidth.compiled import Array
 from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.identification.logs import Finding
+from zwidth.identification.tissue.findings import coarse, unlikely_units
 from zwidth.identification.tissue.model import Model, unit_of
 from zwidth.identification.tissue.table import html_of, lines_of
 from zwidth.quantity.exact import Interval
@@ -47,7 +49,7 @@ class TissueFit:
     covariance
         Of these.
     residuals
-        Measured less predicted, by sample [N; N·m, or m; rad].
+        Measured less predicted, of the samples that count [N; N·m, or m; rad].
     output
         What was measured and predicted.
     response
@@ -60,6 +62,12 @@ class TissueFit:
         How many samples without memory would say as much.
     motion
         "linear" or "rotary".
+    further
+        How many other numbers were fitted, for what was found in the record.
+    findings
+        What was found in the record, and what was done about it.
+    position
+        As it was read [m; rad]; None where it is not known.
     """
 
     model: Model
@@ -72,6 +80,9 @@ class TissueFit:
     noise_order: int
     independent_samples: float
     motion: str
+    further: int = 0
+    findings: tuple[Finding, ...] = ()
+    position: Array | None = None
 
     @cached_property
     def values(self) -> Mapping[str, float]:
@@ -125,7 +136,7 @@ class TissueFit:
     @property
     def degrees_of_freedom(self) -> float:
         """Independent samples less parameters, 1 at the least."""
-        return max(self.independent_samples - self.estimates.size, 1.0)
+        return max(self.independent_samples - self.estimates.size - self.further, 1.0)
 
     @property
     def r_squared(self) -> float:
@@ -142,7 +153,7 @@ class TissueFit:
     @property
     def aic(self) -> float:
         """N ln(Σ e²/N) + 2 k, for k parameters; the residuals are taken as white here."""
-        return self._deviance + 2 * self.estimates.size
+        return self._deviance + 2 * (self.estimates.size + self.further)
 
     @property
     def bic(self) -> float:
@@ -150,7 +161,7 @@ class TissueFit:
 
         The residuals are taken as white: noise with a memory makes it favour large models.
         """
-        return self._deviance + log(self.residuals.size) * self.estimates.size
+        return self._deviance + log(self.residuals.size) * (self.estimates.size + self.further)
 
     @property
     def _deviance(self) -> float:
@@ -173,7 +184,17 @@ class TissueFit:
             )
         if self.model.name == "hunt-crossley" and self["exponent"] < 1:
             said.append("an exponent below 1 is no Hunt–Crossley contact: stiffest where it begins")
+        if self.position is not None and self.model.linear:
+            if self.motion == "linear":
+                said.extend(unlikely_units(self._at_once, float(np.abs(self.position).max())))
+            if self.response == "force":
+                said.extend(coarse(self.position, self._at_once, self.rms))
         return tuple(said)
+
+    @property
+    def _at_once(self) -> float:
+        """The stiffness at once [N/m]."""
+        return sum(value for name, value in self.values.items() if "stiffness" in name)
 
     @property
     def identifiable(self) -> bool:
@@ -248,6 +269,7 @@ class TissueFit:
             "condition": self.condition,
             "noise_order": self.noise_order,
             "remarks": list(self.remarks),
+            "findings": [finding.text for finding in self.findings],
         }
 
     def _unit(self, name: str) -> str:
@@ -272,11 +294,15 @@ class TissueFit:
         )
 
     def __repr__(self) -> str:
-        return "\n".join([self._summary(), *lines_of(self.table()), *(f"! {r}" for r in self.remarks)])
+        return "\n".join([self._summary(), *lines_of(self.table()), *self._notes()])
+
+    def _notes(self) -> list[str]:
+        return [*(f"! {r}" for r in self.remarks), *(f"· {f}" for f in self.findings)]
 
     def _repr_html_(self) -> Html:
         remarks = (element("p", element("b", remark)) for remark in self.remarks)
-        return element("div", element("p", self._summary()), html_of(self.table()), *remarks)
+        findings = (element("p", finding.text) for finding in self.findings)
+        return element("div", element("p", self._summary()), html_of(self.table()), *remarks, *findings)
 
 
 def _exp(value: float) -> float:

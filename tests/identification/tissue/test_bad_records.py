@@ -1,0 +1,160 @@
+"""Faulty records of a tissue: the intervals hold the truth and a finding says so, or the cause is named."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+import zwidth as zw
+from zwidth.identification.tissue import RecursiveSolid, fit_tissue, force_response
+
+SOLID = zw.StandardLinearSolid(420, 230, 17)
+TRUE = {"stiffness": 420, "branch_stiffness": 230, "branch_damping": 17}
+PERIOD = 0.002
+
+
+def record(seconds=6.0, fine=10):
+    """Times, positions, the force without noise as it is between the samples, and as it is at them."""
+    t = PERIOD / fine * np.arange(round(seconds / PERIOD) * fine)
+    x = 0.006 + 0.002 * np.sin(8 * t) + 0.001 * np.sin(37 * t + 1) + 0.0003 * np.sin(90 * t)
+    return t, x, force_response(SOLID, t, x)
+
+
+def fitted(t, x, f, seed=0, fine=10, **options):
+    noise = np.random.default_rng(seed).normal(0, 0.01, t[::fine].size)
+    return fit_tissue(t[::fine], x[::fine], f[::fine] + noise, **options)
+
+
+def holds(fit):
+    return all(low < TRUE[n] < high for n, (low, high) in ((n, fit.interval(n, 0.999)) for n in TRUE))
+
+
+def kinds(fit):
+    return {finding.kind for finding in fit.findings}
+
+
+def test_a_plain_record_says_nothing():
+    """Nor is anything fitted besides."""
+    fit = fitted(*record())
+    assert not fit.findings
+    assert fit.further == 0
+    assert holds(fit)
+
+
+@pytest.mark.parametrize("milliseconds", [1.0, 4.0])
+def test_a_late_force_is_read_in_time(milliseconds):
+    """By a delay; the finding says how late it was."""
+    t, x, f = record()
+    fit = fitted(t, x, np.interp(t - milliseconds * 1e-3, t, f))
+    (finding,) = fit.findings
+    assert finding.kind == "force late"
+    assert milliseconds < 2 or "as a delay" in finding.text
+    assert holds(fit)
+    assert "further" not in fit.values
+
+
+def test_a_filter_of_the_load_cell():
+    """A time constant of 4 ms is told from a delay."""
+    t, x, f = record()
+    keep = np.exp(-(t[1] - t[0]) / 0.004)
+    fit = fitted(t, x, lfilter([1 - keep], [1, -keep], f, zi=[keep * f[0]])[0])
+    (finding,) = fit.findings
+    assert "a filter of the first order" in finding.text
+    assert holds(fit)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.01])
+def test_a_load_cell_at_its_end_stop(share):
+    """Such samples do not count."""
+    t, x, f = record()
+    most = np.quantile(f, 1 - share)
+    noise = np.random.default_rng(1).normal(0, 0.01, t[::10].size)
+    fit = fit_tissue(t[::10], x[::10], np.minimum(f[::10] + noise, most))
+    assert kinds(fit) == {"saturated"}
+    assert fit.output.size < t[::10].size * (1 - 0.5 * share)
+    assert holds(fit)
+
+
+def test_a_force_that_rests_is_at_no_stop():
+    """A relaxation test that has come to rest, read in steps of a converter."""
+    t = np.arange(4000) * 1e-3
+    f = np.rint(force_response(SOLID, t, np.full(t.size, 0.01), 0.0) / 0.01) * 0.01
+    fit = fit_tissue(t, np.full(t.size, 0.01), f, rest=0)
+    assert "saturated" not in kinds(fit)
+    assert fit.output.size == t.size
+
+
+def test_too_little_within_the_range_is_refused():
+    """Nothing is guessed from a tenth of the samples."""
+    t, x, f = (values[::10] for values in record())
+    with pytest.raises(zw.InputError, match="is at an end of the sensor's range"):
+        fit_tissue(t, x, np.minimum(f, np.quantile(f, 0.1)))
+
+
+@pytest.mark.parametrize("stamped", [True, False])
+def test_holes(stamped):
+    """What the branch held after a hole is fitted, whether the stamps tell of it or not."""
+    t, x, f = (values[::10] for values in record())
+    kept = np.ones(t.size, dtype=bool)
+    kept[700:820] = kept[1500:1730] = False
+    time = t[kept] if stamped else t[: kept.sum()]
+    fit = fitted(time, x[kept], f[kept], fine=1)
+    assert "hole" in kinds(fit)
+    assert holds(fit)
+
+
+def test_a_zero_that_is_off_or_drifts():
+    """A constant, or a line, is seen and fitted besides."""
+    t, x, f = record()
+    assert kinds(fitted(t, x, f + 0.3)) == {"offset"}
+    assert fitted(t, x, f + 0.3)["offset"] == pytest.approx(0.3, abs=0.02)
+    drifting = fitted(t, x, f + 0.2 * t / t[-1])
+    assert kinds(drifting) == {"drift"}
+    assert holds(drifting)
+
+
+@pytest.mark.parametrize(("force", "position"), [(-1, 1), (1, -1)])
+def test_a_sign_turned_round(force, position):
+    """No tissue pulls the probe in; nor does a tracker follow such a record."""
+    t, x, f = record()
+    with pytest.raises(zw.InputError, match="no tissue pulls the probe in"):
+        fitted(t, position * x, force * f)
+    with pytest.raises(zw.InputError, match="no tissue pulls it in"):
+        RecursiveSolid(PERIOD, (200, 200, 20)).track(x[::10], -f[::10])
+
+
+@pytest.mark.parametrize(("factor", "said"), [(1e3, "unit is off by 1000"), (1e-3, "unit is off by 1000")])
+def test_units_off_by_a_thousand(factor, said):
+    """The verdict refuses their intervals."""
+    t, x, f = record()
+    for fit in (fitted(t, x, factor * f), fitted(t, x / factor, f)):
+        assert any(said in remark for remark in fit.remarks)
+        with pytest.raises(zw.InputError, match="no interval is to be trusted"):
+            fit.verdict(zw.Device(damping=1, rate=1000))
+
+
+def test_a_coarse_position_is_remarked():
+    """Steps of 0.2 mm leave more than the noise does; of 1 µm they do not."""
+    t, x, f = record()
+    assert any("in steps of 0.0002" in r for r in fitted(t, np.rint(x / 2e-4) * 2e-4, f).remarks)
+    assert not fitted(t, np.rint(x / 1e-6) * 1e-6, f).remarks
+
+
+def test_a_tracker_passes_over_what_says_nothing():
+    """A load cell at its stop, and holes: the tracker ends where it ends without them."""
+    t, x, f = (values[::10] for values in record(12.0))
+    f = f + np.random.default_rng(2).normal(0, 0.01, f.size)
+    settings = RecursiveSolid(PERIOD, (300, 300, 20), forgetting="0.9995")
+    cut = settings.track(x, np.minimum(f, np.quantile(f, 0.9)))
+    assert {finding.kind for finding in cut.findings} == {"saturated"}
+    kept = np.ones(t.size, dtype=bool)
+    kept[3000:3150] = kept[4700:4900] = False
+    holed = settings.track(x[kept], f[kept], t[kept])
+    assert {finding.kind for finding in holed.findings} == {"hole"}
+    for track in (cut, holed):
+        assert np.median(track.stiffness[-1000:]) == pytest.approx(420, rel=0.02)
+        assert np.median(track.branch_stiffness[-1000:]) == pytest.approx(230, rel=0.1)
+    assert not settings.track(x, f, t).findings
+    assert {finding.kind for finding in settings.track(x, 1e3 * f).findings} == {"units"}
+    assert {finding.kind for finding in settings.track(-x, f).findings} == {"outside"}
