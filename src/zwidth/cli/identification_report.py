@@ -58,8 +58,12 @@ def _claim(found: Result) -> str:
     confidence = f"at {percent(found.confidence)} confidence"
     if not stiffest:
         return f"The data allow no spring wall {confidence}: damping or Coulomb friction may be 0."
-    unit = "N*m/rad" if found.identified.motion == "rotary" else "N/m"
-    return f"Spring walls up to {shown(stiffest, unit)} are passive on this device, {confidence}."
+    turn = found.identified.motion == "rotary"
+    seen = shown(found.identified.speed, "rad/s" if turn else "m/s", 3)
+    return (
+        f"Spring walls up to {shown(stiffest, 'N*m/rad' if turn else 'N/m')} are passive on this device, "
+        f"{confidence}, as far as its friction was seen: up to {seen}."
+    )
 
 
 def _log(found: Result) -> Padding:

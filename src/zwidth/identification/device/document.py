@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 FORMAT = "zwidth identification 1"
 
-_QUANTITY = {"spring": "stiffness", "force_lag": "delay"}
+_QUANTITY = {"spring": "stiffness", "force_lag": "delay", "slow": "coulomb_friction"}
 """Whose unit is meant, where the name is not in the glossary."""
 
 

@@ -10,9 +10,13 @@ from zwidth.identification.device.identified import Directions, Estimate
 from zwidth.identification.logs import Finding
 
 _SEEN = {
+    "slow": "more friction at rest than f_c, as of lubricated contacts (Stribeck),",
     "spring": "a spring, or gravity on an arc,",
     "force_lag": "a force recorded late, or early where this is negative,",
 }
+
+
+_KINDS = {"slow": "Stribeck friction"}
 
 
 def findings(
@@ -39,27 +43,27 @@ def findings(
             yield Finding(kind=f"no {word}", text=text)
     for name, what in _SEEN.items():
         if name in estimates:
-            text = f"{what} is seen and fitted: {estimates[name]}"
-            yield Finding(kind=name.replace("_", " "), text=text)
+            until = f", gone at {found.moments.knee:.3g} {_speed(found)}" if name == "slow" else ""
+            text = f"{what} is seen and fitted: {estimates[name]}{until}"
+            yield Finding(kind=_KINDS.get(name, name.replace("_", " ")), text=text)
     yield from _bend(found, names, slopes, speed)
 
 
 def _bend(found: Found, names: tuple[str, ...], slopes: Directions, speed: float) -> Iterable[Finding]:
-    """Friction that is larger where the device is slow, or whose slope changes with speed."""
+    """Friction whose slope changes with speed."""
     if "coulomb_friction" not in names:
         return
-    unit = "rad/s" if found.motion == "rotary" else "m/s"
-    seen = []
-    if found.sees((*names, "quadratic"), "slow"):
-        seen.append(f"it is larger below {found.moments.knee:.3g} {unit}")
-    if found.sees(names, "quadratic") or found.sees((*names, "slow"), "quadratic"):
-        seen.append(f"at {speed:.3g} {unit} its slope is {slopes.weaker}")
-    if seen:
+    more = () if "slow" in names else ("slow",)
+    if found.sees(names, "quadratic") or found.sees((*names, *more), "quadratic"):
         yield Finding(
             kind="bent friction",
-            text=f"friction is not f_c + b |v|: {' and '.join(seen)}; what is proved rests on the largest "
-            "model below the friction curve",
+            text=f"friction is not f_c + b |v|: at {speed:.3g} {_speed(found)} its slope is {slopes.weaker}; "
+            "what is proved rests on the largest model below the friction curve",
         )
+
+
+def _speed(found: Found) -> str:
+    return "rad/s" if found.motion == "rotary" else "m/s"
 
 
 def _model(

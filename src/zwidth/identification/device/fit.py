@@ -86,7 +86,7 @@ class Found(NamedTuple):
         enough; None where the strokes do not tell.
         """
         bent = (*names, "asymmetry", "quadratic")
-        for friction in ((*bent, "slow"), bent):
+        for friction in dict.fromkeys(((*bent, *({"slow"} - {*names})), bent)):
             fit = self.regression((*friction, "quadratic_asymmetry"))
             differs = fit is not None and fit.sees("quadratic_asymmetry", HINT)
             found = self._directions(fit.names if fit is not None and differs else friction, speed)

@@ -107,8 +107,8 @@ class Identified:
     Parameters
     ----------
     estimates
-        By parameter: damping, coulomb_friction, mass unless it was given, and what else was
-        fitted: spring [N/m], quadratic [N·s²/m²], force_lag [s]; N·m and rad if rotary.
+        By parameter: damping, coulomb_friction, mass unless it was given, and what else was fitted: spring
+        [N/m], force_lag [s], and slow, what friction is more at rest [N]; N·m and rad if rotary.
     directions
         Damping into the wall and out of it.
     fastest

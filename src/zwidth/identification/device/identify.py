@@ -72,9 +72,10 @@ def identify(
     found = gather(log, choice, mass=mass, delay=samples, zero=zero, progress=progress)
     friction = own if model == "Coulomb and viscous" else own[:-1]
     spring = ("spring",) if found.sees(own, "spring") else ()
-    names = (*friction, *spring, *(("force_lag",) if choice.late else ()))
+    slow = ("slow",) if friction == own and found.sees((*own, "quadratic"), "slow") else ()
+    names = (*friction, *spring, *slow, *(("force_lag",) if choice.late else ()))
     estimates, fit = found.estimates(names), found.regression(names)
-    viscous = found.regression(tuple(n for n in names if n != "coulomb_friction"))
+    viscous = found.regression(tuple(n for n in names if n not in ("coulomb_friction", "slow")))
     if estimates is None or fit is None or viscous is None:
         raise InputError(too_little(log))
 

@@ -66,7 +66,7 @@ class Points:
             _, stroke = np.unique(rows[:, pulses.STROKE], return_inverse=True)
             found["force"].append(explained + left)
             found["friction"].append(
-                sum((terms[n] for n in ("damping", "coulomb_friction") if n in terms), left)
+                sum((terms[n] for n in ("damping", "coulomb_friction", "slow") if n in terms), left)
             )
             found["residual"].append(left)
             found["speed"].append(columns[:, 1])

@@ -15,6 +15,7 @@ SYMBOLS = {
     "mass": "m",
     "damping": "b",
     "coulomb_friction": "f_c",
+    "slow": "f_s",
     "spring": "k",
     "force_lag": "τ_f",
 }
@@ -24,6 +25,7 @@ NAMES = {
     "mass": "mass",
     "damping": "damping",
     "coulomb_friction": "Coulomb friction",
+    "slow": "more friction at rest",
     "spring": "a spring, or gravity on an arc",
     "force_lag": "force recorded late by",
     "2b/T": "wall by damping",
