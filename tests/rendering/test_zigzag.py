@@ -122,3 +122,24 @@ def test_the_windowed_controller_beyond_b_is_no_longer_covered():
     """Its clamp is what counts: 0.9 of 1.2 b gives to a hand that goes to and fro, 0.9 of b does not."""
     assert gain_of_a_move(WindowedController()) < 0
     assert gain_of_a_move(WindowedController(largest_damping=1.2 * B)) > 0
+
+
+@pytest.mark.parametrize("name", ["sampled", "past", "windowed"])
+def test_a_wall_that_is_proved_stays_proved_with_the_default(name):
+    """What the wall leaves of b is the limit; beyond the wall's own bound nothing is proved."""
+    device = loop(friction=1, resolution="22.4e-6")
+    most = 2 * device.exact("damping") / device.exact("sample_period")
+    for share, outcome in ((0.5, "passive"), (1 - 1e-6, "passive"), (1 + 1e-6, "undecided")):
+        wall = zw.Wall(float(most) * share)
+        assert zw.check(device, zw.render(wall, DEFAULTS[name])).outcome == outcome, share
+    left = DEFAULTS[name].most_damping(device, zw.Wall(float(most) / 2).stiffness)
+    assert float(left) == pytest.approx(B / 2 * (0.9 if name == "windowed" else 1), rel=1e-9)
+    late = DEFAULTS[name].most_damping(loop(delay="0.0005"), zw.Wall(float(most) / 4).stiffness)
+    assert late == left
+
+
+def test_of_an_interval_the_largest_limit_of_any_device():
+    """b in 0.1 to 0.2 N·s/m: a spring that the least of them does not bear leaves all of b to some device."""
+    law, device = DEFAULTS["sampled"], loop(damping=("0.1", "0.2"))
+    assert float(law.most_damping(device, zw.Wall(199).stiffness)) == pytest.approx(0.1005, rel=1e-9)
+    assert float(law.most_damping(device, zw.Wall(201).stiffness)) == 0.2

@@ -1,6 +1,7 @@
 """How far a controller may go: a number, what the device or the body pays for, or "unlimited" in words.
 
-None           what follows from the loop: b of the device, T/(2M) of the virtual body
+None           what follows from the loop: b of the device, less what a spring wall that is passive by itself
+               has spent of it, K (T/2 + delay); T/(2M) of the virtual body
 "unlimited"    no limit; only where it is asked for by that word
 """
 
@@ -10,8 +11,10 @@ from fractions import Fraction
 from typing import Literal
 
 from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, RealLike
+from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.rendering.reading import below
 from zwidth.rendering.stage import positive
 
@@ -37,10 +40,12 @@ def limit(name: str, value: RealLike | None) -> Limit:
     return positive(name, value, why)
 
 
-def largest_damping(given: Limit, device: Device) -> Fraction | None:
-    """α of a controller [N·s/m; N·m·s/rad]: as given, or b of the device; None where it is unlimited.
+def largest_damping(given: Limit, device: Device, spring: Exact | None) -> Fraction | None:
+    """α of a controller [N·s/m; N·m·s/rad]: as given, or what the device pays for; None: unlimited.
 
-    Where b is an interval it is the upper end, which covers every device within.
+    That is b − K (T/2 + delay) before a spring of K [N/m; N·m/rad] that leaves something of b, so that a
+    wall that is proved stays proved where there is no delay; otherwise b.  Of intervals it is the largest
+    of any device within.
 
     Raises
     ------
@@ -51,14 +56,26 @@ def largest_damping(given: Limit, device: Device) -> Fraction | None:
         return None
     if given is not None:
         return Exact(given).fraction
-    damping = device.damping.high if isinstance(device.damping, Interval) else device.damping
-    if damping > 0:
-        return damping.fraction
-    raise InputError(
-        f"largest_damping was not given and is otherwise b of the device, and {device.name} has none: "
-        "nothing would pay for what the controller gives to a hand that turns back; give the damping "
-        'that was measured, or largest_damping, or largest_damping="unlimited" for no limit at all'
+    least, most = ends(device.damping)
+    if not most > 0:
+        raise InputError(
+            f"largest_damping was not given and is otherwise b of the device, and {device.name} has none: "
+            "nothing would pay for what the controller gives to a hand that turns back; give the damping "
+            'that was measured, or largest_damping, or largest_damping="unlimited" for no limit at all'
+        )
+    stiffness = Fraction(0) if spring is None else spring.fraction
+    early, late = (
+        period / 2 + delay
+        for period, delay in zip(ends(device.sample_period), ends(device.delay), strict=True)
     )
+    return most - stiffness * early if least >= stiffness * late else most
+
+
+def spring_of(environment: Environment) -> Exact | None:
+    """K of a wall that is a spring and nothing else; None of all others."""
+    if not isinstance(environment, Wall) or environment.damping:
+        return None
+    return environment.stiffness if isinstance(environment.stiffness, Exact) else None
 
 
 def as_read(alpha: Fraction | None) -> float:

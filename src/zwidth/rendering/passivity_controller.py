@@ -15,7 +15,8 @@ the move before it; with the exact observer by Ryu, Kim & Hannaford (2004).
 
 Without α a hand takes out what it likes: lack/Δx_k of a small move is held over a large one.  With
 α it takes out of the controller (α/T) Σ |Δx_k Δx_{k+1}| ≤ (α/T) Σ Δx² at most, and the device's
-damping takes (b/T) Σ Δx² in, at least.  So α = b by default.  Derived: docs, "Passivity controllers".
+damping takes (b/T) Σ Δx² in, at least.  So α = b by default, and b − K (T/2 + delay) before a spring wall
+that this leaves something of.  Derived: docs, "Passivity controllers".
 """
 
 from __future__ import annotations
@@ -29,7 +30,15 @@ from zwidth.compiled import Array, compiled
 from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.controller_limit import NO_LIMIT, Limit, as_read, largest_damping, limit, said
+from zwidth.rendering.controller_limit import (
+    NO_LIMIT,
+    Limit,
+    as_read,
+    largest_damping,
+    limit,
+    said,
+    spring_of,
+)
 from zwidth.rendering.reading import one_of, truth
 from zwidth.rendering.stage import Stage, Surroundings, positive
 
@@ -60,7 +69,8 @@ class PassivityController(Stage):
         (Hannaford & Ryu 2002), which takes the leak of the hold for dissipation.
     largest_damping
         α, the damping that the controller adds at most [N·s/m; N·m·s/rad]; None: b of the device, which
-        pays for it.  "unlimited": no limit, as published; a hand can then take out any energy.
+        pays for it; less K (T/2 + delay) for a spring wall that is passive by itself.
+        "unlimited": no limit, as published; a hand can then take out any energy.
     largest_force
         What it adds at most [N; N·m]; None: no limit but α.  What it cannot pay is carried over.
     slowest
@@ -153,7 +163,7 @@ class PassivityController(Stage):
         period = at.period
         return [
             period,
-            as_read(largest_damping(self.largest_damping, at.device)),
+            as_read(largest_damping(self.largest_damping, at.device, spring_of(at.environment))),
             NO_LIMIT if self.largest_force is None else float(self.largest_force),
             float(self.slowest) * period,
             float(OBSERVERS.index(self.observer)),
@@ -167,7 +177,7 @@ class PassivityController(Stage):
 
     def most_damping(self, device: Device, spring: Exact | None) -> Fraction | None:
         """The largest damping, if there is a limit."""
-        return largest_damping(self.largest_damping, device)
+        return largest_damping(self.largest_damping, device, spring)
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""

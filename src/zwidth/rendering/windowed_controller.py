@@ -33,6 +33,7 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.rendering.controller_limit import largest_damping as or_the_devices
+from zwidth.rendering.controller_limit import spring_of
 from zwidth.rendering.reading import below, count
 from zwidth.rendering.stage import Stage, Surroundings, positive
 
@@ -68,7 +69,8 @@ class WindowedController(Stage):
     share
         s, part of α_max that is used, above 0 and at most 1.
     largest_damping
-        α_max [N·s/m; N·m·s/rad]; None: b of the device, which pays for it.
+        α_max [N·s/m; N·m·s/rad]; None: b of the device, which pays for it;
+        less K (T/2 + delay) for a spring wall that is passive by itself.
 
     Raises
     ------
@@ -120,7 +122,7 @@ class WindowedController(Stage):
         slowest = SLOWEST[at.device.motion] if self.slowest is None else float(self.slowest)
         return [
             at.period,
-            below(self.most_damping(at.device, None)),
+            below(self.most_damping(at.device, spring_of(at.environment))),
             slowest * at.period,
             at.stiffness / 2 if isinstance(at.environment, _WITH_A_SPRING) else 0.0,
             float(self.window),
@@ -128,7 +130,7 @@ class WindowedController(Stage):
 
     def most_damping(self, device: Device, spring: Exact | None) -> Fraction:
         """s α_max."""
-        alpha = or_the_devices(self.largest_damping, device)
+        alpha = or_the_devices(self.largest_damping, device, spring)
         assert alpha is not None  # this law has no word for no limit
         return self.share.fraction * alpha
 

@@ -16,7 +16,7 @@ from zwidth.identification.device.pulses import Pulse, pulse
 from zwidth.identification.device.regression import Regression, regress
 from zwidth.identification.logs import Log
 
-HINT = 0.95
+HINT = 0.8
 """Confidence above which a bend that differs by direction is fitted, not only believed: it costs width."""
 
 
