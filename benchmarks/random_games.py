@@ -38,10 +38,10 @@ from rich.progress import track
 
 import zwidth as zw
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.worst_hand.board import Domain
-from zwidth.passivity.worst_hand.domain import losses_of
-from zwidth.passivity.worst_hand.hand import Game
-from zwidth.passivity.worst_hand.law import finite_law
+from zwidth.passivity.storage.board import Domain
+from zwidth.passivity.storage.domain import losses_of
+from zwidth.passivity.storage.hand import Game
+from zwidth.passivity.storage.law import finite_law
 
 COUNTS = {0: 12, 1: 12, 2: 6, 3: 3, 4: 2}
 """How deep and how fast the hand of the game is, in counts, by readings remembered."""

@@ -29,10 +29,10 @@ import numpy as np
 from numba import njit
 
 import zwidth as zw
-from zwidth.passivity.worst_hand import solve
-from zwidth.passivity.worst_hand.board import NOWHERE, Board
-from zwidth.passivity.worst_hand.hand import Game, game_of
-from zwidth.passivity.worst_hand.sweep import extremes, sweep, worthwhile
+from zwidth.passivity.storage import solve
+from zwidth.passivity.storage.board import NOWHERE, Board
+from zwidth.passivity.storage.hand import Game, game_of
+from zwidth.passivity.storage.sweep import extremes, sweep, worthwhile
 from zwidth.quantity.exact import Exact
 
 PADDLE = zw.catalogue.device("haptic-paddle")

@@ -33,12 +33,12 @@ from zwidth import plots
 from zwidth.cli.main import main as command_line
 from zwidth.passivity.decision import decide
 from zwidth.passivity.limits import required_damping
-from zwidth.passivity.worst_hand.board import Board, Domain
-from zwidth.passivity.worst_hand.domain import domain_for, losses_of
-from zwidth.passivity.worst_hand.gain import gain
-from zwidth.passivity.worst_hand.hand import Game
-from zwidth.passivity.worst_hand.law import finite_law
-from zwidth.passivity.worst_hand.solve import Played
+from zwidth.passivity.storage.board import Board, Domain
+from zwidth.passivity.storage.domain import domain_for, losses_of
+from zwidth.passivity.storage.gain import gain
+from zwidth.passivity.storage.hand import Game
+from zwidth.passivity.storage.law import finite_law
+from zwidth.passivity.storage.solve import Played
 
 plt.rcParams.update(plots.LOOK)
 RED, GREEN, BLUE, GREY = "#D55E00", "#009E73", "#0072B2", "#777777"

@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt
 
 import zwidth as zw
 from zwidth import plots
-from zwidth.passivity.closed_forms import spring_stiffness
+from zwidth.passivity.formulas.closed_forms import spring_stiffness
 
 plt.rcParams.update(plots.LOOK)
 b, period = 0.15, 0.001

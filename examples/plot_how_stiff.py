@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 
 import zwidth as zw
 from zwidth import plots
-from zwidth.passivity.closed_forms import abbott_okamura_stiffness
+from zwidth.passivity.formulas.closed_forms import abbott_okamura_stiffness
 
 plt.rcParams.update(plots.LOOK)
 paddle = zw.catalogue.device("haptic-paddle")

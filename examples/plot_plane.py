@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 
 import zwidth as zw
 from zwidth import plots
-from zwidth.passivity.quantization import plane_point
+from zwidth.passivity.formulas.quantization import plane_point
 
 plt.rcParams.update(plots.LOOK)
 

@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 
 import zwidth as zw
 from zwidth import plots
-from zwidth.passivity.quantization import admissible_speed
+from zwidth.passivity.formulas.quantization import admissible_speed
 
 plt.rcParams.update(plots.LOOK)
 paddle = zw.catalogue.device("haptic-paddle")

@@ -16,9 +16,9 @@ import control
 import zwidth as zw
 from zwidth import rendering
 from zwidth.passivity.document import to_json
-from zwidth.passivity.slow_hands import slow_hands
-from zwidth.passivity.worst_hand.coarse_proof import prove_on_cells
-from zwidth.passivity.worst_hand.hand import game_of
+from zwidth.passivity.storage.coarse_proof import prove_on_cells
+from zwidth.passivity.storage.hand import game_of
+from zwidth.passivity.storage.slow_hands import slow_hands
 
 Document = dict[str, Any]
 

@@ -19,7 +19,8 @@ from zwidth.environment import (
     Window,
 )
 from zwidth.errors import InputError
-from zwidth.passivity import Certificate, Verdict, Violation, Witness, check, closed_forms, quantization
+from zwidth.passivity import Certificate, Verdict, Violation, Witness, check
+from zwidth.passivity.formulas import closed_forms, quantization
 from zwidth.quantity import Exact, Interval
 from zwidth.rendering import VirtualCoupling
 
@@ -40,18 +41,12 @@ if TYPE_CHECKING:
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.maps import robust_boundary, stability_boundary, z_width, z_width_certificate, z_width_factors
-    from zwidth.passivity import two_port
-    from zwidth.passivity.absolute import AbsoluteStability, absolute_stability
-    from zwidth.passivity.active_hand import ToleratedActivity, tolerated_activity
     from zwidth.passivity.arms import Workspace, workspace
     from zwidth.passivity.bounding import Bounding, check_bounding
-    from zwidth.passivity.coupling import CouplingCondition, coupling_condition
-    from zwidth.passivity.coupling_design import CouplingDesign, design_coupling
-    from zwidth.passivity.extracted import Extraction
-    from zwidth.passivity.index import PassivityIndex
-    from zwidth.passivity.indices import PassivityIndices, passivity_indices
-    from zwidth.passivity.known_hand import PassiveHand, Stability, stability
-    from zwidth.passivity.loop_transformation import (
+    from zwidth.passivity.coupling import two_port
+    from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition
+    from zwidth.passivity.coupling.coupling_design import CouplingDesign, design_coupling
+    from zwidth.passivity.coupling.loop_transformation import (
         Indices,
         Slopes,
         TransformedCondition,
@@ -61,10 +56,17 @@ if TYPE_CHECKING:
         transformed_blocks,
         transformed_condition,
     )
+    from zwidth.passivity.passive_limit import Bracket
+    from zwidth.passivity.ports.extracted import Extraction
+    from zwidth.passivity.ports.index import PassivityIndex
+    from zwidth.passivity.ports.indices import PassivityIndices, passivity_indices
     from zwidth.passivity.real_hand import RealHand, replay
-    from zwidth.passivity.virtual_mass import stable_virtual_masses
-    from zwidth.passivity.worst_hand import Bracket, WorstHand
+    from zwidth.passivity.storage import WorstHand
     from zwidth.rendering.rendered import render
+    from zwidth.stability.absolute import AbsoluteStability, absolute_stability
+    from zwidth.stability.active_hand import ToleratedActivity, tolerated_activity
+    from zwidth.stability.known_hand import PassiveHand, Stability, stability
+    from zwidth.stability.virtual_mass import stable_virtual_masses
     from zwidth.traces import (
         compare_traces,
         identify,
@@ -180,13 +182,13 @@ __all__ = [
 ]
 
 _LATER = {
-    "AbsoluteStability": "zwidth.passivity.absolute",
-    "absolute_stability": "zwidth.passivity.absolute",
+    "AbsoluteStability": "zwidth.stability.absolute",
+    "absolute_stability": "zwidth.stability.absolute",
     "Bounding": "zwidth.passivity.bounding",
     "check_bounding": "zwidth.passivity.bounding",
-    "Bracket": "zwidth.passivity.worst_hand",
-    "CouplingCondition": "zwidth.passivity.coupling",
-    "CouplingDesign": "zwidth.passivity.coupling_design",
+    "Bracket": "zwidth.passivity.passive_limit",
+    "CouplingCondition": "zwidth.passivity.coupling.coupling",
+    "CouplingDesign": "zwidth.passivity.coupling.coupling_design",
     "LawComparison": "zwidth.bench",
     "Log": "zwidth.identification.logs",
     "compare": "zwidth.traces",
@@ -201,29 +203,29 @@ _LATER = {
     "MatrixWall": "zwidth.environment.matrix_wall",
     "Workspace": "zwidth.passivity.arms",
     "amplifiers": "zwidth.device.amplifier",
-    "Indices": "zwidth.passivity.loop_transformation",
-    "Slopes": "zwidth.passivity.loop_transformation",
-    "TransformedCondition": "zwidth.passivity.loop_transformation",
-    "delay_sum": "zwidth.passivity.loop_transformation",
-    "loop_storage": "zwidth.passivity.loop_transformation",
-    "required_damping_by_slopes": "zwidth.passivity.loop_transformation",
-    "transformed_blocks": "zwidth.passivity.loop_transformation",
-    "transformed_condition": "zwidth.passivity.loop_transformation",
-    "Extraction": "zwidth.passivity.extracted",
-    "PassivityIndex": "zwidth.passivity.index",
-    "PassivityIndices": "zwidth.passivity.indices",
-    "passivity_indices": "zwidth.passivity.indices",
+    "Indices": "zwidth.passivity.coupling.loop_transformation",
+    "Slopes": "zwidth.passivity.coupling.loop_transformation",
+    "TransformedCondition": "zwidth.passivity.coupling.loop_transformation",
+    "delay_sum": "zwidth.passivity.coupling.loop_transformation",
+    "loop_storage": "zwidth.passivity.coupling.loop_transformation",
+    "required_damping_by_slopes": "zwidth.passivity.coupling.loop_transformation",
+    "transformed_blocks": "zwidth.passivity.coupling.loop_transformation",
+    "transformed_condition": "zwidth.passivity.coupling.loop_transformation",
+    "Extraction": "zwidth.passivity.ports.extracted",
+    "PassivityIndex": "zwidth.passivity.ports.index",
+    "PassivityIndices": "zwidth.passivity.ports.indices",
+    "passivity_indices": "zwidth.passivity.ports.indices",
     "arms": "zwidth.device.arm",
-    "PassiveHand": "zwidth.passivity.known_hand",
+    "PassiveHand": "zwidth.stability.known_hand",
     "RealHand": "zwidth.passivity.real_hand",
-    "Stability": "zwidth.passivity.known_hand",
-    "stability": "zwidth.passivity.known_hand",
+    "Stability": "zwidth.stability.known_hand",
+    "stability": "zwidth.stability.known_hand",
     "robust_boundary": "zwidth.maps",
     "stability_boundary": "zwidth.maps",
     "z_width": "zwidth.maps",
     "z_width_certificate": "zwidth.maps",
     "z_width_factors": "zwidth.maps",
-    "WorstHand": "zwidth.passivity.worst_hand",
+    "WorstHand": "zwidth.passivity.storage",
     "operators": "zwidth.operator",
     "read_log": "zwidth.identification.logs",
     "render": "zwidth.rendering.rendered",
@@ -231,8 +233,8 @@ _LATER = {
     "replay": "zwidth.passivity.real_hand",
     "compare_tissues": "zwidth.identification.tissue",
     "compare_traces": "zwidth.traces",
-    "coupling_condition": "zwidth.passivity.coupling",
-    "design_coupling": "zwidth.passivity.coupling_design",
+    "coupling_condition": "zwidth.passivity.coupling.coupling",
+    "design_coupling": "zwidth.passivity.coupling.coupling_design",
     "fit_tissue": "zwidth.identification.tissue",
     "identify_finger": "zwidth.identification.finger",
     "identify_published": "zwidth.identification.device.published",
@@ -246,11 +248,11 @@ _LATER = {
     "simulate": "zwidth.traces",
     "simulate_admittance": "zwidth.loop.admittance",
     "simulate_batch": "zwidth.traces",
-    "stable_virtual_masses": "zwidth.passivity.virtual_mass",
+    "stable_virtual_masses": "zwidth.stability.virtual_mass",
     "tissue": "zwidth.identification.tissue",
-    "ToleratedActivity": "zwidth.passivity.active_hand",
-    "tolerated_activity": "zwidth.passivity.active_hand",
-    "two_port": "zwidth.passivity.two_port",
+    "ToleratedActivity": "zwidth.stability.active_hand",
+    "tolerated_activity": "zwidth.stability.active_hand",
+    "two_port": "zwidth.passivity.coupling.two_port",
     "workspace": "zwidth.passivity.arms",
     "worst_hand": "zwidth.traces",
 }

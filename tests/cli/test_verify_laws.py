@@ -17,8 +17,8 @@ import zwidth as zw
 from zwidth import rendering
 from zwidth.cli.main import main
 from zwidth.passivity.document import to_json
-from zwidth.passivity.worst_hand import law_of
-from zwidth.passivity.worst_hand import row_document as documents
+from zwidth.passivity.storage import law_of
+from zwidth.passivity.storage import row_document as documents
 
 DEVICE = zw.Device(damping="0.26", coulomb_friction="0.027", resolution="0.0001", sample_period="0.001")
 BOUNDS = {"penetration": "0.0008", "speed": "0.4"}

@@ -13,7 +13,7 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.document import to_json
-from zwidth.passivity.motion import Motion
+from zwidth.passivity.witness.motion import Motion
 
 PADDLE = zw.Device(
     mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=1e-3, name="paddle"

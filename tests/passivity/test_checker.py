@@ -22,9 +22,9 @@ from zwidth import checker
 from zwidth.passivity import certificate
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.document import to_json
-from zwidth.passivity.loop import linear_loop
-from zwidth.passivity.motion import Motion, Pattern, realize
-from zwidth.passivity.witness import Setting
+from zwidth.passivity.linear.loop import linear_loop
+from zwidth.passivity.witness.motion import Motion, Pattern, realize
+from zwidth.passivity.witness.witness import Setting
 
 DEVICE = zw.Device(
     damping="0.45", coulomb_friction="0.13", resolution="0.0004", sample_period="0.001", delay="0.0013"

@@ -11,10 +11,10 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity import closed_forms as forms
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
+from zwidth.passivity.formulas import closed_forms as forms
 
 TINY = Fraction(1, 10**9)
 T = Fraction(1, 1000)

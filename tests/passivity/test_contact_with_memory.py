@@ -11,9 +11,9 @@ import pytest
 
 import zwidth as zw
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.worst_hand.domain import domain_for, losses_of
-from zwidth.passivity.worst_hand.hand import Game
-from zwidth.passivity.worst_hand.law import finite_law
+from zwidth.passivity.storage.domain import domain_for, losses_of
+from zwidth.passivity.storage.hand import Game
+from zwidth.passivity.storage.law import finite_law
 
 ZERO = Fraction(0)
 

@@ -14,8 +14,8 @@ from scipy.linalg import expm
 import zwidth as zw
 from zwidth.environment.environment import add, multiply
 from zwidth.passivity.decision import decide
-from zwidth.passivity.linear import LinearProof
-from zwidth.passivity.motion import Motion
+from zwidth.passivity.linear.linear import LinearProof
+from zwidth.passivity.witness.motion import Motion
 
 T = Fraction(1, 1000)
 PADDLE = zw.catalogue.device("haptic-paddle")

@@ -11,10 +11,10 @@ import pytest
 from flint import fmpq_poly, fmpz_poly
 
 import zwidth as zw
-from zwidth.passivity import delay_interval, positivity
 from zwidth.passivity.limits import provable
-from zwidth.passivity.loop import LARGEST_DIGITS, linear_loop
-from zwidth.passivity.sinusoid import sinusoids
+from zwidth.passivity.linear import delay_interval, positivity
+from zwidth.passivity.linear.loop import LARGEST_DIGITS, linear_loop
+from zwidth.passivity.witness.sinusoid import sinusoids
 from zwidth.quantity.exact import Exact
 
 DEVICE = zw.Device(damping="0.5", sample_period="1 ms", coulomb_friction="0.1")

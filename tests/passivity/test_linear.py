@@ -12,14 +12,14 @@ from polynomials import product
 
 from zwidth import checker
 from zwidth.environment.environment import RationalFunction
-from zwidth.passivity.boundary import smallest_holding
 from zwidth.passivity.certificate import certify
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
-from zwidth.passivity.loop import loop_from
-from zwidth.passivity.refutation import refute_linear
-from zwidth.passivity.supremum import frequency, tightest
-from zwidth.passivity.witness import Setting
+from zwidth.passivity.linear.boundary import smallest_holding
+from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity.linear.loop import loop_from
+from zwidth.passivity.linear.supremum import frequency, tightest
+from zwidth.passivity.witness.refutation import refute_linear
+from zwidth.passivity.witness.witness import Setting
 
 T = Fraction(1, 1000)
 BILLIONTH = Fraction(1, 10**9)

@@ -10,7 +10,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.environment.environment import RationalFunction
-from zwidth.passivity.loop import LARGEST_DEGREE, linear_loop, loop_from
+from zwidth.passivity.linear.loop import LARGEST_DEGREE, linear_loop, loop_from
 
 mpmath.mp.dps = 40
 

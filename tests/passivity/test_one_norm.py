@@ -15,9 +15,9 @@ from zwidth.checker.document.refusal import Invalid
 from zwidth.checker.loop.one_norm import NORM, one_norm_bound
 from zwidth.passivity.certificate import certify
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.loop import linear_loop
-from zwidth.passivity.one_norm import bound_one_norm
-from zwidth.passivity.witness import Setting
+from zwidth.passivity.linear.loop import linear_loop
+from zwidth.passivity.linear.one_norm import bound_one_norm
+from zwidth.passivity.witness.witness import Setting
 
 
 def bound_of(document, norm):

@@ -11,7 +11,7 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.cli.verification import verifications
 from zwidth.passivity.certificate import verify_document
-from zwidth.passivity.nonlinear_spring import spring_need
+from zwidth.passivity.formulas.nonlinear_spring import spring_need
 from zwidth.rendering import ForceBounding, PassivityController, SlewLimit
 
 PADDLE = zw.catalogue.device("haptic-paddle")

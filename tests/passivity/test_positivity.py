@@ -13,8 +13,8 @@ from flint import fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from zwidth.passivity import positivity
-from zwidth.passivity.positivity import Positivity, TooClose, prove_nonnegative
+from zwidth.passivity.linear import positivity
+from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
 
 
 def product(*factors):

@@ -10,10 +10,10 @@ from random import Random
 import pytest
 
 import zwidth as zw
-from zwidth.passivity import quantization as q
-from zwidth.passivity.loop import linear_loop
-from zwidth.passivity.motion import Motion, Repeat
-from zwidth.passivity.witness import Setting
+from zwidth.passivity.formulas import quantization as q
+from zwidth.passivity.linear.loop import linear_loop
+from zwidth.passivity.witness.motion import Motion, Repeat
+from zwidth.passivity.witness.witness import Setting
 
 CASES = range(200)
 PADDLE = zw.Device(mass="0.036", damping="0.15", coulomb_friction="0.12", resolution="22.4e-6", rate=1000)

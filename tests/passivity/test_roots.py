@@ -10,7 +10,7 @@ import polynomials
 import pytest
 from flint import fmpz_poly
 
-from zwidth.passivity.roots import rational_roots_inside, real_roots, roots_inside
+from zwidth.passivity.linear.roots import rational_roots_inside, real_roots, roots_inside
 
 TINY = Fraction(1, 10**25)
 NEAR = Fraction(1, 2**120)

@@ -11,7 +11,7 @@ import pytest
 from polynomials import product
 
 from zwidth.checker.exact.roots import inside_unit_circle
-from zwidth.passivity.schur import is_schur
+from zwidth.passivity.linear.schur import is_schur
 
 
 def polynomial(*factors):

@@ -14,9 +14,9 @@ import pytest
 
 import zwidth as zw
 from zwidth import closed_forms as forms
-from zwidth.passivity.boundary import largest_holding
-from zwidth.passivity.linear import LinearProof, decide_linear
-from zwidth.passivity.loop import loop_from
+from zwidth.passivity.linear.boundary import largest_holding
+from zwidth.passivity.linear.linear import LinearProof, decide_linear
+from zwidth.passivity.linear.loop import loop_from
 
 DAMPING = Fraction("0.27")
 MU1 = Fraction(10)

@@ -14,8 +14,8 @@ import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
-from zwidth.passivity.rhythm import Surface, rhythms
-from zwidth.passivity.touching import TouchedSetting, refute_touching
+from zwidth.passivity.linear.rhythm import Surface, rhythms
+from zwidth.passivity.witness.touching import TouchedSetting, refute_touching
 
 T = Fraction(1, 1000)
 TINY = Fraction(1, 10**9)

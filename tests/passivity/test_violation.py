@@ -228,7 +228,7 @@ def test_intervals_need_the_best_corner():
 def test_the_motion_is_made_when_it_is_asked_for(monkeypatch):
     """A check makes no motion; the witness does, once, and where none is short enough it is None."""
     made = []
-    monkeypatch.setattr("zwidth.passivity.violation.refute_linear", lambda *given: made.append(given))
+    monkeypatch.setattr("zwidth.passivity.witness.violation.refute_linear", lambda *given: made.append(given))
     verdict = zw.check(DEVICE, zw.Wall(770))
     assert (verdict.outcome, made) == ("active", [])
     assert (verdict.witness, verdict.witness, len(made)) == (None, None, 1)
@@ -367,6 +367,6 @@ def test_two_roads_to_the_criterion():
 
 def setting_document(setting):
     """The loop of a setting as a document has it."""
-    from zwidth.passivity.motion import Motion
+    from zwidth.passivity.witness.motion import Motion
 
     return setting.document(Motion((Fraction(0), Fraction(0))), Fraction(0))

@@ -11,7 +11,7 @@ from test_force_bounding import DEVICES, bounded
 
 import zwidth as zw
 from zwidth.rendering import ForceBounding
-from zwidth.rendering.force_bounding import step
+from zwidth.rendering.energy.force_bounding import step
 from zwidth.rendering.stage import Surroundings
 
 

@@ -8,7 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.signal import cont2discrete
 
 import zwidth as zw
-from zwidth.rendering import CrossingCorrection, Extrapolation, HalfSamplePrediction, PoleMatched, half_sample
+from zwidth.rendering import CrossingCorrection, Extrapolation, HalfSamplePrediction, PoleMatched
+from zwidth.rendering.prediction import half_sample
 from zwidth.rendering.stage import Surroundings
 
 T = 0.009

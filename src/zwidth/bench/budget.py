@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from zwidth.errors import InputError
-from zwidth.passivity.worst_hand.hand import Game
+from zwidth.passivity.storage.hand import Game
 
 KNOTS = 9
 """Places in a cell, about."""

@@ -13,12 +13,12 @@ from zwidth.bench.budget import KNOTS, Budget, Spent, budget_of
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.passivity.storage import worst_hand
+from zwidth.passivity.storage.gain import Gain
+from zwidth.passivity.storage.hand import FINE, STEPS, Game, game_of
+from zwidth.passivity.storage.row_game import COUNTS, RowGame, row_game
+from zwidth.passivity.storage.row_table import DoesNotClose
 from zwidth.passivity.wording import describe_hands
-from zwidth.passivity.worst_hand import worst_hand
-from zwidth.passivity.worst_hand.gain import Gain
-from zwidth.passivity.worst_hand.hand import FINE, STEPS, Game, game_of
-from zwidth.passivity.worst_hand.row_game import COUNTS, RowGame, row_game
-from zwidth.passivity.worst_hand.row_table import DoesNotClose
 from zwidth.rendering.rendered import Rendered
 
 MOVES = 4e9

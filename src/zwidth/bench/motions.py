@@ -28,10 +28,10 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.motion import Motion
-from zwidth.passivity.witness import Witness
-from zwidth.passivity.worst_hand import worst_hand
-from zwidth.passivity.worst_hand.hand import Game, game_of
+from zwidth.passivity.storage import worst_hand
+from zwidth.passivity.storage.hand import Game, game_of
+from zwidth.passivity.witness.motion import Motion
+from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.rendering.rendered import Rendered
 

@@ -27,7 +27,7 @@ from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.other_laws import covering_wall
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Verdict
-from zwidth.passivity.witness import Witness
+from zwidth.passivity.witness.witness import Witness
 from zwidth.rendering.rendered import Rendered
 from zwidth.rendering.stage import Surroundings
 from zwidth.rendering.theorem import half_a_step

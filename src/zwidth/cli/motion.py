@@ -9,10 +9,10 @@ from rich.text import Text
 
 from zwidth.cli.bars import levels
 from zwidth.cli.numerals import shown
-from zwidth.passivity.witness import Witness
+from zwidth.passivity.witness.witness import Witness
 
 if TYPE_CHECKING:
-    from zwidth.passivity.worst_hand.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
 
 _SAMPLES_SHOWN = 48
 

@@ -24,15 +24,15 @@ from zwidth.environment import Wall
 from zwidth.environment.environment import RationalFunction
 from zwidth.maps.request import Array, Request
 from zwidth.maps.sustained import sustained_walls
-from zwidth.passivity.contact import damped_wall
 from zwidth.passivity.decision import decide
-from zwidth.passivity.delayed_spring import spring_stiffness
-from zwidth.passivity.known_hand.characteristic import Family, as_floats, bilinear, family
-from zwidth.passivity.known_hand.crossing import last_stable, plain
-from zwidth.passivity.known_hand.plant import Coefficients, Motion
-from zwidth.passivity.known_hand.stability import motion_of
+from zwidth.passivity.formulas.delayed_spring import spring_stiffness
+from zwidth.passivity.linear.contact import damped_wall
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact
+from zwidth.stability.known_hand.characteristic import Family, as_floats, bilinear, family
+from zwidth.stability.known_hand.crossing import last_stable, plain
+from zwidth.stability.known_hand.plant import Coefficients, Motion
+from zwidth.stability.known_hand.stability import motion_of
 
 _BITS = 192
 """Of the coefficients before they are rounded to doubles."""

@@ -20,10 +20,10 @@ from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.operator import Dowel, Finger
-from zwidth.passivity.known_hand import PassiveHand
-from zwidth.passivity.known_hand.hand import as_hand
-from zwidth.passivity.known_hand.stability import motion_of
 from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.stability.known_hand import PassiveHand
+from zwidth.stability.known_hand.hand import as_hand
+from zwidth.stability.known_hand.stability import motion_of
 
 Array = NDArray[np.float64]
 

@@ -16,11 +16,11 @@ from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
-from zwidth.passivity.known_hand.decide import corners
-from zwidth.passivity.known_hand.hand import PassiveHand, as_hand
-from zwidth.passivity.known_hand.stability import largest_stable, motion_of
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.stability.known_hand.decide import corners
+from zwidth.stability.known_hand.hand import PassiveHand, as_hand
+from zwidth.stability.known_hand.stability import largest_stable, motion_of
 
 
 def robust_boundary(

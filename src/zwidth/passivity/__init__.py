@@ -1,10 +1,10 @@
 """The proof: criteria, certificates, violations, witnesses, the independent checker."""
 
-from zwidth.passivity import closed_forms, quantization
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check
+from zwidth.passivity.formulas import closed_forms, quantization
 from zwidth.passivity.verdict import Verdict
-from zwidth.passivity.violation import Violation
-from zwidth.passivity.witness import Witness
+from zwidth.passivity.witness.violation import Violation
+from zwidth.passivity.witness.witness import Witness
 
 __all__ = ["Certificate", "Verdict", "Violation", "Witness", "check", "closed_forms", "quantization"]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from zwidth.device import Device
-from zwidth.passivity.witness import Witness
+from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
 
 if TYPE_CHECKING:
-    from zwidth.passivity.worst_hand.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
 
 
 def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | Gain) -> str:
@@ -27,6 +27,6 @@ def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | 
 def _peak_force(witness: Witness | Gain) -> float:
     if isinstance(witness, Witness):
         return witness.peak_force
-    from zwidth.passivity.worst_hand.playback import peak_force  # the game's libraries are there by now
+    from zwidth.passivity.storage.playback import peak_force  # the game's libraries are there by now
 
     return peak_force(witness)

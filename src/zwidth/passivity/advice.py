@@ -14,8 +14,15 @@ from typing import Literal
 from zwidth.device import Device
 from zwidth.environment import OnePole, Wall, Window
 from zwidth.environment.environment import Environment
-from zwidth.passivity.boundary import COARSE, COARSER, SMALLEST, Holds, largest_holding, smallest_holding
 from zwidth.passivity.limits import Change, has_stiffness, is_of_high_degree, provable, stiffness_of
+from zwidth.passivity.linear.boundary import (
+    COARSE,
+    COARSER,
+    SMALLEST,
+    Holds,
+    largest_holding,
+    smallest_holding,
+)
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 

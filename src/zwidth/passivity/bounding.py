@@ -129,7 +129,7 @@ def _numbers(device: Device, law: Environment) -> dict[str, Fraction] | None:
     if not is_bounded(law):
         return None
     from zwidth.rendering import Rendered
-    from zwidth.rendering.force_bounding import HAIR
+    from zwidth.rendering.energy.force_bounding import HAIR
     from zwidth.rendering.stage import Surroundings
 
     assert isinstance(law, Rendered)

@@ -14,8 +14,8 @@ from fractions import Fraction
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.linear import LinearRefutation
-from zwidth.passivity.supremum import frequency, tightest
+from zwidth.passivity.linear.linear import LinearRefutation
+from zwidth.passivity.linear.supremum import frequency, tightest
 
 SAMPLING = "sampling against viscous damping"
 DELAY = "delay against viscous damping"

@@ -16,14 +16,14 @@ from typing import Any
 
 from zwidth.checker import Scope, Verified, verify
 from zwidth.errors import InputError
-from zwidth.passivity.contact import DampedWall, Decay
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.delay_interval import Piece
 from zwidth.passivity.document import loop_document, save_json, unit_key
-from zwidth.passivity.linear import LinearProof
-from zwidth.passivity.one_norm import NormBound
-from zwidth.passivity.positivity import Positivity
-from zwidth.passivity.relaxing_contact import RelaxingLaw
+from zwidth.passivity.linear.contact import DampedWall, Decay
+from zwidth.passivity.linear.delay_interval import Piece
+from zwidth.passivity.linear.linear import LinearProof
+from zwidth.passivity.linear.one_norm import NormBound
+from zwidth.passivity.linear.positivity import Positivity
+from zwidth.passivity.linear.relaxing_contact import RelaxingLaw
 from zwidth.quantity.text import exact_text
 from zwidth.showing import Html, element
 

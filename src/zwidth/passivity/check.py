@@ -19,19 +19,19 @@ from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate, certify, certify_delays
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.delay_interval import prove_delays
 from zwidth.passivity.game import has_gap, with_game
-from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity.linear.delay_interval import prove_delays
+from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity.linear.loop import HIGH_DEGREE, linear_loop
+from zwidth.passivity.linear.supremum import tightest
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.loop import HIGH_DEGREE, linear_loop
 from zwidth.passivity.other_laws import check_other
-from zwidth.passivity.refutation import refute_friction
 from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
-from zwidth.passivity.supremum import tightest
-from zwidth.passivity.touching import refute_touching
 from zwidth.passivity.verdict import Finding, Verdict
-from zwidth.passivity.violation import Violation
-from zwidth.passivity.witness import Witness
+from zwidth.passivity.witness.refutation import refute_friction
+from zwidth.passivity.witness.touching import refute_touching
+from zwidth.passivity.witness.violation import Violation
+from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, ends
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.linear import LinearRefutation
+from zwidth.passivity.linear.linear import LinearRefutation
 from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
 
 if TYPE_CHECKING:

@@ -26,14 +26,14 @@ from typing import Literal
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
-from zwidth.passivity.contact import DampedWall, damped_wall
-from zwidth.passivity.linear import LinearProof, LinearRefutation, decide_linear
-from zwidth.passivity.loop import LinearLoop, linear_loop
-from zwidth.passivity.multiplier_contact import MultiplierLaw, multiplier_law
-from zwidth.passivity.one_norm import NormBound, bound_one_norm
-from zwidth.passivity.relaxing_contact import RelaxingLaw, relaxing_law
-from zwidth.passivity.straddle import best_waits
-from zwidth.passivity.witness import Setting
+from zwidth.passivity.linear.contact import DampedWall, damped_wall
+from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
+from zwidth.passivity.linear.loop import LinearLoop, linear_loop
+from zwidth.passivity.linear.multiplier_contact import MultiplierLaw, multiplier_law
+from zwidth.passivity.linear.one_norm import NormBound, bound_one_norm
+from zwidth.passivity.linear.relaxing_contact import RelaxingLaw, relaxing_law
+from zwidth.passivity.witness.straddle import best_waits
+from zwidth.passivity.witness.witness import Setting
 
 Kind = Literal["spring", "contact", "relaxing contact", "multiplier contact", "linear", "quantized"]
 

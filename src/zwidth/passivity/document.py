@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from zwidth.passivity.loop import LinearLoop
+from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import as_decimal, exact_text
 from zwidth.writing import writing_whole

@@ -15,11 +15,11 @@ from typing import Any
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
-from zwidth.passivity.boundary import COARSE, Holds, largest_holding, smallest_holding
 from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.linear import LinearProof, decide_linear
-from zwidth.passivity.loop import HIGH_DEGREE, linear_loop
-from zwidth.passivity.supremum import tightest
+from zwidth.passivity.linear.boundary import COARSE, Holds, largest_holding, smallest_holding
+from zwidth.passivity.linear.linear import LinearProof, decide_linear
+from zwidth.passivity.linear.loop import HIGH_DEGREE, linear_loop
+from zwidth.passivity.linear.supremum import tightest
 from zwidth.quantity.exact import Exact
 
 Change = Callable[[Fraction], tuple[Device, Environment]]

@@ -15,7 +15,7 @@ from zwidth.passivity.advice import Advice, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import unit_suffix
-from zwidth.passivity.stability_plane import admissible_speed
+from zwidth.passivity.formulas.stability_plane import admissible_speed
 from zwidth.passivity.verdict import Verdict, as_text
 from zwidth.quantity.glossary import GLOSSARY
 

@@ -88,7 +88,7 @@ def _at_its_worst(device: Device) -> Device:
 
 
 def _spring(device: Device, law: NonlinearSpring, asked: Scope, progress: Progress | None) -> Verdict:
-    from zwidth.passivity.nonlinear_spring import certify_spring, refute_spring, spring_need
+    from zwidth.passivity.formulas.nonlinear_spring import certify_spring, refute_spring, spring_need
 
     need = spring_need(device, law)
     b, friction = device.exact("damping"), device.exact("coulomb_friction")
@@ -166,7 +166,7 @@ def _on_paper(verdict: Verdict) -> Verdict | None:
 
 def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
     """What value iteration adds: a motion refutes, a proof of bounded hands stands beside the verdict."""
-    from zwidth.passivity.worst_hand.hand import worst_hand  # numpy and numba take their time
+    from zwidth.passivity.storage.hand import worst_hand  # numpy and numba take their time
 
     try:
         found = worst_hand(verdict.device, verdict.environment, seconds=game.SECONDS, progress=progress)

@@ -23,9 +23,9 @@ from math import floor, log10, pi, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.passivity.motion import Motion
 from zwidth.passivity.verdict import Verdict
-from zwidth.passivity.witness import Witness
+from zwidth.passivity.witness.motion import Motion
+from zwidth.passivity.witness.witness import Witness
 from zwidth.showing import Html, element, row
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from zwidth.device.device import Device
     from zwidth.operator.operator import Operator
-    from zwidth.passivity.worst_hand.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
 
 SLOWEST = 1.0
 """Bandwidth of the slowest hand that is tried [Hz]."""

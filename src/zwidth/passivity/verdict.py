@@ -16,15 +16,15 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json, to_json, unit_key
 from zwidth.passivity.outcome import TOLD, Outcome
 from zwidth.passivity.scope import Scope
-from zwidth.passivity.violation import Violation
-from zwidth.passivity.witness import Witness, rounded_energy
+from zwidth.passivity.witness.violation import Violation
+from zwidth.passivity.witness.witness import Witness, rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.showing import Html, bullets, element, named
 
 if TYPE_CHECKING:
-    from zwidth.passivity.nonlinear_spring import EndlessPull
-    from zwidth.passivity.worst_hand import WorstHand
-    from zwidth.passivity.worst_hand.gain import Gain
+    from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
+    from zwidth.passivity.storage import WorstHand
+    from zwidth.passivity.storage.gain import Gain
 
 Finding = Literal["open", "unconfirmed", "between corners", "depends on values", "no lowest energy"]
 """Why a loop is undecided: neither shown; a proof that the checker did not confirm; proved at the corners of

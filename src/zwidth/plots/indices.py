@@ -14,9 +14,9 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from zwidth.passivity.index import PassivityIndex
-from zwidth.passivity.indices import PassivityIndices
-from zwidth.passivity.multiport.index import MatrixIndex
+from zwidth.passivity.ports.index import PassivityIndex
+from zwidth.passivity.ports.indices import PassivityIndices
+from zwidth.passivity.ports.multiport.index import MatrixIndex
 from zwidth.plots.style import BLUE, GREY, LOOK, RED, label, new_figure, number
 
 _POINTS = 800

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 from zwidth.device import Device, catalogue
 from zwidth.errors import InputError
-from zwidth.passivity.quantization import plane_point
+from zwidth.passivity.formulas.quantization import plane_point
 from zwidth.plots.style import (
     BLACK,
     BLUE,

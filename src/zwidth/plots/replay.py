@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
-from zwidth.passivity.motion import Motion
-from zwidth.passivity.touching import TouchedSetting
-from zwidth.passivity.witness import Setting, Witness
+from zwidth.passivity.witness.motion import Motion
+from zwidth.passivity.witness.touching import TouchedSetting
+from zwidth.passivity.witness.witness import Setting, Witness
 
 ROUNDS = 3
 """Rounds of a repeated part that are shown."""

@@ -19,8 +19,8 @@ from zwidth.errors import InputError
 from zwidth.plots.style import BLUE, LOOK, OUTCOME, SKY, label, new_figure, number, scale
 
 if TYPE_CHECKING:
-    from zwidth.passivity.worst_hand import WorstHand
-    from zwidth.passivity.worst_hand.storage import Storage
+    from zwidth.passivity.storage import WorstHand
+    from zwidth.passivity.storage.storage import Storage
 
 _EDGES = 400
 """Encoder edges up to which each has a tick."""

@@ -16,14 +16,14 @@ from matplotlib.figure import Figure
 
 from zwidth.errors import InputError
 from zwidth.passivity.verdict import Verdict
-from zwidth.passivity.witness import Witness
+from zwidth.passivity.witness.witness import Witness
 from zwidth.plots.cycle import draw_cycle
 from zwidth.plots.replay import WHOLE, Replay, replay
 from zwidth.plots.style import BLUE, GREY, LOOK, PURPLE, RED, label, new_figure, quantity_text, scale
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
-    from zwidth.passivity.worst_hand.gain import Gain
+    from zwidth.passivity.storage.gain import Gain
 
 _DOTS = 60
 """Samples up to which each is marked."""

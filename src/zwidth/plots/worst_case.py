@@ -17,8 +17,8 @@ from matplotlib.figure import Figure
 
 from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.passivity.quantization import linear_worst_case, plane_point
-from zwidth.passivity.quantization import worst_case as worst_case_at
+from zwidth.passivity.formulas.quantization import linear_worst_case, plane_point
+from zwidth.passivity.formulas.quantization import worst_case as worst_case_at
 from zwidth.plots.style import (
     BLUE,
     GREY,

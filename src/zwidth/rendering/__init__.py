@@ -6,33 +6,33 @@ from typing import TYPE_CHECKING, Any
 from zwidth.rendering.virtual_coupling import VirtualCoupling
 
 if TYPE_CHECKING:
-    from zwidth.rendering.adaptive_window import AdaptiveWindow
-    from zwidth.rendering.braking_pulse import BrakingPulse
-    from zwidth.rendering.crossing import CrossingCorrection
-    from zwidth.rendering.damper import Damper
-    from zwidth.rendering.dither import Dither
-    from zwidth.rendering.dual_rate import DualRate
-    from zwidth.rendering.energy_bounding import EnergyBounding
-    from zwidth.rendering.energy_tank import EnergyTank
-    from zwidth.rendering.estimator import Estimator
-    from zwidth.rendering.event_transient import EventTransient
-    from zwidth.rendering.extrapolation import Extrapolation
-    from zwidth.rendering.force_bounding import ForceBounding
-    from zwidth.rendering.half_sample import HalfSamplePrediction
-    from zwidth.rendering.held import Held
-    from zwidth.rendering.hysteresis import Hysteresis
-    from zwidth.rendering.kalman import Kalman
-    from zwidth.rendering.parallel_controller import ParallelController
-    from zwidth.rendering.passive_leap import PassiveLeap
-    from zwidth.rendering.passivity_controller import PassivityController
-    from zwidth.rendering.pole_matched import PoleMatched
-    from zwidth.rendering.rate_term import RateTerm
+    from zwidth.rendering.energy.dual_rate import DualRate
+    from zwidth.rendering.energy.energy_bounding import EnergyBounding
+    from zwidth.rendering.energy.energy_tank import EnergyTank
+    from zwidth.rendering.energy.force_bounding import ForceBounding
+    from zwidth.rendering.energy.held import Held
+    from zwidth.rendering.energy.parallel_controller import ParallelController
+    from zwidth.rendering.energy.passive_leap import PassiveLeap
+    from zwidth.rendering.energy.passivity_controller import PassivityController
+    from zwidth.rendering.energy.windowed_controller import WindowedController
+    from zwidth.rendering.force.braking_pulse import BrakingPulse
+    from zwidth.rendering.force.damper import Damper
+    from zwidth.rendering.force.dither import Dither
+    from zwidth.rendering.force.event_transient import EventTransient
+    from zwidth.rendering.force.hysteresis import Hysteresis
+    from zwidth.rendering.force.rate_term import RateTerm
+    from zwidth.rendering.force.saturation import Saturation
+    from zwidth.rendering.force.slew_limit import SlewLimit
+    from zwidth.rendering.prediction.crossing import CrossingCorrection
+    from zwidth.rendering.prediction.extrapolation import Extrapolation
+    from zwidth.rendering.prediction.half_sample import HalfSamplePrediction
+    from zwidth.rendering.prediction.pole_matched import PoleMatched
     from zwidth.rendering.rendered import Rendered, render
-    from zwidth.rendering.saturation import Saturation
-    from zwidth.rendering.slew_limit import SlewLimit
     from zwidth.rendering.stage import Stage
-    from zwidth.rendering.tick_time import TickTime
-    from zwidth.rendering.windowed_controller import WindowedController
+    from zwidth.rendering.velocity.adaptive_window import AdaptiveWindow
+    from zwidth.rendering.velocity.estimator import Estimator
+    from zwidth.rendering.velocity.kalman import Kalman
+    from zwidth.rendering.velocity.tick_time import TickTime
 
 __all__ = [
     "AdaptiveWindow",

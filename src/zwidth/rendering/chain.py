@@ -9,48 +9,47 @@ is given, the others the force that it gives.
 from __future__ import annotations
 
 from zwidth.compiled import Array, compiled
-from zwidth.rendering import (
-    braking_pulse,
-    crossing,
-    damper,
-    dither,
+from zwidth.rendering.energy import (
     dual_rate,
     energy_bounding,
     energy_tank,
-    event_transient,
-    extrapolation,
     force_bounding,
-    half_sample,
     held,
-    hysteresis,
     passive_leap,
     passivity_controller,
-    pole_matched,
+    windowed_controller,
+)
+from zwidth.rendering.energy.dual_rate import DUAL_RATE
+from zwidth.rendering.energy.energy_bounding import ENERGY_BOUNDING
+from zwidth.rendering.energy.energy_tank import ENERGY_TANK
+from zwidth.rendering.energy.force_bounding import FORCE_BOUNDING
+from zwidth.rendering.energy.held import HELD
+from zwidth.rendering.energy.passive_leap import PASSIVE_LEAP
+from zwidth.rendering.energy.passivity_controller import PASSIVITY_CONTROLLER
+from zwidth.rendering.energy.windowed_controller import WINDOWED_CONTROLLER
+from zwidth.rendering.force import (
+    braking_pulse,
+    damper,
+    dither,
+    event_transient,
+    hysteresis,
     rate_term,
     saturation,
     slew_limit,
-    windowed_controller,
 )
-from zwidth.rendering.braking_pulse import BRAKING_PULSE
-from zwidth.rendering.crossing import CROSSING
-from zwidth.rendering.damper import DAMPER
-from zwidth.rendering.dither import DITHER
-from zwidth.rendering.dual_rate import DUAL_RATE
-from zwidth.rendering.energy_bounding import ENERGY_BOUNDING
-from zwidth.rendering.energy_tank import ENERGY_TANK
-from zwidth.rendering.event_transient import EVENT_TRANSIENT
-from zwidth.rendering.extrapolation import EXTRAPOLATION
-from zwidth.rendering.force_bounding import FORCE_BOUNDING
-from zwidth.rendering.half_sample import HALF_SAMPLE
-from zwidth.rendering.held import HELD
-from zwidth.rendering.hysteresis import HYSTERESIS
-from zwidth.rendering.passive_leap import PASSIVE_LEAP
-from zwidth.rendering.passivity_controller import PASSIVITY_CONTROLLER
-from zwidth.rendering.pole_matched import POLE_MATCHED
-from zwidth.rendering.rate_term import RATE_TERM
-from zwidth.rendering.saturation import SATURATION
-from zwidth.rendering.slew_limit import SLEW_LIMIT
-from zwidth.rendering.windowed_controller import WINDOWED_CONTROLLER
+from zwidth.rendering.force.braking_pulse import BRAKING_PULSE
+from zwidth.rendering.force.damper import DAMPER
+from zwidth.rendering.force.dither import DITHER
+from zwidth.rendering.force.event_transient import EVENT_TRANSIENT
+from zwidth.rendering.force.hysteresis import HYSTERESIS
+from zwidth.rendering.force.rate_term import RATE_TERM
+from zwidth.rendering.force.saturation import SATURATION
+from zwidth.rendering.force.slew_limit import SLEW_LIMIT
+from zwidth.rendering.prediction import crossing, extrapolation, half_sample, pole_matched
+from zwidth.rendering.prediction.crossing import CROSSING
+from zwidth.rendering.prediction.extrapolation import EXTRAPOLATION
+from zwidth.rendering.prediction.half_sample import HALF_SAMPLE
+from zwidth.rendering.prediction.pole_matched import POLE_MATCHED
 
 _controlled = passivity_controller.step
 _windowed = windowed_controller.step

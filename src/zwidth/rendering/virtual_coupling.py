@@ -6,7 +6,7 @@ The handle pulls at one end of the coupling, the environment E(z) holds the
 other (Colgate, Stanley & Brown 1995).  A device without delay that renders a wall
 of K_c and B_c ≥ 0 passively renders it before every E that is passive in discrete
 time, and no less will do for all of them: the coupling bounds what the hand can
-meet.  With a delay or B_c < 0 more is needed: see `zwidth.passivity.coupling`.
+meet.  With a delay or B_c < 0 more is needed: see `zwidth.passivity.coupling.coupling`.
 """
 
 from __future__ import annotations

@@ -11,8 +11,8 @@ from zwidth.bench import bench as _bench
 from zwidth.identification import recording as _recording
 from zwidth.loop import batch as _batch
 from zwidth.loop import simulate as _simulate
-from zwidth.passivity.worst_hand import hand as _hand
-from zwidth.passivity.worst_hand import limit as _limit
+from zwidth.passivity import passive_limit as _limit
+from zwidth.passivity.storage import hand as _hand
 from zwidth.traces.progress import progress_bar
 
 P = ParamSpec("P")

@@ -1,0 +1,1 @@
+"""Virtual coupling as a two-port, and loop transformations."""

@@ -1,0 +1,220 @@
+"""Does the damping of the device cover the hold, the delay, the coupling and what the environment lacks?
+
+Loop transformation (Miller, Colgate & Freeman): with A(z) = (T/2b)(1 + z⁻¹ + … + z⁻ᵈ) added, the device is
+b-output strictly passive, and everything on the other side, seen through −A, may lack as much:
+
+    Σ f̂ ŷ ≥ −S − b Σ ŷ²,    ŷ = v̄ − (1/2b)(f − z^{−d−1} f)
+
+Written out this is Σ [v̄ z^{−d−1}f + b v̄²] up to what the forces on their way can still give, f²/4b each:
+nothing is lost.  What the environment is known to keep (`environment_class`) is taken off, and what is left
+must be ≥ 0 for all moves D of the handle and all changes a of the coupling's length:
+
+    (b/T) D² + (z^{−d−1}f) D − f (D − a) + ½ Δf e − g (Δf − μ e)(L e − Δf) ≥ 0    e = D − a
+    (b/T) D² + (z^{−d−1}f) D − f (D − a) + ι e²/T + ο T f² ≥ 0
+
+a form of two sequences, decided exactly; 2 g (L − μ) ≥ 1 is chosen for the best.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf, isfinite, sqrt
+from typing import Literal
+
+from zwidth.device import Device
+from zwidth.errors import InputError
+from zwidth.passivity.coupling.loop_transformation.environment_class import Indices, Slopes
+from zwidth.passivity.coupling.loop_transformation.forms import DIRECT, Connection, coupled, indices_form
+from zwidth.passivity.coupling.loop_transformation.least_damping import best_form, largest_need
+from zwidth.passivity.coupling.loop_transformation.slopes import exact_need, whole_delay
+from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, number
+from zwidth.passivity.scope import Scope
+from zwidth.quantity.exact import RealLike
+from zwidth.quantity.glossary import GLOSSARY
+
+Binding = Literal["device damping", "coupling and environment"]
+
+
+@dataclass(frozen=True)
+class TransformedCondition:
+    """Whether the theorem promises passivity for a device, a coupling and a class of environments.
+
+    Attributes
+    ----------
+    device
+        The device; its encoder and Coulomb friction play no part.
+    environment
+        What is known of the environment.
+    holds
+        True when it is proved, by exact arithmetic.  False says that this theorem does not promise it.
+    required_damping
+        b that is enough, itself proved [N·s/m; N·m·s/rad]; None if none is.
+    binding
+        What would have to change: the damping of the device, against hold and delay; or coupling and
+        environment, which together must be strictly passive whatever the device.
+    critical_frequency
+        Where it is tightest [Hz]; None where a closed form decides.
+    """
+
+    device: Device
+    environment: Slopes | Indices
+    holds: bool
+    required_damping: float | None
+    binding: Binding
+    critical_frequency: float | None
+
+    @property
+    def margin(self) -> float | None:
+        """Device damping less what is required [N·s/m; N·m·s/rad]; None if none is enough."""
+        if self.required_damping is None:
+            return None
+        return float(self.device.exact("damping")) - self.required_damping
+
+    @property
+    def scope(self) -> Scope:
+        """What it is about.
+
+        Springs may be one-sided, and what the environments keep holds wherever they are; the theorem knows
+        exact positions; `law` says what the environments must keep besides slopes or indices.
+        """
+        slopes = isinstance(self.environment, Slopes)
+        return Scope(
+            contact="made and broken",
+            encoder="not counted" if self.device.exact("resolution") else "ideal",
+            damping=float(self.device.exact("damping")),
+            law=("potential bounded below" if slopes else "energy at first bounded",),
+            motion=self.device.motion,
+        )
+
+    @property
+    def claim(self) -> str:
+        """What is proved, and for which environments."""
+        of = self.environment.describe(self.device.motion)
+        if not self.holds:
+            return f"No promise for {of}."
+        counts = "; the counts of the encoder are not in it" if self.scope.encoder == "not counted" else ""
+        return f"Passive before {of}, contact made and broken{counts}."
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The main numbers as (name, text) for a report."""
+        unit = GLOSSARY["damping"].unit_for(self.device.motion)
+        need = self.required_damping
+        return [
+            (
+                "required device damping",
+                "none is enough" if need is None else f"{need:.6g} {unit}",
+            ),
+            ("device damping", f"{float(self.device.exact('damping')):.6g} {unit}"),
+            ("binding inequality", self.binding),
+            ("contact", self.scope.contact),
+            ("encoder", self.scope.encoder),
+            ("environments", "; ".join(self.scope.law)),
+        ]
+
+    def __repr__(self) -> str:
+        rows = "; ".join(f"{k} {v}" for k, v in self.rows())
+        return f"<TransformedCondition {self.claim} By a proof on paper: {rows}>"
+
+
+def transformed_condition(
+    device: Device,
+    environment: Slopes | Indices,
+    stiffness: RealLike | None = None,
+    damping: RealLike = 0,
+) -> TransformedCondition:
+    """Is the loop passive for every environment of a class, felt as it is or behind a virtual coupling?
+
+    Of springs: for those whose potential is bounded below, as `Slopes` states.  A sufficient condition; where
+    it is exact, the documentation says so.
+
+    Parameters
+    ----------
+    device
+        Certain b and T, and a delay of whole samples.
+    environment
+        `Slopes` or `Indices`.
+    stiffness
+        K_c ≥ 0 of the coupling [N/m; N·m/rad]. None: there is none.
+    damping
+        B_c of the coupling, of either sign [N·s/m; N·m·s/rad].
+
+    Raises
+    ------
+    InputError
+        If an argument is of another kind, a number of the device is an interval, the delay has a part of a
+        sample, or the coupling is nothing or K_c < 0.
+
+    References
+    ----------
+    Miller, Colgate & Freeman, On the role of dissipation in haptic systems, IEEE. The classes, their forms
+    and the closed forms are derived for this project.
+    """
+    _check_kinds(device, environment)
+    period, b = device.exact("sample_period"), device.exact("damping")
+    d = whole_delay(device.exact("delay"), period)
+    if stiffness is None:
+        if number("damping", damping):
+            raise InputError(
+                "damping is that of a coupling, and there is none: give its stiffness, 0 if need be"
+            )
+        if isinstance(environment, Slopes):
+            return _condition(device, environment, *_bare_spring(environment, d, b, period))
+        return _condition(device, environment, *_bare_indices(environment, b))
+    connection = _connection(stiffness, damping, period)
+    if isinstance(environment, Slopes):
+        form = best_form(environment, connection, d)
+    else:
+        form = indices_form(environment, connection, d, period)
+    return _condition(device, environment, form.is_nonnegative(b / period), *largest_need(form, period))
+
+
+def _check_kinds(device: Device, environment: Slopes | Indices) -> None:
+    if not isinstance(device, Device):
+        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+    if not isinstance(environment, (Slopes, Indices)):
+        raise InputError(
+            f"the environment is Slopes or Indices, got {type(environment).__name__}. "
+            "Where the law is known, the transformation adds nothing: use check"
+        )
+
+
+def _connection(stiffness: RealLike, damping: RealLike, period: Fraction) -> Connection:
+    k, b = nonnegative("stiffness", stiffness, NEGATIVE_SPRING), number("damping", damping)
+    if not k and not b:
+        raise InputError(
+            "a coupling without stiffness and damping passes no force on; leave both out to have no coupling"
+        )
+    return coupled(k, b, period)
+
+
+def _condition(
+    device: Device, environment: Slopes | Indices, holds: bool, need: float, hertz: float | None
+) -> TransformedCondition:
+    finite = isfinite(need)
+    return TransformedCondition(
+        device=device,
+        environment=environment,
+        holds=holds,
+        required_damping=need if finite else None,
+        binding="device damping" if finite else "coupling and environment",
+        critical_frequency=hertz,
+    )
+
+
+def _bare_spring(slopes: Slopes, d: int, b: Fraction, period: Fraction) -> tuple[bool, float, float | None]:
+    """Whether it is proved, the damping that is enough, and where."""
+    exact = exact_need(slopes, d)
+    if exact is not None:
+        return b >= period * exact, float(period * exact), None
+    form = best_form(slopes, DIRECT, d)
+    return form.is_nonnegative(b / period), *largest_need(form, period)
+
+
+def _bare_indices(indices: Indices, b: Fraction) -> tuple[bool, float, float | None]:
+    """b ≥ [1 + √(1 − 4 ι ο)]/(2 ο), whatever the delay: the force may have come from any sample."""
+    iota, omicron = indices.input.fraction, indices.output.fraction
+    if omicron <= 0:
+        return False, inf, None
+    need = (1 + sqrt(1 - 4 * iota * omicron)) / (2 * float(omicron))
+    return omicron * b * b - b + iota >= 0 and 2 * omicron * b >= 1, need, None

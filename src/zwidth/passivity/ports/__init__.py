@@ -1,0 +1,1 @@
+"""Passivity of ports, of one axis and of several: certificates, motions, indices."""

@@ -1,0 +1,159 @@
+"""One passivity index of a port, what proves it and what refutes more.
+
+    input   ν = max σ: ∫ uᵀy ≥ σ ∫ uᵀu      G − ν positive real
+    output  ρ = max σ: ∫ uᵀy ≥ σ ∫ yᵀy      1/G − ρ positive real, G (1 − ρ G)⁻¹ passive
+
+from rest, for every u and every time (in discrete time sums).  Both are one
+question, of F = G and of F = 1/G: see `positive_real`, and for several axes `multiport`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import inf, nextafter
+from typing import Any, Literal
+
+from zwidth.errors import InputError
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.ports.extracted import AnyPort, Extraction
+from zwidth.passivity.ports.positive_real import Largest, NoLevel
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.showing import Html, element
+
+Which = Literal["input", "output"]
+
+
+@dataclass(frozen=True)
+class PassivityIndex(ABC):
+    """The largest level σ of one index, with where it is reached.
+
+    Attributes
+    ----------
+    name
+        "input" or "output".
+    port
+        F: G for the input index, 1/G for the output index.
+    found
+        What was found, exact; None where every level holds, for G = 0.
+    """
+
+    name: Which
+    port: AnyPort
+    found: Largest | NoLevel | None
+
+    @cached_property
+    def value(self) -> float:
+        """The largest double that is proved; −inf where no level holds, inf where every one does."""
+        if self.found is None:
+            return inf
+        if isinstance(self.found, NoLevel):
+            return -inf
+        value = float(self.found.low)
+        while Fraction(repr(value)) > self.found.low:
+            value = nextafter(value, -inf)
+        return value
+
+    @property
+    def exact(self) -> Fraction | None:
+        """The index itself where it is rational and was found to be; otherwise None."""
+        found = self.found
+        return found.low if isinstance(found, Largest) and found.low == found.high else None
+
+    @property
+    def bounds(self) -> tuple[Fraction, Fraction] | None:
+        """Rationals between which the index lies, proved; None where it is infinite."""
+        return (self.found.low, self.found.high) if isinstance(self.found, Largest) else None
+
+    @property
+    def frequency(self) -> float | None:
+        """Where it is reached [Hz], of equals the lowest; inf in the limit; None: nowhere, or everywhere."""
+        if not isinstance(self.found, Largest) or self.found.cosine is None:
+            return None
+        return self.port.frequency(self.found.cosine)
+
+    @property
+    def reason(self) -> str:
+        """Why no level holds; empty where one does."""
+        return self.found.reason if isinstance(self.found, NoLevel) else ""
+
+    def at_least(self, level: RealLike) -> bool:
+        """Whether the index is at least this level, decided exactly."""
+        return self.found is None or self._proof(Exact(level).fraction) is not None
+
+    def certificate(self, level: RealLike | None = None) -> Certificate:
+        """The proof that the index is at least this level, by default `value`.
+
+        Raises
+        ------
+        InputError
+            If it is not, or has no finite value.
+        """
+        if level is None and not isinstance(self.found, Largest):
+            raise InputError(f"the {self.name} index is {self.value}; there is nothing to certify")
+        at = Fraction(repr(self.value)) if level is None else Exact(level).fraction
+        proof = None if self.found is None else self._proof(at)
+        if proof is None:
+            raise InputError(
+                f"the {self.name} index is {self.value:.17g}, so the level {float(at):.17g} cannot be "
+                "certified; give a lower one"
+            )
+        return Certificate((self._document(proof, at),))
+
+    def refute(self, level: RealLike = 0) -> Extraction | None:
+        """A motion by which the port gives out more than this level allows.
+
+        None if the level holds; or, though it does not, where no motion was found that the
+        checker can sum: growth too slow, too near to the limit.
+        """
+        if self.at_least(level):
+            return None
+        cosine = self.found.cosine if isinstance(self.found, Largest) else None
+        return self._extraction(Exact(level).fraction, cosine)
+
+    @abstractmethod
+    def places(self) -> list[complex]:
+        """Poles and zeros of the port, to rounding."""
+
+    @abstractmethod
+    def curve(self, frequencies: Sequence[float]) -> list[float]:
+        """The real part whose least value is the index, at these frequencies [Hz]; ±inf or nan at a pole."""
+
+    def describe(self) -> str:
+        """The index in a line."""
+        symbol = {"input": "ν", "output": "ρ"}[self.name]
+        if self.found is None:
+            return f"{symbol} = ∞: the output is zero"
+        if isinstance(self.found, NoLevel):
+            return f"{symbol} = −∞: {self.reason}"
+        f = self.frequency
+        place = (
+            "at every frequency" if f is None else "as the frequency grows" if f == inf else f"at {f:.6g} Hz"
+        )
+        return f"{symbol} = {self.value:.9g} {place}".replace("-", "−")
+
+    def __repr__(self) -> str:
+        return f"<PassivityIndex {self.name} {self.describe()}>"
+
+    def _repr_html_(self) -> Html:
+        return element("p", f"{self.name} index {self.describe()}")
+
+    @abstractmethod
+    def _proof(self, level: Fraction) -> dict[str, Any] | None:
+        """The proof at a level as plain data; None if it does not hold."""
+
+    @abstractmethod
+    def _extraction(self, level: Fraction, cosine: Fraction | None) -> Extraction | None:
+        """A motion that refutes the level, looked for at c = cosine first."""
+
+    @abstractmethod
+    def _system(self) -> dict[str, Any]:
+        """G as plain data."""
+
+    def _document(self, evidence: dict[str, Any], level: Fraction) -> dict[str, Any]:
+        """`evidence`, a kind with a proof or a motion, as a document of its own."""
+        claim = {"index": self.name, "level": str(level), "system": self._system()}
+        return {"format": FORMAT, "kind": evidence["kind"], **claim, **evidence}

@@ -1,0 +1,183 @@
+"""A linear port of m axes, u = D φ and y = N φ with square polynomial matrices, on one circle.
+
+    given as G = N/d, one denominator d for all:   D = d·1
+    from output to input:                          D and N exchanged
+
+Any signals φ that begin at rest make a pair u, y that answer each other, and every smooth pair
+is made so.  What the port absorbs above a level σ is a form of φ; on the circle of `port` it is
+
+    Π_σ = ½(Dᴴ N + Nᴴ D) − σ Dᴴ D
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import pi
+from typing import Any
+
+import numpy as np
+from flint import fmpq, fmpq_poly
+
+from zwidth.passivity.ports.multiport.circle import ONE, OnCircle, product
+from zwidth.passivity.ports.multiport.leverrier import leverrier, multiplied
+from zwidth.passivity.ports.port import Time, frequency_of, in_zeta
+
+Polynomials = tuple[tuple[tuple[int, ...], ...], ...]
+"""Rows of integer polynomials in ascending powers of s or z."""
+
+
+@dataclass(frozen=True)
+class MatrixPort:
+    """u = D φ and y = N φ, see the module.
+
+    Parameters
+    ----------
+    outputs, inputs
+        N and D.
+    denominator
+        d in ascending powers of s or z.
+    time
+        "continuous" or "discrete".
+    period
+        T [s] of a discrete port; 1 where it does not say.
+    hidden_modes_decay
+        False when a mode that no input reaches or no output sees does not decay.
+    """
+
+    outputs: Polynomials
+    inputs: Polynomials
+    denominator: tuple[int, ...]
+    time: Time
+    period: Fraction
+    hidden_modes_decay: bool = True
+
+    @property
+    def axes(self) -> int:
+        """m."""
+        return len(self.outputs)
+
+    @cached_property
+    def order(self) -> int:
+        """The largest degree of an entry."""
+        return max(len(p) for side in (self.outputs, self.inputs) for row in side for p in row) - 1
+
+    @cached_property
+    def is_direct(self) -> bool:
+        """True for D = d·1, from inputs to outputs."""
+        size, nothing = range(self.axes), (0,)
+        return all(self.inputs[i][j] == (self.denominator if i == j else nothing) for i in size for j in size)
+
+    @property
+    def is_zero(self) -> bool:
+        """True for D = 0: of the inverse of G = 0."""
+        return not any(any(p) for row in self.inputs for p in row)
+
+    def inverse(self) -> MatrixPort:
+        """What the port is from its outputs to its inputs."""
+        own = (self.denominator, self.time, self.period, self.hidden_modes_decay)
+        return MatrixPort(self.inputs, self.outputs, *own)
+
+    @cached_property
+    def forms(self) -> tuple[list[list[OnCircle]], list[list[OnCircle]]]:
+        """½(Dᴴ N + Nᴴ D) and Dᴴ D on the circle, times the same positive factor."""
+        n, d = (self._on_circle(side) for side in (self.outputs, self.inputs))
+        size = range(self.axes)
+
+        def pairing(a: Any, b: Any, i: int, j: int) -> OnCircle:
+            """(Aᴴ B)_ij."""
+            total = product(b[0][j], a[0][i])
+            for k in size[1:]:
+                total = total + product(b[k][j], a[k][i])
+            return total
+
+        crossed = [[pairing(d, n, i, j) for j in size] for i in size]
+        power = [[(crossed[i][j] + crossed[j][i].conjugate()) / 2 for j in size] for i in size]
+        return power, [[pairing(d, d, i, j) for j in size] for i in size]
+
+    @cached_property
+    def minors_at_zero(self) -> list[fmpq_poly]:
+        """e_1 … e_m of Π_0, in c."""
+        return [minor.real for minor in leverrier(self.forms[0], ONE).minors]
+
+    @cached_property
+    def rank(self) -> int:
+        """The rank of D at all but some frequencies."""
+        found = leverrier(self.forms[1], ONE).minors
+        return max((k + 1 for k, minor in enumerate(found) if minor.real.degree() >= 0), default=0)
+
+    def form(self, level: fmpq | int) -> list[list[OnCircle]]:
+        """Π_σ at the level σ."""
+        return [
+            [p - q * level for p, q in zip(first, second, strict=True)]
+            for first, second in zip(*self.forms, strict=True)
+        ]
+
+    @cached_property
+    def weight(self) -> fmpq_poly:
+        """|d|² in c, up to a positive factor."""
+        d = in_zeta(self.denominator, self.order, self.time)
+        return product(d, d).real
+
+    def resolvent(self, gain: fmpq) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
+        """(π, R) in lowest terms with D (N + gain·D)⁻¹ = R/π; None where nothing is inverse."""
+        n, d = (_as_polynomials(side) for side in (self.outputs, self.inputs))
+        total = [[x + gain * y for x, y in zip(*rows, strict=True)] for rows in zip(n, d, strict=True)]
+        found = leverrier(total, fmpq_poly([1]))
+        return in_lowest_terms(multiplied(d, found.adjugate), found.minors[-1])
+
+    def poles(self) -> fmpq_poly | None:
+        """The least common denominator of N D⁻¹; None where D is not invertible."""
+        n, d = (_as_polynomials(side) for side in (self.outputs, self.inputs))
+        found = leverrier(d, fmpq_poly([1]))
+        fraction = in_lowest_terms(multiplied(n, found.adjugate), found.minors[-1])
+        return None if fraction is None else fraction[0]
+
+    def eigenvalues(self, frequencies: Sequence[float]) -> list[list[float]]:
+        """Of the Hermitian part of N D⁻¹ at these frequencies [Hz], ascending, to rounding; nan at a pole.
+
+        Where D is not invertible, of what it reaches.
+        """
+        found, rank = [], self.rank
+        for f in frequencies:
+            omega = 2 * pi * f
+            point = np.exp(1j * omega * float(self.period)) if self.time == "discrete" else 1j * omega
+            n, d = (_at(side, point) for side in (self.outputs, self.inputs))
+            left, sizes, right = np.linalg.svd(d)
+            if rank and sizes[rank - 1] > 0:
+                reached = left[:, :rank].conj().T @ n @ (right[:rank].conj().T / sizes[:rank])
+                found.append([float(x) for x in np.linalg.eigvalsh((reached + reached.conj().T) / 2)])
+            else:
+                found.append([float("nan")] * max(rank, 1))
+        return found
+
+    def frequency(self, cosine: Fraction) -> float:
+        """ω/2π [Hz] of c = cos θ; inf for a continuous port at c = −1."""
+        return frequency_of(cosine, self.time, self.period)
+
+    def _on_circle(self, side: Polynomials) -> list[list[tuple[int, ...]]]:
+        return [[in_zeta(p, self.order, self.time) for p in row] for row in side]
+
+
+def in_lowest_terms(
+    numerators: list[list[fmpq_poly]], denominator: fmpq_poly
+) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
+    """(π, R) with R/π the same matrix and no factor common to π and all of R; None over 0."""
+    if denominator.degree() < 0:
+        return None
+    common = denominator.numer()
+    for row in numerators:
+        for entry in row:
+            common = common.gcd(entry.numer())
+    shared = fmpq_poly(common)
+    return denominator // shared, [[entry // shared for entry in row] for row in numerators]
+
+
+def _as_polynomials(side: Polynomials) -> list[list[fmpq_poly]]:
+    return [[fmpq_poly(list(p)) for p in row] for row in side]
+
+
+def _at(side: Polynomials, point: complex) -> Any:
+    return np.array([[np.polyval([float(c) for c in p[::-1]], point) for p in row] for row in side])

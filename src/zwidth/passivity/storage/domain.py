@@ -1,0 +1,143 @@
+"""Where the hand may be and how fast it may go: from metres to encoder counts."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil, floor
+
+from zwidth.device.device import Device
+from zwidth.device.friction import FrictionCurve
+from zwidth.errors import InputError
+from zwidth.passivity.storage.board import Domain
+from zwidth.passivity.storage.law import FiniteLaw
+from zwidth.passivity.storage.losses import Losses
+from zwidth.quantity.exact import Exact, RealLike
+
+RELAXING_COUNTS = {0: 24, 1: 6, 2: 3}
+"""The same for a law with a part that relaxes, by samples of delay."""
+
+COUNTS = {0: 256, 1: 64, 2: 16, 3: 7, 4: 4, 5: 3, 6: 2}
+"""Counts inside, and counts per sample, that are looked at by default, by readings remembered."""
+
+MOST_DEPTHS = 9000
+"""Readings inside at which the force of a contact is written down."""
+
+MOST_STATES = 40_000_000
+"""States of the largest board."""
+
+
+def losses_of(device: Device, friction: FrictionCurve | None = None) -> Losses:
+    """What the hand meets besides the law.
+
+    Raises
+    ------
+    InputError
+        If a parameter is an interval, the encoder is ideal, or a friction curve meets a
+        delay that is not whole samples.
+    """
+    resolution, period, delay = (device.exact(k) for k in ("resolution", "sample_period", "delay"))
+    if resolution == 0:
+        raise InputError(
+            "the worst hand is sought count by count, and the resolution is 0: an ideal encoder has no "
+            "counts; zwidth check decides linear laws there exactly"
+        )
+    samples = ceil(delay / period)
+    part = delay / period - samples + 1
+    if friction is not None and part < 1:
+        raise InputError(
+            f"a friction curve is played with delays of whole samples; this one is {float(delay):g} s with a "
+            f"sample period of {float(period):g} s: take a model below the curve, such as curve.best(…)"
+        )
+    losses = device.exact("damping"), device.exact("coulomb_friction"), resolution, period
+    return Losses(*losses, samples, part, friction)
+
+
+def domain_for(
+    law: FiniteLaw, losses: Losses, penetration: RealLike | None = None, speed: RealLike | None = None
+) -> Domain:
+    """The cells and the largest move.
+
+    Parameters
+    ----------
+    law, losses
+        What is played.
+    penetration
+        Deepest position of the hand [m; rad], > 0; None: as many counts as are quickly played.
+        For a law on both sides of x = 0 it holds on both.
+    speed
+        Largest mean speed of the hand over a sample, or over each part of it between two
+        changes of the force [m/s; rad/s], > 0; None likewise.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive, or a law that relaxes meets a delay that is not whole samples.
+    """
+    if law.relaxing is not None and losses.curve is not None:
+        raise InputError("a friction curve is not played against a law that relaxes: take a model below it")
+    if law.relaxing is not None and losses.part < 1:
+        raise InputError(
+            "the worst hand of a law that relaxes is sought for delays of whole samples; this one is "
+            f"{float(losses.lag):g} s with a sample period of {float(losses.period):g} s; zwidth check "
+            "covers it in sustained contact"
+        )
+    memory = law.memory + losses.delay
+    usual = (COUNTS if law.relaxing is None else RELAXING_COUNTS).get(memory, 1)
+    deepest = (
+        counts_of("penetration", penetration, losses.resolution) or _extent(law, losses) or Fraction(usual)
+    )
+    fastest = counts_of("speed", speed, losses.resolution / losses.period)
+    highest = max(1, ceil(deepest) - 1)
+    reach = ceil(fastest) if fastest else min(usual, 2 * highest + 1)
+    lowest = 1 - (memory + 1) * reach  # beyond it, a hand has been forgotten
+    if law.surface == "none":
+        lowest = -highest - 1
+    elif law.relaxing is not None and law.surface == "position":  # which never is
+        lowest = min(lowest, -highest - 1)
+    return Domain(lowest, highest, reach, deepest, fastest or None)
+
+
+def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
+    """Why a board has more states than are played, in words; None if it has not."""
+    if law.power is not None and domain.highest > MOST_DEPTHS:
+        return (
+            f"a contact is played up to {MOST_DEPTHS} counts deep, and penetration is {domain.highest + 1} "
+            "counts: give a smaller one"
+        )
+    memory = law.memory + losses.delay
+    if states_of(law, losses, domain) * 9 <= MOST_STATES:
+        return None
+    return (
+        f"the law remembers {memory} readings before the last one, and {domain.cells} counts with moves "
+        f"of up to {domain.reach} counts make too many states: give a smaller penetration or speed"
+    )
+
+
+def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
+    """Cells, readings before and averages of a board together."""
+    states = int(domain.cells * (2 * domain.reach + 1) ** (law.memory + losses.delay))
+    return states * domain.cells if law.relaxing is not None else states
+
+
+def counts_of(name: str, value: RealLike | None, unit: Fraction) -> Fraction:
+    """A bound on the hand in counts; 0 where there is none.
+
+    Raises
+    ------
+    InputError
+        If it is not > 0.
+    """
+    if value is None:
+        return Fraction(0)
+    exact = Exact(value).fraction
+    if exact <= 0:
+        raise InputError(f"{name} must be > 0, got {value}: a hand that does not move takes nothing out")
+    return exact / unit
+
+
+def _extent(law: FiniteLaw, losses: Losses) -> Fraction:
+    """Counts from 0 to the farthest given point of a spring; beyond it the force is constant."""
+    if not law.points:
+        return Fraction(0)
+    ends = (law.points[0][0] / losses.resolution, law.points[-1][0] / losses.resolution)
+    return Fraction(max(abs(floor(ends[0])), abs(ceil(ends[1]))) + 2)

@@ -1,0 +1,1 @@
+"""Motions that take energy out: unstable modes, sinusoids, edges of counts, touches."""

@@ -1,0 +1,1 @@
+"""Laws that count energy or let through what has been paid for."""

@@ -1,0 +1,1 @@
+"""Laws of the force alone: its size, its rate, its steps, pulses and dampers."""

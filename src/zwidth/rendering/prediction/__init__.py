@@ -1,0 +1,1 @@
+"""Laws that look ahead: of the hold, of the surface, of slow environments."""

@@ -1,0 +1,1 @@
+"""Stable with which hands: a hand that is known, slopes within a sector, hands of bounded activity."""

@@ -1,0 +1,111 @@
+"""Friction measured at several speeds: proofs use all models below it, motions pay what the curve says."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from random import Random
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth import checker
+from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.storage import worst_hand
+from zwidth.passivity.storage.losses import Losses, generous, strict
+
+PERIOD, RESOLUTION = Fraction(1, 1000), Fraction(1, 10000)
+DEVICE = zw.Device(damping=0, coulomb_friction=0, resolution=RESOLUTION, sample_period=PERIOD)
+STRIBECK = zw.FrictionCurve([0, "0.02", "0.1", "0.3", "0.8"], ["0.09", "0.04", "0.026", "0.05", "0.12"])
+DEPTH = "0.0012"
+
+
+def admissible(curve, fastest):
+    """min over v of 2 F(v)/(Δ + v T), F the lower hull: the line K Δ/2 + (K T/2) v just below it."""
+    speeds = [Fraction(n, 2000) * Fraction(fastest) for n in range(2001)]
+
+    def hull(v):
+        return max(m.coulomb_friction.fraction + m.damping.fraction * v for m in curve.minorants())
+
+    return float(min(2 * hull(v) / (RESOLUTION + v * PERIOD) for v in speeds))
+
+
+@pytest.mark.parametrize("speed", ["0.1", "0.3", "1.2"])
+def test_a_spring_below_the_curve(speed):
+    """Its limit is that of the steepest line K Δ/2 + (K T/2) v below the friction, up to the hand's speed."""
+    found = passive_limit(DEVICE, zw.Wall(100), friction=STRIBECK, penetration=DEPTH, speed=speed)
+    assert found.relative_width <= 0.01
+    assert found.passive == pytest.approx(admissible(STRIBECK, speed), rel=0.01)
+    assert found.active == pytest.approx(admissible(STRIBECK, speed), rel=0.01)
+    assert found.certificate.verify()
+    assert found.witness.verify()
+    best = STRIBECK.best(PERIOD, RESOLUTION)
+    alone = min(2 * best.damping / PERIOD, 2 * best.coulomb_friction / RESOLUTION)
+    assert found.passive >= 0.98 * float(alone)
+    one = DEVICE.replace(damping=best.damping, coulomb_friction=best.coulomb_friction)
+    single = passive_limit(one, zw.Wall(100), penetration=DEPTH, speed=speed)
+    assert found.passive >= 0.99 * single.passive
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_costs_enclose_the_loss(seed):
+    """Generous at most, strict at least; between two steps the chord of the generous ones is below too."""
+    random = Random(seed)
+    speeds = sorted(random.sample(range(1, 100), 4))
+    curve = zw.FrictionCurve(
+        [Fraction(v, 50) for v in speeds], [Fraction(random.randint(1, 30), 100) for _ in speeds]
+    )
+    losses = Losses(Fraction(0), Fraction(0), RESOLUTION, PERIOD, 0, Fraction(1), curve)
+    step, unit = RESOLUTION / 8, Fraction(1, 2**30)
+    far = np.arange(120, dtype=np.int64)
+    low, high = (rule(losses, far, PERIOD, step, unit, 3) for rule in (generous, strict))
+    assert low[0] == high[0] == 0
+    for _ in range(200):
+        d = Fraction(random.randint(0, 118_000), 1000)
+        true = losses.lost(d * step, Fraction(1)) / (unit * step)
+        at, part = int(d), d - int(d)
+        assert int(low[at]) * (1 - part) + int(low[at + 1]) * part <= true
+        if d == at:
+            assert true <= int(high[at])
+    assert all(losses.lost(n * step, Fraction(1)) / (unit * step) <= int(high[n]) for n in range(120))
+
+
+def test_the_checker_knows_the_curve():
+    """A model above the curve, another curve, none at all: refused."""
+    proof = worst_hand(
+        DEVICE, zw.Wall(200), friction=STRIBECK, penetration=DEPTH, speed=1
+    ).certificate.documents[0]
+    assert checker.verify(proof).valid
+    loop = proof["loop"]
+    curve, models = "friction_curve_m_per_s_N", "friction_models_N_N_s_per_m"
+    too_much = [[str(Fraction(f) + Fraction(1, 1000)), b] for f, b in loop[models]]
+    too_steep = [*loop[models], ["0", "1"]]
+    less = [[v, str(Fraction(f) / 2)] for v, f in loop[curve]]
+    for key, bad in (
+        (models, too_much),
+        (models, too_steep),
+        (curve, less),
+        (curve, loop[curve][::-1]),
+        (models, []),
+    ):
+        assert not checker.verify({**proof, "loop": {**loop, key: bad}}).valid
+    motion = worst_hand(DEVICE, zw.Wall(900), friction=STRIBECK, penetration=DEPTH, speed=1).witness.to_dict()
+    assert checker.verify(motion).valid
+    more = [[v, str(20 * Fraction(f))] for v, f in motion["loop"][curve]]
+    assert not checker.verify({**motion, "loop": {**motion["loop"], curve: more}}).valid
+
+
+@pytest.mark.parametrize(
+    ("change", "arguments", "said"),
+    [
+        ({"delay": "0.0005"}, {}, "whole samples"),
+        ({}, {"parameter": "coulomb_friction"}, "plays no part"),
+        ({}, {"friction": (1, 2)}, "FrictionCurve"),
+    ],
+)
+def test_what_it_refuses(change, arguments, said):
+    """One line each."""
+    with pytest.raises(zw.InputError, match=said):
+        passive_limit(DEVICE.replace(**change), zw.Wall(100), **{"friction": STRIBECK, **arguments})
+    with pytest.raises(zw.InputError, match="relaxes"):
+        worst_hand(DEVICE, zw.Maxwell(100, 1), friction=STRIBECK)

@@ -1,0 +1,84 @@
+"""The game on a graphics card: thread by thread in numba's simulator of CUDA, on tiny boards."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+import zwidth as zw
+from zwidth.errors import InputError
+from zwidth.passivity.storage.board import Board, Domain, Losses
+from zwidth.passivity.storage.law import finite_law
+from zwidth.passivity.storage.solve import play
+
+_ON_CARD = """
+import zwidth as zw
+from zwidth.passivity.storage import gpu
+from zwidth.passivity.storage.board import Board, Domain, Losses
+from zwidth.passivity.storage.law import finite_law
+from zwidth.passivity.storage.solve import play
+
+gpu._SCRATCH = 1  # so that threads have more than one item
+paddle = zw.catalogue.device("haptic-paddle").replace(coulomb_friction="0.004")
+ended = []
+for wall, delay, domain in (
+    (zw.Wall({0}), 0, Domain(-3, 3, 4)),
+    (zw.Wall({0}, damping=0.05), 0, Domain(-5, 3, 4)),
+    (zw.Wall({0}, damping=0.03, velocity_filter=zw.Window(2), clamped=True), 0, Domain(-2, 2, 2)),
+    (zw.Wall({0}, damping=0.02), 1, Domain(-2, 2, 2)),
+):
+    law = finite_law(paddle, wall)
+    losses = Losses(*(paddle.exact(k) for k in ("damping", "coulomb_friction", "resolution")),
+                    paddle.exact("sample_period"), delay)
+    for rules, steps in (("generous", 3), ("strict", 1024)):
+        board = Board(law, losses, domain, steps, rules)
+        board.__dict__["first_guess"] = 0 * board.first_guess  # so that it takes many rounds
+        card, own = (play(board, on=on) for on in ("gpu", "cpu"))
+        assert own.rounds > 2, (rules, wall, own.rounds)
+        assert (card.value is None) == (own.value is None)
+        assert bool(card.cycle) == bool(own.cycle)
+        assert own.value is None or (card.value == own.value).all()
+        ended.append(own.value is not None)
+print(*ended)
+"""
+
+
+def _in_simulator(code: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
+    return subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(("stiffness", "ends"), [(200, "True"), (20000, "False")])
+def test_the_card_finds_what_the_processor_finds(stiffness: int, ends: str) -> None:
+    """The same outcome and the same V to the last bit, with none, one or two readings remembered."""
+    done = _in_simulator(_ON_CARD.replace("{0}", str(stiffness)))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == [ends] * 8
+
+
+def _board() -> Board:
+    paddle = zw.catalogue.device("haptic-paddle")
+    keys = ("damping", "coulomb_friction", "resolution", "sample_period")
+    losses = Losses(*(paddle.exact(k) for k in keys), 0)
+    return Board(finite_law(paddle, zw.Wall(200)), losses, Domain(-3, 3, 4), 4, "generous")
+
+
+def test_without_a_card_one_message_says_what_to_do() -> None:
+    """Where CUDA is missing, or its package, the message names the extra."""
+    try:
+        from numba import cuda
+
+        if cuda.is_available():
+            pytest.skip("there is a card")
+    except ImportError:
+        pass
+    with pytest.raises(InputError, match=r"leave out on='gpu'|zwidth\[gpu\]"):
+        play(_board(), on="gpu")
+
+
+def test_anything_else_than_cpu_and_gpu_is_refused() -> None:
+    with pytest.raises(InputError, match='on is "cpu" or "gpu"'):
+        play(_board(), on="tpu")

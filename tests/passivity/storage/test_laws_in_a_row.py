@@ -1,0 +1,395 @@
+"""Laws in a row against the worst hand: the table of the law, the game on it, its proofs and motions."""
+
+from __future__ import annotations
+
+import base64
+import copy
+import json
+import zlib
+from fractions import Fraction
+from functools import cache
+from random import Random
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth import checker, rendering
+from zwidth.loop.every_reading import after_every_reading, scratch
+from zwidth.passivity.certificate import read_document, verify_document
+from zwidth.passivity.storage import same_law
+from zwidth.passivity.storage.hand import game_of
+from zwidth.passivity.storage.row_document import packed
+from zwidth.passivity.witness.saved import saved_motion
+from zwidth.plots import storage as storage_figure
+
+BOUNDS = {"penetration": "0.0008", "speed": "0.4"}
+FREE = rendering.SlewLimit(10**9)
+"""A law that does nothing: no force changes so fast."""
+
+
+def device(damping="0.26", friction="0.027", delay=0, **more):
+    """A device of 0.1 mm a count at 1 kHz, the delay in samples."""
+    return zw.Device(
+        damping=damping,
+        coulomb_friction=friction,
+        resolution="0.0001",
+        sample_period="0.001",
+        delay=Fraction(delay, 1000),
+        **more,
+    )
+
+
+DEVICE = device()
+
+
+def played(environment, *laws, at=DEVICE, **more):
+    """The outcome of the game against laws in a row."""
+    return zw.worst_hand(at, zw.render(environment, *laws), **{**BOUNDS, **more})
+
+
+@cache
+def proved():
+    """A storage function of a wall with hysteresis and a force limit, and its document as it is saved."""
+    found = played(zw.Wall(200), rendering.Hysteresis("0.005", 150), rendering.Saturation("0.11"))
+    assert found.outcome == "passive"
+    return found, json.loads(json.dumps(found.certificate.to_dict(), default=str))
+
+
+@cache
+def refuted():
+    """A motion against the same with too wide a hysteresis."""
+    found = played(zw.Wall(200), rendering.Hysteresis("0.05", 900))
+    assert found.outcome == "active"
+    return found
+
+
+SAME = {
+    "a law that does nothing": (DEVICE, zw.Wall(300), (FREE,), {}),
+    "the same, a sample late": (device("0.46", "0.047", 1), zw.Wall(300), (FREE,), {}),
+    "saturation is the force limit": (
+        device("0.2", "0.02", force_limit="0.06"),
+        zw.Wall(300),
+        (rendering.Saturation(),),
+        {"force_limit": True},
+    ),
+    "converter steps": (
+        device("0.5", "0.043", force_resolution="0.04"),
+        zw.Wall(300),
+        (FREE,),
+        {"force_resolution": True},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SAME)
+def test_the_bracket_of_a_wall_alone_is_that_of_the_wall_behind_such_a_law(name):
+    """The game on the table and the game on differences of readings find the same limit."""
+    at, wall, laws, counted = SAME[name]
+    alone = zw.passive_limit(at, wall, **BOUNDS, **counted)
+    if laws[0] is not FREE:
+        counted = {}
+    row = zw.passive_limit(at, zw.render(wall, *laws), **BOUNDS, **counted)
+    assert row.relative_width <= 0.01
+    assert alone.relative_width <= 0.01
+    assert row.passive < alone.active
+    assert alone.passive < row.active
+    assert row.certificate.kind == "row storage"
+    assert row.scope.hands.outside == row.scope.hands.inside
+
+
+@pytest.mark.parametrize("stiffness", [150, 180, 200, 220, 260])
+def test_looking_ahead_is_a_filter_of_two_readings(stiffness):
+    """x̂ = x_k + ½ (x_k − x_{k−1}) before a spring on both sides is H(z) = K (1.5 − 0.5/z)."""
+    at = device("0.12", "0.02")
+    row = played(zw.PulseTransferFunction([stiffness], [1]), rendering.Extrapolation(), at=at)
+    filtered = zw.PulseTransferFunction([1.5 * stiffness, -0.5 * stiffness], [1, 0])
+    other = zw.worst_hand(at, filtered, **BOUNDS)
+    assert row.outcome == other.outcome != "undecided"
+
+
+@pytest.mark.parametrize(("part", "outcome"), [("0.98", "passive"), ("1.02", "active")])
+def test_hysteresis_needs_its_width_in_friction(part, outcome):
+    """To and fro over one edge is paid h + KΔ/2 each way: f_c must be as much; with K ≤ 2b/T it may."""
+    at = device("0.5", "0.05")  # 2b/T = 1000 N/m; KΔ/2 = 0.01 N
+    width = (Fraction("0.05") - Fraction("0.01")) * Fraction(part)
+    found = played(zw.Wall(200), rendering.Hysteresis(width, 2000), at=at)
+    assert found.outcome == outcome
+
+
+def test_the_same_hysteresis_in_steps_of_a_table_is_that_of_the_simulator():
+    """A hand at random, in the simulator: each force is that of the state to which the table leads."""
+    law = zw.render(zw.Wall(200), rendering.Hysteresis("0.03", 700), rendering.Held(samples=3))
+    table = game_of(DEVICE, law, **BOUNDS).table
+    random = Random(7)
+    counts = [-1]
+    while len(counts) < 400:
+        counts.append(min(max(counts[-1] + random.randint(-4, 4), table.lowest), table.highest))
+    x = [(n + random.uniform(0.02, 0.98)) * 1e-4 for n in counts]
+    trace = zw.simulate(DEVICE, law, zw.operators.PrescribedMotion(x), duration=(len(x) - 1) / 1000)
+    forces = trace["actuator_force"].values
+    assert (np.diff(forces) != 0).sum() > 50
+    state = next(s for s in table.starts if table.counts[s] == counts[0])
+    for n, m, force in zip(counts, counts[1:], forces, strict=False):
+        assert table.counts[state] == n
+        assert table.forces[state] == force
+        state = table.successors[state, m - n + table.reach]
+
+
+def test_no_move_of_random_hands_takes_out_more_than_the_storage_falls():
+    """Anywhere between the knots, in exact arithmetic, with the true cost of a move."""
+    found, _ = proved()
+    board, value = found.storage.played.board, found.storage.played.value
+    table, steps = board.table, board.steps
+    f_c, b, delta = Fraction("0.027"), Fraction("0.26"), Fraction("0.0001")
+
+    def stored(state, x):
+        inside = (x / delta - int(table.counts[state])) * steps
+        knot = min(int(inside), steps - 1)
+        low, high = (int(v) for v in value[state, knot : knot + 2])
+        return (low + (high - low) * (inside - knot)) * board.energy_unit
+
+    random = Random(3)
+    state = int(table.starts[0])
+    x = (int(table.counts[state]) + Fraction(1, 3)) * delta
+    tight = 0
+    for _ in range(5000):
+        far = Fraction(random.choice([1, 5, 30, 200, 400]) * random.randint(-1000, 1000), 10**5)
+        to = min(max(x + far * delta, table.lowest * delta), (table.highest + 1) * delta - delta / 10**6)
+        count = to // delta
+        then = int(table.successors[state, int(count - table.counts[state]) + table.reach])
+        d = to - x
+        out = -Fraction(float(table.forces[state])) * d - f_c * abs(d) - b * 1000 * d * d
+        fallen = stored(state, x) - stored(then, to)
+        assert out <= fallen
+        tight += out > 0
+        state, x = then, to
+    assert tight > 20  # moves that are paid
+
+
+def test_a_law_that_remembers_too_much_is_refused():
+    """The energy that a controller has counted takes as many values as there are motions."""
+    with pytest.raises(zw.InputError, match=r"does not close within 100,000 states .* remembers too much"):
+        played(zw.Wall(200), rendering.PassivityController())
+
+
+def test_an_adaptive_window_of_three_readings_closes_and_one_of_fifteen_does_not():
+    """What is remembered grows with the power of it."""
+    short = rendering.Damper("0.05", rendering.AdaptiveWindow(longest=3))
+    bounds = {"penetration": "0.0004", "speed": "0.3"}
+    assert played(zw.Wall(100), short, **bounds).outcome == "passive"
+    with pytest.raises(zw.InputError, match="does not close"):
+        played(zw.Wall(100), rendering.Damper("0.05", rendering.AdaptiveWindow()), **bounds)
+
+
+def test_bounds_are_chosen_where_none_are_given():
+    """The largest of a few boards on which the law closes quickly; a short memory has a large one."""
+    little = game_of(DEVICE, zw.render(zw.Wall(100), FREE))
+    much = game_of(DEVICE, zw.render(zw.Wall(100), rendering.DualRate(samples=3)))
+    assert (little.domain.highest, little.domain.reach) == (31, 16)
+    assert much.domain.highest < 31
+
+
+def test_what_cannot_be_played_is_said():
+    """Part of a sample of delay, no force limit to count, an ideal encoder, a card."""
+    law = zw.render(zw.Wall(200), FREE)
+    for at, more, said in (
+        (device(delay=Fraction(1, 2)), {}, "delays of whole samples"),
+        (DEVICE, {"force_limit": True}, "force_limit is to be counted in"),
+        (DEVICE.replace(resolution=0), {}, "ideal encoder"),
+        (DEVICE, {"on": "gpu"}, "leave out on"),
+    ):
+        with pytest.raises(zw.InputError, match=said):
+            zw.worst_hand(at, law, **more)
+    with pytest.raises(zw.InputError, match=r"laws are not linear.*zwidth\.check"):
+        law.pulse_transfer_function(DEVICE.exact("sample_period"))
+
+
+def test_a_motion_is_replayed_by_the_simulator():
+    """The simulator counts in each round what exact arithmetic does, and in all more than went in."""
+    found = refuted()
+    assert found.witness.verify()
+    hand = zw.operators.WitnessMotion(found.witness, rounds=3000)
+    duration = hand.intervals * DEVICE.exact("sample_period")
+    trace = zw.simulate(DEVICE, found.environment, hand, duration=duration)
+    assert trace.zwidth.energy.extracted > 0.01
+    taken = -trace["hand_work"].values
+    samples = len(found.witness.cycle) - 1
+    per_round = (taken[-1] - taken[-1 - 1000 * samples]) / 1000
+    assert per_round == pytest.approx(found.witness.energy_per_cycle, rel=1e-6)
+    assert found.witness.peak_speed <= 0.4 * (1 + 1e-12)
+
+
+def test_the_documents_survive_being_saved(tmp_path):
+    """Both are verified from a file, and are the same law's."""
+    for found in (proved()[0], refuted()):
+        found.save(tmp_path / "found.json")
+        document = read_document(tmp_path / "found.json")
+        assert verify_document(document).valid
+        part = document["certificate" if found.outcome == "passive" else "witness"]
+        assert same_law(part, DEVICE, found.environment)
+    assert saved_motion(document, "found").positions == refuted().witness.motion.positions
+
+
+def test_another_law_is_not_the_same():
+    """A certificate is of one law, to the bit; and so is a motion."""
+    found, document = proved()
+    row = found.environment.stages
+    assert same_law(document, DEVICE, found.environment)
+    assert not same_law(document, DEVICE, zw.render(zw.Wall("200.0000001"), *row))
+    assert not same_law(document, DEVICE, zw.render(zw.Wall(200), row[0]))
+    motion = refuted().witness.to_dict()
+    assert same_law(motion, DEVICE, refuted().environment)
+    assert not same_law(motion, DEVICE, zw.render(zw.Wall("200.0000001"), *refuted().environment.stages))
+    with pytest.raises(zw.InputError, match="row storage or row motion"):
+        same_law({"kind": "storage"}, DEVICE, found.environment)
+
+
+def changed(document, path, value):
+    """A copy with one entry replaced."""
+    tampered = copy.deepcopy(document)
+    inner = tampered
+    for key in path[:-1]:
+        inner = inner[key]
+    inner[path[-1]] = value
+    return tampered
+
+
+def numbers(text, kind="<i8"):
+    """The numbers of a packed text."""
+    return np.frombuffer(zlib.decompress(base64.b64decode(text)), kind).copy()
+
+
+def rejected(document):
+    """The reason why a document is not accepted."""
+    verification = checker.verify(document)
+    assert not verification.valid
+    return verification.reason
+
+
+def test_every_value_of_a_least_storage_function_binds():
+    """The search begins at nothing, so that a move attains each value: less of any is too little."""
+    _, document = proved()
+    value = numbers(document["storage"])
+    for i in Random(1).sample(list(np.flatnonzero(value > 0)), 25):
+        value[i] -= 1
+        assert "more energy than was stored" in rejected(changed(document, ["storage"], packed(value)))
+        value[i] += 1
+    value[0] = -1
+    assert "bounded below" in rejected(changed(document, ["storage"], packed(value)))
+
+
+def test_less_friction_or_damping_is_rejected():
+    """The losses of the loop bind."""
+    _, document = proved()
+    for key, value in (("damping_N_s_per_m", "0.2599"), ("coulomb_friction_N", "0.0269")):
+        assert "more energy than was stored" in rejected(changed(document, ["loop", key], value))
+    assert "longer" in rejected(changed(document, ["domain", "steps_per_count"], 10**7))
+    assert "whole samples" in rejected(changed(document, ["loop", "delay_s"], "0.0005"))
+    faster = changed(document, ["domain", "largest_move_counts"], "4.5")
+    assert "not one value for each state" in rejected(faster)
+
+
+def test_a_table_that_is_not_closed_is_rejected():
+    """Each reading on the board leads to a state of that reading, and none off the board anywhere."""
+    _, document = proved()
+    table = document["table"]
+    width = 2 * 4 + 1
+    successors, counts = numbers(table["successors"]).reshape(-1, width), numbers(table["counts"])
+    onward = np.argwhere(successors[:, 4] >= 0)[0][0]
+    for state, move, value, said in (
+        (onward, 4, -1, "leads nowhere"),
+        (onward, 4, len(counts), "leads nowhere"),
+        (onward, 4, int(np.flatnonzero(counts != counts[onward])[0]), "another reading"),
+        (int(counts.argmax()), width - 1, 0, "leads nowhere"),
+    ):
+        wrong = successors.copy()
+        wrong[state, move] = value
+        assert said in rejected(changed(document, ["table", "successors"], packed(wrong)))
+    counts[0] = 9
+    assert "not on the board" in rejected(changed(document, ["table", "counts"], packed(counts)))
+    assert "starts must have 1" in rejected(changed(document, ["table", "starts"], []))
+    assert "begins" in rejected(changed(document, ["table", "starts"], [len(counts)]))
+
+
+def test_other_forces_are_rejected_or_not_the_law():
+    """A stronger force breaks the storage function; a weaker one may not, but it is not the law's."""
+    found, document = proved()
+    forces = numbers(document["table"]["forces"], "<f8")
+    strongest = int(forces.argmax())
+    forces[strongest] *= 1.2
+    tampered = changed(document, ["table", "forces"], packed(forces, "<f8"))
+    assert "more energy than was stored" in rejected(tampered)
+    forces[strongest] = np.nextafter(0.11, 0)
+    weaker = changed(document, ["table", "forces"], packed(forces, "<f8"))
+    assert checker.verify(weaker).valid
+    assert not same_law(weaker, DEVICE, found.environment)
+    forces[0] = np.nan
+    assert "no number" in rejected(changed(document, ["table", "forces"], packed(forces, "<f8")))
+
+
+def test_a_motion_that_was_tampered_with():
+    """Fewer forces, a round that does not close, no gain; and forces that the law does not give."""
+    found = refuted()
+    document = found.witness.to_dict()
+    forces, x = document["forces_N"], document["positions_m"]
+    assert "one force for each move" in rejected(changed(document, ["forces_N"], forces[:-1]))
+    assert "return to where it began" in rejected(changed(document, ["positions_m"], [*x[:-1], x[-1] / 2]))
+    assert "none comes out" in rejected(changed(document, ["loop", "coulomb_friction_N"], "1"))
+    stronger = changed(document, ["forces_N"], [2 * f for f in forces])
+    assert "the energy is" in rejected(stronger)
+    stronger["energy_J"] = checker.verify(stronger).energy
+    assert checker.verify(stronger).valid
+    assert not same_law(stronger, DEVICE, found.environment)
+
+
+def test_the_storage_is_shown_over_all_that_the_law_may_remember():
+    """V at least and at most, along the position, in joules."""
+    found, _ = proved()
+    energy = found.available_storage()
+    assert energy.dims == ("remembered", "position")
+    least, most = energy.sel(remembered="least"), energy.sel(remembered="most")
+    assert (most >= least).all()
+    assert float((most - least).max()) > 0
+    game = found.storage.played
+    assert float(most.max()) == float(game.value.max() * game.board.energy_unit)
+    lines = storage_figure(found).axes[0].lines
+    assert [line.get_gid() for line in lines] == ["most"]
+
+
+def test_a_reading_off_the_board_leaves_its_row_alone():
+    """The step that the table is made of stays on the board."""
+    game = game_of(DEVICE, zw.render(zw.Wall(200), FREE), **BOUNDS)
+    row = game.law.starts[0]
+    out = np.full((1, 5, len(row)), 7.0)
+    after_every_reading(game.law.packed, row[None, :], np.array([0.0]), 1, -1, 1, scratch(), out)
+    assert (out[0, [0, 4]] == 7).all()
+    assert (out[0, 1:4, -1] == [0, 0, 200 * 1e-4]).all()
+
+
+def test_a_limit_is_sought_on_one_board():
+    """Where no bounds are given, those on which the law closes as it is hold for every value."""
+    law = zw.render(zw.Wall(200), rendering.DualRate(samples=2))
+    bracket = zw.passive_limit(DEVICE, law)
+    board = bracket.storage.played.board
+    assert (board.domain.highest + 1, board.domain.reach) == game_of(DEVICE, law).board
+    assert f"({board.domain.highest + 1} counts) on either side" in bracket.hand
+    assert bracket.passive > 10**12  # its slope is never more than 2b/T
+    assert bracket.active is None
+
+
+def test_a_limit_of_the_device_behind_laws():
+    """The friction that h + KΔ/2 asks for, found from both sides."""
+    law = zw.render(zw.Wall(200), rendering.Hysteresis("0.04", 2000))
+    bracket = zw.passive_limit(device("0.5", "0.05"), law, "coulomb_friction", **BOUNDS)
+    assert bracket.active < 0.05 < bracket.passive
+    assert bracket.relative_width <= 0.01
+    with pytest.raises(zw.InputError, match="no parameter 'force'"):
+        zw.passive_limit(DEVICE, law, "force")
+
+
+def test_a_very_long_memory_is_refused_before_it_fills_the_machine():
+    """A thousand readings in each state: few states are enough to say no."""
+    law = rendering.Damper("0.05", rendering.AdaptiveWindow(longest=1000))
+    with pytest.raises(zw.InputError, match=r"within 19,\d+ states"):
+        played(zw.Wall(100), law)
