@@ -28,7 +28,7 @@ _PACKAGE = Path(__file__).parent
 
 _TOGETHER = (
     ("rendering", "loop"),
-    ("passivity/worst_hand",),
+    ("passivity/storage",),
     ("checker/storage",),
     ("identification/tissue",),
     ("maps",),
@@ -38,8 +38,8 @@ _TOGETHER = (
 
 def _discard_stale(chapters: tuple[str, ...]) -> None:
     folders = [_PACKAGE / chapter for chapter in chapters]
-    youngest = max(path.stat().st_mtime for folder in folders for path in folder.glob("*.py"))
-    for index in (path for folder in folders for path in folder.glob("__pycache__/*.nbi")):
+    youngest = max(path.stat().st_mtime for folder in folders for path in folder.rglob("*.py"))
+    for index in (path for folder in folders for path in folder.rglob("*.nbi")):
         with suppress(OSError):
             if index.stat().st_mtime < youngest:
                 index.unlink()
@@ -51,7 +51,7 @@ for _chapters in _TOGETHER:
 
 def is_compiled(chapter: str) -> bool:
     """True where a chapter of the package, "loop", has been compiled before and is kept on disk."""
-    return any((_PACKAGE / chapter).glob("__pycache__/*.nbi"))
+    return any((_PACKAGE / chapter).rglob("*.nbi"))
 
 
 F = TypeVar("F", bound=Callable[..., Any])

@@ -17,7 +17,7 @@ def warn_of_compiling_the_game() -> None:
     """Say that the game of the worst hand is being compiled, where it has not been yet."""
     from zwidth.compiled import is_compiled
 
-    if not is_compiled("passivity/worst_hand"):
+    if not is_compiled("passivity/storage"):
         _say("compiling the game of the worst hand")
 
 

@@ -19,6 +19,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate, certify, certify_delays
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
+from zwidth.passivity.found import Finding
 from zwidth.passivity.game import has_gap, with_game
 from zwidth.passivity.linear.delay_interval import prove_delays
 from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
@@ -27,7 +28,7 @@ from zwidth.passivity.linear.supremum import tightest
 from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.other_laws import check_other
 from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
-from zwidth.passivity.verdict import Finding, Verdict
+from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.refutation import refute_friction
 from zwidth.passivity.witness.touching import refute_touching
 from zwidth.passivity.witness.violation import Violation

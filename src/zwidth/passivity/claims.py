@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from zwidth.passivity.decision import Decision
+from zwidth.passivity.found import Found
 from zwidth.passivity.linear.linear import LinearRefutation
 from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
 
-if TYPE_CHECKING:
-    from zwidth.passivity.verdict import Verdict
 
-
-def claim(verdict: Verdict) -> str:
+def claim(verdict: Found) -> str:
     """The verdict in a sentence or two."""
     if verdict.outcome == "active":
         if verdict.violation is not None:
@@ -31,7 +28,7 @@ def claim(verdict: Verdict) -> str:
     return " ".join([proved, *(list(_by_bounded_hands(verdict)) or open_still)])
 
 
-def assumptions(verdict: Verdict) -> tuple[str, ...]:
+def assumptions(verdict: Found) -> tuple[str, ...]:
     """What the claim covers and takes for granted, line by line."""
     between = intervals(verdict.scope, verdict.outcome)
     return (
@@ -54,7 +51,7 @@ _ROADS = {
 """By kind of certificate."""
 
 
-def decided_by(verdict: Verdict) -> str:
+def decided_by(verdict: Found) -> str:
     """The road on which the outcome was found."""
     if verdict.certificate is not None:
         documents = verdict.certificate.documents
@@ -68,7 +65,7 @@ def decided_by(verdict: Verdict) -> str:
     return "a motion" if verdict.worst_hand is None else "a motion found by value iteration"
 
 
-def _by_bounded_hands(verdict: Verdict) -> Iterator[str]:
+def _by_bounded_hands(verdict: Found) -> Iterator[str]:
     """What is proved of hands within bounds, contact made and broken."""
     found = verdict.worst_hand
     if found is not None and found.outcome == "passive":
@@ -76,7 +73,7 @@ def _by_bounded_hands(verdict: Verdict) -> Iterator[str]:
         yield f"Contact made and broken: proved passive for {hands}."
 
 
-def _undecided(verdict: Verdict) -> str:
+def _undecided(verdict: Found) -> str:
     if verdict.finding == "unconfirmed":
         return "A proof was found, but the independent checker did not confirm it within its bounds."
     if verdict.finding == "between corners":
@@ -98,7 +95,7 @@ def _undecided(verdict: Verdict) -> str:
     return _not_found(verdict) if decision is None else _open(decision)
 
 
-def _not_found(verdict: Verdict) -> str:
+def _not_found(verdict: Found) -> str:
     """What is known of a law without H(z)."""
     found = "Neither a proof for every hand nor a motion that takes energy out was found"
     lacking = [

@@ -21,8 +21,9 @@ from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity import game
 from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.found import Need
 from zwidth.passivity.scope import Scope, scope_of
-from zwidth.passivity.verdict import Need, Verdict
+from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
 
 if TYPE_CHECKING:

@@ -7,11 +7,14 @@ independent checker found in the proof.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from zwidth.errors import InputError
+from zwidth.passivity.document import unit_key, unit_suffix
 from zwidth.quantity.exact import Interval, ends
+from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
     from zwidth.device import Device, FrictionCurve
@@ -156,18 +159,62 @@ class Scope:
         """The same record with some entries changed."""
         return replace(self, **changes)
 
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """The record in words, a line for each thing."""
-        from zwidth.passivity.wording import lines  # words come last
-
-        return lines(self)
-
     def to_dict(self) -> dict[str, Any]:
         """The record as plain data, a unit in every key of a physical quantity."""
-        from zwidth.passivity.wording import document
+        return _document(self)
 
-        return document(self)
+
+def _document(scope: Scope) -> dict[str, Any]:
+    """See `Scope.to_dict`."""
+    written: dict[str, Any] = {
+        "hands": _hands_document(scope.hands, scope.motion),
+        "contact": scope.contact,
+        "encoder": scope.encoder,
+        "force_limit_counted": scope.force_limit,
+        "force_steps_counted": scope.force_steps,
+        "sampling": scope.sampling,
+        "clamped": scope.clamped,
+    }
+    if scope.fed_with:
+        written["fed_with"] = scope.fed_with
+    for name in ("damping", "coulomb_friction"):
+        written[unit_key(name, scope.motion)] = getattr(scope, name)
+    if scope.friction_speed is not None:
+        written[unit_key("friction_speed", scope.motion)] = scope.friction_speed
+    if scope.largest_force is not None:
+        force = unit_suffix(GLOSSARY["force"].unit_for(scope.motion))
+        written[f"largest_force_{force}"] = scope.largest_force
+    if scope.largest_moment is not None:
+        written["largest_moment_N_m"] = scope.largest_moment
+    if scope.torque:
+        written["torque"] = scope.torque
+    if scope.friction is not None:
+        written["friction"] = "curve"
+    if scope.region is not None:
+        written["region"] = scope.region
+    for name in ("intervals", "assumed", "law", "also"):
+        values: Sequence[str] = getattr(scope, name)
+        if values:
+            written[name] = list(values)
+    return written
+
+
+def _hands_document(hands: Hands, motion: str) -> dict[str, Any]:
+    length = unit_suffix(GLOSSARY["position"].unit_for(motion))
+    damping = unit_suffix(GLOSSARY["damping"].unit_for(motion))
+    if hands.impedance is not None:
+        return {"which": "known", "hand": hands.impedance}
+    if hands.activity is not None:
+        return {"which": "activity", f"activity_{damping}": hands.activity, "below_Hz": hands.below}
+    if hands.every:
+        return {"which": "every"}
+    return {
+        "which": "bounded",
+        f"speed_{length}_per_s": hands.speed,
+        "in_each_part_of_a_sample": hands.in_each_part,
+        f"inside_{length}": hands.inside,
+        f"outside_{length}": hands.outside,
+    }
 
 
 def scope_of(device: Device, environment: Environment) -> Scope:

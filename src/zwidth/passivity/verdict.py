@@ -6,42 +6,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any
 
-from zwidth.device import Device
-from zwidth.environment.environment import Environment
 from zwidth.passivity import claims
 from zwidth.passivity.actuator_demand import actuator_demand
-from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json, to_json, unit_key
-from zwidth.passivity.outcome import TOLD, Outcome
-from zwidth.passivity.scope import Scope
-from zwidth.passivity.witness.violation import Violation
-from zwidth.passivity.witness.witness import Witness, rounded_energy
+from zwidth.passivity.found import Found
+from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.witness.witness import rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.showing import Html, bullets, element, named
 
-if TYPE_CHECKING:
-    from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
-    from zwidth.passivity.storage import WorstHand
-    from zwidth.passivity.storage.gain import Gain
-
-Finding = Literal["open", "unconfirmed", "between corners", "depends on values", "no lowest energy"]
-"""Why a loop is undecided: neither shown; a proof that the checker did not confirm; proved at the corners of
-intervals and not between them; active at one corner and not at others; a spring that pulls away for ever, but
-no more than Coulomb friction holds."""
-
-
-class Need(NamedTuple):
-    """What is enough of "damping" [N·s/m; N·m·s/rad] or "coulomb_friction" [N; N·m], and what there is."""
-
-    name: str
-    needed: float
-    has: float
-
 
 @dataclass(frozen=True, repr=False)
-class Verdict:
+class Verdict(Found):
     """Whether a hand can take energy out of a sampled loop.
 
     "passive" stands on a `certificate` that the independent checker accepted, with contact made and broken,
@@ -79,19 +57,6 @@ class Verdict:
         What of the device is proved to be enough, where that is known.
     """
 
-    outcome: Outcome
-    scope: Scope
-    device: Device
-    environment: Environment
-    certificate: Certificate | None = None
-    violation: Violation | EndlessPull | None = None
-    motion: Witness | Gain | None = None
-    worst_hand: WorstHand | None = None
-    finding: Finding = "open"
-    at_limit: bool = False
-    theorem: str = ""
-    needs: tuple[Need, ...] = ()
-
     @property
     def claim(self) -> str:
         """The verdict in a sentence or two."""
@@ -101,21 +66,6 @@ class Verdict:
     def assumptions(self) -> tuple[str, ...]:
         """What the claim covers and takes for granted, line by line."""
         return claims.assumptions(self)
-
-    @property
-    def is_proved(self) -> bool:
-        """True for "passive" and for "passive in contact"."""
-        return self.outcome in ("passive", "passive in contact")
-
-    @cached_property
-    def witness(self) -> Witness | Gain | None:
-        """The motion that takes energy out, made when it is first asked for.
-
-        None where the loop is not active, or no motion that was found is short enough to be written down.
-        """
-        if self.motion is not None or self.violation is None:
-            return self.motion
-        return self.violation.witness
 
     @property
     def decided_by(self) -> str:
