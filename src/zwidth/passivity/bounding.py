@@ -21,6 +21,7 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import save_json, unit_key, unit_suffix
+from zwidth.passivity.outcome import Answer
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.wording import lines
 from zwidth.quantity.glossary import GLOSSARY
@@ -31,7 +32,7 @@ ROUNDOFF = Fraction(1, 2**53)
 
 
 @dataclass(frozen=True)
-class Bounding:
+class Bounding(Answer):
     """Whether force bounding at the end of a row of laws keeps every hand from taking energy out.
 
     Attributes

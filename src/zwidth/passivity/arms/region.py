@@ -33,7 +33,7 @@ from zwidth.passivity.arms.replay import ArmMotion, refuting_motion, steps_of
 from zwidth.passivity.arms.report import workspace_document
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json
-from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.outcome import Answer, Outcome
 from zwidth.passivity.scope import Scope, Torque
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.units import parse_number
@@ -51,7 +51,7 @@ _TRIES = 20
 
 
 @dataclass(frozen=True, kw_only=True)
-class Workspace:
+class Workspace(Answer):
     """The answer for an arm: a verdict, the map, and what to change.
 
     Parameters

@@ -16,7 +16,7 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json
-from zwidth.passivity.outcome import TOLD, Outcome
+from zwidth.passivity.outcome import TOLD, Answer, Outcome
 from zwidth.passivity.scope import Contact, Hands, Law, Scope, scope_of
 from zwidth.passivity.storage.board import Board, Domain
 from zwidth.passivity.storage.coarse_proof import CELLS, has_cells, prove_on_cells
@@ -66,7 +66,7 @@ _STEPS_OF_MANY = 4
 
 
 @dataclass(frozen=True)
-class WorstHand:
+class WorstHand(Answer):
     """What the worst hand can do to one loop, contact made and broken, the encoder as it is.
 
     Attributes
