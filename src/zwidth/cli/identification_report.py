@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.description import environment_line
-from zwidth.cli.identification import Result
+from zwidth.cli.identification_result import Result
 from zwidth.cli.numerals import shown
 from zwidth.cli.report import page, section
 from zwidth.environment import Wall
