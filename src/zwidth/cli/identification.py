@@ -192,7 +192,7 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _confidence(typed: str | None) -> float:
     """0.99 from "99%", "99 %" or "0.99"."""
-    from zwidth.identification.device.identified import MOST_CONFIDENCE
+    from zwidth.identification.device.estimate import MOST_CONFIDENCE
     from zwidth.quantity.units import parse_number
 
     if typed is None:

@@ -19,9 +19,10 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.identification.device.choice import Zero, choose, too_little
 from zwidth.identification.device.curve import fastest
+from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.device.findings import findings
 from zwidth.identification.device.fit import gather
-from zwidth.identification.device.identified import Estimate, Identified
+from zwidth.identification.device.identified import Identified
 from zwidth.identification.device.impossible import impossible
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.device.regression import offset
