@@ -13,7 +13,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.bars import bar, levels
-from zwidth.cli.commands import decided
+from zwidth.cli.decision import decided
 from zwidth.cli.main import main
 from zwidth.cli.numerals import shown
 from zwidth.cli.options import device_parameters, environment_parameters, joined

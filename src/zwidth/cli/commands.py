@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
+from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.options import Once, add_contact_option, add_law_option, add_parameters, contact, overrides
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
@@ -85,34 +86,6 @@ def _check(arguments: argparse.Namespace) -> int:
         print_verdict(verdict, real_hand, active)
         say_written(save, plot)
     return exit_status(verdict.outcome)
-
-
-def exit_status(outcome: str) -> int:
-    """What a command returns that ends in an outcome."""
-    from zwidth.passivity.outcome import TOLD
-
-    return TOLD[outcome].status
-
-
-def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
-    """What `zwidth.check` says, with a word to people who wait while values are iterated."""
-    from zwidth.passivity.check import check, check_by_closed_forms
-    from zwidth.passivity.game import has_gap, with_game
-
-    device, law, closed = loop.device, loop.environment, None
-    if law.has_transfer_function:
-        closed = check_by_closed_forms(device, law, contact=contact)
-        if contact == "kept" or not has_gap(device, law, closed):
-            return closed
-    from zwidth.cli.patience import warn_of_compiling_the_game
-    from zwidth.traces.progress import progress_bar
-    from zwidth.traces.run import falling
-
-    warn_of_compiling_the_game()
-    with progress_bar("states") as progress:
-        if closed is not None:
-            return with_game(device, law, closed, falling(progress))
-        return check(device, law, contact=contact, progress=falling(progress))
 
 
 def _loop(arguments: argparse.Namespace) -> Specification:

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
+from zwidth.cli.decision import decided, exit_status
+from zwidth.cli.identification_result import Result
 from zwidth.cli.options import BEHIND, Once, add_all, environment_parameters, given
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted, suggestion
-
-if TYPE_CHECKING:
-    from zwidth.environment import Environment
-    from zwidth.identification.device.identified import Identified
-    from zwidth.identification.logs import Log
-    from zwidth.passivity.verdict import Verdict
 
 QUANTITIES = ("time", "position", "hand_force", "actuator_force")
 """What a column may hold."""
@@ -41,18 +37,6 @@ _READING = (
     ("--motion", "motion", "MOTION", "linear or rotary, where the unit of the position does not say it"),
 )
 """Options of how to read: the same."""
-
-
-class Result(NamedTuple):
-    """What a log says, and of one environment."""
-
-    log: Log
-    identified: Identified
-    confidence: float
-    others: Mapping[str, Any]
-    environment: Environment | None
-    passive_for: float | None
-    verdict: Verdict | None
 
 
 def configure_identify(parser: argparse.ArgumentParser) -> None:
@@ -106,8 +90,6 @@ def _behind(parameter: Any) -> Any:
 
 def run_identify(arguments: argparse.Namespace) -> int:
     """`zwidth identify`: 0; with an environment that of `zwidth check`, "undecided" of a wrong model."""
-    from zwidth.cli.commands import exit_status
-
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() != ".toml":
         raise InputError(f"--save: a device is saved as TOML, my-device.toml; got {quoted(save.name)}")
@@ -153,7 +135,6 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
         return Result(log, identified, confidence, others, None, None, None)
     if identified.shows("wrong model"):
         return Result(log, identified, confidence, others, environment, None, None)
-    from zwidth.cli.commands import decided
     from zwidth.specification.read import Specification
 
     verdict = decided(Specification(identified.device(confidence, **others), environment))
@@ -211,7 +192,7 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _confidence(typed: str | None) -> float:
     """0.99 from "99%", "99 %" or "0.99"."""
-    from zwidth.identification.device.identified import MOST_CONFIDENCE
+    from zwidth.identification.device.estimate import MOST_CONFIDENCE
     from zwidth.quantity.units import parse_number
 
     if typed is None:

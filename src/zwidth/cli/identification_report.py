@@ -9,11 +9,11 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.cli.description import environment_line
-from zwidth.cli.identification import Result
+from zwidth.cli.identification_result import Result
 from zwidth.cli.numerals import shown
 from zwidth.cli.report import page, section
 from zwidth.environment import Wall
-from zwidth.identification.device.identified import MOST_CONFIDENCE
+from zwidth.identification.device.estimate import MOST_CONFIDENCE
 from zwidth.identification.device.limits import advice, percent
 from zwidth.identification.device.table import rows, source_name
 from zwidth.passivity.check import check_by_closed_forms

@@ -16,7 +16,7 @@ from scipy import stats
 
 import zwidth as zw
 from zwidth.identification.device.curve import friction_bins, lower_bounds
-from zwidth.identification.device.identified import Estimate
+from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.device.limits import advice, limits, percent
 from zwidth.specification.read import load
 

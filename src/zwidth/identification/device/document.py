@@ -9,7 +9,8 @@ from zwidth.passivity.document import unit_suffix
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
-    from zwidth.identification.device.identified import Estimate, Identified
+    from zwidth.identification.device.estimate import Estimate
+    from zwidth.identification.device.numbers import IdentifiedNumbers
 
 FORMAT = "zwidth identification 1"
 
@@ -17,7 +18,7 @@ _QUANTITY = {"spring": "stiffness", "force_lag": "delay", "slow": "coulomb_frict
 """Whose unit is meant, where the name is not in the glossary."""
 
 
-def to_dict(identified: Identified, confidence: float) -> dict[str, Any]:
+def to_dict(identified: IdentifiedNumbers, confidence: float) -> dict[str, Any]:
     """See `Identified.to_dict`."""
 
     def key(name: str, quantity: str | None = None) -> str:

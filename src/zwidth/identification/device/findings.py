@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from zwidth.identification.device.choice import SURE
+from zwidth.identification.device.estimate import Directions, Estimate
 from zwidth.identification.device.fit import Found, units_of
-from zwidth.identification.device.identified import Directions, Estimate
 from zwidth.identification.logs import Finding
 
 _SEEN = {

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from zwidth.identification.device.choice import LONGER, SAFETY, SURE, Choice, Zero, shifts
-from zwidth.identification.device.identified import Directions, Estimate
+from zwidth.identification.device.estimate import Directions, Estimate
 from zwidth.identification.device.moments import Moments
 from zwidth.identification.device.pieces import pieces
 from zwidth.identification.device.points import Points

@@ -19,11 +19,13 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.identification.device.choice import Zero, choose, too_little
 from zwidth.identification.device.curve import fastest
+from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.device.findings import findings
 from zwidth.identification.device.fit import gather
-from zwidth.identification.device.identified import Estimate, Identified
+from zwidth.identification.device.identified import Identified
 from zwidth.identification.device.impossible import impossible
 from zwidth.identification.device.pulses import PIECES
+from zwidth.identification.device.regression import offset
 from zwidth.identification.logs import Log
 
 Model = Literal["Coulomb and viscous", "viscous"]
@@ -104,7 +106,7 @@ def identify(
         source=log.source,
         explained=fit.explained,
         force_noise=float(np.sqrt(fit.residual / np.sum(weights**2))),
-        offset=found.moments.offset(fit, mass),
+        offset=offset(found.moments, fit, mass),
         viscous_alone=viscous.value("damping"),
         pulse_length=PIECES * choice.piece * log.sample_period,
         strokes=found.moments.strokes,

@@ -11,7 +11,7 @@ from dataclasses import replace
 from itertools import combinations
 from typing import NamedTuple
 
-from zwidth.identification.device.identified import Estimate
+from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.logs import Log
 from zwidth.identification.logs.log import Block
 

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from zwidth.identification.device.identified import Estimate, Identified
+    from zwidth.identification.device.estimate import Estimate
+    from zwidth.identification.device.numbers import IdentifiedNumbers
 
 NARROW = 3.0
 """Ratio of quick to slow speeds (upper to lower tenth) below which b and f_c are hard to tell apart."""
@@ -56,7 +57,7 @@ class Limit(NamedTuple):
         return self.factor * low, self.factor * max(high, low)
 
 
-def limits(identified: Identified) -> tuple[Limit, ...]:
+def limits(identified: IdentifiedNumbers) -> tuple[Limit, ...]:
     """Both bounds, where the parameters were identified and the encoder has a step."""
     found = []
     if "damping" in identified.estimates:
@@ -70,7 +71,7 @@ def limits(identified: Identified) -> tuple[Limit, ...]:
     return tuple(found)
 
 
-def advice(identified: Identified, confidence: float) -> tuple[str, ...]:
+def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
     """Which number limits the stiffest wall, and how to know it better."""
     if identified.shows("wrong model"):
         return ("fit Coulomb friction too: these numbers are of another model than the device",)

@@ -11,16 +11,12 @@ force means nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.compiled import Array, compiled
 from zwidth.identification.device import pulses
-
-if TYPE_CHECKING:
-    from zwidth.identification.device.regression import Regression
 
 REGRESSORS = (
     "mass",
@@ -99,12 +95,6 @@ class Moments:
         self.square += flat.T @ flat
         self.strokes += count
         self.pulses += len(rows)
-
-    def offset(self, fit: Regression, mass: float | None) -> float:
-        """What the force has besides the fitted terms, the mean over the pieces [N; N·m]."""
-        known = self.means[-1] - (mass or 0.0) * self.means[0]
-        terms = sum(fit.value(name) * self.means[REGRESSORS.index(name)] for name in fit.names)
-        return float((known - terms) / max(self.pieces, 1))
 
 
 def line(rows: Array, zero: str) -> Array:

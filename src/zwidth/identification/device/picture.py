@@ -12,8 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.identification.device.curve import DIRECTIONS, friction_bins, lower_bounds
-from zwidth.identification.device.identified import BINS, Estimate, Identified
+from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.device.limits import percent
+from zwidth.identification.device.numbers import BINS, IdentifiedNumbers
 from zwidth.identification.device.pulses import PIECES, pulse
 from zwidth.identification.device.table import rows, title
 from zwidth.plots.files import save_figure
@@ -39,7 +40,7 @@ _SECONDS = 3.0
 """Of the log, that are drawn as they went [s]."""
 
 
-def save_identification(identified: Identified, path: str | Path, overwrite: bool = False) -> None:
+def save_identification(identified: IdentifiedNumbers, path: str | Path, overwrite: bool = False) -> None:
     """Write `identification_figure` to a file; its ending, png, svg or pdf, says how.
 
     Raises
@@ -51,7 +52,7 @@ def save_identification(identified: Identified, path: str | Path, overwrite: boo
 
 
 @rc_context(LOOK)
-def identification_figure(identified: Identified) -> Figure:
+def identification_figure(identified: IdentifiedNumbers) -> Figure:
     """Friction against speed beside the numbers; below, some seconds of the log and what is left over.
 
     Parameters
@@ -74,7 +75,7 @@ def identification_figure(identified: Identified) -> Figure:
     return figure
 
 
-def draw_friction_points(axes: Axes, identified: Identified) -> None:
+def draw_friction_points(axes: Axes, identified: IdentifiedNumbers) -> None:
     """Friction against velocity, out of the wall on the left: pulses, means, the fit, and the line promised.
 
     Speeds that few strokes reached are hatched: what is promised ends there.
@@ -106,7 +107,7 @@ def draw_friction_points(axes: Axes, identified: Identified) -> None:
     axes.legend(loc="upper center", fontsize=7)
 
 
-def _damping_by_side(identified: Identified) -> list[tuple[float, Estimate]]:
+def _damping_by_side(identified: IdentifiedNumbers) -> list[tuple[float, Estimate]]:
     """+1 into the wall and −1 out of it, with the damping that was fitted for it."""
     both = identified.directions
     if identified.shows("damping by direction"):
@@ -114,7 +115,7 @@ def _damping_by_side(identified: Identified) -> list[tuple[float, Estimate]]:
     return [(side, identified.estimates["damping"]) for side in (1.0, -1.0)]
 
 
-def _promised(axes: Axes, identified: Identified) -> None:
+def _promised(axes: Axes, identified: IdentifiedNumbers) -> None:
     """Means with bars in which all hold together, and below them the line on which a promise rests."""
     bins = friction_bins(identified.points, BINS)
     bounds = lower_bounds(identified.points, _CONFIDENCE, BINS)
@@ -141,7 +142,7 @@ def _promised(axes: Axes, identified: Identified) -> None:
     axes.plot([-speed, 0.0, speed], [height, f_c, height], color=RED, ls="--", lw=1.6, label=label, zorder=6)
 
 
-def _unseen(axes: Axes, identified: Identified, end: float) -> None:
+def _unseen(axes: Axes, identified: IdentifiedNumbers, end: float) -> None:
     """Hatch the velocities of which the data say nothing."""
     inward, outward = identified.fastest
     for k, (near, far) in enumerate(((inward, end), (-end, -outward))):
@@ -149,7 +150,7 @@ def _unseen(axes: Axes, identified: Identified, end: float) -> None:
         axes.axvspan(near, far, facecolor="none", edgecolor=GREY, hatch="///", lw=0, alpha=0.6, label=label)
 
 
-def _fitted(identified: Identified, damping: Estimate, speed: Array) -> tuple[Array, Array]:
+def _fitted(identified: IdentifiedNumbers, damping: Estimate, speed: Array) -> tuple[Array, Array]:
     """f_c + b |v|, and the half width of a band that holds with each parameter at its worst."""
     terms = [(damping, speed)]
     if "coulomb_friction" in identified.estimates:
@@ -162,7 +163,7 @@ def _fitted(identified: Identified, damping: Estimate, speed: Array) -> tuple[Ar
     return fit, reach
 
 
-def _data(axes: Axes, identified: Identified) -> None:
+def _data(axes: Axes, identified: IdentifiedNumbers) -> None:
     """Some seconds from the middle of the log: the force of the pulses, and what the model makes of it."""
     points = identified.points
     piece = points["piece"].values
@@ -186,7 +187,7 @@ def _data(axes: Axes, identified: Identified) -> None:
     axes.legend(loc="upper right", ncols=2, borderaxespad=0.1)
 
 
-def _left(axes: Axes, identified: Identified) -> None:
+def _left(axes: Axes, identified: IdentifiedNumbers) -> None:
     """What is left over against velocity; a bend of the means would be friction of another form."""
     points = _thinned(identified)
     axes.plot(points["speed"], points["residual"], ".", ms=2.5, color=GREY, alpha=0.4, mew=0, rasterized=True)
@@ -204,7 +205,7 @@ def _left(axes: Axes, identified: Identified) -> None:
     axes.legend(loc="upper left", borderaxespad=0.1)
 
 
-def _histogram(axes: Axes, identified: Identified) -> None:
+def _histogram(axes: Axes, identified: IdentifiedNumbers) -> None:
     """Left over, and what encoder and noise of the force alone would leave."""
     left = identified.points["residual"].values
     reach = 4.0 * float(left.std())
@@ -232,7 +233,7 @@ def _histogram(axes: Axes, identified: Identified) -> None:
     axes.spines["bottom"].set_visible(False)
 
 
-def expected_scatter(identified: Identified) -> tuple[float, float]:
+def expected_scatter(identified: IdentifiedNumbers) -> tuple[float, float]:
     """Deviation of a pulse's force by the encoder's counts, and by the noise of the force [N; N·m].
 
     Counts are taken as random within a step, Δ²/12 each; the acceleration of a pulse is
@@ -248,7 +249,7 @@ def expected_scatter(identified: Identified) -> tuple[float, float]:
     return float(counts), noise
 
 
-def _numbers(axes: Axes, identified: Identified) -> None:
+def _numbers(axes: Axes, identified: IdentifiedNumbers) -> None:
     axes.set_axis_off()
     table = rows(identified, _CONFIDENCE)
     for k, row in enumerate(table):
@@ -268,15 +269,15 @@ def _numbers(axes: Axes, identified: Identified) -> None:
     axes.text(0.0, below, lines, va="top", fontsize=7.5, color=GREY, parse_math=False)
 
 
-def _thinned(identified: Identified) -> xr.Dataset:
+def _thinned(identified: IdentifiedNumbers) -> xr.Dataset:
     points = identified.points
     stride = max(1, points.sizes["pulse"] // _MOST)
     return points.isel(pulse=slice(None, None, stride))
 
 
-def _force(identified: Identified) -> str:
+def _force(identified: IdentifiedNumbers) -> str:
     return "N·m" if identified.motion == "rotary" else "N"
 
 
-def _speed(identified: Identified) -> str:
+def _speed(identified: IdentifiedNumbers) -> str:
     return "rad/s" if identified.motion == "rotary" else "m/s"

@@ -21,13 +21,13 @@ from zwidth.quantity.text import as_decimal
 from zwidth.specification.write import toml
 
 if TYPE_CHECKING:
-    from zwidth.identification.device.identified import Identified
+    from zwidth.identification.device.numbers import IdentifiedNumbers
 
 DIGITS = 6
 """Significant digits of an identified number."""
 
 
-def to_toml(identified: Identified, device: Device, confidence: float | None) -> str:
+def to_toml(identified: IdentifiedNumbers, device: Device, confidence: float | None) -> str:
     """The text of the file, see `Identified.to_toml`."""
     lines = [f"# {line}" for line in _story(identified, confidence)]
     lines += ["", "[device]", f"name = {toml(device.name)}", f'motion = "{device.motion}"']
@@ -39,7 +39,7 @@ def to_toml(identified: Identified, device: Device, confidence: float | None) ->
     return "\n".join(lines) + "\n"
 
 
-def _story(identified: Identified, confidence: float | None) -> list[str]:
+def _story(identified: IdentifiedNumbers, confidence: float | None) -> list[str]:
     milliseconds = 1e3 * identified.pulse_length
     story = [
         f"Identified from {source_name(identified)}: {identified.strokes} strokes, {identified.pulses} means "
@@ -57,7 +57,7 @@ def _story(identified: Identified, confidence: float | None) -> list[str]:
     ]
 
 
-def _origin(identified: Identified, key: str, motion: str, confidence: float | None) -> str:
+def _origin(identified: IdentifiedNumbers, key: str, motion: str, confidence: float | None) -> str:
     unit = GLOSSARY[key].unit_for(motion).replace("*", "·").replace("^2", "²")
     if key in identified.estimates:
         best = f"{unit}: {identified.estimates[key].value:.4g} identified"

@@ -9,7 +9,7 @@ from zwidth.identification.device.limits import limits, percent
 from zwidth.showing import Html, bullets, element, printable, row
 
 if TYPE_CHECKING:
-    from zwidth.identification.device.identified import Identified
+    from zwidth.identification.device.numbers import IdentifiedNumbers
 
 SYMBOLS = {
     "mass": "m",
@@ -43,7 +43,7 @@ class Row(NamedTuple):
     unit: str
 
 
-def rows(identified: Identified, confidence: float = 0.95) -> list[Row]:
+def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
     """The parameters, and what they allow."""
     table = []
     if identified.mass is not None:
@@ -66,7 +66,7 @@ def rows(identified: Identified, confidence: float = 0.95) -> list[Row]:
     return table
 
 
-def facts(identified: Identified) -> str:
+def facts(identified: IdentifiedNumbers) -> str:
     """What the numbers rest on, in a line."""
     turn = identified.motion == "rotary"
     force, length = ("N·m", "rad") if turn else ("N", "m")
@@ -80,18 +80,18 @@ def facts(identified: Identified) -> str:
     )
 
 
-def title(identified: Identified) -> str:
+def title(identified: IdentifiedNumbers) -> str:
     """Where the numbers come from."""
     return f"device identified from {source_name(identified)}"
 
 
-def source_name(identified: Identified) -> str:
+def source_name(identified: IdentifiedNumbers) -> str:
     """The log's name without its folders, on one line."""
     name = Path(identified.source).name or identified.source
     return "".join(c if c.isprintable() else "?" for c in name)
 
 
-def as_text(identified: Identified, confidence: float = 0.95) -> str:
+def as_text(identified: IdentifiedNumbers, confidence: float = 0.95) -> str:
     """The table in columns."""
     table = [("", "", "best guess", percent(confidence), ""), *rows(identified, confidence)]
     widths = [max(len(row[i]) for row in table) for i in range(5)]
@@ -100,7 +100,7 @@ def as_text(identified: Identified, confidence: float = 0.95) -> str:
     return printable("\n".join([title(identified), "", *lines, "", facts(identified), *findings]))
 
 
-def as_html(identified: Identified, confidence: float = 0.95) -> Html:
+def as_html(identified: IdentifiedNumbers, confidence: float = 0.95) -> Html:
     """The same for a notebook."""
     head = row(("", "", "best guess", percent(confidence), ""), "th")
     numbers = (row(cells) for cells in rows(identified, confidence))

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.identification.device.identified import Estimate
+from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.device.impossible import Bounds
 from zwidth.identification.finger.fit import TERMS, Fit
 from zwidth.identification.finger.lag import Lag

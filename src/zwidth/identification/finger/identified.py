@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from zwidth.errors import InputError
-from zwidth.identification.device.identified import Estimate
+from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.logs import Finding
 from zwidth.operator.finger import Finger
 

@@ -31,7 +31,7 @@ from zwidth.compiled import Array
 from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.identification.device.choice import LENGTHS, LONGER, SAFETY
-from zwidth.identification.device.identified import Estimate
+from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.device.impossible import impossible
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.finger.doubts import (

@@ -1,0 +1,24 @@
+"""What `zwidth identify` found, for whoever prints it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from zwidth.environment import Environment
+    from zwidth.identification.device.identified import Identified
+    from zwidth.identification.logs import Log
+    from zwidth.passivity.verdict import Verdict
+
+
+class Result(NamedTuple):
+    """What a log says, and of one environment."""
+
+    log: Log
+    identified: Identified
+    confidence: float
+    others: Mapping[str, Any]
+    environment: Environment | None
+    passive_for: float | None
+    verdict: Verdict | None
