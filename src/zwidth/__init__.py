@@ -27,6 +27,10 @@ from zwidth.rendering import VirtualCoupling
 if TYPE_CHECKING:
     from zwidth import operator as operators
     from zwidth.bench import LawComparison
+    from zwidth.coupled_stability.absolute import AbsoluteStability, absolute_stability
+    from zwidth.coupled_stability.active_hand import ToleratedActivity, tolerated_activity
+    from zwidth.coupled_stability.known_hand import PassiveHand, Stability, stability
+    from zwidth.coupled_stability.virtual_mass import stable_virtual_masses
     from zwidth.device import amplifier as amplifiers
     from zwidth.device import arm as arms
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
@@ -63,10 +67,6 @@ if TYPE_CHECKING:
     from zwidth.passivity.real_hand import RealHand, replay
     from zwidth.passivity.storage import WorstHand
     from zwidth.rendering.rendered import render
-    from zwidth.stability.absolute import AbsoluteStability, absolute_stability
-    from zwidth.stability.active_hand import ToleratedActivity, tolerated_activity
-    from zwidth.stability.known_hand import PassiveHand, Stability, stability
-    from zwidth.stability.virtual_mass import stable_virtual_masses
     from zwidth.traces import (
         compare_traces,
         identify,
@@ -182,8 +182,8 @@ __all__ = [
 ]
 
 _LATER = {
-    "AbsoluteStability": "zwidth.stability.absolute",
-    "absolute_stability": "zwidth.stability.absolute",
+    "AbsoluteStability": "zwidth.coupled_stability.absolute",
+    "absolute_stability": "zwidth.coupled_stability.absolute",
     "Bounding": "zwidth.passivity.bounding",
     "check_bounding": "zwidth.passivity.bounding",
     "Bracket": "zwidth.passivity.passive_limit",
@@ -216,10 +216,10 @@ _LATER = {
     "PassivityIndices": "zwidth.passivity.ports.indices",
     "passivity_indices": "zwidth.passivity.ports.indices",
     "arms": "zwidth.device.arm",
-    "PassiveHand": "zwidth.stability.known_hand",
+    "PassiveHand": "zwidth.coupled_stability.known_hand",
     "RealHand": "zwidth.passivity.real_hand",
-    "Stability": "zwidth.stability.known_hand",
-    "stability": "zwidth.stability.known_hand",
+    "Stability": "zwidth.coupled_stability.known_hand",
+    "stability": "zwidth.coupled_stability.known_hand",
     "robust_boundary": "zwidth.maps",
     "stability_boundary": "zwidth.maps",
     "z_width": "zwidth.maps",
@@ -248,10 +248,10 @@ _LATER = {
     "simulate": "zwidth.traces",
     "simulate_admittance": "zwidth.loop.admittance",
     "simulate_batch": "zwidth.traces",
-    "stable_virtual_masses": "zwidth.stability.virtual_mass",
+    "stable_virtual_masses": "zwidth.coupled_stability.virtual_mass",
     "tissue": "zwidth.identification.tissue",
-    "ToleratedActivity": "zwidth.stability.active_hand",
-    "tolerated_activity": "zwidth.stability.active_hand",
+    "ToleratedActivity": "zwidth.coupled_stability.active_hand",
+    "tolerated_activity": "zwidth.coupled_stability.active_hand",
     "two_port": "zwidth.passivity.coupling.two_port",
     "workspace": "zwidth.passivity.arms",
     "worst_hand": "zwidth.traces",

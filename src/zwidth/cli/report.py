@@ -32,8 +32,8 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.showing import printable
 
 if TYPE_CHECKING:
+    from zwidth.coupled_stability.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
-    from zwidth.stability.active_hand import ToleratedActivity
 
 _WIDEST = 100
 _LONGEST_BAR = 34

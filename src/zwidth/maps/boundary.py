@@ -14,6 +14,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from zwidth.coupled_stability.known_hand.characteristic import PRECISIONS, family
+from zwidth.coupled_stability.known_hand.crossing import Curve, curve, line, plain
+from zwidth.coupled_stability.known_hand.hand import as_hand
+from zwidth.coupled_stability.known_hand.stability import motion_of
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference
 from zwidth.environment.velocity import VelocityEstimator
@@ -21,10 +25,6 @@ from zwidth.errors import InputError
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.stability.known_hand.characteristic import PRECISIONS, family
-from zwidth.stability.known_hand.crossing import Curve, curve, line, plain
-from zwidth.stability.known_hand.hand import as_hand
-from zwidth.stability.known_hand.stability import motion_of
 
 _SLOWEST = 1e-4
 """Smallest angle ωT on the curve, as a part of π."""

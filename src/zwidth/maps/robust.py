@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from zwidth.coupled_stability.known_hand.decide import corners
+from zwidth.coupled_stability.known_hand.hand import PassiveHand, as_hand
+from zwidth.coupled_stability.known_hand.stability import largest_stable, motion_of
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.stability.known_hand.decide import corners
-from zwidth.stability.known_hand.hand import PassiveHand, as_hand
-from zwidth.stability.known_hand.stability import largest_stable, motion_of
 
 
 def robust_boundary(

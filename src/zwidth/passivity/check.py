@@ -149,7 +149,8 @@ def check_by_closed_forms(
         proofs = _proofs(device, law, corners, decisions)
         if proofs is not None:
             found = _passive(device, law, corners, decisions, proofs, asked)
-            return _touched(device, law, found) or found
+            touched = _touched(device, law, found)
+            return found if touched is None else touched
         return _undecided(device, law, corners[0], decisions[0], "between corners")
     worst = failing[0]
     certain = device.is_certain and len(corners) == 1
@@ -159,7 +160,8 @@ def check_by_closed_forms(
     at_worst = None if certain else _refute(decisions[worst])
     finding: Finding = "open" if at_worst is None else "depends on values"
     found = _undecided(device, law, corners[worst], decisions[worst], finding, at_worst)
-    return (asked != "kept" and _touched(device, law, found)) or found
+    touched = None if asked == "kept" else _touched(device, law, found)
+    return found if touched is None else touched
 
 
 def _require_few(corners: list[Loop]) -> None:

@@ -314,9 +314,10 @@ class _Search:
         passive, active = (side.good for side in sides)
         good = None if passive is None else verdict(passive)
         bad = None if active is None else verdict(active)
-        scope = (good or bad or verdict(self.first)).scope
-        proof, motion = good and good.certificate, bad and bad.witness
-        return _Found(passive, active, proof, motion, scope, bad and bad.violation)
+        known = next((each for each in (good, bad) if each is not None), verdict(self.first))
+        proof = None if good is None else good.certificate
+        motion, violation = (None, None) if bad is None else (bad.witness, bad.violation)
+        return _Found(passive, active, proof, motion, known.scope, violation)
 
     def by_games(
         self,
