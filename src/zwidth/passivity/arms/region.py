@@ -27,9 +27,10 @@ from zwidth.passivity.arms.held import forces_of, held_torque_damping
 from zwidth.passivity.arms.joints import as_matrix, single_additions
 from zwidth.passivity.arms.least import least_additions
 from zwidth.passivity.arms.mapped import columns_of, dataset, scaled_stiffness, stiffness_factors
+from zwidth.passivity.arms.motion import ArmMotion
 from zwidth.passivity.arms.need import wall_need
 from zwidth.passivity.arms.pose import fits
-from zwidth.passivity.arms.replay import ArmMotion, refuting_motion, steps_of
+from zwidth.passivity.arms.replay import refuting_motion, steps_of
 from zwidth.passivity.arms.report import workspace_document
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import save_json

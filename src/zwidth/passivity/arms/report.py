@@ -11,8 +11,8 @@ from zwidth.passivity.arms.need import wall_matrices
 
 if TYPE_CHECKING:
     from zwidth.passivity.arms.encoders import EncoderSteps
+    from zwidth.passivity.arms.motion import ArmMotion
     from zwidth.passivity.arms.region import Workspace
-    from zwidth.passivity.arms.replay import ArmMotion
 
 
 def workspace_document(space: Workspace) -> dict[str, Any]:
