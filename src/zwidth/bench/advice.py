@@ -4,23 +4,31 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from zwidth.device.device import Device
 from zwidth.environment.wall import Wall
 from zwidth.passivity.check import check_by_closed_forms
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from zwidth.bench.bench import LawComparison
-
 QUIET = 0.02
 """Force above 30 Hz below which a wall is called quiet, as part of the largest force."""
 
 
-def advice(comparison: LawComparison) -> str:
-    """What the wall needs, which law is safest, which feels stiffest, and what none of them can do."""
-    scores = comparison.scores
-    wanted = float(comparison.environment.stiffness)  # type: ignore[attr-defined]
-    alone = check_by_closed_forms(comparison.device, Wall(comparison.environment.stiffness))  # type: ignore[attr-defined]
+def advice(scores: xr.Dataset, device: Device, wall: Wall) -> str:
+    """What the wall needs, which law is safest, which feels stiffest, and what none of them can do.
+
+    Parameters
+    ----------
+    scores
+        Of the laws, those of a `LawComparison`.
+    device
+        What they were simulated on.
+    wall
+        What was to be rendered, of one stiffness; its damping is left out.
+    """
+    wanted = float(wall.stiffness)  # type: ignore[arg-type]
+    alone = check_by_closed_forms(device, Wall(wall.stiffness))
     limit = alone.max_stiffness
     words = [
         f"Alone, a wall of {wanted:g} N/m is passive on this device and needs no law."

@@ -12,10 +12,12 @@ import numpy as np
 
 from zwidth.bench import scores
 from zwidth.bench.adversary import FASTEST, Attack, attack
+from zwidth.bench.advice import advice
 from zwidth.bench.laws import standard_laws
 from zwidth.bench.motions import found_motions
 from zwidth.bench.perceived import SOURCE, WEBER, noticeable_differences
 from zwidth.bench.standing import Standing, standing
+from zwidth.bench.table import as_html, as_text
 from zwidth.bench.touches import Touch, standard_touches
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
@@ -87,7 +89,7 @@ class LawComparison:
     standings: Mapping[str, Standing]
     traces: Mapping[str, Mapping[str, xr.Dataset]]
     device: Device
-    environment: Environment
+    environment: Wall
 
     @property
     def evidence(self) -> dict[str, str]:
@@ -97,19 +99,14 @@ class LawComparison:
     @property
     def advice(self) -> str:
         """What to do, in a paragraph."""
-        from zwidth.bench.advice import advice
-
-        return advice(self)
+        return advice(self.scores, self.device, self.environment)
 
     def __repr__(self) -> str:
-        from zwidth.bench.table import as_text
-
-        return as_text(self)
+        title = f"{self.environment.describe()} on {self.device.name or 'the device'}"
+        return as_text(title, self.scores, self.advice)
 
     def _repr_html_(self) -> Html:
-        from zwidth.bench.table import as_html
-
-        return as_html(self)
+        return as_html(self.scores, self.advice)
 
     def plot(self, path: str | Path | None = None) -> Any:
         """Stability against fidelity, and the touches of each law; saved where a path is given."""

@@ -9,7 +9,7 @@ from zwidth.bench.perceived import SOURCE, WEBER
 from zwidth.showing import Html, element, printable, row
 
 if TYPE_CHECKING:
-    from zwidth.bench.bench import LawComparison
+    import xarray as xr
 
 
 class Column(NamedTuple):
@@ -42,9 +42,8 @@ ON_PAPER = "on paper"
 """What the table calls a proof on paper, no certificate."""
 
 
-def rows(comparison: LawComparison) -> list[list[str]]:
+def rows(scores: xr.Dataset) -> list[list[str]]:
     """Headings, units, and a row for each law."""
-    scores = comparison.scores
     table = [
         ["law", "status", *(c.heading for c in COLUMNS)],
         ["", "", *(c.unit for c in COLUMNS)],
@@ -57,17 +56,17 @@ def rows(comparison: LawComparison) -> list[list[str]]:
     return table
 
 
-def legend(comparison: LawComparison) -> str:
+def legend(scores: xr.Dataset) -> str:
     """What the words of the table mean that are not clear by themselves."""
-    on_paper = (comparison.scores["status"] == "theorem").any()
+    on_paper = (scores["status"] == "theorem").any()
     paper = f"{ON_PAPER}: a theorem, by a proof on paper, no certificate; " if on_paper else ""
     steps = f"just-noticeable differences of {WEBER:.0%} ({SOURCE})"
     return f"{paper}JNDs: felt against the stiffness that is wanted, in {steps}; below 0 it is softer"
 
 
-def as_text(comparison: LawComparison) -> str:
-    """The table in columns, and what to do about it."""
-    table = rows(comparison)
+def as_text(title: str, scores: xr.Dataset, advice: str) -> str:
+    """The table in columns under its title, and what to do about it."""
+    table = rows(scores)
     widths = [max(len(row[i]) for row in table) for i in range(len(table[0]))]
     lines = [
         "  ".join(
@@ -76,16 +75,15 @@ def as_text(comparison: LawComparison) -> str:
         ).rstrip()
         for row in table
     ]
-    title = f"{comparison.environment.describe()} on {comparison.device.name or 'the device'}"
-    below = [text for text in (legend(comparison), comparison.advice) if text]
+    below = [text for text in (legend(scores), advice) if text]
     return printable("\n".join([title, "", *lines, "", *below]))
 
 
-def as_html(comparison: LawComparison) -> Html:
-    """The same for a notebook."""
-    head, units, *body = rows(comparison)
+def as_html(scores: xr.Dataset, advice: str) -> Html:
+    """The same for a notebook, without a title."""
+    head, units, *body = rows(scores)
     table = element("table", row(head, "th"), row(units, "th"), *map(row, body))
-    below = (element("p", text) for text in (legend(comparison), comparison.advice) if text)
+    below = (element("p", text) for text in (legend(scores), advice) if text)
     return element("div", table, *below)
 
 

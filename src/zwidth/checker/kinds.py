@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 
 from . import scope
 from .arm.region import ARM, arm
+from .bounded_hand.active_hand import ACTIVE_HAND, active_hand
+from .bounded_hand.slow_hands import SLOW_HANDS, slow_hands
 from .contact.damped_wall import CONTACT, contact
 from .contact.motion import CONTACT_MOTION, contact_motion_energy
 from .contact.multiplier import MULTIPLIER_CONTACT, multiplier_contact
@@ -20,12 +22,10 @@ from .document.refusal import Invalid
 from .known_hand.absolute import ABSOLUTE_STABILITY, absolute
 from .known_hand.rest import KNOWN_HAND, instability, stability
 from .known_hand.vibration import VIBRATION, vibration
-from .loop.active_hand import ACTIVE_HAND, active_hand
 from .loop.force_bounding import FORCE_BOUNDING, force_bounding
 from .loop.linear import DELAYS, LINEAR, QUANTIZED, delays, linear, quantized
 from .loop.motion import MOTION, motion_energy, stored_at_start
 from .loop.nonlinear_spring import NONLINEAR_SPRING, endless_pull, nonlinear_spring
-from .loop.slow_hands import SLOW_HANDS, slow_hands
 from .loop.spring import SPRING, spring
 from .loop.violation import VIOLATION, violation
 from .port.index import POSITIVE_REAL, positive_real

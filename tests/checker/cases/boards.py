@@ -96,11 +96,11 @@ def many_forces_are_computed_in_parts() -> str:
 
 def states_are_those_with_all_readings_on_the_board() -> str:
     """Of a board of counts, and of cells."""
-    board, coarse = storage("board"), storage("coarse")
+    board, coarse, domain = storage("board"), storage("coarse"), storage("domain")
     for reach, memory in product((1, 2), (0, 1, 2)):
         found = board._exists(LOW, HIGH, reach, memory).ravel()
         moves = list(product(range(-reach, reach + 1), repeat=memory))
-        if moves != board.histories_of(reach, memory):
+        if moves != domain.histories_of(reach, memory):
             return "other histories"
         for exists, (n, moved) in zip(found, product(range(LOW, HIGH + 1), moves), strict=True):
             if exists != all(LOW <= n + sum(moved[:a]) <= HIGH for a in range(memory + 1)):
@@ -114,10 +114,10 @@ def states_are_those_with_all_readings_on_the_board() -> str:
 
 def costs_are_below_what_is_lost() -> str:
     """φ D + β (D² − ¼) for D ≥ 2, by some units less; of two models the larger between any two steps."""
-    board = storage("board")
+    domain = storage("domain")
     for fastest, steps, part in product((Fraction(2), Fraction(5, 2)), (1, 3), (Fraction(1), Fraction(2, 5))):
         told, off = losses(0, part), 4
-        found = board.costs_of(told, UNIT, off, part, fastest, steps)
+        found = domain.costs_of(told, UNIT, off, part, fastest, steps)
         if len(found) != ceil(fastest * steps * part) + 1:
             return f"{len(found)} costs"
         friction, damping = told.models[0]
@@ -129,7 +129,7 @@ def costs_are_below_what_is_lost() -> str:
     three = [(Fraction(1), Fraction(0)), (Fraction(1, 2), Fraction(1, 2)), (Fraction(0), Fraction(1))]
     for steps, several in product(range(1, 30), (three, three[::2])):
         one, *each = (
-            board.costs_of(losses(0, Fraction(1), *models), UNIT, 4, Fraction(1), Fraction(40), steps)
+            domain.costs_of(losses(0, Fraction(1), *models), UNIT, 4, Fraction(1), Fraction(40), steps)
             for models in (several, *([m] for m in several))
         )
         best = [max(each, key=lambda c: c[d] + c[d + 1]) for d in range(len(one) - 1)]

@@ -15,7 +15,7 @@ import zwidth as zw
 from zwidth.checker import verify
 from zwidth.device.arm import Arm, LeggedArm, PlanarChain, built_in, read_arm
 from zwidth.passivity.arms.joints import as_matrix
-from zwidth.passivity.arms.replay import ArmMotion
+from zwidth.passivity.arms.motion import ArmMotion
 
 Array = npt.NDArray[np.float64]
 

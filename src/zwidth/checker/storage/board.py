@@ -19,36 +19,20 @@ function between them being the most that the second can lead to.
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import product
 from math import ceil, lcm
 from typing import Any
 
 from ..contact.law import LAW, LOSSES, Law, Losses, law_of, losses_of
 from ..document.effort import reserve, spend
 from ..document.fields import Number, Packed, Read, Record, Whole, document, only_if
-from ..document.number import down
 from ..document.refusal import Invalid
+from .domain import DOMAIN, MOST_MOVES, MOST_VALUES, PAIR, costs_of, proved
 from .packed import storage_of
+from .relaxing import storage_of_relaxing
 
-MOST_VALUES = 60_000_000
-MOST_MOVES = 10_000_000
 _EXACT = 2**53
-PAIR = 1 / 30
-"""What a move from one knot to one other costs, in steps of work: 300 million take a second."""
 AT_ONCE = 10**6
 """Forces computed at once in whole numbers of any size, which take room."""
-
-
-FARTHEST = 10**7
-"""Count."""
-
-DOMAIN = {
-    "lowest_count": Whole(least=-FARTHEST, most=FARTHEST),
-    "highest_count": Whole(least=-FARTHEST, most=FARTHEST),
-    "largest_move_counts": Number(above=0, most=MOST_MOVES),
-    "steps_per_count": Whole(least=1, most=MOST_MOVES),
-}
-"""The readings on the board, and the longest move in one sample."""
 
 STORAGE = document(
     {
@@ -68,8 +52,6 @@ def storage(told: Read) -> str:
     losses, law, domain = losses_of(told.loop), law_of(told.law), told.domain
     only_if(law.relaxing, domain.levels_per_count, "levels_per_count")
     if law.relaxing is not None:
-        from .relaxing import storage_of_relaxing
-
         if losses.part < 1 or losses.curve:
             raise Invalid("laws that relax are checked for delays of whole samples and one friction model")
         return storage_of_relaxing(told, losses, law)
@@ -112,39 +94,6 @@ def storage(told: Read) -> str:
     return proved(told.domain, losses, law)
 
 
-def proved(domain: Read, losses: Losses, law: Law) -> str:
-    """What is known of a board once every move was tried."""
-    low, high, fastest = domain.lowest_count, domain.highest_count, down(domain.largest_move_counts)
-    inside = law.surface != "none" and law.relaxing is None
-    side = f"up to {high + 1} counts inside" if inside else f"from {low} to {high + 1} counts"
-    return (
-        "no move takes out more than the storage function falls, "
-        f"at any position {side} and with any memory, for moves of up to {fastest} counts a sample"
-        + ("" if losses.part == 1 else ", as fast in each part of a sample with one force")
-    )
-
-
-def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, fastest: Fraction, steps: int) -> Any:
-    """What a move over 0, 1, … steps in a part of the interval costs."""
-    import numpy as np
-
-    far = np.arange(ceil(fastest * steps * part) + 1, dtype=object)
-    costs = []
-    for friction, damping in losses.models:
-        drag = damping / (part * losses.period) * (losses.resolution / steps) // unit
-        lost = np.where(far > 1, drag * far * far - -(-drag // 4), 0)
-        costs.append((friction // unit - off) * far + lost)
-    if len(costs) == 1:
-        return costs[0]
-    # between two steps only one model counts, and at a step the lesser of the two beside it
-    least = [None] * len(far)
-    for d in range(len(far) - 1):
-        used = max(costs, key=lambda c: c[d] + c[d + 1])
-        for end in (d, d + 1):
-            least[end] = used[end] if least[end] is None else min(least[end], used[end])
-    return np.array(least, dtype=object)
-
-
 def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int, reach: int) -> None:
     """Forces must fit their numbers before they are multiplied."""
     most = sum((abs(c) for c in law.taps), Fraction(0)) * losses.resolution * farthest
@@ -152,10 +101,6 @@ def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int, reac
     most += highest * (1 + abs(law.rate) * losses.resolution * reach) + (law.limit or 0) + (law.step or 0)
     if most / unit >= _EXACT:
         raise Invalid("the forces are too large to be compared exactly")
-
-
-def histories_of(reach: int, memory: int) -> list[tuple[int, ...]]:
-    return list(product(range(-reach, reach + 1), repeat=memory))
 
 
 def _exists(low: int, high: int, reach: int, memory: int) -> Any:

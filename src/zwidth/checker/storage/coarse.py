@@ -24,7 +24,7 @@ from ..document.effort import reserve, spend
 from ..document.fields import Number, Packed, Read, Record, Whole, document
 from ..document.number import down
 from ..document.refusal import Invalid
-from .board import PAIR, histories_of
+from .domain import PAIR, histories_of
 from .packed import storage_of
 
 MOST_VALUES = 4_000_000

@@ -24,7 +24,8 @@ from ..contact.law import Law, Losses, law_of, losses_of
 from ..document.effort import spend
 from ..document.fields import Read, only_if
 from ..document.refusal import Invalid
-from . import board, coarse, row
+from . import coarse, row
+from .domain import proved
 from .packed import DOUBLE, listed
 
 MOST_MOVES = 500_000
@@ -48,7 +49,7 @@ def storage_plainly(told: Read) -> str:
             goal = counts.goal(readings, law.averaged(average, acting))
             forces = [f / told.force_unit for f in counts.forces(readings, average)]
             _require_paid(here, _before(goal, forces, costs), forces[0], costs[0], readings)
-    return board.proved(told.domain, losses, law)
+    return proved(told.domain, losses, law)
 
 
 def coarse_storage_plainly(told: Read) -> str:

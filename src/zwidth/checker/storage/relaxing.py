@@ -16,7 +16,7 @@ from ..contact.law import Law, Losses
 from ..document.effort import reserve, spend
 from ..document.fields import Read
 from ..document.refusal import Invalid
-from .board import MOST_MOVES, MOST_VALUES, PAIR, costs_of, histories_of, proved
+from .domain import MOST_MOVES, MOST_VALUES, PAIR, costs_of, histories_of, proved
 from .packed import storage_of
 
 PART = 2**16

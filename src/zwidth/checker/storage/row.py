@@ -18,7 +18,7 @@ from ..document.effort import reserve, spend
 from ..document.fields import List, Number, Packed, Read, Record, Whole, document
 from ..document.number import down
 from ..document.refusal import Invalid
-from .board import DOMAIN, MOST_MOVES, MOST_VALUES, PAIR, costs_of
+from .domain import DOMAIN, MOST_MOVES, MOST_VALUES, PAIR, costs_of
 from .packed import DOUBLE, storage_of, values_of
 
 _EXACT = 2**53

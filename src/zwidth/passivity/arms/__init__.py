@@ -10,9 +10,10 @@ from zwidth.passivity.arms.joints import (
     sampled_jacobian_damping,
 )
 from zwidth.passivity.arms.least import least_additions
+from zwidth.passivity.arms.motion import ArmMotion
 from zwidth.passivity.arms.need import WallNeed, damping_at, wall_need
-from zwidth.passivity.arms.region import Workspace, workspace
-from zwidth.passivity.arms.replay import ArmMotion
+from zwidth.passivity.arms.region import workspace
+from zwidth.passivity.arms.verdict import Workspace
 
 __all__ = [
     "ArmMotion",

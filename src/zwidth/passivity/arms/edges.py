@@ -23,8 +23,9 @@ from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
 from zwidth.passivity.arms.encoders import Chain, moving_steps
 from zwidth.passivity.arms.joints import as_matrix
+from zwidth.passivity.arms.motion import ArmMotion
 from zwidth.passivity.arms.need import wall_matrices
-from zwidth.passivity.arms.replay import ArmMotion, holds_every_joint, replay_cycle
+from zwidth.passivity.arms.replay import holds_every_joint, replay_cycle
 
 Array = npt.NDArray[np.float64]
 

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -29,10 +28,8 @@ from zwidth.device.arm import Arm, DescribedArm, PlanarChain, Sites
 from zwidth.device.arm.turn import SECOND_DERIVATIVE
 from zwidth.environment.matrix_wall import MatrixWall
 from zwidth.environment.wall import Wall
+from zwidth.passivity.arms.motion import ArmMotion
 from zwidth.passivity.arms.need import wall_matrices
-
-if TYPE_CHECKING:
-    from zwidth.passivity.arms.replay import ArmMotion
 
 Array = npt.NDArray[np.float64]
 Chain = PlanarChain | DescribedArm

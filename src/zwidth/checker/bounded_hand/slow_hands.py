@@ -13,8 +13,8 @@ from ..document.fields import Choice, Number, Read, Record, document, only_if
 from ..document.number import down
 from ..document.refusal import Invalid
 from ..document.unit import DAMPING, FORCE, SPEED
-from .loop import LOOP
-from .spring import spring
+from ..loop.loop import LOOP
+from ..loop.spring import spring
 
 _ENOUGH = Record(
     {

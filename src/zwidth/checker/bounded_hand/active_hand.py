@@ -17,11 +17,11 @@ from ..document.fields import Either, Number, OneOf, Read, Record, document, onl
 from ..document.refusal import Invalid
 from ..document.unit import DAMPING, HERTZ
 from ..exact.positivity import POSITIVITY, require_nonnegative
-from .criterion import CRITERION, criterion, require_criterion
-from .linear import LINEAR, QUANTIZED, linear, quantized
-from .loop import LOOP, Loop, loop_of
-from .one_norm import NORM, require_friction
-from .spring import SPRING, spring
+from ..loop.criterion import CRITERION, criterion, require_criterion
+from ..loop.linear import LINEAR, QUANTIZED, linear, quantized
+from ..loop.loop import LOOP, Loop, loop_of
+from ..loop.one_norm import NORM, require_friction
+from ..loop.spring import SPRING, spring
 
 MOST_BITS_OF_ANGLE = 4000  # high powers of it are taken
 _PI = Fraction(31415926535897932385, 10**19)
