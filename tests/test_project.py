@@ -215,6 +215,13 @@ def test_the_oldest_versions_that_are_tested_are_the_lower_bounds() -> None:
         assert re.fullmatch(rf"{re.escape(bound)}(\.0)*", pins[name]), f"{name}: {bound}, tested {pins[name]}"
 
 
+def test_what_is_run_with_the_oldest_versions_exists() -> None:
+    """Every test that the list names: one that has moved would be no test."""
+    listed = re.findall(r"^  (tests/\S+)", (ROOT / ".ci" / "oldest").read_text(encoding="utf-8"), re.M)
+    assert len(listed) > 10
+    assert [name for name in listed if not (ROOT / name).exists()] == []
+
+
 def _blocks(page: str, language: str) -> list[str]:
     text = (ROOT / page).read_text(encoding="utf-8")
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
