@@ -23,7 +23,7 @@ from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import save_json, unit_key, unit_suffix
 from zwidth.passivity.outcome import Answer
 from zwidth.passivity.scope import Scope, scope_of
-from zwidth.passivity.wording import lines
+from zwidth.passivity.wording import if_friction_goes_on, lines
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import exact_text
 
@@ -113,7 +113,7 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
         return Bounding("undecided", claim, scope, None)
     claim = (
         "No motion of the hand, however fast or skilled, takes energy out of this loop, whatever comes "
-        f"before force bounding: {found.reason}."
+        f"before force bounding{if_friction_goes_on(scope)}: {found.reason}."
     )
     return Bounding("passive", claim, scope.replace(contact=found.scope.contact), Certificate((document,)))
 

@@ -71,16 +71,22 @@ def claim_of_passivity(scope: Scope, at_limit: bool) -> str:
     """The sentence of a proof."""
     hand = {"kept": "a hand that keeps contact"}.get(scope.contact, "the hand")
     if not scope.hands.every:
-        return "No motion of the hand within these bounds takes energy out of this loop, ever."
+        return (
+            "No motion of the hand within these bounds takes energy out of this loop, ever"
+            f"{if_friction_goes_on(scope)}."
+        )
     more = "; it is exactly at its limit, equality included" if at_limit else ""
-    return f"{NO_MOTION.format(hand=hand)}{_if_friction_goes_on(scope)}{more}."
+    return f"{NO_MOTION.format(hand=hand)}{if_friction_goes_on(scope)}{more}."
 
 
-def _if_friction_goes_on(scope: Scope) -> str:
-    """The condition of a claim about a device whose friction was measured up to some speed."""
+def if_friction_goes_on(scope: Scope) -> str:
+    """The condition of a claim about a device whose friction was measured up to some speed.
+
+    Of hands with a bound on speed too: theirs is a mean over a sample.
+    """
     if scope.friction_speed is None or scope.friction is not None:
         return ""
-    speed = f"{scope.friction_speed:.4g} {_units(scope.motion)['m/s']}"
+    speed = f"{scope.friction_speed:.6g} {_units(scope.motion)['m/s']}"
     return f", if friction beyond {speed}, where it was not measured, is no less than f_c + b |v|"
 
 
@@ -155,7 +161,7 @@ def _measured(scope: Scope) -> str:
     """Up to which speed."""
     if scope.friction_speed is None:
         return ""
-    speed = f"{scope.friction_speed:.4g} {_units(scope.motion)['m/s']}"
+    speed = f"{scope.friction_speed:.6g} {_units(scope.motion)['m/s']}"
     return f"; it was measured up to {speed}, for faster motions the same is taken for granted"
 
 

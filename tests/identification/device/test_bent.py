@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
@@ -129,10 +130,19 @@ def test_a_claim_names_the_speed_up_to_which_friction_was_seen(tmp_path) -> None
     result.save(tmp_path / "mine.toml", 0.9)
     device = load_device([tmp_path / "mine.toml"], {})
     verdict = zw.check(device, zw.Wall(100))
-    speed = f"{result.speed:.4g} m/s"
+    assert device.friction_speed <= result.speed
+    speed = f"{float(device.friction_speed):.6g} m/s"
     assert f"if friction beyond {speed}, where it was not measured" in verdict.claim
     assert any(f"it was measured up to {speed}" in line for line in verdict.assumptions)
     assert verdict.scope.to_dict()["friction_speed_m_per_s"] == pytest.approx(result.speed, rel=1e-5)
+    row = zw.render(zw.Wall(2000), zw.rendering.ForceBounding())
+    single = device.replace(mass="0.0357", damping="0.14", coulomb_friction="0.12")
+    for answer in (
+        zw.worst_hand(single, zw.Wall(100), speed=0.3, penetration=0.0003),
+        zw.check_bounding(single, row),
+        zw.tolerated_activity(single, zw.Wall(100)),
+    ):
+        assert f"if friction beyond {speed}" in answer.claim
     everywhere = zw.check(device.replace(friction_speed=None), zw.Wall(100))
     assert "friction beyond" not in everywhere.claim
     assert "friction_speed_m_per_s" not in everywhere.scope.to_dict()
@@ -168,3 +178,12 @@ def test_friction_speed_of_a_wheel_and_of_its_handle() -> None:
     assert float(zw.rotary(**wheel, handle_radius="0.25").friction_speed) == 1.0
     with pytest.raises(zw.InputError, match="friction_speed must be > 0 rad/s"):
         zw.rotary(**{**wheel, "friction_speed": 0})
+
+
+def test_the_best_guess_of_no_coulomb_friction_is_none() -> None:
+    """An estimate a little below 0 makes a device with f_c = 0, as it does of damping."""
+    result = found("falling one way", 0)
+    friction = result.estimates["coulomb_friction"]._replace(value=-0.001)
+    without = dataclasses.replace(result, estimates={**result.estimates, "coulomb_friction": friction})
+    without = dataclasses.replace(without, findings=())
+    assert float(without.device(None).coulomb_friction) == 0

@@ -37,7 +37,7 @@ from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.scope import Contact, Hands, Scope, scope_of
-from zwidth.passivity.wording import lines
+from zwidth.passivity.wording import if_friction_goes_on, lines
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import exact_text
@@ -186,9 +186,10 @@ def tolerated_activity(
     if kept is not None and device.mass is not None and not decision.loop.part_delay:
         hand = shaking_hand(decision.loop, float(device.exact("mass")), band, device.motion)
     unit = GLOSSARY["damping"].unit_for(device.motion)
+    scope = _scope(device, law, kept, float(band.below))
     return ToleratedActivity(
-        claim=_claim(kept, float(band.below), unit),
-        scope=_scope(device, law, kept, float(band.below)),
+        claim=_claim(kept, scope, unit),
+        scope=scope,
         scope_with_contact_broken=_scope(device, law, broken, None),
         below=float(band.below),
         activity=None if kept is None else kept[0],
@@ -276,12 +277,13 @@ def _document(decision: Decision, activity: float) -> dict[str, Any]:
     }
 
 
-def _claim(kept: _Proved | None, below: float, unit: str) -> str:
+def _claim(kept: _Proved | None, scope: Scope, unit: str) -> str:
     if kept is None:
         return "Not even every passive hand is proved not to drive this loop; zwidth.check says why."
     return (
-        f"A hand that is passive above {below:g} Hz and gives back at most {kept[0]:.6g} {unit} below "
-        "cannot go on gaining energy from this loop while it keeps contact."
+        f"A hand that is passive above {scope.hands.below:g} Hz and gives back at most {kept[0]:.6g} {unit} "
+        "below cannot go on gaining energy from this loop while it keeps contact"
+        f"{if_friction_goes_on(scope)}."
     )
 
 

@@ -161,8 +161,8 @@ class IdentifiedNumbers:
         if confidence is None:
             if self.shows("bent friction"):
                 return {**self._best_below(0.5)}
-            dry_friction = {"coulomb_friction": self.estimates["coulomb_friction"].value} if dry else {}
-            return {"damping": self.best_damping(), **dry_friction}
+            names = ("coulomb_friction",) if dry else ()
+            return {"damping": self.best_damping(), **{n: max(self.estimates[n].value, 0.0) for n in names}}
         low = {"damping": self.least_damping(confidence)}
         if dry:
             low["coulomb_friction"] = self.least_coulomb_friction(confidence)
@@ -212,7 +212,7 @@ class IdentifiedNumbers:
         way, makes a point, and those count that a line may touch from below.  The last chord, beyond the
         largest speed, has the slope `least_damping`.  `FrictionCurve.best` finds the model f_c + b |v|
         below it that proves the stiffest wall. Assumed are, beside `FrictionCurve.assumption`: the mass;
-        and that within a bin friction is nearly a straight line of speed.
+        and that within a bin of speed friction is nearly a parabola.
 
         Parameters
         ----------

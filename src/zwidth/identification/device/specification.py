@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from zwidth.device.device import Device
 from zwidth.identification.device.limits import percent
 from zwidth.identification.device.table import source_name
-from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import as_decimal
 from zwidth.specification.write import toml
@@ -34,7 +34,9 @@ def to_toml(identified: IdentifiedNumbers, device: Device, confidence: float | N
     for key, value in device.parameters().items():
         if key not in device.assumed:
             name = "inertia" if key == "mass" and device.motion == "rotary" else key
-            shown = _value(value, key in identified.estimates or key == "friction_speed")
+            shown = _value(value, key in identified.estimates)
+            if key == "friction_speed":
+                shown = _rounded(ends(value)[0], ROUND_FLOOR)  # no farther than was seen
             lines.append(f"{name} = {shown}  # {_origin(identified, key, device.motion, confidence)}")
     return "\n".join(lines) + "\n"
 
