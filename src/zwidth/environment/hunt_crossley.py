@@ -56,7 +56,7 @@ class HuntCrossley(Environment):
     """
 
     stiffness: Certain = parameter(
-        plain("stiffness", "K of a Hunt–Crossley contact, in N/mⁿ"),
+        plain("hunt_crossley_stiffness", "K of a Hunt–Crossley contact, in N/mⁿ"),
         kept=Exact,
         bound="≥ 0",
         why="a contact that pulls the hand in has no end",

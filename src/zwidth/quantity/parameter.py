@@ -12,7 +12,6 @@ unit, such as "3 N/mm"; the annotation says what is kept of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
 from dataclasses import MISSING, field, fields
 from fractions import Fraction
 from functools import cache
@@ -20,7 +19,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, RealLike, ends
+from zwidth.quantity.exact import Exact, Interval, RealLike
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.units import parse, parse_number
 
@@ -89,6 +88,11 @@ class Parameter(NamedTuple):
     words: tuple[str, ...] = ()
 
     @property
+    def is_number(self) -> bool:
+        """True where it is one number."""
+        return self.form in ("quantity", "uncertain")
+
+    @property
     def meaning(self) -> str:
         """What it is, in a few words."""
         return self.quantity.meaning
@@ -102,8 +106,8 @@ class Parametric:
     """A frozen data class that reads its fields when it is made."""
 
     def __post_init__(self) -> None:
-        for name, own in parameters_of(type(self)).items():  # type: ignore[arg-type]  # a class has a hash
-            object.__setattr__(self, name, own.read(getattr(self, name), name))
+        for name, read in _fields(type(self))[1]:  # type: ignore[arg-type]  # a class has a hash
+            object.__setattr__(self, name, read(getattr(self, name), name))
 
     def _keep(self, **values: Any) -> None:
         """Put what was read in the place of what was given."""
@@ -111,11 +115,16 @@ class Parametric:
             object.__setattr__(self, name, value)
 
 
-@cache
-def parameters_of(kind: type) -> Mapping[str, Parameter]:
+def parameters_of(kind: type[Any]) -> Mapping[str, Parameter]:
     """The fields of a data class that are parameters, by name."""
+    return _fields(kind)[0]  # type: ignore[arg-type]  # a class has a hash
+
+
+@cache
+def _fields(kind: type) -> tuple[Mapping[str, Parameter], tuple[tuple[str, Reading], ...]]:
+    """The same, and beside it how each is read, in a row."""
     found = {f.name: f.metadata["parameter"] for f in fields(kind) if "parameter" in f.metadata}
-    return MappingProxyType(found)
+    return MappingProxyType(found), tuple((name, own.read) for name, own in found.items())
 
 
 def parameter(
@@ -244,14 +253,16 @@ def plain(name: str, meaning: str, symbol: str = "") -> Quantity:
 
 def check_bound(number: Exact | Interval, name: str, bound: str, why: str, unit: str = "") -> None:
     """Refuse what is outside "> 0", "≥ 0" or "≤ 0"; the unit stands in the message where it is known."""
-    if bound and not _BOUNDS[bound](*ends(number)):
+    if not bound:
+        return
+    low, high = (number.low, number.high) if isinstance(number, Interval) else (number, number)
+    if not _BOUNDS[bound](low, high):
         given = number if isinstance(number, Interval) else f"{number:g}"
         raise InputError(f"{name} must be {bound}{unit and f' {unit}'}, got {given}: {why}")
 
 
 _BOUNDS: Mapping[str, Callable[[Any, Any], bool]] = MappingProxyType(
     {
-        "": lambda low, high: True,
         "> 0": lambda low, high: low > 0,
         "≥ 0": lambda low, high: low >= 0,
         "≤ 0": lambda low, high: high <= 0,
@@ -271,13 +282,12 @@ def read_number(value: Any, quantity: Quantity, name: str, uncertain: bool = Fal
     """
     if type(value) is Exact or (type(value) is Interval and uncertain):
         return value
-    if type(value) in _PLAIN:
-        with suppress(InputError):  # said below, with name and unit
-            return Exact(value)
     read = parse if uncertain else parse_number
     try:
-        return read(value, quantity.unit, name)
+        return Exact(value) if type(value) in _PLAIN else read(value, quantity.unit, name)
     except InputError:
+        if type(value) in _PLAIN:
+            return read(value, quantity.unit, name)  # which says what it is that is no such number
         if not isinstance(value, (str, list, tuple)) or quantity.unit == quantity.rotary_unit:
             raise
         try:
