@@ -50,7 +50,6 @@ UncertainOrNone = Reads[Exact | Interval | None, Given | None]
 Certain = Reads[Exact, RealLike]
 CertainOrNone = Reads[Exact | None, RealLike | None]
 Numbers = Reads[tuple[Exact, ...], Iterable[RealLike]]
-Float = Reads[float, RealLike]
 Count = Reads[int, RealLike]
 
 NOTHING = Quantity("", "", "", "", "")
@@ -136,7 +135,6 @@ def parameter(
     why: str = "",
     meaning: str = "",
     words: tuple[str, ...] = (),
-    kw_only: bool = False,
 ) -> Any:
     """A number as a field of a data class.
 
@@ -154,8 +152,6 @@ def parameter(
         In the place of the quantity's own.
     words
         Words that may be given in the place of a number.
-    kw_only
-        True where it must be given by its name.
     """
     what = _quantity(quantity)
     what = what._replace(meaning=meaning) if meaning else what
@@ -171,10 +167,10 @@ def parameter(
         return number if kept is None or kept is Exact else kept(number)
 
     own = Parameter(what, form, read, default is MISSING, bound, why, words)
-    return field(default=default, metadata={"parameter": own}, kw_only=kw_only)
+    return field(default=default, metadata={"parameter": own})
 
 
-def flag(meaning: str, default: Any = MISSING, *, more: str = "", kw_only: bool = False) -> Any:
+def flag(meaning: str, default: Any = MISSING, *, more: str = "") -> Any:
     """True or False as a field of a data class; `meaning` goes on after "True": "to count anew"."""
 
     def read(value: Any, name: str) -> bool:
@@ -182,10 +178,10 @@ def flag(meaning: str, default: Any = MISSING, *, more: str = "", kw_only: bool 
             raise InputError(f"{name} is True {meaning}, or False; got {value!r}")
         return value
 
-    return part("flag", read, default, meaning=f"true {meaning}{more}", kw_only=kw_only)
+    return part("flag", read, default, meaning=f"true {meaning}{more}")
 
 
-def word(*words: str, kw_only: bool = False) -> Any:
+def word(*words: str) -> Any:
     """One of some words as a field of a data class; the first is the default."""
 
     def read(value: Any, name: str) -> str:
@@ -194,7 +190,7 @@ def word(*words: str, kw_only: bool = False) -> Any:
         return str(value)
 
     choice = f"{', '.join([f'{words[0]} (default)', *words[1:-1]])} or {words[-1]}"
-    return part("word", read, words[0], meaning=choice, words=words, kw_only=kw_only)
+    return part("word", read, words[0], meaning=choice, words=words)
 
 
 def part(
@@ -206,7 +202,6 @@ def part(
     quantity: Quantity | str = NOTHING,
     words: tuple[str, ...] = (),
     required: bool | None = None,
-    kw_only: bool = False,
 ) -> Any:
     """Anything else as a field of a data class: a list, an environment, a velocity.
 
@@ -216,7 +211,7 @@ def part(
         What it is, by the name under which a specification reads it.
     read
         From the value as given, and the name of the field, to what is kept.
-    default, kw_only
+    default
         As of `parameter`.
     meaning
         In a few words.
@@ -229,17 +224,17 @@ def part(
     """
     needed = default is MISSING if required is None else required
     own = Parameter(_quantity(quantity)._replace(meaning=meaning), form, read, needed, words=words)
-    return field(default=default, metadata={"parameter": own}, kw_only=kw_only)
+    return field(default=default, metadata={"parameter": own})
 
 
-def listed(quantity: Quantity | str, default: Any = MISSING, *, meaning: str, kw_only: bool = False) -> Any:
+def listed(quantity: Quantity | str, default: Any = MISSING, *, meaning: str) -> Any:
     """A list of exact numbers of one quantity as a field of a data class."""
     what = _quantity(quantity)
 
     def read(value: Any, name: str) -> tuple[Exact, ...] | None:
         return None if value is None and default is None else read_numbers(value, what, name)
 
-    return part("list", read, default, meaning=meaning, quantity=what, kw_only=kw_only)
+    return part("list", read, default, meaning=meaning, quantity=what)
 
 
 def _quantity(given: Quantity | str) -> Quantity:
