@@ -26,8 +26,8 @@ from zwidth.loop.setup import check_signals, whole_samples
 from zwidth.loop.trace import LARGEST, UNITS, VARIABLES
 from zwidth.operator.operator import LinearHand, Operator
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.parameter import one_of
 from zwidth.rendering.energy.parallel_controller import ENERGY, SLOTS, ParallelController, observer_only, step
-from zwidth.rendering.reading import one_of
 from zwidth.rendering.stage import positive
 
 if TYPE_CHECKING:

@@ -21,7 +21,9 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike
 from zwidth.quantity.glossary import GLOSSARY, Quantity
-from zwidth.quantity.units import parse, parse_number
+from zwidth.quantity.units import parse, parse_number, typeset
+
+T = TypeVar("T")
 
 Given = RealLike | Interval | tuple[RealLike, RealLike]
 """What a person may give for a number that may be uncertain."""
@@ -54,6 +56,9 @@ Count = Reads[int, RealLike]
 
 NOTHING = Quantity("", "", "", "", "")
 """Of a field that is no number."""
+
+PLAIN = Quantity("", "", "1", "1", "")
+"""Of a count."""
 
 Reading = Callable[[Any, str], Any]
 """From a value as given, and the name of its field, to what is kept."""
@@ -107,6 +112,16 @@ class Parametric:
     def __post_init__(self) -> None:
         for name, read in _fields(type(self))[1]:  # type: ignore[arg-type]  # a class has a hash
             object.__setattr__(self, name, read(getattr(self, name), name))
+
+    def with_unit(self, name: str, motion: str = "linear") -> str:
+        """A number with its unit as a line shows it, "0.3 N·s/m"; "" where it was not given."""
+        value = getattr(self, name)
+        if value is None:
+            return ""
+        return f"{float(value):g} {self._unit(name, motion)}"
+
+    def _unit(self, name: str, motion: str) -> str:
+        return typeset(parameters_of(type(self))[name].unit_for(motion))
 
     def _keep(self, **values: Any) -> None:
         """Put what was read in the place of what was given."""
@@ -185,9 +200,7 @@ def word(*words: str) -> Any:
     """One of some words as a field of a data class; the first is the default."""
 
     def read(value: Any, name: str) -> str:
-        if value not in words:
-            raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
-        return str(value)
+        return str(one_of(name, value, *words))
 
     choice = f"{', '.join([f'{words[0]} (default)', *words[1:-1]])} or {words[-1]}"
     return part("word", read, words[0], meaning=choice, words=words)
@@ -244,6 +257,19 @@ def _quantity(given: Quantity | str) -> Quantity:
 def plain(name: str, meaning: str, symbol: str = "") -> Quantity:
     """A number without a unit that is no quantity of the glossary."""
     return Quantity(name, symbol, "1", "1", meaning)
+
+
+def one_of(name: str, value: T, *words: T) -> T:
+    """The value, if it is one of these words.
+
+    Raises
+    ------
+    InputError
+        If it is none of them.
+    """
+    if value not in words:
+        raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
+    return value
 
 
 def check_bound(number: Exact | Interval, name: str, bound: str, why: str, unit: str = "") -> None:

@@ -18,6 +18,7 @@ from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import Parametric
 from zwidth.rendering.theorem import Theorem
 
 
@@ -47,7 +48,7 @@ class Surroundings(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stage(ABC):
+class Stage(Parametric, ABC):
     """A law that changes the force of an environment, or the reading before it."""
 
     code: ClassVar[float]
