@@ -8,8 +8,8 @@ import pytest
 
 import zwidth as zw
 from zwidth import rendering
+from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES
-from zwidth.specification.laws import LAWS
 from zwidth.specification.read import load
 from zwidth.specification.write import parsed, written
 

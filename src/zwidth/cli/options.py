@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY, Quantity
+from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES, option_keys
-from zwidth.specification.laws import LAWS
 from zwidth.specification.read import DEVICE_KEYS, ROTARY_KEYS
 from zwidth.specification.table import quoted
 
