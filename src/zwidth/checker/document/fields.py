@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from operator import ge, gt, le, lt
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -466,12 +467,19 @@ def read_document(fields: Record, document: Mapping[str, Any]) -> tuple[Read, st
 
 
 def _motion(fields: Record, document: Mapping[str, Any]) -> str:
-    linear, rotary = set(fields.keys(LINEAR)), set(fields.keys(ROTARY))
+    linear, rotary = _keys_of_one_motion(fields)
     told = set(_told(document))
-    slides, turns = sorted(told & (linear - rotary)), sorted(told & (rotary - linear))
+    slides, turns = sorted(told & linear), sorted(told & rotary)
     if slides and turns:
         raise Invalid(f"a device slides or turns, and one document is of one: {slides[0]} and {turns[0]}")
     return ROTARY if turns else LINEAR
+
+
+@cache
+def _keys_of_one_motion(fields: Record) -> tuple[set[str], set[str]]:
+    """The keys that only a linear device has, and those that only a rotary one has."""
+    linear, rotary = set(fields.keys(LINEAR)), set(fields.keys(ROTARY))
+    return linear - rotary, rotary - linear
 
 
 def _told(value: Any, depth: int = 12) -> Iterator[str]:
