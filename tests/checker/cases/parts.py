@@ -356,27 +356,6 @@ def a_friction_curve_goes_on() -> str:
     return "" if rising._force(Fraction(3)) == 10 else "beyond the last point"
 
 
-def what_may_be_0_is_no_pivot() -> str:
-    """Known only within what reaches 0, from either side."""
-    vibration, enclosed = part("known_hand.vibration"), part("exact.enclosed").Enclosed
-    for middle, radius, right in (
-        (3, 3, False),
-        (-3, 3, False),
-        (3, 2, True),
-        (-3, 2, True),
-        (0, 0, False),
-        (3, 5, False),
-    ):
-        found = vibration._inverse(enclosed(8, middle, (), radius))
-        if (found is not None) is not right:
-            return f"{middle} ± {radius}"
-        if found is not None:
-            for end in (middle - radius, middle + radius):
-                if abs(Fraction(1 << 16, end) - found.middle) > found.radius:
-                    return f"1 over {middle} ± {radius}"
-    return ""
-
-
 CHECKS = (
     what_is_spent_adds_up,
     numbers_are_read_and_told,
@@ -389,7 +368,6 @@ CHECKS = (
     turns_are_bounded,
     sizes_of_matrices_are_not_below,
     a_friction_curve_goes_on,
-    what_may_be_0_is_no_pivot,
 )
 
 CASES = [Case(check.__name__.replace("_", " "), check, "") for check in CHECKS]

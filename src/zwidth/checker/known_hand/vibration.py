@@ -16,6 +16,7 @@ from ..document.fields import Flag, List, Number, Read, document
 from ..document.number import about
 from ..document.refusal import Invalid
 from ..exact.enclosed import Enclosed, known, quotient
+from ..exact.functions import NotPositive, inverse
 from .plant import PLANT, plant_of
 
 MOST_ORDER = 60
@@ -111,22 +112,13 @@ def _solved(rows: list[_Row], order: int, n: int) -> list[Enclosed] | None:
     for k in range(order):
         best = max(range(k, order), key=lambda i: abs(work[i][k].middle))
         work[k], work[best] = work[best], work[k]
-        inverse = _inverse(work[k][k])
-        if inverse is None:
+        try:
+            over = inverse(work[k][k])
+        except NotPositive:
             return None
-        work[k] = [x * inverse for x in work[k]]
+        work[k] = [x * over for x in work[k]]
         for i in range(order):
             if i != k:
                 factor = work[i][k]
                 work[i] = [x - factor * y for x, y in zip(work[i], work[k], strict=True)]
     return [row[-1].times(-1) for row in work]
-
-
-def _inverse(x: Enclosed) -> Enclosed | None:
-    """1/x, where x is certainly not 0."""
-    least = abs(x.middle) - x.radius
-    if least <= 0:
-        return None
-    one = 1 << 2 * x.bits
-    off = one * x.radius // (abs(x.middle) * least) + 2
-    return Enclosed(x.bits, one // x.middle, (), off)
