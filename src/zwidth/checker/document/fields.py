@@ -11,6 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
+from itertools import pairwise
 from operator import ge, gt, le, lt
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -279,6 +280,14 @@ def numbers(
 def pairs(unit: Unit, *, least: int, most: int, default: Any = _REQUIRED) -> List:
     """A list of lists of two numbers."""
     return List(numbers(least=2, most=2), unit=unit, least=least, most=most, default=default)
+
+
+def increasing(told: Sequence[Sequence[Fraction]], what: str) -> list[tuple[Fraction, Fraction]]:
+    """Pairs whose first numbers increase."""
+    found = [(a, b) for a, b in told]
+    if any(before[0] >= after[0] for before, after in pairwise(found)):
+        raise Invalid(f"{what} must increase")
+    return found
 
 
 class Between(Field):
