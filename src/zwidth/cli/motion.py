@@ -12,7 +12,7 @@ from zwidth.cli.numerals import shown
 from zwidth.passivity.witness.witness import Witness
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.storage.evidence.gain import Gain
 
 _SAMPLES_SHOWN = 48
 
