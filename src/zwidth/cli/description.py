@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from zwidth.cli.numerals import shown
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import shown
 from zwidth.specification.environments import TYPES, Key
 from zwidth.specification.table import plain
 

@@ -9,10 +9,10 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.numerals import shown
 from zwidth.cli.report import page
 from zwidth.device.catalogue import Datum, Entry
 from zwidth.passivity.document import unit_suffix
+from zwidth.quantity.text import shown
 
 
 def print_entries(entries: Sequence[Entry], in_full: bool) -> None:

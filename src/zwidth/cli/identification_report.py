@@ -10,7 +10,6 @@ from rich.text import Text
 
 from zwidth.cli.description import environment_line
 from zwidth.cli.identification_result import Result
-from zwidth.cli.numerals import shown
 from zwidth.cli.report import page, section
 from zwidth.environment import Wall
 from zwidth.identification.device.estimate import MOST_CONFIDENCE
@@ -19,6 +18,7 @@ from zwidth.identification.device.table import rows, source_name
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.text import shown
 
 _SHOWN = 0.95
 """Confidence of the intervals in the table."""

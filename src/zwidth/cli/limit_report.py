@@ -9,10 +9,10 @@ from rich.text import Text
 from zwidth.cli.bars import PICTURE
 from zwidth.cli.description import device_line, environment_line
 from zwidth.cli.motion import motion_lines
-from zwidth.cli.numerals import shown
 from zwidth.cli.output import encodes
 from zwidth.cli.report import assumption_lines, page, section
 from zwidth.passivity.passive_limit import Bracket
+from zwidth.quantity.text import shown
 from zwidth.specification.read import Specification
 
 _DIGITS = 6

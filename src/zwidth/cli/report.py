@@ -21,7 +21,6 @@ from rich.text import Text
 from zwidth.cli.bars import PICTURE, bar
 from zwidth.cli.description import GLUE, device_line, environment_line
 from zwidth.cli.motion import joules, motion_lines
-from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.output import encodes, quiet_pipe
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.linear_verdict import LinearVerdict
@@ -29,6 +28,7 @@ from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.wording import intervals
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import shown
 from zwidth.showing import printable
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def print_verdict(
 def _table(rows: Iterable[tuple[str, str]]) -> Iterator[Table]:
     grid = Table.grid(padding=(0, 2))
     for name, text in rows:
-        grid.add_row(Text(name, style="dim"), Text(unit_text(text)))
+        grid.add_row(Text(name, style="dim"), Text(text))
     yield grid
 
 
@@ -131,7 +131,7 @@ def _numbers(verdict: Verdict) -> Padding:
         if name == "motion":
             continue  # it has a section of its own
         style = "bold" if name == "limit" else "red" if text.startswith("-") else ""
-        grid.add_row(Text(_spelled(name), style="dim"), Text(unit_text(text), style=style))
+        grid.add_row(Text(_spelled(name), style="dim"), Text(text, style=style))
     if isinstance(verdict, LinearVerdict) and verdict.mode is not None:
         grid.add_row(Text("shows itself as", style="dim"), Text(verdict.mode))
     return _spaced(grid)
@@ -200,7 +200,7 @@ def _advice_lines(advice: Iterable[Advice]) -> Iterator[Text]:
     at_limit = [a for a in ordered if a.kind == "slack" and a.to is not None and a.to == a.current]
     for item in ordered:
         if item.to is not None and item not in at_limit:
-            yield _item(unit_text(item.text))
+            yield _item(item.text)
     if at_limit:
         yield _item(f"exactly at the limit: {_names(at_limit)}")
     if useless:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.numerals import shown
 from zwidth.cli.report import page
 from zwidth.energy.ledger import ROUNDING
 from zwidth.loop.trace import UNITS
+from zwidth.quantity.text import shown
 from zwidth.specification.table import plain
 from zwidth.traces import Comparison, compare_traces
 

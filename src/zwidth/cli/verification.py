@@ -11,10 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from zwidth.checker import Scope, Verified
-from zwidth.cli.numerals import shown
 from zwidth.cli.report import page
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import evidence, verify_document
+from zwidth.quantity.text import shown
 from zwidth.specification.table import plain
 
 _LAWS_IN_A_ROW = ("row storage", "row motion")

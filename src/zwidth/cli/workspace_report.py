@@ -49,7 +49,7 @@ def _grid(rows: Iterable[tuple[str, str]]) -> Table:
 
 
 def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
-    from zwidth.cli.numerals import shown
+    from zwidth.quantity.text import shown
 
     yield from _asked(space)
     data, motion = space.data, space.motion
@@ -78,7 +78,7 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
 
 def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
     """What the verdict is about."""
-    from zwidth.cli.numerals import shown
+    from zwidth.quantity.text import shown
 
     count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
     yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
@@ -91,7 +91,7 @@ def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
 
 
 def _motion(motion: ArmMotion) -> str:
-    from zwidth.cli.numerals import shown
+    from zwidth.quantity.text import shown
 
     middle = ", ".join(f"{q:.4g}" for q in motion.joints.mean(axis=0))
     gain, force = shown(-motion.energy, "J"), shown(motion.largest_force, "N")
@@ -102,7 +102,7 @@ def _motion(motion: ArmMotion) -> str:
 
 def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]]:
     """What the encoder steps ask of it, what there is, and up to which force that goes."""
-    from zwidth.cli.numerals import shown
+    from zwidth.quantity.text import shown
 
     own = space.arm.coulomb_friction
     enough = ", ".join(shown(f, "N*m") for f in steps.friction)
@@ -124,7 +124,7 @@ def _joints(space: Workspace) -> str:
 
 
 def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
-    from zwidth.cli.numerals import shown
+    from zwidth.quantity.text import shown
 
     if space.addition_to_all == 0:
         return

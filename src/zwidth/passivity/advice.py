@@ -25,6 +25,7 @@ from zwidth.passivity.linear.boundary import (
 )
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import unit_text
 
 _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
 
@@ -135,7 +136,7 @@ def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"], grain: int
         to = None
     unit = GLOSSARY[knob.parameter].unit_for(motion)
     shown = None if to is None else _outward(to, knob)
-    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind))
+    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit_text(unit), kind))
 
 
 def _simplest_near(value: float, holds: Holds, more: bool, grain: int) -> float:

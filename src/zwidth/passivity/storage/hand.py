@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.device.device import Device
@@ -15,8 +14,8 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import save_json
-from zwidth.passivity.outcome import TOLD, Answer, Outcome
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Contact, Hands, Law, Scope, scope_of
 from zwidth.passivity.storage.board import Board, Domain
 from zwidth.passivity.storage.coarse_proof import CELLS, has_cells, prove_on_cells
@@ -32,11 +31,9 @@ from zwidth.passivity.storage.row_game import RowGame, row_game
 from zwidth.passivity.storage.slow_hands import slow_hands
 from zwidth.passivity.storage.solve import Played, Tell, play
 from zwidth.passivity.storage.storage import Storage
-from zwidth.passivity.witness.witness import rounded_energy
 from zwidth.passivity.wording import claim_of_passivity, lines
 from zwidth.quantity.exact import RealLike
 from zwidth.rendering.rendered import Rendered
-from zwidth.showing import Html, bullets, element
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,8 +62,8 @@ _STEPS_OF_MANY = 4
 """Steps per count at least, where a cell is many counts: what a move costs is not to be rounded much."""
 
 
-@dataclass(frozen=True)
-class WorstHand(Answer):
+@dataclass(frozen=True, repr=False)
+class WorstHand(PassivityAnswer):
     """What the worst hand can do to one loop, contact made and broken, the encoder as it is.
 
     Attributes
@@ -83,6 +80,8 @@ class WorstHand(Answer):
     storage
         The storage function, to look at; None unless passive.
     """
+
+    FORMAT = "zwidth worst hand 1"
 
     outcome: Outcome
     scope: Scope
@@ -125,34 +124,6 @@ class WorstHand(Answer):
     def assumptions(self) -> tuple[str, ...]:
         """What the outcome covers and takes for granted, line by line."""
         return lines(self.scope, self.outcome)
-
-    def to_dict(self, evidence: bool = True) -> dict[str, Any]:
-        """Outcome, assumptions and evidence as plain data; the evidence may be left out, it can be large."""
-        document: dict[str, Any] = {
-            "format": "zwidth worst hand 1",
-            "outcome": self.outcome,
-            "claim": self.claim,
-            "scope": self.scope.to_dict(),
-            "assumptions": list(self.assumptions),
-        }
-        if not evidence:
-            return document
-        if self.certificate is not None:
-            document["certificate"] = self.certificate.to_dict()
-        if self.witness is not None:
-            document["witness"] = rounded_energy(self.witness.to_dict())
-        return document
-
-    def save(self, path: str | Path) -> None:
-        """Write the outcome with its evidence as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
-
-    def __repr__(self) -> str:
-        return f"<WorstHand {self.outcome}: {self.claim}>"
-
-    def _repr_html_(self) -> Html:
-        word = element("b", self.outcome, style=f"color:{TOLD[self.outcome].colour}")
-        return element("div", word, f" {self.claim}", bullets(self.assumptions))
 
 
 @dataclass(frozen=True)
