@@ -25,7 +25,7 @@ from zwidth.passivity.linear.boundary import (
 )
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import unit_text
+from zwidth.quantity.text import in_words, unit_text
 
 _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
 
@@ -94,9 +94,7 @@ def _knobs(device: Device, environment: Environment) -> Iterator[_Knob]:
 
     yield _Knob("rate", float(device.exact("sample_period") ** -1), _rate(device, environment), True, "rate")
     for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False), ("delay", False)):
-        name = {"damping": "device damping", "resolution": "encoder resolution"}.get(
-            key, key.replace("_", " ")
-        )
+        name = {"damping": "device damping", "resolution": "encoder resolution"}.get(key, in_words(key))
         yield _Knob(key, float(device.exact(key)), on_device(key), more, name)
     if has_stiffness(environment):
         now = float(stiffness_of(environment))

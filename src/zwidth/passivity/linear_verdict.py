@@ -18,7 +18,7 @@ from zwidth.passivity.document import unit_suffix
 from zwidth.passivity.formulas.stability_plane import admissible_speed
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_unit
+from zwidth.quantity.text import in_unit, in_words
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -152,7 +152,11 @@ class LinearVerdict(Verdict):
         def key(prefix: str, quantity: str) -> str:
             return f"{prefix}_{unit_suffix(GLOSSARY[quantity].unit_for(motion))}"
 
-        document = {"decided_by": self.decided_by, "limit": self.limit, "mode": self.mode}
+        document: dict[str, Any] = {
+            "decided_by": self.decided_by,
+            "limit": self.limit,
+            "mode": self.mode,
+        }
         document[key("max_stiffness", "stiffness")] = self.max_stiffness
         if not limits.has_stiffness(self.environment):
             document["max_gain"] = self.max_gain
@@ -178,7 +182,7 @@ class LinearVerdict(Verdict):
         rows.append(("critical frequency", in_unit(self.critical_frequency, "Hz")))
         for name, value in self.margins.items():
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
-            rows.append((f"margin of {name.replace('_', ' ')}", in_unit(value, margin_unit)))
+            rows.append((f"margin of {in_words(name)}", in_unit(value, margin_unit)))
         if self.admissible_speed is not None:
             per_second = "rad/s" if self.device.motion == "rotary" else "m/s"
             rows.append(("slower hands are safe up to", in_unit(self.admissible_speed, per_second)))

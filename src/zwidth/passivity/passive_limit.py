@@ -37,7 +37,7 @@ from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands, lines
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_unit
+from zwidth.quantity.text import in_unit, in_words
 from zwidth.rendering.rendered import Rendered
 
 MORE_IS_SAFER = frozenset({"device.damping", "device.coulomb_friction", "device.rate"})
@@ -109,7 +109,7 @@ class Bracket(Result):
 
     def describe(self) -> str:
         """The bracket in a sentence."""
-        name = self.parameter.replace("_", " ").replace("environment.", "").replace("device.", "device ")
+        name = in_words(self.parameter).replace("environment.", "").replace("device.", "device ")
         if self.passive is None and self.active is None:
             return f"{name}: nothing was decided in the time given"
         passive, active = in_unit(self.passive, self.unit), in_unit(self.active, self.unit)

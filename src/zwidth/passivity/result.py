@@ -33,8 +33,10 @@ class Result(Shown):
     FORMAT: ClassVar[str]
     """Under which its document is known."""
 
-    assumptions: tuple[str, ...] = ()
-    """What it covers and takes for granted, line by line."""
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What it covers and takes for granted, line by line."""
+        return ()
 
     def describe(self) -> str:
         """It in a sentence."""

@@ -13,7 +13,7 @@ from zwidth.passivity.actuator_demand import actuator_demand
 from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.found import Found
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import in_unit
+from zwidth.quantity.text import in_unit, in_words
 
 
 @dataclass(frozen=True, repr=False)
@@ -110,7 +110,7 @@ class Verdict(Found):
         rows = [("decided by", self.decided_by)]
         for need in self.needs:
             unit = GLOSSARY[need.name].unit_for(self.device.motion)
-            name = need.name.replace("_", " ")
+            name = in_words(need.name)
             rows.append((f"required {name}", in_unit(need.needed, unit)))
             rows.append((f"margin of {name}", in_unit(need.has - need.needed, unit)))
         if self.witness is not None:

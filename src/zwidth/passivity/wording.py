@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from zwidth.passivity.scope import Contact, Hands, Law, Scope
-from zwidth.quantity.text import quantity_unit
+from zwidth.quantity.text import in_words, quantity_unit
 
 if TYPE_CHECKING:
     from zwidth.passivity.outcome import Outcome
@@ -123,7 +123,7 @@ def _lines(scope: Scope, active: bool) -> Iterator[str]:
         yield f"forces of the wall up to {scope.largest_force:.6g} {force}{moment}"
     yield _SAMPLING[scope.sampling]
     yield _ENCODER[scope.encoder]
-    yield from (f"{key.replace('_', ' ')} was not given and taken as 0" for key in scope.assumed)
+    yield from (f"{in_words(key)} was not given and taken as 0" for key in scope.assumed)
     yield from map(_of_the_law, scope.law)
 
 

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from zwidth.device import Device
 from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import PREFIXES, unit_text
+from zwidth.quantity.text import PREFIXES, in_words, unit_text
 from zwidth.showing import printable
 
 BLACK, GREY = "#222222", "#777777"
@@ -56,7 +56,7 @@ def new_figure(width: float = 6.4, height: float = 4.0) -> Figure:
 def label(name: str, motion: str = "linear", text: str | None = None, unit: str | None = None) -> str:
     """An axis label from the glossary: name, symbol, unit."""
     quantity = GLOSSARY[name]
-    words = quantity.name.replace("_", " ") if text is None else text
+    words = in_words(quantity.name) if text is None else text
     shown = unit_text(quantity.unit_for(motion) if unit is None else unit) or "1"
     return f"{words} {symbol(name)} [{shown}]".strip()
 

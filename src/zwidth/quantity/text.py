@@ -26,6 +26,11 @@ def quantity_unit(name: str, motion: str = "linear") -> str:
     return unit_text(GLOSSARY[name].unit_for(motion))
 
 
+def in_words(key: str) -> str:
+    """A key as words, in which Coulomb is a name."""
+    return key.replace("_", " ").replace("coulomb", "Coulomb")
+
+
 def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) -> str:
     """A value with its unit, to `digits` significant digits: 22.4e-6 m is "22.4 µm"."""
     if value is None:
