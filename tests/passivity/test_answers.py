@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.outcome import Answer
+from zwidth.passivity.result import Answer
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,7 +17,7 @@ from zwidth.bench.laws import standard_laws
 from zwidth.bench.motions import found_motions
 from zwidth.bench.perceived import SOURCE, WEBER, noticeable_differences
 from zwidth.bench.standing import Standing, standing
-from zwidth.bench.table import as_html, as_text
+from zwidth.bench.table import legend, table
 from zwidth.bench.touches import Touch, standard_touches
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
@@ -27,7 +27,7 @@ from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.quantity.exact import RealLike
-from zwidth.showing import Html
+from zwidth.showing import Part, Shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -62,8 +62,8 @@ SCORES: Mapping[str, Score] = {
 """What is computed of each law, by variable."""
 
 
-@dataclass(frozen=True)
-class LawComparison:
+@dataclass(frozen=True, repr=False)
+class LawComparison(Shown):
     """What became of each law.
 
     Attributes
@@ -101,12 +101,15 @@ class LawComparison:
         """What to do, in a paragraph."""
         return advice(self.scores, self.device, self.environment)
 
-    def __repr__(self) -> str:
-        title = f"{self.environment.describe()} on {self.device.name or 'the device'}"
-        return as_text(title, self.scores, self.advice)
-
-    def _repr_html_(self) -> Html:
-        return as_html(self.scores, self.advice)
+    def report(self) -> Iterable[Part]:
+        """The table under its title, what its words mean, and what to do about it."""
+        yield f"{self.environment.describe()} on {self.device.name or 'the device'}"
+        yield ""
+        yield table(self.scores)
+        yield ""
+        yield legend(self.scores)
+        if self.advice:
+            yield self.advice
 
     def plot(self, path: str | Path | None = None) -> Any:
         """Stability against fidelity, and the touches of each law; saved where a path is given."""

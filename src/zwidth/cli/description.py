@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from zwidth.cli.numerals import shown
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Parameter
+from zwidth.quantity.text import shown
 from zwidth.specification.environments import TYPES
 from zwidth.specification.kinds import name_of
 from zwidth.specification.table import plain

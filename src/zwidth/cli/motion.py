@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from rich.text import Text
 
 from zwidth.cli.bars import levels
-from zwidth.cli.numerals import shown
 from zwidth.passivity.witness.witness import Witness
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
     from zwidth.passivity.storage.evidence.gain import Gain

@@ -10,12 +10,10 @@ from typing import Any
 
 from zwidth.passivity import claims
 from zwidth.passivity.actuator_demand import actuator_demand
-from zwidth.passivity.document import save_json, to_json, unit_key
+from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.found import Found
-from zwidth.passivity.outcome import TOLD
-from zwidth.passivity.witness.witness import rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.showing import Html, bullets, element, named
+from zwidth.quantity.text import in_unit, in_words
 
 
 @dataclass(frozen=True, repr=False)
@@ -57,6 +55,8 @@ class Verdict(Found):
         What of the device is proved to be enough, where that is known.
     """
 
+    FORMAT = "zwidth verdict 1"
+
     @property
     def claim(self) -> str:
         """The verdict in a sentence or two."""
@@ -79,30 +79,10 @@ class Verdict(Found):
             return ()
         return (actuator_demand(self.device, self.device.force_limit, self.witness),)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The whole verdict as plain data, a unit in every key of a physical quantity."""
-        document: dict[str, Any] = {
-            "format": "zwidth verdict 1",
-            "outcome": self.outcome,
-            "claim": self.claim,
-            "decided_by": self.decided_by,
-            "scope": self.scope.to_dict(),
-            "assumptions": [*self.assumptions, *self.demand],
-            **self.numbers(),
-        }
-        if self.certificate is not None:
-            document["certificate"] = self.certificate.to_dict()
-        if self.violation is not None:
-            document["violation"] = self.violation.to_dict()
-        if self.witness is not None:
-            document["witness"] = rounded_energy(self.witness.to_dict())
-        if self.worst_hand is not None:
-            document["worst_hand"] = self.worst_hand.to_dict(evidence=False)
-        return document
-
-    def to_json(self) -> str:
-        """`to_dict` as JSON text, every exact number digit for digit."""
-        return to_json(self.to_dict())
+    def evidence(self) -> dict[str, Any]:
+        """Proofs and motions as plain data; of bounded hands what is said, the proof only if saved."""
+        hand = {} if self.worst_hand is None else {"worst_hand": self.worst_hand.stated()}
+        return {**super().evidence(), **hand}
 
     def save(self, path: str | Path, reports: Mapping[str, Any] | None = None) -> None:
         """Write verdict and evidence as JSON for `zwidth verify`, and `reports` under their names."""
@@ -112,17 +92,16 @@ class Verdict(Found):
         save_json(path, document)
 
     def __repr__(self) -> str:
-        return f"<Verdict {self.outcome}: {self.claim}>"
+        return f"<Verdict {self.describe()}>"
 
-    def _repr_html_(self) -> Html:
-        word = element("b", self.outcome, style=f"color:{TOLD[self.outcome].colour}")
-        assumed = bullets((*self.assumptions, *self.demand))
-        small = element("details", element("summary", "assumptions"), assumed)
-        return element("div", word, f" {self.claim}", named(self.rows()), small)
+    def small_print(self) -> tuple[str, ...]:
+        """The assumptions, and what the motion asks of the actuator."""
+        return (*self.assumptions, *self.demand)
 
     def numbers(self) -> dict[str, Any]:
         """What is needed and what there is, as plain data, a unit in every key of a physical quantity."""
         return {
+            "decided_by": self.decided_by,
             "margins": {unit_key(n.name, self.device.motion): n.has - n.needed for n in self.needs},
         }
 
@@ -131,18 +110,9 @@ class Verdict(Found):
         rows = [("decided by", self.decided_by)]
         for need in self.needs:
             unit = GLOSSARY[need.name].unit_for(self.device.motion)
-            name = need.name.replace("_", " ")
-            rows.append((f"required {name}", as_text(need.needed, unit)))
-            rows.append((f"margin of {name}", as_text(need.has - need.needed, unit)))
+            name = in_words(need.name)
+            rows.append((f"required {name}", in_unit(need.needed, unit)))
+            rows.append((f"margin of {name}", in_unit(need.has - need.needed, unit)))
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))
         return rows
-
-
-def as_text(value: float | None, unit: str) -> str:
-    """A number of six digits with its unit; "none" and "any" for what is no number."""
-    if value is None:
-        return "none"
-    if value == float("inf"):
-        return "any"
-    return f"{value:.6g} {unit}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import isnan
 from os import PathLike
@@ -14,7 +14,7 @@ import numpy as np
 from zwidth.energy import ledger
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
-from zwidth.showing import Html, printable, table
+from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,8 +53,8 @@ the last quarter of the time.
 """
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Shown):
     """A few numbers of each trace, one row per trace.
 
     Parameters
@@ -126,19 +126,10 @@ class Comparison:
             save_figure(lambda: figure, Path(path), overwrite=True)
         return figure
 
-    def __repr__(self) -> str:
-        table = self.table()
-        widths = [max(len(row[i]) for row in table) for i in range(len(table[0]))]
-        lines = []
-        for row in table:
-            cells = [row[0].ljust(widths[0])]
-            cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
-            lines.append("  ".join(cells))
-        return printable("\n".join(lines))
-
-    def _repr_html_(self) -> Html:
-        head, *lines = self.table()
-        return table(head, lines)
+    def report(self) -> Iterable[Part]:
+        """The table."""
+        head, *rows = self.table()
+        yield Table(heads=[head], rows=rows, lefts=1)
 
 
 def compare_traces(*traces: xr.Dataset | Mapping[str, xr.Dataset]) -> Comparison:

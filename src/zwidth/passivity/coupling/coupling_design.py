@@ -37,7 +37,7 @@ from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condi
 from zwidth.passivity.formulas.hypotheses import number
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
 from zwidth.rendering import VirtualCoupling
 
 Goal = Literal["stiffest"] | Wall
@@ -105,7 +105,7 @@ class CouplingDesign:
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = GLOSSARY["stiffness"].unit_for(self.device.motion)
+        unit = quantity_unit("stiffness", self.device.motion)
         rigid = self.verdict
         return [
             *self.condition.rows(),

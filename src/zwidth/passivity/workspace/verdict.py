@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -14,8 +13,8 @@ from zwidth.arms.matrix_wall import MatrixWall
 from zwidth.arms.motion import ArmMotion
 from zwidth.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import save_json
-from zwidth.passivity.outcome import Answer, Outcome
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope, Torque
 from zwidth.passivity.workspace.report import finite, motion_document, steps_document, wall_document
 
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True, kw_only=True)
-class Workspace(Answer):
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Workspace(PassivityAnswer):
     """The answer for an arm: a verdict, the map, and what to change.
 
     Parameters
@@ -162,7 +161,3 @@ class Workspace(Answer):
             "motion": None if motion is None else motion_document(motion, turns),
             "certificate": None if certificate is None else certificate.to_dict(),
         }
-
-    def save(self, path: str | Path) -> None:
-        """Write the verdict with its certificate as JSON for `zwidth verify`; the map is in `data`."""
-        save_json(path, self.to_dict())

@@ -29,15 +29,17 @@ from zwidth.passivity.coupling.loop_transformation.forms import DIRECT, Connecti
 from zwidth.passivity.coupling.loop_transformation.least_damping import best_form, largest_need
 from zwidth.passivity.coupling.loop_transformation.slopes import exact_need, whole_delay
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, number
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Scope
 from zwidth.quantity.exact import RealLike
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
 
 Binding = Literal["device damping", "coupling and environment"]
 
 
-@dataclass(frozen=True)
-class TransformedCondition:
+@dataclass(frozen=True, repr=False)
+class TransformedCondition(Answer):
     """Whether the theorem promises passivity for a device, a coupling and a class of environments.
 
     Attributes
@@ -57,12 +59,20 @@ class TransformedCondition:
         Where it is tightest [Hz]; None where a closed form decides.
     """
 
+    FORMAT = "zwidth transformed condition 1"
+    YES = "holds"
+
     device: Device
     environment: Slopes | Indices
     holds: bool
     required_damping: float | None
     binding: Binding
     critical_frequency: float | None
+
+    @property
+    def outcome(self) -> Outcome:
+        """ "theorem": a proof on paper, without a certificate; else "undecided"."""
+        return "theorem" if self.holds else "undecided"
 
     @property
     def margin(self) -> float | None:
@@ -98,7 +108,7 @@ class TransformedCondition:
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = GLOSSARY["damping"].unit_for(self.device.motion)
+        unit = quantity_unit("damping", self.device.motion)
         need = self.required_damping
         return [
             (
