@@ -33,6 +33,9 @@ class Result(Shown):
     FORMAT: ClassVar[str]
     """Under which its document is known."""
 
+    PICTURE: ClassVar[str] = ""
+    """What draws it, in `zwidth.plots`: that lies above, so it is known by its name alone."""
+
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What it covers and takes for granted, line by line."""
@@ -68,16 +71,27 @@ class Result(Shown):
         """What `save` writes."""
         return self.to_dict()
 
-    def plot(self, path: str | Path | None = None) -> Figure:
+    def plot(self, path: str | Path | None = None, *, force: bool = False) -> Figure:
         """Its picture, a matplotlib figure that belongs to no window; saved where a path is given.
+
+        Parameters
+        ----------
+        path
+            Ends in .png, .svg or .pdf.
+        force
+            Replace a file that exists.
 
         Raises
         ------
         InputError
-            If there is nothing to draw, or the file cannot be written.
+            If there is nothing to draw, or the file exists or cannot be written.
         """
-        pictures = import_module("zwidth.plots.pictures")  # by its name: pictures are made above all this
-        figure: Figure = pictures.picture(self, path)
+        if not self.PICTURE:
+            raise InputError(f"there is no picture of this {type(self).__name__}")
+        draw = getattr(import_module("zwidth.plots"), self.PICTURE)
+        figure: Figure = draw(self)
+        if path is not None:
+            import_module("zwidth.plots.files").save_figure(lambda: figure, path, force)
         return figure
 
     def report(self) -> Iterable[Part]:
@@ -154,7 +168,7 @@ class Answer(Result):
         """
         raise InputError(
             f"this answer is {self.outcome!r}, and an answer is neither true nor false: "
-            f"ask .{self.YES}, or compare .outcome"
+            f"ask .{self.YES}, which is True for a proof alone, or compare .outcome"
         )
 
     def describe(self) -> str:

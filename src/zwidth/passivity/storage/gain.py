@@ -44,6 +44,8 @@ class Gain(Evidence):
         What the hand plays against, and what the device takes out.
     """
 
+    PICTURE = "cycle"
+
     document: dict[str, Any]
     motion: Motion
     exact_energy: Fraction

@@ -82,6 +82,7 @@ class WorstHand(PassivityAnswer):
     """
 
     FORMAT = "zwidth worst hand 1"
+    PICTURE = "storage"
 
     outcome: Outcome
     scope: Scope
