@@ -220,7 +220,7 @@ def test_another_unit_is_refused(key: str, other: str, kind: str) -> None:
 
 
 def test_what_is_said_of_a_port_needs_evidence_at_that_level() -> None:
-    """Passive is an input index of 0 or more, active one below 0: of another level or side nothing is taken."""
+    """Passive is an input index of 0 or more, active one below 0; nothing else is taken."""
     port = {"format": "zwidth indices 1", "outcome": "passive"}
     saved = plain(zw.passivity_indices(zw.PulseTransferFunction([4], [1]), PADDLE).to_dict())
     assert saved["outcome"] == "passive"
