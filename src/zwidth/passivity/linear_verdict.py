@@ -152,11 +152,7 @@ class LinearVerdict(Verdict):
         def key(prefix: str, quantity: str) -> str:
             return f"{prefix}_{unit_suffix(GLOSSARY[quantity].unit_for(motion))}"
 
-        document: dict[str, Any] = {
-            "decided_by": self.decided_by,
-            "limit": self.limit,
-            "mode": self.mode,
-        }
+        document = {**super().numbers(), "limit": self.limit, "mode": self.mode}
         document[key("max_stiffness", "stiffness")] = self.max_stiffness
         if not limits.has_stiffness(self.environment):
             document["max_gain"] = self.max_gain
@@ -165,7 +161,6 @@ class LinearVerdict(Verdict):
         if self.admissible_speed is not None:
             speed_unit = "rad_per_s" if motion == "rotary" else "m_per_s"
             document[f"admissible_speed_{speed_unit}"] = self.admissible_speed
-        document["margins"] = {key(name, name): value for name, value in self.margins.items()}
         document["advice"] = [advice.to_dict() for advice in self.advice]
         document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
         return document

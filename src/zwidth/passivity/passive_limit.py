@@ -76,6 +76,7 @@ class Bracket(Result):
     """
 
     FORMAT = "zwidth limit 1"
+    PICTURE = "limit_figure"
 
     parameter: str
     unit: str

@@ -24,11 +24,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.passivity.document import unit_key
+from zwidth.passivity.result import Documented
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.text import quantity_unit
-from zwidth.showing import Part, Shown, Table
+from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,7 +71,7 @@ class Threshold(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class RealHand(Shown):
+class RealHand(Documented):
     """A witness replayed by the ideal hand and by hands of finite stiffness.
 
     Attributes
@@ -90,6 +91,8 @@ class RealHand(Shown):
     motion
         "linear" or "rotary".
     """
+
+    FORMAT = "zwidth real hand 1"
 
     rounds: int
     rounds_found: int
@@ -114,7 +117,7 @@ class RealHand(Shown):
         """Plain data, units in the keys."""
         k, m = (unit_key(name, self.motion) for name in ("stiffness", "mass"))
         return {
-            "format": "zwidth real hand 1",
+            "format": self.FORMAT,
             "rounds": self.rounds,
             "rounds_found": self.rounds_found,
             "energy_claimed_J": self.claimed,

@@ -14,9 +14,6 @@ from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.scope import Scope
 from zwidth.showing import Headline, Lines, Part, Shown, Table
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 EVIDENCE = ("certificate", "violation", "witness")
 """Where a result, and a document, holds what the checker can check."""
 
@@ -27,11 +24,64 @@ def evidence_of(result: object) -> dict[str, Any]:
     return {name: part.saved() for name, part in found.items() if part is not None}
 
 
-class Result(Shown):
-    """Something found.  It describes itself once: a terminal, a notebook and a file are made of that."""
+class Documented(Shown):
+    """Something that is plain data too: it can be saved, and drawn where there is a picture of it."""
 
     FORMAT: ClassVar[str]
     """Under which its document is known."""
+
+    PICTURE: ClassVar[str] = ""
+    """What draws it, in `zwidth.plots`: that lies above, so it is known by its name alone."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """It as plain data, a unit in every key of a physical quantity."""
+        raise NotImplementedError
+
+    def to_json(self) -> str:
+        """`to_dict` as JSON text, every exact number digit for digit."""
+        return to_json(self.to_dict())
+
+    def saved(self) -> dict[str, Any]:
+        """What `save` writes."""
+        return self.to_dict()
+
+    def save(self, path: str | Path) -> None:
+        """Write it as JSON, with its evidence for `zwidth verify`.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        save_json(path, self.saved())
+
+    def plot(self, path: str | Path | None = None) -> Any:
+        """Its picture, a matplotlib figure that belongs to no window; saved where a path is given.
+
+        Parameters
+        ----------
+        path
+            Ends in .png, .svg or .pdf.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to draw, or the file cannot be written.
+        """
+        figure = self.figure()
+        if path is not None:
+            import_module("zwidth.plots.files").save_figure(lambda: figure, path, overwrite=True)
+        return figure
+
+    def figure(self) -> Any:
+        """What `plot` returns."""
+        if not self.PICTURE:
+            raise InputError(f"there is no picture of this {type(self).__name__}")
+        return getattr(import_module("zwidth.plots"), self.PICTURE)(self)
+
+
+class Result(Documented):
+    """Something found.  It describes itself once: a terminal, a notebook and a file are made of that."""
 
     @property
     def assumptions(self) -> tuple[str, ...]:
@@ -45,40 +95,6 @@ class Result(Shown):
     def rows(self) -> Iterable[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
         return ()
-
-    def to_dict(self) -> dict[str, Any]:
-        """It as plain data, a unit in every key of a physical quantity."""
-        raise NotImplementedError
-
-    def to_json(self) -> str:
-        """`to_dict` as JSON text, every exact number digit for digit."""
-        return to_json(self.to_dict())
-
-    def save(self, path: str | Path) -> None:
-        """Write it with its evidence as JSON for `zwidth verify`.
-
-        Raises
-        ------
-        InputError
-            If the file cannot be written.
-        """
-        save_json(path, self.saved())
-
-    def saved(self) -> dict[str, Any]:
-        """What `save` writes."""
-        return self.to_dict()
-
-    def plot(self, path: str | Path | None = None) -> Figure:
-        """Its picture, a matplotlib figure that belongs to no window; saved where a path is given.
-
-        Raises
-        ------
-        InputError
-            If there is nothing to draw, or the file cannot be written.
-        """
-        pictures = import_module("zwidth.plots.pictures")  # by its name: pictures are made above all this
-        figure: Figure = pictures.picture(self, path)
-        return figure
 
     def report(self) -> Iterable[Part]:
         """The sentence, the numbers, and what is taken for granted."""
@@ -154,7 +170,7 @@ class Answer(Result):
         """
         raise InputError(
             f"this answer is {self.outcome!r}, and an answer is neither true nor false: "
-            f"ask .{self.YES}, or compare .outcome"
+            f"ask .{self.YES}, which is True for a proof alone, or compare .outcome"
         )
 
     def describe(self) -> str:

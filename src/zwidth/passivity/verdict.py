@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,7 @@ class Verdict(Found):
     """
 
     FORMAT = "zwidth verdict 1"
+    PICTURE = "check_figure"
 
     @property
     def claim(self) -> str:
@@ -100,10 +102,27 @@ class Verdict(Found):
 
     def numbers(self) -> dict[str, Any]:
         """What is needed and what there is, as plain data, a unit in every key of a physical quantity."""
-        return {
-            "decided_by": self.decided_by,
-            "margins": {unit_key(n.name, self.device.motion): n.has - n.needed for n in self.needs},
-        }
+        margins = {unit_key(name, self.device.motion): left for name, left in self.margins.items()}
+        return {"decided_by": self.decided_by, "margins": margins}
+
+    @property
+    def margins(self) -> Mapping[str, float | None]:
+        """What is left of damping and of Coulomb friction over what is needed; < 0 if too little.
+
+        Keys "damping" [N·s/m; N·m·s/rad] and "coulomb_friction" [N; N·m]; None where the need is unbounded.
+        """
+        return {need.name: need.has - need.needed for need in self.needs}
+
+    @property
+    def margin(self) -> float | None:
+        """Of damping and Coulomb friction the part that could go, (has − needed)/has; of both the lesser.
+
+        < 0 if there is too little; None where a need is not known, or the outcome does not rest on it.
+        """
+        if not self.margins or None in self.margins.values():
+            return None
+        least = min(_part(left, float(self.device.exact(name))) for name, left in self.margins.items())
+        return least if (least >= 0) == self.is_proved else None
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
@@ -116,3 +135,11 @@ class Verdict(Found):
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))
         return rows
+
+
+def _part(left: float | None, has: float) -> float:
+    """What is left, as a part of what there is."""
+    assert left is not None
+    if has:
+        return left / has
+    return -inf if left < 0 else inf

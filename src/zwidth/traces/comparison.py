@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import isnan
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,7 +12,8 @@ import numpy as np
 from zwidth.energy import ledger
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
-from zwidth.showing import Part, Shown, Table
+from zwidth.passivity.result import Documented
+from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,7 +53,7 @@ the last quarter of the time.
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Comparison(Shown):
+class Comparison(Documented):
     """A few numbers of each trace, one row per trace.
 
     Parameters
@@ -116,15 +115,11 @@ class Comparison(Shown):
         lines = [[label, *(_written(row[name]) for name in COLUMNS)] for label, row in self.rows.items()]
         return [head, *lines]
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
-        """All traces in one figure; saved if a path is given."""
-        from zwidth.plots.files import save_figure  # matplotlib takes its time
-        from zwidth.plots.trace import comparison_figure
+    def figure(self) -> Figure:
+        """All traces in one figure."""
+        from zwidth.plots.trace import comparison_figure  # matplotlib takes its time
 
-        figure = comparison_figure(self.traces)
-        if path is not None:
-            save_figure(lambda: figure, Path(path), overwrite=True)
-        return figure
+        return comparison_figure(self.traces)
 
     def report(self) -> Iterable[Part]:
         """The table."""

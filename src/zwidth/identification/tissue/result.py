@@ -17,8 +17,9 @@ from zwidth.errors import InputError
 from zwidth.identification.logs import Finding
 from zwidth.identification.tissue.findings import coarse, unlikely_units
 from zwidth.identification.tissue.model import Model, unit_of
+from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Interval
-from zwidth.showing import Lines, Part, Shown, Table
+from zwidth.showing import Lines, Part, Table
 
 if TYPE_CHECKING:
     from zwidth.device import Device
@@ -36,7 +37,7 @@ _LARGEST_LOG = 700.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class TissueFit(Shown):
+class TissueFit(Documented):
     """A model fitted to a record, with the uncertainty of its parameters.
 
     Attributes

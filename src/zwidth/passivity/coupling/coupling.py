@@ -34,6 +34,7 @@ from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, number
 from zwidth.passivity.linear.linear import LinearRefutation
 from zwidth.passivity.linear_verdict import LinearVerdict
@@ -139,6 +140,15 @@ class CouplingCondition(Answer):
     def before(self, environment: Environment | Any) -> VirtualCoupling:
         """This coupling with an environment behind it."""
         return VirtualCoupling(self.stiffness, self.damping, environment)
+
+    def numbers(self) -> dict[str, Any]:
+        """The coupling, and what it needs, as plain data."""
+        motion = self.device.motion
+        return {
+            unit_key("stiffness", motion): float(self.stiffness),
+            unit_key("damping", motion): float(self.damping),
+            f"required_{unit_key('damping', motion)}": self.required_damping,
+        }
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

@@ -94,6 +94,7 @@ class PassivityIndices(PassivityAnswer):
     """
 
     FORMAT = "zwidth indices 1"
+    PICTURE = "indices"
 
     input: PassivityIndex
     output: PassivityIndex

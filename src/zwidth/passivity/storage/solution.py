@@ -49,6 +49,7 @@ class AvailableStorage(PassivityAnswer):
     """
 
     FORMAT = "zwidth worst hand 1"
+    PICTURE = "storage"
 
     outcome: Outcome
     scope: Scope

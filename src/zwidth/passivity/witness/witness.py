@@ -121,6 +121,11 @@ class Witness(Evidence):
         return self.motion.listed() if self.motion.samples <= MOST_LISTED else self.motion
 
     @property
+    def unit(self) -> str:
+        """Of positions."""
+        return quantity_unit("position", self.setting.motion)
+
+    @property
     def sample_period(self) -> float:
         """T [s]."""
         return float(self.setting.loop.period)
@@ -166,12 +171,11 @@ class Witness(Evidence):
 
     def describe(self) -> str:
         """The motion in a sentence."""
-        unit = quantity_unit("position", self.setting.motion)
         times = self.motion.rounds
         rounds = f", its cycle {times:.6g} times" if times > 1 and len(self.motion.repeats) == 1 else ""
         return (
-            f"{self.motion.samples:.6g} samples{rounds}, to {self.depth:.4g} {unit} at up to "
-            f"{self.peak_speed:.4g} {unit}/s, extracts {self.energy:.4g} J"
+            f"{self.motion.samples:.6g} samples{rounds}, to {self.depth:.4g} {self.unit} at up to "
+            f"{self.peak_speed:.4g} {self.unit}/s, extracts {self.energy:.4g} J"
         )
 
 

@@ -20,7 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite, sqrt
-from typing import Literal
+from typing import Any, Literal
 
 from zwidth.device import Device
 from zwidth.errors import InputError
@@ -28,6 +28,7 @@ from zwidth.passivity.coupling.loop_transformation.environment_class import Indi
 from zwidth.passivity.coupling.loop_transformation.forms import DIRECT, Connection, coupled, indices_form
 from zwidth.passivity.coupling.loop_transformation.least_damping import best_form, largest_need
 from zwidth.passivity.coupling.loop_transformation.slopes import exact_need, whole_delay
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, number
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import Answer
@@ -105,6 +106,11 @@ class TransformedCondition(Answer):
             return f"No promise for {of}."
         counts = "; the counts of the encoder are not in it" if self.scope.encoder == "not counted" else ""
         return f"Passive before {of}, contact made and broken{counts}."
+
+    def numbers(self) -> dict[str, Any]:
+        """What is needed, and what binds, as plain data."""
+        required = f"required_{unit_key('damping', self.device.motion)}"
+        return {required: self.required_damping, "binding": self.binding}
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""

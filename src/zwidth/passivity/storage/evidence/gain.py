@@ -44,6 +44,8 @@ class Gain(Evidence):
         Against which the hand moves, and what the device takes out.
     """
 
+    PICTURE = "cycle"
+
     document: dict[str, Any]
     motion: Motion
     exact_energy: Fraction
