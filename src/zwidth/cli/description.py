@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from zwidth.cli.numerals import shown
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
@@ -10,6 +9,7 @@ from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.kind import name_of
 from zwidth.quantity.parameter import Parameter
+from zwidth.quantity.text import shown
 from zwidth.specification.environments import TYPES
 from zwidth.specification.table import plain
 

@@ -29,8 +29,9 @@ from zwidth.quantity.parameter import (
     parameter,
     parameters_of,
 )
+from zwidth.quantity.text import quantity_unit
 from zwidth.quantity.units import parse
-from zwidth.showing import Html, element, row
+from zwidth.showing import Html, Table
 
 Motion = Literal["linear", "rotary"]
 
@@ -245,11 +246,9 @@ class Device(Parametric):
         return f"Device({inside}{extra}, name={self.name!r})"
 
     def _repr_html_(self) -> Html:
-        rows = (
-            row((GLOSSARY[k].symbol, k, _shown(v), GLOSSARY[k].unit_for(self.motion)))
-            for k, v in self.parameters().items()
-        )
-        return element("table", element("caption", self.name), *rows)
+        known = self.parameters().items()
+        rows = [(GLOSSARY[k].symbol, k, _shown(v), quantity_unit(k, self.motion)) for k, v in known]
+        return Table(caption=self.name, rows=rows).html
 
 
 def _shown(value: Exact | Interval) -> str:
