@@ -222,11 +222,3 @@ def test_rpm_is_a_speed() -> None:
     )
     with pytest.raises(InputError, match="angular speed"):
         parse_number("60 rpm", "Hz", "rate")
-
-
-def test_a_unit_is_printed_as_people_write_it() -> None:
-    """Middle dots, raised squares, one bar."""
-    from zwidth.quantity.units import typeset
-
-    units = ["1", "N", "N*m*s/rad", "kg*m^2", "m/N/s", "N*m*s/rad/J"]
-    assert [typeset(unit) for unit in units] == ["1", "N", "N·m·s/rad", "kg·m²", "m/(N·s)", "N·m·s/(rad·J)"]

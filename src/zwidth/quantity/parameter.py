@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike
 from zwidth.quantity.glossary import GLOSSARY, Quantity
-from zwidth.quantity.units import parse, parse_number, typeset
+from zwidth.quantity.text import unit_text
+from zwidth.quantity.units import parse, parse_number
 
 T = TypeVar("T")
 
@@ -118,10 +119,10 @@ class Parametric:
         value = getattr(self, name)
         if value is None:
             return ""
-        return f"{float(value):g} {self._unit(name, motion)}"
+        return f"{float(value):g} {self._unit(name, motion)}".rstrip()
 
     def _unit(self, name: str, motion: str) -> str:
-        return typeset(parameters_of(type(self))[name].unit_for(motion))
+        return unit_text(parameters_of(type(self))[name].unit_for(motion))
 
     def _keep(self, **values: Any) -> None:
         """Put what was read in the place of what was given."""

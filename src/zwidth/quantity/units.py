@@ -147,13 +147,6 @@ def _interval(low: Exact, high: Exact, what: str) -> Interval:
         raise InputError(f"{what}: {error}") from None
 
 
-def typeset(unit: str) -> str:
-    """A unit as it is printed: "N·m·s/rad" for "N*m*s/rad", "m/(N·s)" for "m/N/s"."""
-    above, *below = unit.replace("^2", "²").split("/")
-    under = f"({'*'.join(below)})" if len(below) > 1 else "".join(below)
-    return (f"{above}/{under}" if below else above).replace("*", "·")
-
-
 def _is(what: str, unit: str) -> str:
     return f"{what} is a plain number" if unit in ("", "1") else f"{what} is in {unit}"
 
