@@ -25,12 +25,11 @@ from zwidth.quantity.parameter import (
     Reads,
     Uncertain,
     UncertainOrNone,
-    check_bound,
     parameter,
     parameters_of,
+    read_number,
 )
 from zwidth.quantity.text import quantity_unit
-from zwidth.quantity.units import parse
 from zwidth.showing import Html, Table
 
 Motion = Literal["linear", "rotary"]
@@ -270,9 +269,8 @@ def _period(sample_period: Given | None, rate: Given | None) -> Given:
     if sample_period is not None:
         return sample_period
     assert rate is not None
-    value = parse(rate, "Hz", "rate")
-    check_bound(value, "rate", "> 0", "a loop that never samples renders nothing", "Hz")
-    return _reciprocal(value)
+    why = "a loop that never samples renders nothing"
+    return _reciprocal(read_number(rate, GLOSSARY["rate"], "rate", uncertain=True, bound="> 0", why=why))
 
 
 def _check_stiction(device: Device) -> None:
@@ -286,11 +284,11 @@ def _check_stiction(device: Device) -> None:
 def _read(key: str, value: Given | None, motion: str) -> Exact | Interval | None:
     """A number in SI, or a text with a unit of this motion, such as "22.4 um" or "0.1 .. 0.2 N"."""
     own = parameters_of(Device)[key]
-    unit = own.unit_for(motion)
     if value is None:
         if own.required:
-            raise InputError(f"{key} [{unit}] is needed and was not given")
+            raise InputError(f"{key} [{own.unit_for(motion)}] is needed and was not given")
         return None
-    number = parse(value, unit, key)
-    check_bound(number, key, own.bound, own.why, unit)
+    number: Exact | Interval = read_number(
+        value, own.quantity, key, uncertain=True, bound=own.bound, why=own.why, motion=motion
+    )
     return number

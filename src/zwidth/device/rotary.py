@@ -21,7 +21,7 @@ from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import Quantity
-from zwidth.quantity.parameter import Given, check_bound, plain, read_number
+from zwidth.quantity.parameter import Given, plain, read_number
 
 
 def rotary(
@@ -150,6 +150,7 @@ def _count_angle(counts_per_turn: Given) -> Exact | Interval:
 
 
 def _positive(value: Given, key: str, why: str) -> Exact | Interval:
-    number: Exact | Interval = read_number(value, ROTARY[key], key, uncertain=True)
-    check_bound(number, key, "> 0", why, ROTARY[key].unit)
+    number: Exact | Interval = read_number(
+        value, ROTARY[key], key, uncertain=True, bound="> 0", why=why, motion="rotary"
+    )
     return number

@@ -104,8 +104,7 @@ class PassiveLeap(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit = "N·m/rad" if motion == "rotary" else "N/m"
-        parts = [] if self.stiffness is None else [f"a spring of {float(self.stiffness):g} {unit}"]
+        parts = [] if self.stiffness is None else [f"a spring of {self.with_unit('stiffness', motion)}"]
         parts += ["resets"] if self.resets else []
         return f"passive leap ({', '.join(parts)})" if parts else "passive leap"
 

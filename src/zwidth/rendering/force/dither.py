@@ -16,10 +16,10 @@ from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.parameter import PLAIN, CertainOrNone, Count, parameter, part, word
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import PLAIN, CertainOrNone, Count, parameter, word
 from zwidth.rendering.defaults import given_or_known
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.stage import Stage, Surroundings
 
 DITHER = 15.0
 
@@ -28,11 +28,10 @@ _AMPLITUDE, _RANDOM, _SURFACE = range(3)
 MODULUS, _FACTOR = 2147483647.0, 16807.0
 
 
-def _seed(seed: RealLike, name: str) -> int:
-    number = positive(name, seed, "0 would stay 0 for ever").fraction
-    if number.denominator != 1 or number >= int(MODULUS):
-        raise InputError(f"{name} is a whole number from 1 to {int(MODULUS) - 1}, got {seed}")
-    return int(number)
+def _seed(seed: Exact) -> int:
+    if seed.fraction.denominator != 1 or seed >= int(MODULUS):
+        raise InputError(f"seed is a whole number from 1 to {int(MODULUS) - 1}, got {seed:g}")
+    return int(seed)
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,14 @@ class Dither(Stage):
         meaning="a, by default a part of a converter step",
     )
     kind: Literal["alternating", "random"] = word("alternating", "random")
-    seed: Count = part("quantity", _seed, 1, meaning="of the random one, a whole number", quantity=PLAIN)
+    seed: Count = parameter(
+        PLAIN,
+        1,
+        kept=_seed,
+        bound="> 0",
+        why="0 would stay 0 for ever",
+        meaning="of the random one, a whole number",
+    )
 
     def numbers(self, at: Surroundings) -> list[float]:
         """a, whether it is random, whether there is a surface."""

@@ -18,10 +18,10 @@ from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.parameter import PLAIN, CertainOrNone, Count, parameter, part, word
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import PLAIN, CertainOrNone, Count, parameter, word
 from zwidth.rendering.defaults import given_or_known
-from zwidth.rendering.stage import Surroundings, positive
+from zwidth.rendering.stage import Surroundings
 from zwidth.rendering.velocity.estimator import Estimator
 
 ADAPTIVE_WINDOW = 1.0
@@ -35,14 +35,13 @@ _EDGE = 1.0 + 1e-9
 LARGEST_WINDOW = 1000
 
 
-def _samples(longest: RealLike, name: str) -> int:
-    number = positive(name, longest, "it counts samples").fraction
-    if number.denominator != 1 or number > LARGEST_WINDOW:
+def _samples(longest: Exact) -> int:
+    if longest.fraction.denominator != 1 or longest > LARGEST_WINDOW:
         raise InputError(
-            f"{name} is a whole number of samples from 1 to {LARGEST_WINDOW}, got {longest}: a window "
+            f"longest is a whole number of samples from 1 to {LARGEST_WINDOW}, got {longest:g}: a window "
             "longer than that lags behind every hand"
         )
-    return int(number)
+    return int(longest)
 
 
 @dataclass(frozen=True)
@@ -74,8 +73,13 @@ class AdaptiveWindow(Estimator):
         why="it is how far a reading may be off",
         meaning="d, how far a reading may be off, by default one count",
     )
-    longest: Count = part(
-        "quantity", _samples, 15, meaning="N, the longest window in samples, by default 15", quantity=PLAIN
+    longest: Count = parameter(
+        PLAIN,
+        15,
+        kept=_samples,
+        bound="> 0",
+        why="it counts samples",
+        meaning="N, the longest window in samples, by default 15",
     )
     fit: Literal["end", "best"] = word("end", "best")
 
