@@ -26,9 +26,7 @@ class Thing(Parametric):
     """One field of each form."""
 
     stiffness: Exact | Interval = parameter("stiffness", bound="≥ 0", why="it is a spring")
-    damping: Exact = parameter(
-        "damping", "0.1", kept=Exact, bound="> 0", why="it is a damper", words=("any",)
-    )
+    damping: Exact = parameter("damping", "0.1", kept=Exact, bound="> 0", why="it damps", words=("any",))
     start: float = parameter(
         "position", -1, kept=float, bound="≤ 0", why="it is outside", meaning="first place"
     )
