@@ -58,12 +58,6 @@ def identify(
         "viscous" fits a mass and a damper; where Coulomb friction is seen, it says so.
     progress
         Told (samples done, samples in all).
-
-    Raises
-    ------
-    InputError
-        If the log shows too little: too few strokes, or no force and no mass; or a mass or damping below 0,
-        as with a sensor that counts the other way.
     """
     zero = _checked(log, mass, delay, zero)
     if model not in ("Coulomb and viscous", "viscous"):

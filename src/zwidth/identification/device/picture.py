@@ -41,13 +41,7 @@ _SECONDS = 3.0
 
 
 def save_identification(identified: IdentifiedNumbers, path: str | Path, overwrite: bool = False) -> None:
-    """Write `identification_figure` to a file; its ending, png, svg or pdf, says how.
-
-    Raises
-    ------
-    InputError
-        As `save_check`.
-    """
+    """Write `identification_figure` to a file; its ending, png, svg or pdf, says how."""
     save_figure(lambda: identification_figure(identified), path, overwrite)
 
 

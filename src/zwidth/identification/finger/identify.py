@@ -245,13 +245,7 @@ def _apart(ways: Ways) -> Array:
 
 
 def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Finding]]:
-    """What the hand's force may be off beside the actuator's: in its scale and in time.
-
-    Raises
-    ------
-    InputError
-        If the two are not of one finger, or the hand's is late.
-    """
+    """What the hand's force may be off beside the actuator's: in its scale and in time."""
     nothing, log, ways = np.zeros(len(TERMS)), task.log, road.ways
     if not task.by_hand:
         return nothing, []

@@ -93,11 +93,6 @@ def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
     by_hand
         True: no means are taken of a piece in which the sensor of the hand's force is at an end of its range;
         as a whole, since which of its pulses stay must not depend on the force that they show.
-
-    Raises
-    ------
-    InputError
-        If no run is that long.
     """
     size = round(seconds / log.sample_period)
     runs = [run for run in _whole_runs(log) if len(run[0]) >= size]

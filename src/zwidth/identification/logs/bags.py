@@ -31,13 +31,7 @@ _INSTALL = "reading ROS bags and MCAP takes a library that is not installed: pip
 
 
 def bag_table(path: Path) -> Table:
-    """The numbers in a bag.
-
-    Raises
-    ------
-    InputError
-        If the library for bags is not installed, or the messages are not of ROS.
-    """
+    """The numbers in a bag."""
     paths: dict[str, str] = {}
     units: dict[str, str | None] = {TIME: "ns"}
     bag = _opened(path)

@@ -38,13 +38,7 @@ _START = 4096
 
 
 def stated_period(sample_rate: object, sample_period: object) -> float | None:
-    """[s] T as stated by a rate or a period, or None.
-
-    Raises
-    ------
-    InputError
-        If both are given, or either is not above 0.
-    """
+    """[s] T as stated by a rate or a period, or None."""
     if sample_rate is not None and sample_period is not None:
         raise InputError("sample_rate and sample_period say the same; give one of them")
     given, unit, name = (
@@ -59,13 +53,7 @@ def stated_period(sample_rate: object, sample_period: object) -> float | None:
 
 
 def log_from(table: Table, meaning: Meaning, stated: float | None) -> Log:
-    """Go through a table once, and make a log of it.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or nothing can be learnt from it.
-    """
+    """Go through a table once, and make a log of it."""
     timed = "time" in meaning.columns
     if not timed and stated is None:
         raise InputError(

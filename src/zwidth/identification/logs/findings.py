@@ -17,13 +17,7 @@ _LITTLE, _LOT = 1e-4, 0.02
 
 
 def refuse(survey: Survey, tally: Counter[str], source: str) -> None:
-    """Refuse a log that says nothing.
-
-    Raises
-    ------
-    InputError
-        If there are no samples, most rows are not numbers, the runs are scraps, or nothing moves.
-    """
+    """Refuse a log that says nothing."""
     if survey.samples < 2:
         raise InputError(
             f"{source} holds {survey.samples} samples; a log needs two at least, and many to say something"
@@ -53,13 +47,7 @@ def refuse(survey: Survey, tally: Counter[str], source: str) -> None:
 
 
 def period(survey: Survey, stated: float | None, timed: bool, source: str) -> tuple[float, Finding]:
-    """T [s], and where it comes from.
-
-    Raises
-    ------
-    InputError
-        If the stamps contradict the stated period.
-    """
+    """T [s], and where it comes from."""
     if not timed:
         assert stated is not None
         text = f"sample period {stated:.9g} s as stated; there are no stamps to compare with"

@@ -85,13 +85,7 @@ class Layout:
 
 
 def layout_of(start: bytes, source: str, whole: bool) -> Layout:
-    """The layout of a text that starts so; `whole` says that this is all of it.
-
-    Raises
-    ------
-    InputError
-        If it is empty, no text, or holds no table of numbers.
-    """
+    """The layout of a text that starts so; `whole` says that this is all of it."""
     text = _decoded(start, source)
     lines = text.splitlines()
     if not whole and len(lines) > 1:

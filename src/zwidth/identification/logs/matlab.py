@@ -27,13 +27,7 @@ _PIECE = 2**20
 
 
 def matlab_table(path: Path) -> Table:
-    """The vectors in a file of MATLAB 4 to 7.2, structures included.
-
-    Raises
-    ------
-    InputError
-        If it is larger than `LARGEST`, or would be when it is expanded.
-    """
+    """The vectors in a file of MATLAB 4 to 7.2, structures included."""
     size = path.stat().st_size
     if size > LARGEST:
         raise InputError(

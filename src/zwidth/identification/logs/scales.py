@@ -68,13 +68,7 @@ def meaning_of(
     counts_per_turn: object,
     motion: str | None,
 ) -> Meaning:
-    """Factors to SI of every column, and whether the device turns.
-
-    Raises
-    ------
-    InputError
-        If a unit is missing, unknown, or of another kind than the quantity.
-    """
+    """Factors to SI of every column, and whether the device turns."""
     _check_keys("units", units, columns)
     _check_keys("scale", scale, columns)
     scale = {quantity: _number_or_text(given) for quantity, given in (scale or {}).items()}

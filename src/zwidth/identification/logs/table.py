@@ -45,13 +45,7 @@ class Table:
 
 @contextmanager
 def readable(source: str) -> Iterator[None]:
-    """Whatever a library says of foreign bytes becomes one message.
-
-    Raises
-    ------
-    InputError
-        Instead of what the library raised.
-    """
+    """Whatever a library says of foreign bytes becomes one message."""
     try:
         yield
     except (InputError, KeyboardInterrupt, GeneratorExit):

@@ -25,13 +25,7 @@ _MOST_BROKEN = 0.01
 
 
 def text_table(path: Path) -> Table:
-    """The table in a text file.
-
-    Raises
-    ------
-    InputError
-        If it is no text, or holds no table of numbers.
-    """
+    """The table in a text file."""
     with _opened(path) as file:
         start = file.read(SNIFFED)
         whole = not file.read(1)

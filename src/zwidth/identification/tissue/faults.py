@@ -102,13 +102,7 @@ def _wandering(time: Array) -> list[Array]:
 
 
 def hole_places(time: Array, position: Array, source: str = "the record") -> tuple[int, ...]:
-    """The samples that come after a hole in time across which the position moved.
-
-    Raises
-    ------
-    InputError
-        If there are too many.
-    """
+    """The samples that come after a hole in time across which the position moved."""
     steps = np.diff(time)
     padded = np.concatenate([[np.inf], steps, [np.inf]])
     beside = np.minimum(np.maximum(padded[:-2], padded[2:]), np.minimum(padded[:-2], padded[2:]) * 4)

@@ -76,11 +76,6 @@ def refuse_sign(record: Record, left: Array, size: float, again: Callable[[Recor
         Of the output.
     again
         What a fit of another record leaves.
-
-    Raises
-    ------
-    InputError
-        If so.
     """
     spread = float(np.var(record.output)) / size**2
     if spread == 0 or float(np.mean(left**2)) < (1 - POOR) * spread:

@@ -139,13 +139,7 @@ class Model:
 
 
 def as_model(name: object, branches: int | None, response: Response) -> Model:
-    """Check the name of a model and its branches.
-
-    Raises
-    ------
-    InputError
-        If there is no such model, it has no such number of branches, or cannot predict the response.
-    """
+    """Check the name of a model and its branches."""
     if name not in OWN_PARAMETERS:
         choices = ", ".join(f'"{choice}"' for choice in OWN_PARAMETERS)
         raise InputError(f"model is one of {choices}; got {name!r}")

@@ -42,11 +42,6 @@ def passed_over(
         T [s].
     stiffness
         At once, of the solid that the tracker starts from [N/m; N·m/rad].
-
-    Raises
-    ------
-    InputError
-        If the tissue pulls the probe in, or the times are no such samples.
     """
     _check_sign(position, force)
     passed, findings = np.zeros(force.size, dtype=bool), [*_units(position, force, stiffness)]

@@ -184,13 +184,7 @@ def _asked(task: Task, solved: Solved) -> Iterator[tuple[float, Task]]:
 
 
 def _within(task: Task, stops: tuple[float, float]) -> tuple[Task, Solved, tuple[float, float]] | None:
-    """The solution without what the sensor cannot say; None where it could, as where a motion rests.
-
-    Raises
-    ------
-    InputError
-        If too little is left.
-    """
+    """The solution without what the sensor cannot say; None where it could, as where a motion rests."""
     force = task.record.force
     at_low, at_high = force <= stops[0], force >= stops[1]
     at = at_low | at_high
