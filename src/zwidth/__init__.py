@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from zwidth.identification.device.plan import Plan, plan_identification
     from zwidth.identification.device.published import Published, identify_published
     from zwidth.identification.finger import IdentifiedFinger, identify_finger
-    from zwidth.identification.logs import Log, join_logs, log_of, read_log
+    from zwidth.identification.logs import Log, read_log
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
@@ -146,9 +146,7 @@ __all__ = [
     "identify",
     "identify_finger",
     "identify_published",
-    "join_logs",
     "load_trace",
-    "log_of",
     "loop_storage",
     "operators",
     "passive_limit",
@@ -238,11 +236,9 @@ _LATER = {
     "fit_tissue": "zwidth.identification.tissue",
     "identify_finger": "zwidth.identification.finger",
     "identify_published": "zwidth.identification.device.published",
-    "join_logs": "zwidth.identification.logs",
     "Identified": "zwidth.identification.device.identified",
     "identify": "zwidth.traces",
     "load_trace": "zwidth.traces",
-    "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",
     "plan_identification": "zwidth.identification.device.plan",
     "simulate": "zwidth.traces",

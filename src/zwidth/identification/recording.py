@@ -10,7 +10,7 @@ from zwidth.errors import InputError
 from zwidth.identification.device import identify as device
 from zwidth.identification.device.choice import Zero
 from zwidth.identification.device.identified import Identified
-from zwidth.identification.logs import Log, log_of, read_log
+from zwidth.identification.logs import Log, read_log
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -47,7 +47,8 @@ def identify(
     progress
         Told (samples done, samples in all).
     reading
-        Further arguments of `read_log` or `log_of`, such as columns={…}, units={…}, resolution="22.4 um".
+        Further arguments of `read_log` or `Log.from_arrays`, such as columns={…}, units={…},
+        resolution="22.4 um".
 
     Raises
     ------
@@ -70,7 +71,7 @@ def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) 
         return recording
     if isinstance(recording, str | PathLike):
         return read_log(recording, **reading)
-    return log_of(recording, **reading)
+    return Log.from_arrays(recording, **reading)
 
 
 def _inertia(log: Log) -> str:

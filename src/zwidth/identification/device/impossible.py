@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.logs import Log
-from zwidth.identification.logs.log import Block
+from zwidth.identification.logs.block import Block
 
 Estimates = Mapping[str, Estimate]
 

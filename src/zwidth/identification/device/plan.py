@@ -105,7 +105,7 @@ class Plan:
         Parameters
         ----------
         found
-            Of all runs so far together, see `join_logs`.
+            Of all runs so far together, see `Log.concatenate`.
         """
         value = found.estimates[self.limits].value
         low, high = found.estimates[self.limits].interval(self.confidence)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.log import Finding
+from zwidth.identification.logs.block import Finding
 from zwidth.identification.logs.pieces import check_bag, check_messages
 from zwidth.identification.logs.table import PIECE, Table, Values
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from math import isfinite
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.log import Finding
+from zwidth.identification.logs.block import Finding
 from zwidth.identification.logs.runs import Cutter
 from zwidth.identification.logs.stamps import settled
 from zwidth.identification.logs.survey import Survey
@@ -52,8 +52,10 @@ def period(survey: Survey, stated: float | None, timed: bool, source: str) -> tu
         assert stated is not None
         text = f"sample period {stated:.9g} s as stated; there are no stamps to compare with"
         return stated, Finding(kind="sample period", text=text)
-    mean, count = survey.mean_interval, max(1, survey.intervals)
-    uncertainty = (2 * survey.deviation * survey.runs**0.5 + 4e-16 * survey.latest) / count + 1e-12 * mean
+    mean, count = survey.mean_interval, max(1, survey.intervals.count)
+    uncertainty = (
+        2 * survey.deviation * survey.runs**0.5 + 4e-16 * survey.intervals.latest
+    ) / count + 1e-12 * mean
     inferred = settled(mean, uncertainty)
     if stated is None:
         return inferred, Finding(kind="sample period", text=f"sample period {inferred:.9g} s from the stamps")
@@ -111,7 +113,7 @@ def clock(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Findi
     elif survey.deviation > 1e-3 * survey.period:
         text = (
             f"intervals between stamps vary by {survey.deviation:.3g} s (standard deviation), from "
-            f"{survey.shortest:.6g} to {survey.longest:.6g} s; {supposed}"
+            f"{survey.intervals.shortest:.6g} to {survey.intervals.longest:.6g} s; {supposed}"
         )
         yield Finding(kind="jitter", text=text)
 

@@ -54,7 +54,7 @@ _INDEX = re.compile(r"\[\d+\]$")
 def recognise(
     columns: Mapping[str, Any], chosen: Mapping[str, str | None] | None, source: str
 ) -> dict[str, str]:
-    """The column of each quantity that there is; what the user chose comes first, None means to go without."""
+    """The column of each quantity that there is: first what the user chose, None to go without."""
     found = _checked(columns, chosen or {}, source)
     for quantity in QUANTITIES:
         if quantity in found or quantity in (chosen or {}):

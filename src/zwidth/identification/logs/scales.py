@@ -9,31 +9,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.log import Motion
+from zwidth.identification.logs.block import Motion
 from zwidth.identification.logs.names import QUANTITIES, name_and_unit
 from zwidth.identification.logs.table import Table
 from zwidth.quantity.dimension import PI, Unit, unit_of
 from zwidth.quantity.exact import Exact
+from zwidth.quantity.spelling import plain, spelled
 from zwidth.quantity.units import parse_number
 
 _LENGTH, _ANGLE, _TIME = unit_of("m").dimension, unit_of("rad").dimension, unit_of("s").dimension
 _FORCE, _TORQUE = unit_of("N").dimension, unit_of("N*m").dimension
-_ALIASES = {
-    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
-    **dict.fromkeys(("msec", "milliseconds", "millisecond"), "ms"),
-    **dict.fromkeys(("usec", "microseconds", "microsecond"), "us"),
-    **dict.fromkeys(("nsec", "nanoseconds", "nanosecond"), "ns"),
-    **dict.fromkeys(("degree", "degrees"), "deg"),
-    **dict.fromkeys(("radian", "radians"), "rad"),
-    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
-    **dict.fromkeys(("newton", "newtons", "n"), "N"),
-    **dict.fromkeys(("turns", "revs"), "turn"),
-    **dict.fromkeys(("N_m", "Nm", "N.m", "N m", "N-m"), "N*m"),
-    **dict.fromkeys(("mNm", "mN_m", "mN.m", "mN m"), "mN*m"),
-    **dict.fromkeys(("Nmm", "N_mm", "N.mm", "N mm"), "N*mm"),
-}
 _COUNTS = ("count", "counts", "cnt", "cts", "ticks", "tick", "lsb", "LSB", "digit", "digits")
-_SPELLING = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*", "°": "deg"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,6 +63,8 @@ def meaning_of(
     stated = {q: _unit_text(table, q, c, units) for q, c in columns.items()}
     if motion is None and table.attributes.get("motion") in ("linear", "rotary"):
         motion = table.attributes["motion"]
+    if resolution is None and counts_per_turn is None:
+        resolution = _resolution(table)
     turning = _turning(motion, stated["position"], scale.get("position"), resolution, counts_per_turn)
     step = _step(resolution, counts_per_turn, turning)
     factors = {}
@@ -100,12 +88,18 @@ def meaning_of(
 
 def is_unit(text: str) -> bool:
     """True where a text spells a unit, a count, or nothing."""
-    plain = text.translate(_SPELLING)
+    unit = spelled(text)
     try:
-        unit_of(_ALIASES.get(plain, plain))
+        unit_of(unit)
     except InputError:
-        return _is_counts(plain)
+        return _is_counts(unit)
     return True
+
+
+def _resolution(table: Table) -> float | None:
+    """The resolution that a trace of ours says it has."""
+    values = (table.attributes.get(key) for key in ("resolution_m", "resolution_rad"))
+    return next((float(v) for v in values if v is not None), None)
 
 
 def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[str, str]) -> None:
@@ -128,8 +122,8 @@ def _refuse_other_units(table: Table, columns: Mapping[str, str], units: Mapping
     """A unit that is given for a column whose file or name states another: which of the two is meant?"""
     for quantity, given in units.items():
         column = columns[quantity]
-        stated = _spelled(table.units[column] or name_and_unit(column, quantity)[1], quantity)
-        if stated is None or _is_counts(stated) or not is_unit(stated) or stated == _spelled(given, quantity):
+        stated = _stated(table.units[column] or name_and_unit(column, quantity)[1], quantity)
+        if stated is None or _is_counts(stated) or not is_unit(stated) or stated == _stated(given, quantity):
             continue
         raise InputError(
             f'{table.source}: column "{column}" says of itself that it is in {stated}, and {given} is given; '
@@ -147,19 +141,16 @@ def _check_scales(scale: Mapping[str, object]) -> None:
 
 
 def _unit_text(table: Table, quantity: str, column: str, units: Mapping[str, str] | None) -> str | None:
-    return _spelled(
+    return _stated(
         (units or {}).get(quantity) or table.units[column] or name_and_unit(column, quantity)[1], quantity
     )
 
 
-def _spelled(text: str | None, quantity: str) -> str | None:
+def _stated(text: str | None, quantity: str) -> str | None:
     """A unit in the spelling of `unit_of`."""
     if text is None:
         return None
-    plain = text.strip().translate(_SPELLING)
-    if quantity == "time":
-        plain = plain.split(" since ")[0]
-    return _ALIASES.get(plain, plain)
+    return spelled(text.split(" since ")[0] if quantity == "time" else text)
 
 
 def _is_counts(unit: str | None) -> bool:
@@ -178,7 +169,7 @@ def _turning(
     elif unit is not None and not _is_counts(unit):
         kinds.append(unit_of(unit).dimension)
     if isinstance(resolution, str):
-        kinds.append(unit_of(resolution.translate(_SPELLING).lstrip("+-0123456789.eE/ ")).dimension)
+        kinds.append(unit_of(plain(resolution).lstrip("+-0123456789.eE/ ")).dimension)
     if counts_per_turn is not None:
         kinds.append(_ANGLE)
     turns = {_ANGLE: True, _LENGTH: False}
@@ -260,16 +251,15 @@ def _si(unit: Unit) -> float:
 
 def _scale(text: str, what: str) -> tuple[float, Unit, Unit | None]:
     """The number, the unit it leads to, and the unit it is for (None: counts): "2 N/V"."""
-    plain = text.translate(_SPELLING).strip()
-    top, slash, bottom = plain.rpartition("/")
+    top, slash, bottom = text.rpartition("/")
     if not slash:
-        top, bottom = plain, "count"
-    number, _, unit = top.strip().partition(" ")
-    bottom = bottom.strip()
+        top, bottom = text, "count"
+    number, _, unit = plain(top).strip().partition(" ")
+    bottom = plain(bottom).strip()
     try:
         factor = float(Exact(number))
         per = None if _is_counts(bottom) else unit_of(bottom)
-        return factor, unit_of(_ALIASES.get(unit.strip(), unit.strip())), per
+        return factor, unit_of(spelled(unit)), per
     except InputError as error:
         raise InputError(
             f'{what}: "{text}" is no factor such as "2 N/V" or "0.01 N/count": {error}'

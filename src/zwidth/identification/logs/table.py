@@ -10,7 +10,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.log import Finding
+from zwidth.identification.logs.block import Finding
 
 PIECE = 2**18
 """Rows that are read at once, where the format lets us choose."""

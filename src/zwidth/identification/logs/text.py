@@ -13,8 +13,8 @@ import pyarrow as pa
 import pyarrow.csv as pc
 
 from zwidth.errors import InputError
+from zwidth.identification.logs.block import Finding
 from zwidth.identification.logs.layout import SNIFFED, Layout, layout_of
-from zwidth.identification.logs.log import Finding
 from zwidth.identification.logs.table import Table, Values
 from zwidth.reading import Bounded
 
