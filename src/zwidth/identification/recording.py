@@ -58,7 +58,7 @@ def identify(
     log = log_from(recording, **reading)
     known = None if mass is None else float(parse_number(mass, _inertia(log), "mass"))
     late = float(parse_number(delay, "s", "delay"))
-    return device.identify(log, mass=known, delay=late, zero=zero, model=_model(model), progress=progress)
+    return device.identify(log, mass=known, delay=late, zero=zero, model=model, progress=progress)
 
 
 def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) -> Log:
@@ -76,9 +76,3 @@ def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) 
 
 def _inertia(log: Log) -> str:
     return "kg*m^2" if log.motion == "rotary" else "kg"
-
-
-def _model(model: Any) -> device.Model:
-    if model not in ("Coulomb and viscous", "viscous"):
-        raise InputError(f'model is "Coulomb and viscous" or "viscous", got {model!r}')
-    return model  # type: ignore[no-any-return]

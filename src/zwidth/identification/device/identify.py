@@ -40,25 +40,7 @@ def identify(
     model: Model = "Coulomb and viscous",
     progress: Callable[[int, int], None] | None = None,
 ) -> Identified:
-    """Identify a device: ``m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a``.
-
-    Parameters
-    ----------
-    log
-        What was recorded, see `read_log`: the position, and the force of the hand, of the actuator, or both.
-        Without any force mass must be given: a free motion shows b/m and f_c/m only.
-    mass
-        m > 0 where it is known [kg; kg·m²].
-    delay
-        From a sample to the actuator force computed from it, ≥ 0 [s].
-    zero
-        Of the force: "drifts" along straight lines of some seconds (a load cell; the default where there is
-        a hand force), "constant" (gravity; the default otherwise), or "exact".
-    model
-        "viscous" fits a mass and a damper; where Coulomb friction is seen, it says so.
-    progress
-        Told (samples done, samples in all).
-    """
+    """As `zwidth.identify`, with numbers in the place of texts: mass [kg; kg·m²], delay [s]."""
     zero = _checked(log, mass, delay, zero)
     if model not in ("Coulomb and viscous", "viscous"):
         raise InputError(f'model is "Coulomb and viscous" or "viscous", got {model!r}')

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from math import nan
 
 import numpy as np
-from scipy import stats
 
 from zwidth.compiled import Array
+from zwidth.identification.device.estimate import student
 from zwidth.identification.device.moments import COLUMNS, PAIRS, REGRESSORS, Moments
 
 FEWEST = 6
@@ -63,7 +63,7 @@ class Regression:
 
     def reach(self, confidence: float) -> float:
         """Standard errors to either side of a two-sided interval of Student's t."""
-        return float(stats.t.ppf(0.5 + confidence / 2, self.degrees))
+        return student(confidence, self.degrees)
 
 
 def regress(
@@ -92,8 +92,7 @@ def regress(
         known[REGRESSORS.index("mass")] = -mass
     matrix = moments.sum[np.ix_(chosen, chosen)]
     right = moments.sum[chosen] @ known
-    size = np.sqrt(np.abs(np.diag(matrix)))
-    if not (size > 0).all() or np.linalg.cond(matrix / np.outer(size, size)) > 1e10:
+    if not tells_apart(matrix, 1e10):
         return None
     if "force_lag" in names and share != 1.0:
         lag = names.index("force_lag")
@@ -114,6 +113,12 @@ def regress(
     return Regression(
         names, values, covariance, degrees, max(left, 0.0) / spare, 1 - left / whole if whole > 0 else nan
     )
+
+
+def tells_apart(matrix: Array, most: float) -> bool:
+    """True where normal equations, scaled to ones on the diagonal, have at most this condition number."""
+    size = np.sqrt(np.abs(np.diag(matrix)))
+    return bool((size > 0).all() and np.linalg.cond(matrix / np.outer(size, size)) <= most)
 
 
 def offset(moments: Moments, fit: Regression, mass: float | None) -> float:

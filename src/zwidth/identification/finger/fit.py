@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from zwidth.compiled import Array
+from zwidth.identification.device.regression import tells_apart
 from zwidth.identification.finger.means import Means
 
 if TYPE_CHECKING:
@@ -98,10 +99,9 @@ def solved(pairs: list[tuple[Array, Array]], y: Array, piece: NDArray[np.int64])
     count = pairs[0][0].shape[1]
     if starts.size < FEWEST + count:
         return None
-    matrix = sum(z.T @ a for z, a in pairs)
+    matrix: Array = np.asarray(sum(z.T @ a for z, a in pairs))
     right = sum(z.T @ y for z, _ in pairs)
-    size = np.sqrt(np.abs(np.diag(matrix)))
-    if not (size > 0).all() or np.linalg.cond(matrix / np.outer(size, size)) > 1e8:
+    if not tells_apart(matrix, 1e8):
         return None
     values: Array = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     scatter = sum(z * (y - a @ values)[:, None] for z, a in pairs)

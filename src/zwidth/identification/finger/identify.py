@@ -31,7 +31,7 @@ from zwidth.compiled import Array
 from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.identification.device.choice import LENGTHS, LONGER, SAFETY
-from zwidth.identification.device.estimate import Estimate
+from zwidth.identification.device.estimate import Estimate, perhaps_none, unit_of
 from zwidth.identification.device.impossible import impossible
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.finger.doubts import (
@@ -386,8 +386,6 @@ def _too_little(log: Log) -> str:
 def _estimates(
     fit: Fit, shift: Array, known: dict[str, tuple[float, float]], motion: str
 ) -> dict[str, Estimate]:
-    turn = motion == "rotary"
-    units = ("kg m²", "N m s/rad", "N m/rad") if turn else ("kg", "N s/m", "N/m")
     found = {}
     for k, name in enumerate(TERMS):
         low, high = known.get(name, (0.0, 0.0))
@@ -396,15 +394,13 @@ def _estimates(
             float(fit.errors[k]),
             float(shift[k]) + (high - low) / 2,
             fit.pieces - len(TERMS),
-            units[k],
+            unit_of(name, motion),
         )
     return found
 
 
 def _findings(estimates: dict[str, Estimate], by_hand: bool, instrument: Instrument) -> Iterable[Finding]:
-    for name, estimate in estimates.items():
-        if estimate.interval(0.95)[0] <= 0:
-            yield Finding(kind=f"no {name}", text=f"the data do not rule out that {name} is 0: {estimate}")
+    yield from perhaps_none(estimates, TERMS)
     if instrument == "position":
         yield Finding(
             kind="tremor",

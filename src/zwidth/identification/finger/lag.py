@@ -23,10 +23,10 @@ from math import ceil
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
 
 from zwidth.compiled import Array
 from zwidth.identification.device.choice import LONGER, SAFETY, SURE
+from zwidth.identification.device.estimate import student
 from zwidth.identification.finger.fit import FEWEST, Fit, fitted, without_slow
 from zwidth.identification.finger.means import Means, Pieces, later, means
 from zwidth.identification.finger.weights import Weights, weights
@@ -93,7 +93,7 @@ def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: flo
     if here is None or there is None:
         return None
     apart = SAFETY * abs(here[0] - there[0])
-    reach = float(stats.t.ppf(0.5 + SURE / 2, max(here[2], FEWEST))) * here[1] + apart
+    reach = student(SURE, max(here[2], FEWEST)) * here[1] + apart
     early, late = _moments(delay)
     value = here[0] + best * period
     low, high = value - late * period, value - early * period
@@ -138,7 +138,7 @@ def lag_without_actuator(pieces: Pieces, period: float) -> Lag | None:
     if left[best].size < FEWEST:
         return None
     worse = {samples: _worse(rest - left[best]) for samples, rest in left.items()}
-    reach = float(stats.t.ppf(0.5 + SURE / 2, left[best].size - 1))
+    reach = student(SURE, left[best].size - 1)
     inside = [samples for samples, t in worse.items() if t <= reach]
     sure = min(inside) > 0 and worse.get(0, 0.0) > SURELY * reach
     least, most = max(min(inside) - 1, 0) * period, (max(inside) + 0.5) * period

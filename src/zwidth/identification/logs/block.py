@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -42,6 +44,28 @@ class Block(NamedTuple):
     position: Array
     hand_force: Array | None
     actuator_force: Array | None
+
+    def part(self, where: slice) -> Block:
+        """Some of its samples."""
+        columns = (None if column is None else column[where] for column in self[1:])
+        return Block(self.run, *columns)  # type: ignore[arg-type]
+
+
+def joined(blocks: list[Block]) -> Block:
+    """Blocks of one run that follow each other, as one."""
+    if len(blocks) == 1:
+        return blocks[0]
+    columns = (
+        None if column[0] is None else np.concatenate(column)
+        for column in zip(*(block[1:] for block in blocks), strict=True)
+    )
+    return Block(blocks[0].run, *columns)  # type: ignore[arg-type]
+
+
+def whole_runs(blocks: Iterable[Block]) -> Iterator[Block]:
+    """A block for each run, however long it is."""
+    for _, run in groupby(blocks, key=lambda block: block.run):
+        yield joined(list(run))
 
 
 @dataclass(frozen=True, kw_only=True)
