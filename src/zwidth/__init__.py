@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from zwidth.environment.matrix_wall import MatrixWall
     from zwidth.identification import tissue
     from zwidth.identification.device.identified import Identified
-    from zwidth.identification.device.plan import Plan, plan_identification
-    from zwidth.identification.device.published import Published, identify_published
+    from zwidth.identification.device.plan import MeasurementPlan, plan_identification
+    from zwidth.identification.device.published import PublishedFit, identify_published
     from zwidth.identification.finger import IdentifiedFinger, identify_finger
     from zwidth.identification.logs import Log, read_log
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
@@ -102,13 +102,13 @@ __all__ = [
     "Log",
     "MatrixWall",
     "Maxwell",
+    "MeasurementPlan",
     "NonlinearSpring",
     "OnePole",
     "PassiveHand",
     "PassivityIndex",
     "PassivityIndices",
-    "Plan",
-    "Published",
+    "PublishedFit",
     "PulseTransferFunction",
     "RealHand",
     "Slopes",
@@ -193,8 +193,8 @@ _LATER = {
     "HuntCrossley": "zwidth.environment",
     "IdentifiedFinger": "zwidth.identification.finger",
     "NonlinearSpring": "zwidth.environment",
-    "Plan": "zwidth.identification.device.plan",
-    "Published": "zwidth.identification.device.published",
+    "MeasurementPlan": "zwidth.identification.device.plan",
+    "PublishedFit": "zwidth.identification.device.published",
     "Timing": "zwidth.loop.timing",
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",

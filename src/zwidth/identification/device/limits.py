@@ -95,7 +95,7 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
     speed = "rad/s" if identified.motion == "rotary" else "m/s"
     lines.append(
         f"friction was seen up to {identified.fastest[0]:.3g} {speed} into the wall and "
-        f"{identified.fastest[1]:.3g} out of it: of a hand that is quicker nothing is known; "
+        f"{identified.fastest[1]:.3g} out of it; at higher speeds it is not known: "
         "log quicker strokes, zwidth plan --speed says which"
     )
     slow, quick = np.quantile(np.abs(identified.points["speed"].values), [0.1, 0.9])

@@ -31,7 +31,7 @@ PASSES = 20
 
 
 @dataclass(frozen=True, kw_only=True)
-class Published:
+class PublishedFit:
     """What smoothing and least squares make of a log; without intervals, for the method has none.
 
     Parameters
@@ -63,7 +63,7 @@ def identify_published(
     *,
     passes: int = PASSES,
     model: Literal["Coulomb and viscous", "viscous"] = "Coulomb and viscous",
-) -> Published:
+) -> PublishedFit:
     """Fit ``m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a`` to smoothed positions, as Abbott & Okamura (2005) did.
 
     All samples are held in memory, some 100 bytes each: `identify` reads logs of any length.
@@ -105,7 +105,7 @@ def identify_published(
     if rank < matrix.shape[1]:
         raise InputError(f"{log.source} does not tell the parameters apart: move to and fro, at many speeds")
     left = force - matrix @ found
-    return Published(
+    return PublishedFit(
         mass=float(found[0]),
         damping=float(found[1]),
         coulomb_friction=float(found[2]) if model == "Coulomb and viscous" else None,

@@ -166,8 +166,7 @@ def forces(survey: Survey, unit: str) -> Iterator[Finding]:
         share = 100 * samples / survey.samples
         text = (
             f"the hand's force stays at {ends} in {samples} samples, {share:.2g} %: the sensor is at the end "
-            "of its range, and what the hand does beyond is not known; strokes, or pieces of a "
-            "shaken finger, "
-            "with such samples are left out"
+            "of its range, and larger forces are not known; strokes, or pieces of a shaken finger, with such "
+            "samples are left out"
         )
         yield Finding(kind="saturated", text=text, samples=samples)

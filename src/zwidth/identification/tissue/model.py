@@ -150,7 +150,7 @@ def as_model(name: object, branches: int | None, response: Response) -> Model:
         )
     if name != "generalized-maxwell":
         if branches is not None:
-            raise InputError(f'branches is for "generalized-maxwell"; {name!r} has what it has')
+            raise InputError(f'branches is for "generalized-maxwell"; that of {name!r} is fixed')
         return Model(str(name), 1 if name in ("maxwell", "standard-linear-solid") else 0)
     number = 2 if branches is None else branches
     if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= MOST_BRANCHES:
