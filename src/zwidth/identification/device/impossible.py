@@ -53,16 +53,7 @@ def impossible(
 ) -> str | None:
     """What is wrong with a log that shows what is surely below 0 and cannot be; None where nothing is.
 
-    Parameters
-    ----------
-    log
-        What was recorded.
-    estimates
-        What it shows.
-    again
-        What a log with other signs shows, fitted likewise; None if nothing.
-    bounds
-        What cannot be below 0.
+    `again` fits a log with other signs likewise.
     """
     below = [name for name in bounds.above if name in estimates and estimates[name].interval()[1] < 0]
     sure = [name for name in bounds.sure if name in estimates]

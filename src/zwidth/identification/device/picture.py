@@ -47,13 +47,7 @@ def save_identification(identified: IdentifiedNumbers, path: str | Path, overwri
 
 @rc_context(LOOK)
 def identification_figure(identified: IdentifiedNumbers) -> Figure:
-    """Friction against speed beside the numbers; below, some seconds of the log and what is left over.
-
-    Parameters
-    ----------
-    identified
-        What `zwidth.identify` returned.
-    """
+    """Friction against speed beside the numbers; below, some seconds of the log and what is left over."""
     figure = new_figure(11.0, 7.4)
     grid = figure.add_gridspec(2, 1, height_ratios=(1.25, 1.0))
     upper = grid[0].subgridspec(1, 2, width_ratios=(1.75, 1.0))

@@ -122,17 +122,7 @@ def tells_apart(matrix: Array, most: float) -> bool:
 
 
 def offset(moments: Moments, fit: Regression, mass: float | None) -> float:
-    """What the force has besides the fitted terms, f̄ − m ā − Σ θ Ā in means over the pieces [N; N·m].
-
-    Parameters
-    ----------
-    moments
-        The sums that were fitted.
-    fit
-        The parameters.
-    mass
-        m where it is known and not fitted [kg; kg·m²], as in `regress`.
-    """
+    """What the force has besides the fitted terms, f̄ − m ā − Σ θ Ā in means over the pieces [N; N·m]."""
     known = moments.means[-1] - (mass or 0.0) * moments.means[0]
     terms = sum(fit.value(name) * moments.means[REGRESSORS.index(name)] for name in fit.names)
     return float((known - terms) / max(moments.pieces, 1))

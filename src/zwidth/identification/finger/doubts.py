@@ -73,16 +73,9 @@ def _ranges(log: Log, pieces: Pieces) -> str:
 
 
 def disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_known: bool) -> str | None:
-    """Why two forces are not of one finger: its stiffness by each; None where they may be.
+    """Why two forces are not of one finger, by its stiffness by each; None where they may be.
 
-    Parameters
-    ----------
-    log
-        What was recorded.
-    hand, actuator
-        The stiffness by either force.
-    friction_known
-        False: the device's Coulomb friction was left out of the second.
+    Where the device's Coulomb friction is not known, it was left out of the second.
     """
     apart = 1.0 if friction_known else APART
     (low, high), (least, most) = hand.interval(0.999), actuator.interval(0.999)
@@ -153,15 +146,7 @@ def widened(fit: Fit, lag: Lag | None) -> np.ndarray:
 
 
 def apart(log: Log, hand: Estimate, actuator: Estimate) -> tuple[float, Finding] | None:
-    """By how much two dampings of one finger surely differ, and the finding; None where they may be the same.
-
-    Parameters
-    ----------
-    log
-        What was recorded.
-    hand, actuator
-        The damping by either force, the second with the device known.
-    """
+    """By how much two dampings of one finger surely differ, and the finding; None where they may not."""
     (low, high), (least, most) = hand.interval(0.999), actuator.interval(0.999)
     if low <= most and least <= high:
         return None

@@ -116,15 +116,7 @@ def _apparent(rows: Means, total: Fit, period: float) -> tuple[float, float, int
 
 
 def lag_without_actuator(pieces: Pieces, period: float) -> Lag | None:
-    """How late the force of the hand is, where it alone is logged; None where nothing tells.
-
-    Parameters
-    ----------
-    pieces
-        The recording.
-    period
-        T [s].
-    """
+    """How late the force of the hand is, where it alone is logged; None where nothing tells."""
     shape = weights(SHORTEST, 0.0)
     rows = means(pieces, shape, period)
     if rows is None:

@@ -85,15 +85,8 @@ class Means(NamedTuple):
 def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
     """The log cut into pieces of so many seconds, each within a run; what is left over is not used.
 
-    Parameters
-    ----------
-    log
-        What was recorded.
-    seconds
-        Of a piece.
-    by_hand
-        True: no means are taken of a piece in which the sensor of the hand's force is at an end of its range;
-        as a whole, since which of its pulses stay must not depend on the force that they show.
+    Where the hand's force answers, no means are taken of a piece in which its sensor is at an end of its
+    range: as a whole, since which of its pulses stay must not depend on the force that they show.
     """
     size = round(seconds / log.sample_period)
     runs = [run for run in whole_runs(log.blocks()) if run.position.size >= size]

@@ -8,17 +8,37 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
+from zwidth.identification.logs.names import recognise
 from zwidth.identification.logs.table import Table, Values
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def table_of_arrays(arrays: Mapping[str, Any], motion: str) -> Table:
-    """The table of the arrays of each quantity, in SI units."""
+def table_of(
+    data: xr.Dataset | None,
+    arrays: Mapping[str, Any],
+    columns: Mapping[str, str | None] | None,
+    units: Mapping[str, str] | None,
+    motion: str,
+) -> tuple[Table, dict[str, str]]:
+    """The table of a Dataset, or of the arrays of each quantity; and the column of each quantity."""
+    if data is not None:
+        if arrays:
+            raise InputError("give a Dataset or arrays, not both")
+        table = _of_dataset(data)
+        return table, recognise(table.units, columns, table.source)
+    if columns is not None or units is not None:
+        raise InputError(
+            "columns and units are for a Dataset; arrays are in SI units, scale={…} changes them"
+        )
+    if "position" not in arrays:
+        raise InputError("a log needs positions; give position=…")
     length, force = ("rad", "N*m") if motion == "rotary" else ("m", "N")
-    units = {"time": "s", "position": length, "hand_force": force, "actuator_force": force}
-    return _table({name: _vector(name, values) for name, values in arrays.items()}, units, {})
+    si = {"time": "s", "position": length, "hand_force": force, "actuator_force": force}
+    return _table({name: _vector(name, values) for name, values in arrays.items()}, si, {}), {
+        name: name for name in arrays
+    }
 
 
 def _vector(name: str, values: Any) -> Values:
@@ -45,8 +65,7 @@ def _table(
     return Table(source="arrays", units=stated, read=read, attributes=attributes)
 
 
-def table_of_dataset(data: xr.Dataset) -> Table:
-    """The table of the variables of numbers along the first dimension."""
+def _of_dataset(data: xr.Dataset) -> Table:
     dimension = next(iter(data.dims), None)
     variables = {
         str(name): variable

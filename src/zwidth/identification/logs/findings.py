@@ -15,6 +15,37 @@ from zwidth.identification.logs.survey import Survey
 _LITTLE, _LOT = 1e-4, 0.02
 """Between them a stated period that differs from the stamps' is used and reported; beyond, refused."""
 
+_COUNTED = {
+    "dates": ("dates", "the stamps are dates; time counts from the first of them", ""),
+    "missing": ("missing", "{missing} of {rows} rows lack a number and are left out", "missing"),
+    "infinite": (
+        "infinite",
+        "{infinite} of {rows} rows hold an infinite number and are left out",
+        "infinite",
+    ),
+    "gaps": (
+        "gap",
+        "{gaps} gaps, about {lost} samples, the longest {longest:.4g} s; a new run begins after each",
+        "lost",
+    ),
+    "restarts": (
+        "restart",
+        "time starts again, {restarts} ×: recordings one after the other, a run each",
+        "",
+    ),
+    "repeated": (
+        "repeated",
+        "{repeated} rows come twice while the clock goes on; the second is left out",
+        "repeated",
+    ),
+    "twice": (
+        "stamp twice",
+        "{twice} stamps come twice with different numbers; they are taken for two samples",
+        "twice",
+    ),
+}
+"""What the rows were counted for: the finding's kind, its sentence, and the count of its samples."""
+
 
 def refuse(survey: Survey, tally: Counter[str], source: str) -> None:
     """Refuse a log that says nothing."""
@@ -78,29 +109,10 @@ def period(survey: Survey, stated: float | None, timed: bool, source: str) -> tu
 
 def clock(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Finding]:
     """Gaps, restarts, repetitions, jitter."""
-    if tally["dates"]:
-        yield Finding(kind="dates", text="the stamps are dates; time counts from the first of them")
-    if tally["missing"]:
-        text = f"{tally['missing']} of {tally['rows']} rows lack a number and are left out"
-        yield Finding(kind="missing", text=text, samples=tally["missing"])
-    if tally["infinite"]:
-        text = f"{tally['infinite']} of {tally['rows']} rows hold an infinite number and are left out"
-        yield Finding(kind="infinite", text=text, samples=tally["infinite"])
-    if tally["gaps"]:
-        text = (
-            f"{tally['gaps']} gaps, about {tally['lost']} samples, the longest {cutter.longest_gap:.4g} s; "
-            "a new run begins after each"
-        )
-        yield Finding(kind="gap", text=text, samples=tally["lost"])
-    if tally["restarts"]:
-        text = f"time starts again, {tally['restarts']} ×: recordings one after the other, a run each"
-        yield Finding(kind="restart", text=text)
-    if tally["repeated"]:
-        text = f"{tally['repeated']} rows come twice while the clock goes on; the second is left out"
-        yield Finding(kind="repeated", text=text, samples=tally["repeated"])
-    if tally["twice"]:
-        text = f"{tally['twice']} stamps come twice with different numbers; they are taken for two samples"
-        yield Finding(kind="stamp twice", text=text, samples=tally["twice"])
+    numbers = {**tally, "longest": cutter.longest_gap}
+    for what, (kind, text, samples) in _COUNTED.items():
+        if tally[what]:
+            yield Finding(kind=kind, text=text.format_map(numbers), samples=tally[samples] if samples else 0)
     supposed = (
         "supposed: the samples were taken evenly and only the stamps vary, so the row's number is the clock"
     )

@@ -14,10 +14,9 @@ from math import inf, isclose
 from typing import TYPE_CHECKING
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.arrays import table_of_arrays, table_of_dataset
+from zwidth.identification.logs.arrays import table_of
 from zwidth.identification.logs.block import Block, Finding, Motion
 from zwidth.identification.logs.build import contents, stated_period
-from zwidth.identification.logs.names import recognise
 from zwidth.identification.logs.scales import meaning_of
 
 if TYPE_CHECKING:
@@ -117,22 +116,9 @@ class Log:
         }
         arrays = {name: values for name, values in given.items() if values is not None}
         period = stated_period(sample_rate, sample_period)
-        if data is None:
-            if columns is not None or units is not None:
-                raise InputError(
-                    "columns and units are for a Dataset; arrays are in SI units, scale={…} changes them"
-                )
-            if motion is None:
-                motion = "rotary" if counts_per_turn is not None else "linear"
-            table = table_of_arrays(arrays, motion)
-            names = {name: name for name in arrays}
-        else:
-            if arrays:
-                raise InputError("give a Dataset or arrays, not both")
-            table = table_of_dataset(data)
-            names = recognise(table.units, columns, table.source)
-        if "position" not in names:
-            raise InputError("a log needs positions; give position=…")
+        if motion is None and data is None:
+            motion = "rotary" if counts_per_turn is not None else "linear"
+        table, names = table_of(data, arrays, columns, units, motion or "linear")
         meaning = meaning_of(
             table,
             names,

@@ -42,17 +42,7 @@ def unlikely_units(stiffness: float, depth: float) -> Iterator[str]:
 
 
 def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
-    """Why intervals are too narrow: most of what the fit leaves may be the position's steps.
-
-    Parameters
-    ----------
-    position
-        As it was read [m; rad].
-    stiffness
-        At once [N/m; N·m/rad].
-    rms
-        Of what the fit leaves [N; N·m].
-    """
+    """Why intervals are too narrow: most of what the fit leaves [N; N·m] may be the position's steps."""
     grid = grid_of(position)
     if grid is not None and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
         yield (
@@ -64,19 +54,7 @@ def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
 
 
 def refuse_sign(record: Record, left: Array, size: float, again: Callable[[Record], Array]) -> None:
-    """Refuse a record that is of a tissue only with the other sign.
-
-    Parameters
-    ----------
-    record
-        What was recorded.
-    left
-        What the fit leaves, in parts of the size.
-    size
-        Of the output.
-    again
-        What a fit of another record leaves.
-    """
+    """Refuse a record that is of a tissue only with the other sign, by what a fit of each leaves."""
     spread = float(np.var(record.output)) / size**2
     if spread == 0 or float(np.mean(left**2)) < (1 - POOR) * spread:
         return

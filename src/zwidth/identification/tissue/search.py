@@ -78,19 +78,7 @@ class Solved(NamedTuple):
 
 
 def fitted(model: Model, record: Record, offset: bool, noise: str, motion: str) -> TissueFit:
-    """The fit, with all that was found in the record.
-
-    Parameters
-    ----------
-    model, record
-        What is fitted to what.
-    offset
-        True: a constant too, whether or not it is seen.
-    noise
-        "correlated" or "white".
-    motion
-        "linear" or "rotary".
-    """
+    """The fit, with all that was found in the record; with an offset, whether or not it is seen."""
     order = 0 if noise == "white" else LARGEST_ORDER
     task = Task(model, record, np.ones(record.time.size, dtype=bool), Faults(offset=offset), order)
     stops = stops_of(record.force) if record.response == "force" else NOWHERE
