@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from math import isfinite
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.block import Finding
 from zwidth.identification.logs.runs import Cutter
 from zwidth.identification.logs.stamps import settled
+from zwidth.identification.logs.stops import at_ends
 from zwidth.identification.logs.survey import Survey
 
 _LITTLE, _LOT = 1e-4, 0.02
@@ -172,8 +172,8 @@ def forces(survey: Survey, unit: str) -> Iterator[Finding]:
     low, high = survey.ranges.get("actuator_force", (0.0, 1.0))
     if low == high:
         yield Finding(kind="constant", text=f"the actuator force is {low:g} throughout")
-    (low, high), samples = survey.stops.found()
-    ends = " and at ".join(f"{end:.4g} {unit}" for end in (low, high) if isfinite(end))
+    stops, samples = survey.stops.found()
+    ends = at_ends(stops, unit)
     if ends:
         share = 100 * samples / survey.samples
         text = (

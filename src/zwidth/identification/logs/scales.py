@@ -12,7 +12,7 @@ from zwidth.errors import InputError
 from zwidth.identification.logs.block import Motion
 from zwidth.identification.logs.names import QUANTITIES, name_and_unit
 from zwidth.identification.logs.table import Table
-from zwidth.quantity.dimension import PI, Unit, unit_of
+from zwidth.quantity.dimension import PI, Dimension, Unit, unit_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.spelling import plain, spelled
 from zwidth.quantity.units import parse_number
@@ -60,7 +60,7 @@ def meaning_of(
     scale = {quantity: _number_or_text(given) for quantity, given in (scale or {}).items()}
     _check_scales(scale)
     _refuse_other_units(table, columns, units or {})
-    stated = {q: _unit_text(table, q, c, units) for q, c in columns.items()}
+    stated = {q: _stated((units or {}).get(q), q) or _own_unit(table, c, q) for q, c in columns.items()}
     if motion is None and table.attributes.get("motion") in ("linear", "rotary"):
         motion = table.attributes["motion"]
     if resolution is None and counts_per_turn is None:
@@ -122,7 +122,7 @@ def _refuse_other_units(table: Table, columns: Mapping[str, str], units: Mapping
     """A unit that is given for a column whose file or name states another: which of the two is meant?"""
     for quantity, given in units.items():
         column = columns[quantity]
-        stated = _stated(table.units[column] or name_and_unit(column, quantity)[1], quantity)
+        stated = _own_unit(table, column, quantity)
         if stated is None or _is_counts(stated) or not is_unit(stated) or stated == _stated(given, quantity):
             continue
         raise InputError(
@@ -140,10 +140,9 @@ def _check_scales(scale: Mapping[str, object]) -> None:
             raise InputError(f"{what} must not be 0: nothing would be left of the column")
 
 
-def _unit_text(table: Table, quantity: str, column: str, units: Mapping[str, str] | None) -> str | None:
-    return _stated(
-        (units or {}).get(quantity) or table.units[column] or name_and_unit(column, quantity)[1], quantity
-    )
+def _own_unit(table: Table, column: str, quantity: str) -> str | None:
+    """The unit that the file, or else the name of the column, states."""
+    return _stated(table.units[column] or name_and_unit(column, quantity)[1], quantity)
 
 
 def _stated(text: str | None, quantity: str) -> str | None:
@@ -201,28 +200,34 @@ def _step(resolution: object, counts_per_turn: object, turning: bool) -> float |
 
 
 def _factor(where: str, quantity: str, unit: str | None, scale: object, turning: bool) -> float:
-    wanted = {"time": _TIME, "position": _ANGLE if turning else _LENGTH}.get(
-        quantity, _TORQUE if turning else _FORCE
-    )
-    kind = {
-        _TIME: "a time, such as ms",
-        _LENGTH: "a length, such as mm",
-        _ANGLE: "an angle, such as deg",
-    }.get(wanted, "a torque, such as N*m" if turning else "a force, such as N")
-    if scale is not None and not isinstance(scale, str):
-        return _factor(where, quantity, unit, None, turning) * float(
-            parse_number(scale, "1", f"{where}: scale")
-        )
-    if scale is not None:
-        factor, result, per = _scale(scale, f"{where}: scale")
-        if result.dimension != wanted:
-            raise InputError(f'{where}: scale "{scale}" does not lead to {kind}')
-        if unit is None or _is_counts(unit) or per is None:
-            return factor * _si(result)
-        raw = _known(unit, where)
-        if raw.dimension != per.dimension:
-            raise InputError(f'{where} is in {unit}; scale "{scale}" is for another unit')
-        return factor * _si(result) * _si(raw) / _si(per)
+    if isinstance(scale, str):
+        return _by_scale(where, unit, scale, *_wanted(quantity, turning))
+    factor = _by_unit(where, quantity, unit, *_wanted(quantity, turning))
+    return factor if scale is None else factor * float(parse_number(scale, "1", f"{where}: scale"))
+
+
+def _wanted(quantity: str, turning: bool) -> tuple[Dimension, str]:
+    """The dimension of a quantity, and what it is in words."""
+    if quantity == "time":
+        return _TIME, "a time, such as ms"
+    if quantity == "position":
+        return (_ANGLE, "an angle, such as deg") if turning else (_LENGTH, "a length, such as mm")
+    return (_TORQUE, "a torque, such as N*m") if turning else (_FORCE, "a force, such as N")
+
+
+def _by_scale(where: str, unit: str | None, scale: str, wanted: Dimension, kind: str) -> float:
+    factor, result, per = _scale(scale, f"{where}: scale")
+    if result.dimension != wanted:
+        raise InputError(f'{where}: scale "{scale}" does not lead to {kind}')
+    if unit is None or _is_counts(unit) or per is None:
+        return factor * _si(result)
+    raw = _known(unit, where)
+    if raw.dimension != per.dimension:
+        raise InputError(f'{where} is in {unit}; scale "{scale}" is for another unit')
+    return factor * _si(result) * _si(raw) / _si(per)
+
+
+def _by_unit(where: str, quantity: str, unit: str | None, wanted: Dimension, kind: str) -> float:
     if unit is None:
         example = {"time": "ms", "position": "mm"}.get(quantity, "N")
         raise InputError(f'{where} has no unit; state it with units={{"{quantity}": "{example}"}}')

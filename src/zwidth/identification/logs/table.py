@@ -15,6 +15,9 @@ from zwidth.identification.logs.block import Finding
 PIECE = 2**18
 """Rows that are read at once, where the format lets us choose."""
 
+MOST_COLUMNS = 64
+"""Of one matrix, or one message: more are no columns of a log."""
+
 Values = NDArray[Any]
 
 
@@ -41,6 +44,23 @@ class Table:
     read: Callable[[tuple[str, ...]], Iterator[tuple[Values, ...]]]
     attributes: Mapping[str, Any] = field(default_factory=dict)
     notes: dict[str, Finding] = field(default_factory=dict)
+
+
+def in_pieces(
+    source: str, columns: Mapping[str, Values], names: tuple[str, ...]
+) -> Iterator[tuple[Values, ...]]:
+    """Columns that are held in memory, in pieces."""
+    rows = check_lengths(source, {name: columns[name].size for name in names})
+    for k in range(0, rows, PIECE):
+        yield tuple(columns[name][k : k + PIECE] for name in names)
+
+
+def check_lengths(source: str, sizes: Mapping[str, int]) -> int:
+    """The number of rows that all columns have; refuse those that differ."""
+    if len(set(sizes.values())) > 1:
+        said = ", ".join(f'"{name}" has {size} samples' for name, size in sizes.items())
+        raise InputError(f"{source}: {said}; choose columns of one length")
+    return next(iter(sizes.values()))
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.identification.logs import Finding
 from zwidth.identification.logs.steps import grid_of
+from zwidth.identification.logs.stops import at_ends
 from zwidth.identification.tissue.faults import Faults
 from zwidth.identification.tissue.model import Record
 
@@ -94,8 +95,8 @@ def findings(
     unit = "N·m" if motion == "rotary" else "N"
     if record.response == "position":
         unit = "rad" if motion == "rotary" else "m"
-    if np.isfinite(stops).any():
-        ends = " and at ".join(f"{end:.4g} {unit}" for end in stops if np.isfinite(end))
+    ends = at_ends(stops, unit)
+    if ends:
         text = (
             f"the force stays at {ends}: the sensor is at an end of its range; {left_out} samples do "
             "not count"
