@@ -11,6 +11,7 @@ from zwidth.identification.device import identify as device
 from zwidth.identification.device.choice import Zero
 from zwidth.identification.device.identified import Identified
 from zwidth.identification.logs import Log, read_log
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def identify(
         If the recording cannot be read or shows too little: too few strokes, or no force and no mass.
     """
     log = log_from(recording, **reading)
-    known = None if mass is None else float(parse_number(mass, _inertia(log), "mass"))
+    known = None if mass is None else float(parse_number(mass, GLOSSARY["mass"].unit_for(log.motion), "mass"))
     late = float(parse_number(delay, "s", "delay"))
     return device.identify(log, mass=known, delay=late, zero=zero, model=model, progress=progress)
 
@@ -72,7 +73,3 @@ def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) 
     if isinstance(recording, str | PathLike):
         return read_log(recording, **reading)
     return Log.from_arrays(recording, **reading)
-
-
-def _inertia(log: Log) -> str:
-    return "kg*m^2" if log.motion == "rotary" else "kg"

@@ -20,6 +20,7 @@ from zwidth.identification.device.table import rows, title
 from zwidth.plots.files import save_figure
 from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure
 from zwidth.quantity.exact import ends
+from zwidth.quantity.text import quantity_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -264,8 +265,8 @@ def _thinned(identified: IdentifiedNumbers) -> xr.Dataset:
 
 
 def _force(identified: IdentifiedNumbers) -> str:
-    return "N·m" if identified.motion == "rotary" else "N"
+    return quantity_unit("force", identified.motion)
 
 
 def _speed(identified: IdentifiedNumbers) -> str:
-    return "rad/s" if identified.motion == "rotary" else "m/s"
+    return quantity_unit("friction_speed", identified.motion)

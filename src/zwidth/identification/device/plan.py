@@ -22,6 +22,7 @@ from zwidth.errors import InputError
 from zwidth.identification.device.design import PARAMETERS, Stroke, best_shares, covariance
 from zwidth.identification.device.identified import Identified
 from zwidth.quantity.exact import Interval, ends
+from zwidth.quantity.text import quantity_unit
 
 RUN = 30.0
 """Length of a run [s]: a load cell is zeroed again after it."""
@@ -123,7 +124,7 @@ def _protocol(plan: MeasurementPlan) -> Iterator[str]:
     symbol, wall = {"damping": ("b", "2b/T"), "coulomb_friction": ("f_c", "2f_c/Δ")}[plan.limits]
     known = f"{symbol} within ±{plan.precision:.3g} of itself ({plan.confidence:.4g} confidence)"
     yield f"To know {known}; it sets the limit K = {wall}:"
-    yield _reached(plan, "rad/s" if rotary else "m/s")
+    yield _reached(plan)
     yield (
         "1. Motor off. Hold the handle by the load cell and by nothing else; "
         f"up to {plan.force:.2g} {force} will act."
@@ -139,9 +140,10 @@ def _protocol(plan: MeasurementPlan) -> Iterator[str]:
     yield (f"Expected: {runs} of {RUN:.0f} s. Let lengths and times vary, do not rest, do not hit the stops.")
 
 
-def _reached(plan: MeasurementPlan, unit: str) -> str:
+def _reached(plan: MeasurementPlan) -> str:
     """Up to which speed friction will be seen, and what is known of it: a promise ends there."""
     will = max(s.speed for s in plan.strokes) / MARGIN
+    unit = quantity_unit("friction_speed", plan.guess.motion)
     told = f"Friction will be seen up to some {will:.2g} {unit}; at higher speeds it will not be known."
     if plan.guess.friction_speed is None:
         return told

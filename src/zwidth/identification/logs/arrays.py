@@ -10,6 +10,7 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.identification.logs.names import recognise
 from zwidth.identification.logs.table import Table, Values
+from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +35,7 @@ def table_of(
         )
     if "position" not in arrays:
         raise InputError("a log needs positions; give position=…")
-    length, force = ("rad", "N*m") if motion == "rotary" else ("m", "N")
+    length, force = (GLOSSARY[name].unit_for(motion) for name in ("position", "force"))
     si = {"time": "s", "position": length, "hand_force": force, "actuator_force": force}
     return _table({name: _vector(name, values) for name, values in arrays.items()}, si, {}), {
         name: name for name in arrays

@@ -20,6 +20,7 @@ from zwidth.identification.logs.steps import Grid
 from zwidth.identification.logs.survey import Survey
 from zwidth.identification.logs.table import Table, listed
 from zwidth.identification.logs.wraps import Unwrapper
+from zwidth.quantity.text import quantity_unit
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def _contents(
 ) -> dict[str, Any]:
     source, meaning = recording.table.source, recording.meaning
     timed = recording.period is None
-    unit = "rad" if meaning.motion == "rotary" else "m"
+    length, force = (quantity_unit(name, meaning.motion) for name in ("position", "force"))
     period, about_period = findings.period(survey, stated, timed, source)
     snapped = survey.grid if survey.off_grid <= 0.01 * survey.samples else None
     step = survey.grid.step if survey.grid is not None else (meaning.resolution or 0.0)
@@ -84,8 +85,8 @@ def _contents(
         *recording.table.notes.values(),
         about_period,
         *findings.clock(survey, cutter, tally),
-        *findings.position(survey, wrap, unit),
-        *findings.forces(survey, "N·m" if meaning.motion == "rotary" else "N"),
+        *findings.position(survey, wrap, length),
+        *findings.forces(survey, force),
     )
     varying = cutter.clock.group > 1 or survey.deviation > 1e-6 * period
 

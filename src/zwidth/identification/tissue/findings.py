@@ -14,6 +14,7 @@ from zwidth.identification.logs.steps import grid_of
 from zwidth.identification.logs.stops import at_ends
 from zwidth.identification.tissue.faults import Faults
 from zwidth.identification.tissue.model import Record
+from zwidth.quantity.text import quantity_unit
 
 SOFTEST, STIFFEST = 5.0, 5e4
 """Between them lies what a probe feels of soft tissue, phantoms included [N/m]."""
@@ -92,9 +93,7 @@ def findings(
     motion
         "linear" or "rotary".
     """
-    unit = "N·m" if motion == "rotary" else "N"
-    if record.response == "position":
-        unit = "rad" if motion == "rotary" else "m"
+    unit = quantity_unit(record.response, motion)
     ends = at_ends(stops, unit)
     if ends:
         text = (
