@@ -74,10 +74,9 @@ def _model(
         if found.sees(names, "coulomb_friction"):
             yield Finding(
                 kind="wrong model",
-                text=f"a mass and a damper are the wrong model: Coulomb friction of "
-                f"{full.value('coulomb_friction'):.3g} {force} is seen; without it 2b/T "
-                f"reads {limits[0]} instead of {limits[1]}: walls between the two would be called passive "
-                "and are not",
+                text="a mass and a damper are the wrong model: Coulomb friction of "
+                f"{full.value('coulomb_friction'):.3g} {force} is seen; without it 2b/T reads {limits[0]} "
+                f"instead of {limits[1]}: walls between the two would be called passive and are not",
             )
     elif estimates["coulomb_friction"].beyond(SURE):
         yield Finding(

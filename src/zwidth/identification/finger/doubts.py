@@ -101,11 +101,10 @@ def late(log: Log, lag: Lag) -> LoadCellError:
     """What is said of a load cell that is late."""
     return LoadCellError(
         f"{log.source}: the force of the hand is recorded late, by {1e3 * lag.least:.2g} to "
-        f"{1e3 * lag.most:.2g} ms: "
-        "each millisecond takes as much damping from the finger as its spring gives in it, and mass "
-        "too; give "
-        "the device and log the actuator's force, which tell the finger without the load cell; or take the "
-        "filter of the load cell away, or shift its samples by what it is late"
+        f"{1e3 * lag.most:.2g} ms: each millisecond takes as much damping from the finger as its spring "
+        "gives in it, and mass too; give the device and log the actuator's force, which tell the finger "
+        "without the load cell; or take the filter of the load cell away, or shift its samples by what it is "
+        "late"
     )
 
 
@@ -114,10 +113,9 @@ def at_the_stop(log: Log) -> LoadCellError | None:
     for finding in log.findings:
         if finding.kind == "saturated":
             return LoadCellError(
-                f"{log.source}: {finding.text}, and what is left shows too little: shake less "
-                f"strongly, take a "
-                "larger load cell, or give the device and log the actuator's force, which tell the "
-                "finger without it"
+                f"{log.source}: {finding.text}, and what is left shows too little: shake less strongly, take "
+                "a larger load cell, or give the device and log the actuator's force, which tell the finger "
+                "without it"
             )
     return None
 
@@ -126,11 +124,10 @@ def doubts(lag: Lag) -> Iterator[Finding]:
     """What the lag that may be there makes of the intervals."""
     yield Finding(
         kind="late, or read before the step",
-        text=f"the force of the hand shows the actuator's steps late: either it is read before them, "
-        f"and in time, "
-        f"or it is recorded up to {1e3 * lag.most:.2g} ms late; nothing in the log tells which, and "
-        f"the intervals of mass "
-        "and damping hold both; give the device or the actuator's delay, and they will not have to",
+        text="the force of the hand shows the actuator's steps late: either it is read before them, and in "
+        f"time, or it is recorded up to {1e3 * lag.most:.2g} ms late; nothing in the log tells which, and "
+        "the intervals of mass and damping hold both; give the device or the actuator's delay, and they will "
+        "not have to",
     )
 
 
@@ -152,8 +149,7 @@ def apart(log: Log, hand: Estimate, actuator: Estimate) -> tuple[float, Finding]
         return None
     finding = Finding(
         kind="dampings apart",
-        text=f"damping is {hand} by the hand's force and {actuator} by the actuator's: the load cell "
-        f"is a little "
-        "late, or the device is not as it is said to be; the intervals hold both",
+        text=f"damping is {hand} by the hand's force and {actuator} by the actuator's: the load cell is a "
+        "little late, or the device is not as it is said to be; the intervals hold both",
     )
     return abs(hand.value - actuator.value), finding

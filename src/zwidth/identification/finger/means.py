@@ -92,9 +92,8 @@ def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
     runs = [run for run in whole_runs(log.blocks()) if run.position.size >= size]
     if not runs:
         raise InputError(
-            f"{log.source} has no run of {seconds:g} s without a hole: {log.runs} runs in "
-            f"{log.duration:.3g} s; "
-            "record a minute, lose no samples, or take shorter pieces"
+            f"{log.source} has no run of {seconds:g} s without a hole: {log.runs} runs in {log.duration:.3g} "
+            "s; record a minute, lose no samples, or take shorter pieces"
         )
 
     def rows(columns: Iterable[Array | None]) -> Array | None:

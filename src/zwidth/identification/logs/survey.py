@@ -165,7 +165,6 @@ def _refuse_other_rate(time: Array, period: float, source: str) -> None:
     other = np.flatnonzero(np.abs(means - period) > 0.01 * period)
     if other.size:
         raise InputError(
-            f"{source}: the sample period changes: roughly {period:.6g} s, but "
-            f"{means[other[0]]:.6g} s after t = {time[other[0] * _LONG]:.6g} s; cut the file where "
-            "it changes"
+            f"{source}: the sample period changes: roughly {period:.6g} s, but {means[other[0]]:.6g} s after "
+            f"t = {time[other[0] * _LONG]:.6g} s; cut the file where it changes"
         )

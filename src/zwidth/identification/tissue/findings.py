@@ -48,10 +48,9 @@ def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
     grid = grid_of(position)
     if grid is not None and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
         yield (
-            f"the position is read in steps of {grid.step:.3g}, and most of what the fit leaves may "
-            f"come from them: "
-            "the intervals take the position for exact and are too narrow; move further, or read it "
-            "more finely"
+            f"the position is read in steps of {grid.step:.3g}, and most of what the fit leaves may come "
+            "from them: the intervals take the position for exact and are too narrow; move further, or read "
+            "it more finely"
         )
 
 
@@ -62,9 +61,8 @@ def refuse_sign(record: Record, left: Array, size: float, again: Callable[[Recor
         return
     if float(np.mean(again(record._replace(force=-record.force)) ** 2)) < (1 - GOOD) * spread:
         raise InputError(
-            "no tissue pulls the probe in: with the sign of the force turned round, or that of the "
-            "position, the record "
-            "is of one; give positions that are positive inside the tissue and forces that are "
+            "no tissue pulls the probe in: with the sign of the force turned round, or that of the position, "
+            "the record is of one; give positions that are positive inside the tissue and forces that are "
             "positive out of it"
         )
 
@@ -104,9 +102,8 @@ def findings(
     if record.begins:
         places = ", ".join(f"{record.time[b]:.4g} s" for b in record.begins[:3])
         text = (
-            f"{len(record.begins)} holes, before t = "
-            f"{places}{' …' if len(record.begins) > 3 else ''}: what the branches "
-            "held after each was fitted"
+            f"{len(record.begins)} holes, before t = {places}{' …' if len(record.begins) > 3 else ''}: what "
+            "the branches held after each was fitted"
         )
         yield Finding(kind="hole", text=text)
     if faults.drift:
@@ -125,9 +122,8 @@ def findings(
 def _lateness(kind: str, late: float) -> Finding:
     if late < 0:
         text = (
-            f"the force looks {-1e3 * late:.3g} ms early: the position is recorded late, or the model "
-            f"has too few "
-            "elements; fitted as a delay"
+            f"the force looks {-1e3 * late:.3g} ms early: the position is recorded late, or the model has "
+            "too few elements; fitted as a delay"
         )
         return Finding(kind="force early", text=text)
     how = "a delay" if kind == "delay" else "a filter of the first order with this time constant"

@@ -83,9 +83,8 @@ def _units(position: Array, force: Array, stiffness: float) -> Iterator[Finding]
     times = float(np.ptp(force[inside])) / moved / stiffness
     if not 1 / FAR <= times <= FAR:
         text = (
-            f"the force goes about {times:.3g} times as much as that of the solid at the start: most "
-            f"likely a unit is "
-            "off by 1000, mm for m or mN for N"
+            f"the force goes about {times:.3g} times as much as that of the solid at the start: most likely "
+            "a unit is off by 1000, mm for m or mN for N"
         )
         yield Finding(kind="units", text=text)
 

@@ -200,9 +200,8 @@ def _plenty(task: Task, used: Mask) -> bool:
 def _enough(task: Task, used: Mask) -> Mask:
     if not _plenty(task, used):
         raise InputError(
-            f"in {used.size - np.count_nonzero(used)} of {used.size} samples the force is at an end "
-            f"of the sensor's "
-            "range, and what is left shows too little: press less, or take a larger load cell"
+            f"in {used.size - np.count_nonzero(used)} of {used.size} samples the force is at an end of the "
+            "sensor's range, and what is left shows too little: press less, or take a larger load cell"
         )
     return used
 
