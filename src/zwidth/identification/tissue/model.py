@@ -23,6 +23,7 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.relaxing import Elements, force_response
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Interval
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Given
 
 Response = Literal["force", "position"]
@@ -162,15 +163,7 @@ def as_model(name: object, branches: int | None, response: Response) -> Model:
 
 
 def unit_of(parameter: str, motion: str, exponent: float = 1.0) -> str:
-    """The SI unit of a parameter, as the glossary writes it."""
-    length = "rad" if motion == "rotary" else "m"
-    force = "N*m" if motion == "rotary" else "N"
-    if parameter == "offset":
-        return ""
-    if parameter == "exponent":
-        return "1"
-    if parameter == "dissipation":
-        return f"s/{length}"
-    viscous = "N*m*s/rad" if motion == "rotary" else "N*s/m"
+    """The SI unit of a parameter, as the glossary writes it; a stiffness is per length to the exponent."""
+    name = parameter.rstrip("_0123456789")
     power = "" if exponent == 1 else f"^{exponent:.3g}"
-    return viscous if "damping" in parameter else f"{force}/{length}{power}"
+    return GLOSSARY[name].unit_for(motion) + power
