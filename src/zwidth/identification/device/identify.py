@@ -22,7 +22,7 @@ from zwidth.identification.device.curve import fastest
 from zwidth.identification.device.findings import findings
 from zwidth.identification.device.fit import Found, gather
 from zwidth.identification.device.identified import Identified
-from zwidth.identification.device.impossible import impossible
+from zwidth.identification.device.impossible import refuse_impossible
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.device.regression import offset
 from zwidth.identification.logs import Log
@@ -59,9 +59,7 @@ def identify(
     directions, slopes = found.directions(names), found.slopes(names, min(quickest))
     if directions is None or slopes is None or not min(quickest) > 0:
         raise InputError(too_little(log))
-    wrong = impossible(log, estimates, lambda other: through(other).estimates(names))
-    if wrong is not None:
-        raise InputError(wrong)
+    refuse_impossible(log, estimates, lambda other: through(other).estimates(names))
     weights = found.shape.value / found.shape.piece
     return Identified(
         estimates=estimates,

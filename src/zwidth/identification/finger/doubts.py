@@ -40,12 +40,12 @@ USUAL = {"position": (1e-5, 0.05), "hand_force": (0.01, 100.0), "actuator_force"
 """How far it goes about while a finger is shaken [m], [N]."""
 
 
-def scale_wrong(log: Log, pieces: Pieces, stiffness: Estimate) -> str | None:
-    """Why a stiffness is no finger's; None where it may be one, or the device turns."""
+def refuse_scale(log: Log, pieces: Pieces, stiffness: Estimate) -> None:
+    """Refuse a stiffness that is no finger's, unless the device turns."""
     low, high = stiffness.interval()
     if log.motion == "rotary" or (high >= SOFTEST and low <= STIFFEST):
-        return None
-    return (
+        return
+    raise InputError(
         f"{log.source}: stiffness comes out as {stiffness}, and no finger, hand or arm has that "
         f"({SOFTEST:g} to {STIFFEST:g} N/m at the most): {_ranges(log, pieces)}; most likely a unit "
         f"is off by 1000, "
@@ -72,16 +72,16 @@ def _ranges(log: Log, pieces: Pieces) -> str:
     return ", ".join(said)
 
 
-def disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_known: bool) -> str | None:
-    """Why two forces are not of one finger, by its stiffness by each; None where they may be.
+def refuse_disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_known: bool) -> None:
+    """Refuse two forces that are not of one finger, by its stiffness by each.
 
     Where the device's Coulomb friction is not known, it was left out of the second.
     """
     apart = 1.0 if friction_known else APART
     (low, high), (least, most) = hand.interval(0.999), actuator.interval(0.999)
     if low <= apart * most and least <= apart * high:
-        return None
-    return (
+        return
+    raise InputError(
         f"{log.source}: the two forces are not of one finger: its stiffness is {hand} by the hand's "
         f"force and "
         f"{actuator} by the actuator's, {hand.value / actuator.value:.3g} times as much; most likely "

@@ -32,7 +32,7 @@ from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.identification.device.choice import LENGTHS, LONGER, SAFETY
 from zwidth.identification.device.estimate import Estimate, perhaps_none, unit_of
-from zwidth.identification.device.impossible import impossible
+from zwidth.identification.device.impossible import refuse_impossible
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.finger.doubts import (
     BY_ACTUATOR,
@@ -40,10 +40,10 @@ from zwidth.identification.finger.doubts import (
     LoadCellError,
     apart,
     at_the_stop,
-    disagreement,
     doubts,
     late,
-    scale_wrong,
+    refuse_disagreement,
+    refuse_scale,
     widened,
 )
 from zwidth.identification.finger.fit import TERMS, Fit, fitted
@@ -135,7 +135,11 @@ class _Task(NamedTuple):
     @property
     def known(self) -> dict[str, tuple[float, float]]:
         """The ends of what the device takes of the actuator's force; nothing where no mass is known."""
-        return {} if self.device is None or self.device.mass is None else _known(self.device)
+        if self.device is None or self.device.mass is None:
+            return {}
+        names = ("mass", "damping", "coulomb_friction")
+        pairs = {name: ends(getattr(self.device, name)) for name in names}
+        return {name: (float(low), float(high)) for name, (low, high) in pairs.items()}
 
     @property
     def friction(self) -> float:
@@ -155,19 +159,14 @@ class _Road(NamedTuple):
 def _identified(task: _Task) -> IdentifiedFinger:
     log = task.log
     road = _begun(task)
-    wrong = impossible(log, _stiffnesses(task, road), lambda other: _turned(task, other), FINGER)
-    if wrong is not None:
-        raise InputError(wrong)
+    refuse_impossible(log, _stiffnesses(task, road), lambda other: _turned(task, other), FINGER)
     road = _finished(task, road)
     shift, said = _against_the_other_force(task, road)
     estimates = _estimates(
         road.ways.fit, _shift(task, road) + shift, {} if task.by_hand else task.known, log.motion
     )
-    wrong = scale_wrong(log, road.pieces, estimates["stiffness"]) or impossible(
-        log, estimates, lambda _: None, FINGER
-    )
-    if wrong is not None:
-        raise InputError(wrong)
+    refuse_scale(log, road.pieces, estimates["stiffness"])
+    refuse_impossible(log, estimates, lambda _: None, FINGER)
     fit = road.ways.fit
     return IdentifiedFinger(
         estimates=estimates,
@@ -251,7 +250,7 @@ def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Find
         return nothing, []
     stiffness = _stiffnesses(task, road)
     if road.total is not None:
-        _refuse(disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], False))
+        refuse_disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], False)
     period = log.sample_period
     lag = (
         lag_without_actuator(road.pieces, period)
@@ -264,7 +263,7 @@ def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Find
     shift = widened(ways.fit, lag)
     if road.total is None or not task.known:
         return shift, said
-    _refuse(disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], True))
+    refuse_disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], True)
     hand = _estimates(ways.fit, _shift(task, road), {}, log.motion)["damping"]
     by_actuator = task._replace(by_hand=False)
     other = _estimates(
@@ -274,11 +273,6 @@ def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Find
     if found is not None:
         shift, said = shift + np.array([0.0, found[0], 0.0]), [*said, found[1]]
     return shift, said
-
-
-def _refuse(wrong: str | None) -> None:
-    if wrong is not None:
-        raise InputError(wrong)
 
 
 def _checked(
@@ -310,16 +304,6 @@ def _checked(
     if instrument == "perturbation" and not recorded:
         raise InputError(f'{log.source} has no force of the actuator to serve as instrument; take "position"')
     return instrument or ("perturbation" if recorded else "position")
-
-
-def _known(device: Device | None) -> dict[str, tuple[float, float]]:
-    """The ends of what the device takes of the actuator's force."""
-    assert device is not None  # checked
-    found = {}
-    for name in ("mass", "damping", "coulomb_friction"):
-        low, high = ends(getattr(device, name))
-        found[name] = (float(low), float(high))
-    return found
 
 
 def _chosen(pieces: Pieces, log: Log, delay: float, by_hand: bool, friction: float) -> Ways:

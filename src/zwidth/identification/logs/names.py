@@ -110,10 +110,15 @@ def _candidates(quantity: str, columns: list[str]) -> list[str]:
     return []
 
 
+def check_quantity(what: str, name: str) -> None:
+    """Refuse a name that is none of the quantities."""
+    if name not in QUANTITIES:
+        raise InputError(f'{what}: there is no quantity "{name}"; there are {", ".join(QUANTITIES)}')
+
+
 def _checked(columns: Mapping[str, Any], chosen: Mapping[str, str | None], source: str) -> dict[str, str]:
     for quantity, column in chosen.items():
-        if quantity not in QUANTITIES:
-            raise InputError(f'columns: there is no quantity "{quantity}"; there are {", ".join(QUANTITIES)}')
+        check_quantity("columns", quantity)
         if column is not None and column not in columns:
             near = get_close_matches(column, list(columns), n=1)
             hint = f'; did you mean "{near[0]}"?' if near else ""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from zwidth.errors import InputError
 from zwidth.identification.logs.block import Motion
-from zwidth.identification.logs.names import QUANTITIES, name_and_unit
+from zwidth.identification.logs.names import check_quantity, name_and_unit
 from zwidth.identification.logs.table import Table
 from zwidth.quantity.dimension import PI, Dimension, Unit, unit_of
 from zwidth.quantity.exact import Exact
@@ -104,8 +104,7 @@ def _resolution(table: Table) -> float | None:
 
 def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[str, str]) -> None:
     for key in given or {}:
-        if key not in QUANTITIES:
-            raise InputError(f'{what}: there is no quantity "{key}"; there are {", ".join(QUANTITIES)}')
+        check_quantity(what, key)
         if key not in columns:
             raise InputError(f"{what}: the log has no {key}; leave it out, or name its column in columns")
 
