@@ -71,16 +71,8 @@ def regress(
 ) -> Regression | None:
     """Fit the named parameters; None where the strokes are too few or too much alike.
 
-    Parameters
-    ----------
-    moments
-        The sums.
-    names
-        Some of `REGRESSORS`.
-    mass
-        m where it is known and not fitted [kg; kg·m²]: m a then counts to the force.
-    share
-        Part of the variance of df/dt that is motion and not noise, for `force_lag`.
+    A mass that is given [kg; kg·m²] is not fitted: m a then counts to the force.  `share` is the part of the
+    variance of df/dt that is motion and not noise, for `force_lag`.
     """
     degrees = moments.strokes - len(names) - moments.lines
     if degrees < FEWEST:

@@ -64,16 +64,9 @@ class Fit(NamedTuple):
 def fitted(rows: Means | None, by_hand: bool, friction: float, resting: bool = False) -> Fit | None:
     """Mass, damping and stiffness of what meets a force; None where too little is known.
 
-    Parameters
-    ----------
-    rows
-        The means.
-    by_hand
-        True: of the finger, from −f_h; False: of device and finger, from −f_a − f_c sgn ẋ.
-    friction
-        f_c, of the device [N; N·m]; where it is not 0 only pulses count that have no more than short turns.
-    resting
-        True: as if in a turn there were no friction; else it changes its sign in the middle.
+    By the hand: of the finger, from −f_h; else of device and finger, from −f_a − f_c sgn ẋ.  Where f_c is
+    not 0 only pulses count that have no more than short turns, in which friction changes its sign in the
+    middle, or is left out (`resting`).
     """
     if rows is None:
         return None

@@ -69,18 +69,7 @@ class Lag(NamedTuple):
 def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: float) -> Lag | None:
     """How late the force of the hand is beside the actuator's; None where nothing tells.
 
-    Parameters
-    ----------
-    pieces
-        The recording.
-    shape
-        The pulse.
-    total
-        Mass, damping and stiffness of device and finger by the actuator's force.
-    delay
-        From a sample to its actuator force [samples].
-    period
-        T [s].
+    `total` is the fit of device and finger to the actuator's force, whose delay is in samples.
     """
     other = weights(LONGER * shape.piece, delay)
     rows, longer = (means(pieces, s, period) for s in (shape, other))

@@ -83,7 +83,7 @@ def period(survey: Survey, stated: float | None, timed: bool, source: str) -> tu
         assert stated is not None
         text = f"sample period {stated:.9g} s as stated; there are no stamps to compare with"
         return stated, Finding(kind="sample period", text=text)
-    mean, count = survey.mean_interval, max(1, survey.intervals.count)
+    mean, count = survey.mean_interval, max(1, survey.intervals.number)
     uncertainty = (
         2 * survey.deviation * survey.runs**0.5 + 4e-16 * survey.intervals.latest
     ) / count + 1e-12 * mean

@@ -31,7 +31,7 @@ class Intervals(NamedTuple):
 
     Parameters
     ----------
-    count
+    number
         How many.
     elapsed
         [s] of all together.
@@ -43,7 +43,7 @@ class Intervals(NamedTuple):
         [s] stamp that is farthest from 0.
     """
 
-    count: int = 0
+    number: int = 0
     elapsed: float = 0.0
     squares: float = 0.0
     shortest: float = inf
@@ -61,7 +61,7 @@ class Intervals(NamedTuple):
             return self._replace(latest=latest)
         late = steps - period
         return Intervals(
-            self.count + steps.size,
+            self.number + steps.size,
             self.elapsed + float(time[-1] - start),
             self.squares + float(late @ late),
             min(self.shortest, float(steps.min())),
@@ -114,14 +114,14 @@ class Survey:
     @property
     def mean_interval(self) -> float:
         """[s] over all runs."""
-        return self.intervals.elapsed / self.intervals.count if self.intervals.count else self.period
+        return self.intervals.elapsed / self.intervals.number if self.intervals.number else self.period
 
     @property
     def deviation(self) -> float:
         """[s] standard deviation of the intervals between stamps."""
-        if not self.intervals.count:
+        if not self.intervals.number:
             return 0.0
-        mean = self.intervals.squares / self.intervals.count
+        mean = self.intervals.squares / self.intervals.number
         return float(np.sqrt(max(0.0, mean - (self.mean_interval - self.period) ** 2)))
 
     def _stamps(self, time: Array, begins: bool) -> None:

@@ -78,18 +78,8 @@ def findings(
 ) -> Iterator[Finding]:
     """What was found, and what was done about it.
 
-    Parameters
-    ----------
-    record, faults
-        With its holes; and what was fitted besides.
-    zero
-        What was found of it: at the start, then further on [N; N·m].
-    late
-        By how much the force is [s].
-    stops, left_out
-        The ends of the sensor's range that were found, and how many samples do not count.
-    motion
-        "linear" or "rotary".
+    `zero` is that at the start, then further on [N; N·m]; the force is `late` [s]; `left_out` samples at the
+    ends of the sensor's range do not count.
     """
     unit = quantity_unit(record.response, motion)
     ends = at_ends(stops, unit)

@@ -30,18 +30,9 @@ FEWEST = 30
 def passed_over(
     position: Array, force: Array, time: ArrayLike | None, period: float, stiffness: float
 ) -> tuple[NDArray[np.bool_], tuple[Finding, ...]]:
-    """Which samples are passed over, and why.
+    """Which samples of a record are passed over, and why: at an end of the sensor's range, and after a hole.
 
-    Parameters
-    ----------
-    position, force
-        x [m; rad], positive inside, and the force of the tissue [N; N·m].
-    time
-        Of the samples [s]; None: without holes.
-    period
-        T [s].
-    stiffness
-        At once, of the solid that the tracker starts from [N/m; N·m/rad].
+    `stiffness` is that at once, of the solid that the tracker starts from [N/m; N·m/rad].
     """
     _check_sign(position, force)
     passed, findings = np.zeros(force.size, dtype=bool), [*_units(position, force, stiffness)]
