@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -126,3 +127,13 @@ def test_arrays_that_say_nothing_are_refused(arguments: dict, message: str) -> N
     """One message that says what is wrong."""
     with pytest.raises(zw.InputError, match=message):
         zw.Log.from_arrays(sample_rate=1000, **arguments)
+
+
+def test_counts_per_turn_stand_for_what_a_dataset_states_itself() -> None:
+    """What is typed comes before the resolution of the file, as for a resolution that is typed."""
+    step = 2 * np.pi / 4096
+    angle = ("time", walk() * step, {"units": "rad"})
+    data = xr.Dataset({"position": angle}, attrs={"resolution_rad": 2 * step})
+    log = zw.Log.from_arrays(data, counts_per_turn=4096, sample_rate=1000)
+    assert log.motion == "rotary"
+    assert log.resolution == pytest.approx(step, rel=1e-12)
