@@ -131,7 +131,7 @@ class _Parser:
             try:
                 batch = self._parsed(cleaned)
             except pa.ArrowInvalid as error:
-                raise self._culprit(cleaned, error) from None
+                raise self._refusal(cleaned, error) from None
             self.rows += batch.num_rows
             if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
                 raise InputError(
@@ -191,7 +191,7 @@ class _Parser:
             lines = re.sub(rb"(?m)^ | ?\r?$", b"", lines)
         return lines
 
-    def _culprit(self, lines: bytes, error: Exception) -> InputError:
+    def _refusal(self, lines: bytes, error: Exception) -> InputError:
         """The field that is no number, and where it stands."""
         for k, line in enumerate(lines.decode("utf-8", "replace").splitlines()):
             fields = [f.strip() for f in line.split(self.layout.delimiter)]
