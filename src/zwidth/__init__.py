@@ -60,7 +60,7 @@ if TYPE_CHECKING:
         transformed_condition,
     )
     from zwidth.passivity.passive_limit import Bracket
-    from zwidth.passivity.ports.extracted import Extraction
+    from zwidth.passivity.ports.extracting_input import ExtractingInput
     from zwidth.passivity.ports.index import PassivityIndex
     from zwidth.passivity.ports.indices import PassivityIndices, passivity_indices
     from zwidth.passivity.real_hand import RealHand, replay
@@ -88,7 +88,7 @@ __all__ = [
     "CouplingDesign",
     "Device",
     "Exact",
-    "Extraction",
+    "ExtractingInput",
     "FrictionCurve",
     "FrictionModel",
     "GeneralizedMaxwell",
@@ -211,7 +211,7 @@ _LATER = {
     "required_damping_by_slopes": "zwidth.passivity.coupling.loop_transformation",
     "transformed_blocks": "zwidth.passivity.coupling.loop_transformation",
     "transformed_condition": "zwidth.passivity.coupling.loop_transformation",
-    "Extraction": "zwidth.passivity.ports.extracted",
+    "ExtractingInput": "zwidth.passivity.ports.extracting_input",
     "PassivityIndex": "zwidth.passivity.ports.index",
     "PassivityIndices": "zwidth.passivity.ports.indices",
     "passivity_indices": "zwidth.passivity.ports.indices",

@@ -17,23 +17,18 @@ from typing import Any
 from zwidth.device import Device
 from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
-from zwidth.environment.matrix_system import size_of
-from zwidth.environment.system import is_system
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity import limits
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import decide
 from zwidth.passivity.linear.supremum import frequency, tightest
-from zwidth.passivity.ports.extracted import Extraction
+from zwidth.passivity.ports.extracting_input import ExtractingInput
 from zwidth.passivity.ports.index import PassivityIndex
-from zwidth.passivity.ports.multiport.index import MatrixIndex
-from zwidth.passivity.ports.multiport.largest import largest_matrix_level
-from zwidth.passivity.ports.multiport.reading import read_matrix_port
-from zwidth.passivity.ports.multiport.sampled import sampled_damping
-from zwidth.passivity.ports.port import read_port
-from zwidth.passivity.ports.port_index import PortIndex
-from zwidth.passivity.ports.positive_real import largest_level
+from zwidth.passivity.ports.largest import largest_level
+from zwidth.passivity.ports.port import Port
+from zwidth.passivity.ports.reading import read_port
+from zwidth.passivity.ports.sampled import sampled_damping
 from zwidth.passivity.scope import Scope
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.showing import Html, element, named
@@ -110,7 +105,7 @@ class PassivityIndices:
         return self.input.certificate(0) if self.passive else None
 
     @property
-    def witness(self) -> Extraction | None:
+    def witness(self) -> ExtractingInput | None:
         """A motion from rest that takes energy out; None if the port is passive, or none was found."""
         return self.input.refute(0)
 
@@ -174,33 +169,29 @@ def passivity_indices(
     Bao & Lee, Process Control: The Passive Systems Approach, 2007.  Kottenstette, McCourt, Xia,
     Gupta & Antsaklis, Automatica 50(4), 2014.
     """
-    if is_system(system) and size_of(system) != (1, 1):
-        return _of_several_axes(system, device, discretization)
     port = read_port(system, None if device is None else device.exact("sample_period"))
+    back = port.inverse()
+    if port.axes == 1:
+        damping = _sampled(system, device, discretization)
+    else:
+        damping = _sampled_axes(system, port, device, discretization)
     return PassivityIndices(
-        PortIndex("input", port, largest_level(port)),
-        PortIndex("output", port.inverse(), None if port.is_zero else largest_level(port.inverse(), "zero")),
-        _sampled(system, device, discretization),
+        PassivityIndex("input", port, largest_level(port)),
+        PassivityIndex("output", back, None if back.is_zero else largest_level(back, "zero")),
+        damping,
     )
 
 
-def _of_several_axes(
-    system: Any, device: Device | None, discretization: Discretization | None
-) -> PassivityIndices:
-    port = read_matrix_port(system)
-    back = port.inverse()
+def _sampled_axes(
+    system: Any, port: Port, device: Device | None, discretization: Discretization | None
+) -> SampledDamping | None:
     given = device or _bare(system)
     if discretization is not None or (device is not None and port.time == "continuous"):
         raise InputError(
             "several inputs are sampled and held as H(z) only: discretize the system first, and leave "
             "discretization out"
         )
-    damping = None if given is None else sampled_damping(port, given)
-    return PassivityIndices(
-        MatrixIndex("input", port, largest_matrix_level(port)),
-        MatrixIndex("output", back, None if back.is_zero else largest_matrix_level(back, "zero")),
-        None if damping is None or given is None else SampledDamping(*damping, given),
-    )
+    return None if given is None else SampledDamping(*sampled_damping(port, given), given)
 
 
 def _sampled(

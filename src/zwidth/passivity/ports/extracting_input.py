@@ -1,53 +1,24 @@
-"""A motion by which a port gives out more than a level of its index allows."""
+"""An input by which a port gives out more than a level of its index allows."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from cmath import phase
 from dataclasses import dataclass
 from fractions import Fraction
 from math import pi
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any
 
 from zwidth.checker import verify
 from zwidth.passivity.document import save_json
-from zwidth.passivity.ports.port import Time
+from zwidth.passivity.ports.gaussian import answer, place, to_float
+from zwidth.passivity.ports.motion import Motion, played
+from zwidth.passivity.ports.port import Port
 from zwidth.showing import Html, element
 
 
-class AnyPort(Protocol):
-    """What an index and a motion ask of a port, of one axis or of several."""
-
-    @property
-    def time(self) -> Time:
-        """ "continuous" or "discrete"."""
-
-    @property
-    def period(self) -> Fraction:
-        """T [s] of a discrete port."""
-
-    @property
-    def hidden_modes_decay(self) -> bool:
-        """False when a mode that the port does not show does not decay."""
-
-    def frequency(self, cosine: Fraction) -> float:
-        """ω/2π [Hz] of c = cos θ."""
-
-
-class AnyMotion(Protocol):
-    """A latent motion φ, with its numbers as `port_motion` has them."""
-
-    @property
-    def kind(self) -> Literal["burst", "polynomial", "sequence"]:
-        """How φ is made."""
-
-    @property
-    def numbers(self) -> tuple[Fraction, ...]:
-        """burst: Ω [rad/s], m, k.  polynomial: τ [s] …"""
-
-
-@dataclass(frozen=True)
-class Extraction(ABC):
+@dataclass(frozen=True, repr=False)
+class ExtractingInput:
     """An input from rest by which a port gives out more than a level of its index allows.
 
     Attributes
@@ -62,8 +33,8 @@ class Extraction(ABC):
 
     document: dict[str, Any]
     share: float
-    port: AnyPort
-    motion: AnyMotion
+    port: Port
+    motion: Motion
 
     @property
     def kind(self) -> str:
@@ -73,17 +44,30 @@ class Extraction(ABC):
     @property
     def frequency(self) -> float | None:
         """Of a burst, its middle frequency [Hz]; None for another motion."""
-        if self.motion.kind != "burst":
-            return None
-        step, cycles, _ = self.motion.numbers
-        return float(step * cycles) / (2 * pi)
+        return None if self.kind != "burst" else float(self._middle()) / (2 * pi)
 
-    @abstractmethod
+    @property
+    def phasors(self) -> list[tuple[float, float]]:
+        """Of a burst, each input's (amplitude, the largest 1; phase [rad]) at the middle frequency."""
+        if self.kind != "burst":
+            return []
+        side = self.port.inputs if self._is_of_input() else self.port.outputs
+        found = answer(side, place(self.port, self._middle()), self.motion.latent)
+        u = [complex(to_float(a.real), to_float(a.imaginary)) for a in found]
+        largest = max(u, key=abs)
+        return [(abs(a / largest), phase(a / largest)) for a in u]
+
     def signals(self, points: int = 1000) -> tuple[list[float], Any, Any]:
         """(t [s], u, y), u with a peak of 1; of a discrete port its samples, whatever `points`.
 
         With several axes u and y are lists of one signal for each.
         """
+        t, u, y = played(self.port, self.motion, points)
+        if not self._is_of_input():
+            u, y = y, u
+        peak = max(abs(a) for axis in u for a in axis) or 1.0
+        u, y = ([[a / peak for a in axis] for axis in side] for side in (u, y))
+        return (t, u[0], y[0]) if self.port.axes == 1 else (t, u, y)
 
     def verify(self) -> bool:
         """True when the independent checker sums the same sign."""
@@ -99,24 +83,29 @@ class Extraction(ABC):
 
     def describe(self) -> str:
         """The motion in a sentence."""
-        of = "∫u²" if self.document["index"] == "input" else "∫y²"
+        of = "∫u²" if self._is_of_input() else "∫y²"
         if self.port.time == "discrete":
             of = of.replace("∫", "Σ")
-        return f"{self._form()}, from rest: {self.share:.4g} {of} comes out above the level"
+        axes = f" in {self.port.axes} axes" if self.port.axes > 1 else ""
+        return f"{self._form()}{axes}, from rest: {self.share:.4g} {of} comes out above the level"
 
     def _form(self) -> str:
         if self.kind == "burst":
             return f"a burst of {self.frequency or 0:.6g} Hz"
         if self.kind == "polynomial":
             return f"a polynomial over {float(self.motion.numbers[0]):.4g} s"
-        return f"{self._samples()} samples"
+        return f"{len(self.motion.axes[0])} samples"
 
-    @abstractmethod
-    def _samples(self) -> int:
-        """How many numbers a sequence has for each axis."""
+    def _is_of_input(self) -> bool:
+        return bool(self.document["index"] == "input")
+
+    def _middle(self) -> Fraction:
+        """The middle frequency of a burst [rad/s]."""
+        step, cycles, _ = self.motion.numbers
+        return step * cycles
 
     def __repr__(self) -> str:
-        return f"<Extraction {self.describe()}>"
+        return f"<ExtractingInput {self.describe()}>"
 
     def _repr_html_(self) -> Html:
         return element("p", self.describe())

@@ -10,20 +10,20 @@ from __future__ import annotations
 from fractions import Fraction
 from math import inf, nextafter
 
-from flint import fmpq, fmpq_poly
+from flint import fmpq_poly
 
 from zwidth.device import Device
 from zwidth.errors import InputError
 from zwidth.passivity.linear.supremum import frequency
-from zwidth.passivity.ports.multiport.largest import largest_matrix_level
-from zwidth.passivity.ports.multiport.port import MatrixPort, in_lowest_terms
-from zwidth.passivity.ports.multiport.reading import from_polynomials
-from zwidth.passivity.ports.positive_real import Largest
+from zwidth.passivity.ports.largest import Largest, largest_level
+from zwidth.passivity.ports.port import Port, in_lowest_terms
+from zwidth.passivity.ports.reading import from_polynomials
+from zwidth.quantity.balls import as_fmpq
 
 _SAME_PERIOD = Fraction(1, 10**9)
 
 
-def sampled_damping(port: MatrixPort, device: Device) -> tuple[float | None, float]:
+def sampled_damping(port: Port, device: Device) -> tuple[float | None, float]:
     """(b that is proved [N·s/m; N·m·s/rad], None if none is enough; where it is tightest [Hz]).
 
     Raises
@@ -38,24 +38,24 @@ def sampled_damping(port: MatrixPort, device: Device) -> tuple[float | None, flo
             f"the delay is {float(delay):g} samples; with several axes the damping is decided for whole "
             "samples: round the delay up and down"
         )
-    found = largest_matrix_level(_integrated(port, period, int(delay)))
+    found = largest_level(_integrated(port, period, int(delay)))
     if not isinstance(found, Largest):
         return None, 0.0
     cosine = Fraction(-1) if found.cosine is None else found.cosine  # of equals the highest, as for one axis
     return _not_below(max(-found.low, Fraction(0))), frequency(cosine, period)
 
 
-def _integrated(port: MatrixPort, period: Fraction, delay: int) -> MatrixPort:
+def _integrated(port: Port, period: Fraction, delay: int) -> Port:
     """T H(z)/(zᵈ (z − 1)), in lowest terms."""
     d = fmpq_poly(list(port.denominator)) * fmpq_poly([0] * delay + [-1, 1])
-    gain = fmpq(period.numerator, period.denominator)
+    gain = as_fmpq(period)
     n = [[fmpq_poly(list(p)) * gain for p in row] for row in port.outputs]
     found = in_lowest_terms(n, d)
     assert found is not None, "a denominator is not zero"
     return from_polynomials(found[1], found[0], "discrete", period)
 
 
-def _period(port: MatrixPort, device: Device) -> Fraction:
+def _period(port: Port, device: Device) -> Fraction:
     period = device.exact("sample_period")
     if abs(period - port.period) > _SAME_PERIOD * period:
         raise InputError(
