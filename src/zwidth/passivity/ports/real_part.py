@@ -35,14 +35,18 @@ class RealPart:
         p, w = self.power, self.weight
         slope = (p.derivative() * w - p * w.derivative()).numer()
         places = [Fraction(1), Fraction(-1), *roots_inside(slope, _BITS)]
-        values = [(as_fraction(p(as_fmpq(c)) / w(as_fmpq(c))), c) for c in places]
+        values = [(self._at(c), c) for c in places]
         least = min(value for value, _ in values)
         flat = p.degree() <= 0 and w.degree() <= 0
         return least, None if flat else max(c for value, c in values if value == least)
 
     def reached(self, low: Fraction) -> Fraction:
-        """`low` where it is a value; otherwise the least, which is one as long as its place is exact."""
+        """`low` where it is a value; otherwise the least, which is one at its c."""
         return low if vanishes(self.power - as_fmpq(low) * self.weight) else self.least[0]
+
+    def _at(self, c: Fraction) -> Fraction:
+        at = as_fmpq(c)
+        return as_fraction(self.power(at) / self.weight(at))
 
 
 def real_part(port: Port) -> RealPart:
