@@ -125,8 +125,8 @@ def transformed_condition(
 ) -> TransformedCondition:
     """Is the loop passive for every environment of a class, felt as it is or behind a virtual coupling?
 
-    Of springs: for those whose potential is bounded below, as `SlopeBounds` states.  A sufficient condition; where
-    it is exact, the documentation says so.
+    Of springs: for those whose potential is bounded below, as `SlopeBounds` states.  A sufficient condition;
+    where it is exact, the documentation says so.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ for the curve lies in a parallelogram about its chord.  Anything with excess or 
     Σ f(k) e ≥ −S + Σ [ι e²/T + ο T f(k)²]
 
 The first bounds what comes out only if Φ has a lower bound: a constant force has none, and neither has a
-negative spring.  SlopeBounds from μ > 0 up force one on it; for others it is a hypothesis that has to be stated.
+negative spring.  Slopes from μ > 0 up force one on it; for others it is a hypothesis that has to be stated.
 
 ι is what it dissipates as a damper in parallel would, ο as one in series; where they are negative, that
 much is lacking.  A spring is short by ι = μT/2 at most.
@@ -122,8 +122,8 @@ def _stated(least: Fraction, bounded_below: bool | None) -> bool:
         raise InputError(
             f"a spring with slopes down to {float(least):g} may lead away for ever, as a constant force "
             "does, and give out energy without end: say bounded_below=True if the potential of every spring "
-            "of the class is bounded below, as of a wall that is touched and left; SlopeBounds.of reads it off a "
-            "spring"
+            "of the class is bounded below, as of a wall that is touched and left; SlopeBounds.of reads it off "
+            "a spring"
         )
     raise InputError(
         f"bounded_below is True or left out, got {bounded_below!r}: before springs that lead away for ever "

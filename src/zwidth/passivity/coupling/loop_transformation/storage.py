@@ -68,7 +68,8 @@ def loop_storage(
     Raises
     ------
     InputError
-        If the shapes do not match, T ≤ 0, the delay is not a whole number of samples or is longer than the motion, or Λ is not positive definite.
+        If the shapes do not match, T ≤ 0, the delay has a part of a sample or is longer than the motion,
+        or Λ is not positive definite.
     """
     u, x, v = _arrays(inputs, positions, energies)
     inverse = np.linalg.inv(matrix := _matrix(damping, u.shape[1]))
@@ -89,7 +90,8 @@ def _shorter(d: int, samples: int) -> int:
     """A delay of fewer samples than the motion has."""
     if d >= samples:
         raise InputError(
-            f"the delay is {d} samples and the motion has {samples}: no force of it would act; delay is in seconds"
+            f"the delay is {d} samples and the motion has {samples}: none of its forces would act; "
+            "delay is in seconds"
         )
     return d
 
