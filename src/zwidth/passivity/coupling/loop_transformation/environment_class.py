@@ -122,8 +122,8 @@ def _stated(least: Fraction, bounded_below: bool | None) -> bool:
         raise InputError(
             f"a spring with slopes down to {float(least):g} may lead away for ever, as a constant force "
             "does, and give out energy without end: say bounded_below=True if the potential of every spring "
-            "of the class is bounded below, as of a wall that is touched and left; SlopeBounds.of reads it off "
-            "a spring"
+            "of the class is bounded below, as of a wall that is touched and left; SlopeBounds.of reads it "
+            "off a spring"
         )
     raise InputError(
         f"bounded_below is True or left out, got {bounded_below!r}: before springs that lead away for ever "
