@@ -64,9 +64,10 @@ if TYPE_CHECKING:
     from zwidth.passivity.ports.index import PassivityIndex
     from zwidth.passivity.ports.indices import PassivityIndices, passivity_indices
     from zwidth.passivity.real_hand import RealHand, replay
-    from zwidth.passivity.storage import WorstHand
+    from zwidth.passivity.storage import AvailableStorage as WorstHand
     from zwidth.passivity.workspace import Workspace, workspace
     from zwidth.rendering.rendered import render
+    from zwidth.traces import available_storage as worst_hand
     from zwidth.traces import (
         compare_traces,
         identify,
@@ -74,7 +75,6 @@ if TYPE_CHECKING:
         passive_limit,
         simulate,
         simulate_batch,
-        worst_hand,
     )
 
 __all__ = [
@@ -258,12 +258,15 @@ _LATER = {
 }
 """Where a name is found when it is first used: the simulator's libraries take their time to load."""
 
+_INSIDE = {"WorstHand": "AvailableStorage", "worst_hand": "available_storage"}
+"""What it is called there, where that is something else."""
+
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
         raise AttributeError(f"module 'zwidth' has no attribute {name!r}")
     module = import_module(_LATER[name])
-    thing = getattr(module, name, module)
+    thing = getattr(module, _INSIDE.get(name, name), module)
     globals()[name] = thing
     return thing
 

@@ -6,19 +6,16 @@ from cmath import phase
 from dataclasses import dataclass
 from fractions import Fraction
 from math import pi
-from pathlib import Path
 from typing import Any
 
-from zwidth.checker import verify
-from zwidth.passivity.document import save_json
 from zwidth.passivity.ports.gaussian import answer, place, to_float
 from zwidth.passivity.ports.motion import Motion, played
 from zwidth.passivity.ports.port import Port
-from zwidth.showing import Html, element
+from zwidth.passivity.result import Evidence
 
 
 @dataclass(frozen=True, repr=False)
-class ExtractingInput:
+class ExtractingInput(Evidence):
     """An input from rest by which a port gives out more than a level of its index allows.
 
     Attributes
@@ -69,17 +66,9 @@ class ExtractingInput:
         u, y = ([[a / peak for a in axis] for axis in side] for side in (u, y))
         return (t, u[0], y[0]) if self.port.axes == 1 else (t, u, y)
 
-    def verify(self) -> bool:
-        """True when the independent checker sums the same sign."""
-        return verify(self.document).valid
-
     def to_dict(self) -> dict[str, Any]:
         """The motion as plain data."""
         return self.document
-
-    def save(self, path: str | Path) -> None:
-        """Write it as JSON for `zwidth verify`."""
-        save_json(path, self.document)
 
     def describe(self) -> str:
         """The motion in a sentence."""
@@ -103,9 +92,3 @@ class ExtractingInput:
         """The middle frequency of a burst [rad/s]."""
         step, cycles, _ = self.motion.numbers
         return step * cycles
-
-    def __repr__(self) -> str:
-        return f"<ExtractingInput {self.describe()}>"
-
-    def _repr_html_(self) -> Html:
-        return element("p", self.describe())

@@ -9,7 +9,7 @@ question, of F = G and of F = 1/G, of one axis and of several: see `positive_rea
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -27,13 +27,13 @@ from zwidth.passivity.ports.port import Port
 from zwidth.passivity.ports.positive_real import prove_level
 from zwidth.passivity.ports.search import find_motion
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.showing import Html, element
+from zwidth.showing import Part, Shown
 
 Which = Literal["input", "output"]
 
 
-@dataclass(frozen=True)
-class PassivityIndex:
+@dataclass(frozen=True, repr=False)
+class PassivityIndex(Shown):
     """The largest level σ of one index, with where it is reached.
 
     Attributes
@@ -157,8 +157,9 @@ class PassivityIndex:
     def __repr__(self) -> str:
         return f"<PassivityIndex {self.name} {self.describe()}>"
 
-    def _repr_html_(self) -> Html:
-        return element("p", f"{self.name} index {self.describe()}")
+    def report(self) -> Iterable[Part]:
+        """Which index, and what it is."""
+        yield f"{self.name} index {self.describe()}"
 
     def _document(self, evidence: dict[str, Any], level: Fraction) -> dict[str, Any]:
         """`evidence`, a kind with a proof or a motion, as a document of its own."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -14,17 +13,18 @@ from zwidth.arms.matrix_wall import MatrixWall
 from zwidth.arms.motion import ArmMotion
 from zwidth.environment.wall import Wall
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import save_json
-from zwidth.passivity.outcome import Answer, Outcome
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope, Torque
+from zwidth.passivity.wording import lines
 from zwidth.passivity.workspace.report import finite, motion_document, steps_document, wall_document
 
 if TYPE_CHECKING:
     import xarray
 
 
-@dataclass(frozen=True, kw_only=True)
-class Workspace(Answer):
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Workspace(PassivityAnswer):
     """The answer for an arm: a verdict, the map, and what to change.
 
     Parameters
@@ -78,6 +78,9 @@ class Workspace(Answer):
         The proof for `zwidth verify`, if "passive", with encoder steps or without.
     """
 
+    FORMAT = "zwidth workspace 1"
+    PICTURE = "workspace_figure"
+
     outcome: Outcome
     claim: str
     arm: Arm
@@ -129,16 +132,28 @@ class Workspace(Answer):
             stiffest = f"{self.largest_stiffness:.6g} N/m"
         return f"<Workspace {self.outcome}: {self.claim} Stiffest wall at every point: {stiffest}>"
 
-    def to_dict(self) -> dict[str, Any]:
-        """The verdict with its evidence as plain data; the map is in `data`."""
-        data, motion, certificate, steps = self.data, self.motion, self.certificate, self.encoder_steps
-        turns = self.arm.turns
-        margin = float(data["margin"].min()) if "margin" in data else None
-        largest = self.largest_stiffness
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted, line by line."""
+        return lines(self.scope, self.outcome)
+
+    @property
+    def margin(self) -> float:
+        """What the joints have of damping over what is needed, at the worst place and in the worst direction.
+
+        At the hand [N·s/m]; of a wall in pose, which has two units, in the joints [N·m·s/rad].
+        """
+        return float(self.data["margin" if "margin" in self.data else "margin_in_joints"].min())
+
+    def evidence(self) -> dict[str, Any]:
+        """The proof as plain data; None where there is none."""
+        return {"certificate": None, **super().evidence()}
+
+    def numbers(self) -> dict[str, Any]:
+        """What was asked about, and what was found of it, as plain data; the map is in `data`."""
+        data, motion, steps = self.data, self.motion, self.encoder_steps
+        turns, largest = self.arm.turns, self.largest_stiffness
         return {
-            "outcome": self.outcome,
-            "claim": self.claim,
-            "scope": self.scope.to_dict(),
             "arm": self.arm.name,
             "joint_damping_N_m_s_rad": np.asarray(self.arm.damping).tolist(),
             "region": self.region,
@@ -150,7 +165,7 @@ class Workspace(Answer):
             "can_be_refuted": self.can_be_refuted,
             "sample_period_s": self.sample_period,
             "delay_samples": self.delay_samples,
-            "smallest_margin_N_s_per_m": margin,
+            "smallest_margin_N_s_per_m": self.margin if "margin" in data else None,
             "smallest_margin_in_joints_N_m_s_per_rad": float(data["margin_in_joints"].min()),
             "stiffness_factor": finite(self.stiffness_factor),
             "largest_stiffness_N_per_m": None if largest is None else finite(largest),
@@ -160,9 +175,4 @@ class Workspace(Answer):
             "least_additions_N_m_s_per_rad": list(self.least_additions),
             "proved_part": float(data["proved"].mean()),
             "motion": None if motion is None else motion_document(motion, turns),
-            "certificate": None if certificate is None else certificate.to_dict(),
         }
-
-    def save(self, path: str | Path) -> None:
-        """Write the verdict with its certificate as JSON for `zwidth verify`; the map is in `data`."""
-        save_json(path, self.to_dict())
