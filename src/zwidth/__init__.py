@@ -50,8 +50,8 @@ if TYPE_CHECKING:
     from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling.coupling_design import CouplingDesign, design_coupling
     from zwidth.passivity.coupling.loop_transformation import (
-        Indices,
-        Slopes,
+        PassivityExcess,
+        SlopeBounds,
         TransformedCondition,
         delay_sum,
         loop_storage,
@@ -60,7 +60,7 @@ if TYPE_CHECKING:
         transformed_condition,
     )
     from zwidth.passivity.passive_limit import Bracket
-    from zwidth.passivity.ports.extracted import Extraction
+    from zwidth.passivity.ports.extracting_input import ExtractingInput
     from zwidth.passivity.ports.index import PassivityIndex
     from zwidth.passivity.ports.indices import PassivityIndices, passivity_indices
     from zwidth.passivity.real_hand import RealHand, replay
@@ -88,14 +88,13 @@ __all__ = [
     "CouplingDesign",
     "Device",
     "Exact",
-    "Extraction",
+    "ExtractingInput",
     "FrictionCurve",
     "FrictionModel",
     "GeneralizedMaxwell",
     "HuntCrossley",
     "Identified",
     "IdentifiedFinger",
-    "Indices",
     "InputError",
     "Interval",
     "LawComparison",
@@ -106,12 +105,13 @@ __all__ = [
     "NonlinearSpring",
     "OnePole",
     "PassiveHand",
+    "PassivityExcess",
     "PassivityIndex",
     "PassivityIndices",
     "PublishedFit",
     "PulseTransferFunction",
     "RealHand",
-    "Slopes",
+    "SlopeBounds",
     "Stability",
     "StandardLinearSolid",
     "Timing",
@@ -201,15 +201,15 @@ _LATER = {
     "MatrixWall": "zwidth.arms.matrix_wall",
     "Workspace": "zwidth.passivity.workspace",
     "amplifiers": "zwidth.device.amplifier",
-    "Indices": "zwidth.passivity.coupling.loop_transformation",
-    "Slopes": "zwidth.passivity.coupling.loop_transformation",
+    "PassivityExcess": "zwidth.passivity.coupling.loop_transformation",
+    "SlopeBounds": "zwidth.passivity.coupling.loop_transformation",
     "TransformedCondition": "zwidth.passivity.coupling.loop_transformation",
     "delay_sum": "zwidth.passivity.coupling.loop_transformation",
     "loop_storage": "zwidth.passivity.coupling.loop_transformation",
     "required_damping_by_slopes": "zwidth.passivity.coupling.loop_transformation",
     "transformed_blocks": "zwidth.passivity.coupling.loop_transformation",
     "transformed_condition": "zwidth.passivity.coupling.loop_transformation",
-    "Extraction": "zwidth.passivity.ports.extracted",
+    "ExtractingInput": "zwidth.passivity.ports.extracting_input",
     "PassivityIndex": "zwidth.passivity.ports.index",
     "PassivityIndices": "zwidth.passivity.ports.indices",
     "passivity_indices": "zwidth.passivity.ports.indices",
