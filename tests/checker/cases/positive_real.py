@@ -224,9 +224,9 @@ CASES = [
         put(GROWS, {"motion.duration_s": -3}),
         "motion.duration_s must be > 0",
     ),
-    refused("a burst in steps", put(DELAY, {"motion": BURST}), "motion in this time"),
-    refused("a polynomial in steps", put(DELAY, {"motion": POLYNOMIAL}), "motion in this time"),
-    refused("a sequence in time", put(FAST, {"motion": SEQUENCE}), "motion in this time"),
+    refused("a burst in steps", put(DELAY, {"motion": BURST}), "is moved by a burst"),
+    refused("a polynomial in steps", put(DELAY, {"motion": POLYNOMIAL}), "is moved by a burst"),
+    refused("a sequence in time", put(FAST, {"motion": SEQUENCE}), "is moved by a burst"),
     *(
         refused(f"a {told['motion']['kind']} without {key}", without(told, f"motion.{key}"), "is missing")
         for told in (DELAY, FAST, GROWS)

@@ -291,7 +291,7 @@ CASES = [
     refused(
         "a sequence in time",
         put(CIRCLE, {"motion": {"kind": "sequence", "latent": [[1], [1]]}}),
-        "motion in this time",
+        "is moved by a burst",
     ),
     *(
         refused(f"without {key}", without(CONSTANT, key), "is missing")

@@ -96,7 +96,7 @@ def chain_of(told: Read) -> Chain:
 
 
 def _joint_of(told: Read) -> Joint:
-    require_square(told.rotation, "a rotation is not one")
+    require_square(told.rotation, "the rows of a rotation must be of length 1, at right angles")
     if told.low > told.high:
         raise Invalid("a joint needs low ≤ high")
     return Joint(told.kind == "prismatic", told.rotation, told.translation, told.low, told.high)

@@ -76,7 +76,7 @@ def instability(told: Read) -> str:
     """That one does not."""
     loop = _read(told.loop)
     if loop.motion.middle != loop.motion:
-        raise Invalid("what does not come to rest must be certain")
+        raise Invalid("that a loop does not come to rest is proved of single values, not of intervals")
     if _decays(loop) is not False:
         raise Invalid("that a root lies on or outside the unit circle could not be confirmed")
     return "device, hand and wall do not come to rest, contact kept: a disturbance does not die out"
