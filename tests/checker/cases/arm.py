@@ -326,6 +326,13 @@ CASES = [
         "longer than it is said",
     ),
     refused(
+        "three joints, a first column that is longer where the translation adds to it",
+        put(
+            CHAIN, {"arm.joints.0.largest_column_m_per_rad": "0.375", "arm.joints.0.coulomb_friction_N_m": 9}
+        ),
+        "longer than it is said",
+    ),
+    refused(
         "three joints, a longer last column",
         put(CHAIN, {"arm.joints.2.largest_column_m_per_rad": "0.09", "arm.joints.2.coulomb_friction_N_m": 9}),
         "longer than it is said",

@@ -170,6 +170,7 @@ CASES = [
         "113/2",
         drawn({"kind": "sequence", "latent": [1, -4, 0]}, [1, 2], [1, "-1/2"], 2, **DISCRETE),
     ),
+    refused("a sequence of no samples", put(DELAY, {"motion.latent": []}), "none comes out"),
     refused("a sequence that takes nothing out", put(DELAY, {"motion.latent": [1, 1]}), "none comes out"),
     taken("a burst", 11 * WORK, FAST, "the input index is less than 2"),
     taken(
@@ -206,6 +207,11 @@ CASES = [
     refused("a burst of order 2", SMOOTH, "none comes out"),
     taken("a burst of order 2, a higher level", smooth(2), put(SMOOTH, {"level": 2})),
     refused("a burst that is not smooth", put(SMOOTH, {"motion.power": 0}), "more cycles than its power"),
+    refused(
+        "a burst of power 1 and order 3",
+        drawn(BURST, [1, 0, 0, -1], [1, 1, 1, 1], 2),
+        "a power of half the order or more",
+    ),
     refused("fewer cycles than its power", put(FAST, {"motion.cycles": 1}), "more cycles than its power"),
     refused(
         "a burst of too many lines",

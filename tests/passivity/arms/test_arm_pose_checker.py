@@ -320,7 +320,7 @@ MIRROR = texts(np.diag([1.0, 1, -1]))
         (True, "wall/damping_bound_N_m_s_rad", COUPLED, "one orientation of rest"),
         (True, "wall/stiffness_N_m_rad", texts(np.diag([1.0, 1, 1, 1, 1, -1e-9])), "negative eigenvalue"),
         (True, "wall/stiffness_N_m_rad", texts(np.eye(3)), "6 rows"),
-        (True, "wall/virtual_damping_N_m_s_rad", texts(0.01 * np.eye(6)), "no bound"),
+        (True, "wall/virtual_damping_N_m_s_rad", texts(0.01 * np.eye(6)), "is too small"),
         (True, "wall/turns", None, "unit of stiffness"),
         (True, "wall/turns", 1, "3 rows"),
         (True, "wall/turns", 0, "turns must be 1 or 3"),
