@@ -19,8 +19,8 @@ import zwidth as zw
 from zwidth import rendering
 from zwidth.checker.kinds import KINDS
 from zwidth.passivity.document import to_json
-from zwidth.passivity.storage.coarse_proof import prove_on_cells
-from zwidth.passivity.storage.hand import game_of
+from zwidth.passivity.storage.evidence.coarse import prove_on_cells
+from zwidth.passivity.storage.program import program_of
 from zwidth.passivity.storage.slow_hands import slow_hands
 
 Document = dict[str, Any]
@@ -247,7 +247,7 @@ def _rows() -> Iterator[Any]:
 def _coarse() -> Iterator[Any]:
     device = _device(resolution="0.000001", damping="0.4")
     for law, delay in ((zw.Wall(100), 0), (zw.Wall(100), "0.0003"), (zw.Wall(50, "0.02"), 0)):
-        game = game_of(device.replace(delay=delay), law, penetration="0.0005", speed="0.1")
+        game = program_of(device.replace(delay=delay), law, penetration="0.0005", speed="0.1")
         found = prove_on_cells(game.law, game.losses, game.domain, "linear", 2, monotonic() + 20, None)
         yield from found.documents if found else ()
 
