@@ -170,6 +170,9 @@ CASES = [
         "113/2",
         drawn({"kind": "sequence", "latent": [1, -4, 0]}, [1, 2], [1, "-1/2"], 2, **DISCRETE),
     ),
+    refused(
+        "an order of 401", put(DELAY, {"system.denominator": [1, *[0] * 401]}), "order is 401, more than 400"
+    ),
     refused("a sequence of no samples", put(DELAY, {"motion.latent": []}), "none comes out"),
     refused("a sequence that takes nothing out", put(DELAY, {"motion.latent": [1, 1]}), "none comes out"),
     taken("a burst", 11 * WORK, FAST, "the input index is less than 2"),

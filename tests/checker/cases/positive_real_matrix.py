@@ -275,6 +275,9 @@ CASES = [
     refused(
         "two axes and three lists", put(LATE, {"motion.latent": [[1], [1], [1]]}), "one list for every axis"
     ),
+    refused(
+        "an order of 201", put(LATE, {"system.denominator": [1, *[0] * 201]}), "order is 201, more than 200"
+    ),
     refused("two axes and one list", put(LATE, {"motion.latent": [[1]]}), "one list for every axis"),
     refused("axes of two lengths", put(LATE, {"motion.latent": [[1, 0], [1]]}), "of one length"),
     refused("a burst of one axis", put(CIRCLE, {"motion.cosine": [1]}), "two numbers for every axis"),

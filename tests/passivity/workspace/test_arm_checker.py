@@ -341,7 +341,10 @@ def test_what_holds_is_accepted(document: dict[str, Any]) -> None:
         (two_link(wall__stiffness_N_per_m=[["0", "1"], ["1", "5"]]), "negative eigenvalue"),
         (two_link(wall__stiffness_N_per_m=[["1", "1"], ["0", "1"]]), "not symmetric"),
         (two_link(wall__stiffness_N_per_m=[["1", "1"]]), "as many columns"),
-        (two_link(**MIXED | {"wall__damping_bound_N_s_per_m": [["0.049", "0"], ["0", "0.051"]]}), "is too small"),
+        (
+            two_link(**MIXED | {"wall__damping_bound_N_s_per_m": [["0.049", "0"], ["0", "0.051"]]}),
+            "is too small",
+        ),
         (two_link(**MIXED | {"wall__damping_bound_N_s_per_m": [["1", "0"], ["0", "1"]]}), "not enough"),
         (two_link(wall__virtual_damping_N_s_per_m=[["0.01", "0"], ["0", "0"]]), "is too small"),
         (two_link(wall__virtual_damping_N_s_per_m=[["0", "0"], ["0", "-0.01"]]), "is too small"),
