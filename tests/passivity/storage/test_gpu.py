@@ -1,4 +1,4 @@
-"""The game on a graphics card: thread by thread in numba's simulator of CUDA, on tiny grids."""
+"""Value iteration on a graphics card: thread by thread in numba's simulator of CUDA, on tiny grids."""
 
 from __future__ import annotations
 
