@@ -282,9 +282,7 @@ def _replay(loop: Loop, motion: Any, tally: Tally) -> None:
 
 def main() -> None:
     """Run all and print what was noticed."""
-    parser = argparse.ArgumentParser(
-        description="Available storage against the closed forms on random walls."
-    )
+    parser = argparse.ArgumentParser(description="Available storage and the closed forms on random walls.")
     parser.add_argument("--loops", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--replays", type=int, default=20, help="replay every so many-th loop")

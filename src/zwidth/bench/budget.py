@@ -1,4 +1,4 @@
-"""How long values are iterated: in moves that are looked at, not in seconds, so that it ends alike anywhere."""
+"""How long values are iterated: in moves looked at, not in seconds, so that it ends alike anywhere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Hunt–Crossley contacts by value iteration: friction of half the jump of the force that a toggling hand meets.
+"""Hunt–Crossley contacts by value iteration: friction of half the jump of the force that a toggling hand
+meets.
 
 A hand that toggles over the edge between the counts n − 1 and n, a little way ε to
 either side, meets p(n) (1 + λ Δ/T) going out and p(n − 1) (1 − λ Δ/T) going in, the

@@ -228,7 +228,7 @@ def test_the_way_in_is_as_slow_as_the_hand():
 
 
 def test_this_hand_is_never_worse_than_every_hand():
-    """A wheel of many counts, out of time before any iteration is over: what covers every hand covers this one."""
+    """A wheel of many counts, out of time at once: what covers every hand covers this one."""
     wheel = zw.Device(
         motion="rotary",
         damping="0.02",

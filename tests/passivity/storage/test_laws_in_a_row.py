@@ -1,4 +1,4 @@
-"""Laws in a row and the available storage: the table of the law, value iteration on it, its proofs and motions."""
+"""Laws in a row: the table of the law, value iteration on it, its proofs and motions."""
 
 from __future__ import annotations
 

@@ -158,8 +158,8 @@ def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
     """Why a grid has more states than are gone through, in words; None if it has not."""
     if law.power is not None and domain.highest > MOST_DEPTHS:
         return (
-            f"a contact is looked at up to {MOST_DEPTHS} counts deep, and penetration is {domain.highest + 1} "
-            "counts: give a smaller one"
+            f"a contact is looked at up to {MOST_DEPTHS} counts deep, and penetration is "
+            f"{domain.highest + 1} counts: give a smaller one"
         )
     memory = law.memory + losses.delay
     if states_of(law, losses, domain) * 9 <= MOST_STATES:

@@ -181,7 +181,7 @@ class RelaxingSweep(Sweep):
         super().__init__(grid.first_guess, THREADS, _MAX_ROUNDS[grid.approximation])
         self.grid = grid
         self._blocks = slices(grid.domain.cells, _BLOCKS)
-        self._tables = (
+        self._tables: tuple[Any, ...] = (
             *(grid.rows, *grid.all_forces, *grid.images, grid.costs, grid.nodes),
             *(grid.steps, grid.domain.reach, grid.approximation == "outer"),
         )
