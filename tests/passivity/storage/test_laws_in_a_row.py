@@ -197,7 +197,7 @@ def test_what_cannot_be_iterated_is_said():
         (device(delay=Fraction(1, 2)), {}, "delays of whole samples"),
         (DEVICE, {"force_limit": True}, "force_limit is to be counted in"),
         (DEVICE.replace(resolution=0), {}, "ideal encoder"),
-        (DEVICE, {"on": "gpu"}, "leave out on"),
+        (DEVICE, {"backend": "gpu"}, "leave out backend"),
     ):
         with pytest.raises(zw.InputError, match=said):
             zw.worst_hand(at, law, **more)
@@ -367,12 +367,12 @@ def test_a_reading_off_the_grid_leaves_its_row_alone():
     assert (out[0, 1:4, -1] == [0, 0, 200 * 1e-4]).all()
 
 
-def test_a_limit_is_sought_on_one_grid():
+def test_a_limit_is_sought_on_one_domain():
     """Where no bounds are given, those on which the law closes as it is hold for every value."""
     law = zw.render(zw.Wall(200), rendering.DualRate(samples=2))
     bracket = zw.passive_limit(DEVICE, law)
     grid = bracket.storage.grid
-    assert (grid.domain.highest + 1, grid.domain.reach) == program_of(DEVICE, law).grid
+    assert (grid.domain.highest + 1, grid.domain.reach) == program_of(DEVICE, law).counts
     assert f"({grid.domain.highest + 1} counts) on either side" in bracket.hand
     assert bracket.passive > 10**12  # its slope is never more than 2b/T
     assert bracket.active is None
