@@ -82,8 +82,8 @@ def _cuda() -> Any:
         raise InputError(f"CUDA cannot be used ({error}): pip install 'zwidth[gpu]'") from None
     if not cuda.is_available():  # type: ignore[no-untyped-call]
         raise InputError(
-            "no graphics card with CUDA was found: leave out backend='gpu', or pip install 'zwidth[gpu]' on a "
-            "machine that has one"
+            "no graphics card with CUDA was found: leave out backend='gpu', or pip install 'zwidth[gpu]' on "
+            "a machine that has one"
         )
     return cuda
 

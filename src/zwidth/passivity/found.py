@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Answer, Outcome
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
@@ -34,7 +35,7 @@ class Need(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Found(Answer):
+class Found(PassivityAnswer):
     """What was found of a sampled loop: the outcome, what it is about, and the evidence.
 
     `Verdict` is this in words, and says what each entry is.

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from fractions import Fraction
 from math import inf
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from zwidth.device.device import Device
@@ -19,7 +18,8 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.document import save_json, unit_suffix
+from zwidth.passivity.document import unit_suffix
+from zwidth.passivity.result import Result, evidence_of
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.storage.evidence.coarse import CELLS
 from zwidth.passivity.storage.evidence.gain import Gain
@@ -34,12 +34,12 @@ from zwidth.passivity.storage.solution import patience
 from zwidth.passivity.storage.solve.value_iteration import Progress
 from zwidth.passivity.storage.two_sides import Side, approach
 from zwidth.passivity.witness.violation import Violation
-from zwidth.passivity.witness.witness import Witness, rounded_energy
+from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands, lines
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import in_unit, in_words
 from zwidth.rendering.rendered import Rendered
-from zwidth.showing import Html, bullets, element
 
 MORE_IS_SAFER = frozenset({"device.damping", "device.coulomb_friction", "device.rate"})
 """Parameters of which a loop needs enough; of all others it may have too much."""
@@ -48,8 +48,8 @@ _Holds = Callable[[Exact, float], bool]
 """Whether a claim is shown at a value by a time."""
 
 
-@dataclass(frozen=True)
-class Bracket:
+@dataclass(frozen=True, repr=False)
+class Bracket(Result):
     """The last value of a parameter that is proved passive, and the first that is refuted.
 
     Attributes
@@ -74,6 +74,9 @@ class Bracket:
     violation
         What of the linear criterion is violated at `active`, where closed conditions found it.
     """
+
+    FORMAT = "zwidth limit 1"
+    PICTURE = "limit_figure"
 
     parameter: str
     unit: str
@@ -108,23 +111,21 @@ class Bracket:
 
     def describe(self) -> str:
         """The bracket in a sentence."""
-        name = self.parameter.replace("_", " ").replace("environment.", "").replace("device.", "device ")
+        name = in_words(self.parameter).replace("environment.", "").replace("device.", "device ")
         if self.passive is None and self.active is None:
             return f"{name}: nothing was decided in the time given"
+        passive, active = in_unit(self.passive, self.unit), in_unit(self.active, self.unit)
         if self.active is None:
-            return f"{name}: {self.passive:.6g} {self.unit} is proved passive, and nothing is refuted"
+            return f"{name}: {passive} is proved passive, and nothing is refuted"
         if self.passive is None:
-            return f"{name}: no value is proved passive; {self.active:.6g} {self.unit} is active"
-        return (
-            f"{name}: {self.passive:.6g} {self.unit} is proved passive, {self.active:.6g} {self.unit} is "
-            f"active, for {self.hand}"
-        )
+            return f"{name}: no value is proved passive; {active} is active"
+        return f"{name}: {passive} is proved passive, {active} is active, for {self.hand}"
 
     def to_dict(self) -> dict[str, Any]:
         """Values, assumptions and evidence as plain data."""
         suffix = unit_suffix(self.unit)
-        document: dict[str, Any] = {
-            "format": "zwidth limit 1",
+        return {
+            "format": self.FORMAT,
             "parameter": self.parameter,
             f"proved_passive_{suffix}": self.passive,
             f"proved_active_{suffix}": self.active,
@@ -134,25 +135,8 @@ class Bracket:
             f"every_hand_{suffix}": list(self.every_hand),
             "assumptions": list(self.assumptions),
             "evaluations": self.evaluations,
+            **evidence_of(self),
         }
-        if self.certificate is not None:
-            document["certificate"] = self.certificate.to_dict()
-        if self.violation is not None:
-            document["violation"] = self.violation.to_dict()
-        if self.witness is not None:
-            document["witness"] = rounded_energy(self.witness.to_dict())
-        return document
-
-    def save(self, path: str | Path) -> None:
-        """Write the bracket with its evidence as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
-
-    def __repr__(self) -> str:
-        return f"<Bracket {self.describe()}>"
-
-    def _repr_html_(self) -> Html:
-        assumed = element("details", element("summary", "assumptions"), bullets(self.assumptions))
-        return element("div", self.describe(), assumed)
 
 
 class _Parameter(NamedTuple):

@@ -7,6 +7,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from strategies import seeds
 
 import zwidth as zw
 from zwidth import checker
@@ -47,7 +48,7 @@ def test_a_spring_below_the_curve(speed):
     assert found.passive >= 0.99 * single.passive
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(20)
 def test_the_costs_enclose_the_loss(seed):
     """Outer costs at most, inner ones at least; between two steps the chord of outer ones is below too."""
     random = Random(seed)

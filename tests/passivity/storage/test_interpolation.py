@@ -8,6 +8,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from strategies import seeds
 
 import zwidth as zw
 from zwidth.passivity.storage.domain import Domain
@@ -53,7 +54,7 @@ def test_never_more_than_the_true_drag(apart, side):
         assert interpolated(0, apart, HALF, Fraction(1)) == (apart + HALF) ** 2
 
 
-@pytest.mark.parametrize("seed", range(40))
+@seeds(30)
 def test_every_move_between_nodes_is_covered(seed):
     """V and V' drawn at random, just large enough at the nodes: then nowhere between them too small."""
     random = Random(seed)
@@ -112,7 +113,7 @@ def _descended(random, apart, spared):
         a, b = best
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(20)
 def test_the_costs_of_a_grid_are_these(seed):
     """Outer: at most φ D + β L(D) of the true friction and drag; inner: at least φ D + β D²."""
     random = Random(seed)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.device.device import Device
@@ -13,8 +12,8 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import save_json
-from zwidth.passivity.outcome import TOLD, Answer, Outcome
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.storage.evidence.coarse import CELLS
 from zwidth.passivity.storage.evidence.gain import Gain
@@ -23,17 +22,15 @@ from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, progra
 from zwidth.passivity.storage.row.program import RowProgram
 from zwidth.passivity.storage.slow_hands import slow_hands
 from zwidth.passivity.storage.solve.value_iteration import Progress
-from zwidth.passivity.witness.witness import rounded_energy
 from zwidth.passivity.wording import claim_of_passivity, lines
 from zwidth.quantity.exact import RealLike
-from zwidth.showing import Html, bullets, element
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-@dataclass(frozen=True)
-class AvailableStorage(Answer):
+@dataclass(frozen=True, repr=False)
+class AvailableStorage(PassivityAnswer):
     """The most that a hand can take out of one loop, contact made and broken, the encoder as it is.
 
     Attributes
@@ -50,6 +47,9 @@ class AvailableStorage(Answer):
     storage
         The storage function, to look at; None unless passive.
     """
+
+    FORMAT = "zwidth worst hand 1"
+    PICTURE = "storage"
 
     outcome: Outcome
     scope: Scope
@@ -92,34 +92,6 @@ class AvailableStorage(Answer):
     def assumptions(self) -> tuple[str, ...]:
         """What the outcome covers and takes for granted, line by line."""
         return lines(self.scope, self.outcome)
-
-    def to_dict(self, evidence: bool = True) -> dict[str, Any]:
-        """Outcome, assumptions and evidence as plain data; the evidence may be left out, it can be large."""
-        document: dict[str, Any] = {
-            "format": "zwidth worst hand 1",
-            "outcome": self.outcome,
-            "claim": self.claim,
-            "scope": self.scope.to_dict(),
-            "assumptions": list(self.assumptions),
-        }
-        if not evidence:
-            return document
-        if self.certificate is not None:
-            document["certificate"] = self.certificate.to_dict()
-        if self.witness is not None:
-            document["witness"] = rounded_energy(self.witness.to_dict())
-        return document
-
-    def save(self, path: str | Path) -> None:
-        """Write the outcome with its evidence as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
-
-    def __repr__(self) -> str:
-        return f"<AvailableStorage {self.outcome}: {self.claim}>"
-
-    def _repr_html_(self) -> Html:
-        word = element("b", self.outcome, style=f"color:{TOLD[self.outcome].colour}")
-        return element("div", word, f" {self.claim}", bullets(self.assumptions))
 
 
 def available_storage(

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import ceil
-from pathlib import Path
 from typing import Any
 
 from zwidth.checker import verify
-from zwidth.passivity.document import save_json, unit_key
+from zwidth.passivity.document import unit_key
+from zwidth.passivity.result import Evidence
 from zwidth.passivity.storage.evidence.storage_function import loop_document
 from zwidth.passivity.storage.evidence.switching import switch_positions
 from zwidth.passivity.storage.grid.grid import Grid
@@ -20,14 +20,13 @@ from zwidth.passivity.storage.losses import Losses
 from zwidth.passivity.storage.solve.value_iteration import ValueIteration
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.passivity.witness.witness import FORMAT, rounded_energy
-from zwidth.showing import Html, element
 
 _NEAREST = 40
 """Halvings of a count by which a hand on the upper edge of a cell may have to stay below it."""
 
 
-@dataclass(frozen=True)
-class Gain:
+@dataclass(frozen=True, repr=False)
+class Gain(Evidence):
     """A motion with contact made and broken that takes energy out, and again with every round.
 
     Energy out, in rational arithmetic: −Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx², over each part of
@@ -44,6 +43,8 @@ class Gain:
     law, losses
         Against which the hand moves, and what the device takes out.
     """
+
+    PICTURE = "cycle"
 
     document: dict[str, Any]
     motion: Motion
@@ -90,17 +91,13 @@ class Gain:
         places = (*self.motion.positions, *self.motion.switch_positions)
         return float(max(map(abs, places)) if self.law.surface == "none" else max(places))
 
-    def verify(self) -> bool:
-        """True when the independent checker finds energy coming out."""
-        return verify(self.document).valid
-
     def to_dict(self) -> dict[str, Any]:
         """The motion as plain data, positions exact."""
         return self.document
 
-    def save(self, path: str | Path) -> None:
-        """Write the motion as JSON for `zwidth verify`."""
-        save_json(path, rounded_energy(self.document))
+    def saved(self) -> dict[str, Any]:
+        """The energy rounded: the checker recomputes it anyway."""
+        return rounded_energy(self.document)
 
     def describe(self) -> str:
         """The motion in a sentence."""
@@ -109,9 +106,6 @@ class Gain:
             f"a cycle of {part.last - part.first} samples, to {self.depth:.4g} {self.unit} at up to "
             f"{self.peak_speed:.4g} {self.unit}/s, extracts {self.energy_per_cycle:.4g} J in each round"
         )
-
-    def _repr_html_(self) -> Html:
-        return element("p", self.describe())
 
 
 def gain(iteration: ValueIteration[Grid], motion: str, bounds: HandBounds | None = None) -> Gain | None:
