@@ -71,10 +71,10 @@ def run_limit(arguments: argparse.Namespace) -> int:
     loop = Specification(given.device, rendered)
     parameter = _parameter(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
-    from zwidth.cli.patience import warn_of_compiling_the_game
+    from zwidth.cli.patience import warn_of_compiling_the_iteration
     from zwidth.traces import passive_limit
 
-    warn_of_compiling_the_game()
+    warn_of_compiling_the_iteration()
     bracket = passive_limit(loop.device, loop.environment, parameter, **options)
     if save is not None:
         with writing(save):
@@ -123,7 +123,7 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
 
 
 def _json(bracket: Bracket) -> str:
-    """The bracket without the storage function, which is as large as the board; --save writes it."""
+    """The bracket without the storage function, which is as large as the grid; --save writes it."""
     from zwidth.passivity.document import to_json
 
     document = bracket.to_dict()
