@@ -28,7 +28,7 @@ def answers() -> dict[str, Answer]:
     return {
         "passive": zw.check(PADDLE, zw.Wall(250)),
         "active": zw.check(PADDLE, zw.Wall(770)),
-        "spring": zw.check(PADDLE, zw.NonlinearSpring([0, 0.001, 0.002], [0, 0.1, 0.4])),
+        "spring": zw.check(PADDLE, zw.NonlinearSpring([0, 0.001, 0.002], [0, 0.1, 0.35])),
         "bounding": zw.check_bounding(PADDLE, zw.render(zw.Wall(2000), zw.rendering.ForceBounding())),
         "worst hand": zw.worst_hand(PADDLE, zw.Wall(250), penetration=0.001, speed=0.1),
         "arm": zw.workspace(arm, zw.Wall(1), rate=1000),
