@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from matplotlib.figure import Figure
 
 import zwidth as zw
 from zwidth.cli.bars import bar, levels
@@ -264,12 +265,12 @@ def test_what_cannot_be_read_is_bad_input(run: Run, content: str, tmp_path: Path
 
 
 def test_plot_gets_the_verdict(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    calls: list[tuple[Verdict, Path]] = []
-    monkeypatch.setattr("zwidth.plots.save_check", lambda v, p, overwrite: calls.append((v, p)))
+    calls: list[Verdict] = []
+    monkeypatch.setattr("zwidth.plots.check_figure", lambda verdict: calls.append(verdict) or Figure())
     path = tmp_path / "loop.SVG"
     assert run(*PASSIVE, "--plot", str(path)).status == 0
-    assert calls[0][0].outcome == "passive"
-    assert calls[0][1] == path
+    assert [verdict.outcome for verdict in calls] == ["passive"]
+    assert path.read_bytes().startswith(b"<?xml")
 
 
 # --- devices, help ------------------------------------------------------------

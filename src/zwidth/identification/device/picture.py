@@ -46,7 +46,7 @@ def save_identification(identified: IdentifiedNumbers, path: str | Path, overwri
     Raises
     ------
     InputError
-        As `save_check`.
+        If the ending is another one, or the file exists or cannot be written.
     """
     save_figure(lambda: identification_figure(identified), path, overwrite)
 
