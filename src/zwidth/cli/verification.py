@@ -59,7 +59,7 @@ def _with_law(part: Part) -> Part:
     """Laws in a row stepped again from the parameters in the document."""
     if not part.verification.valid or part.evidence["kind"] not in _LAWS_IN_A_ROW:
         return part
-    from zwidth.passivity.storage.row_document import law_of  # the compiler of their steps takes its time
+    from zwidth.passivity.storage.row.document import law_of  # the compiler of their steps takes its time
 
     try:
         return part._replace(law=law_of(part.evidence))

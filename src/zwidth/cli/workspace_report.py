@@ -11,8 +11,8 @@ from zwidth.cli.workspace_wall import wall_in_words
 from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
-    from zwidth.passivity.arms import ArmMotion, Workspace
-    from zwidth.passivity.arms.encoders import EncoderSteps
+    from zwidth.arms import ArmMotion, EncoderSteps
+    from zwidth.passivity.workspace import Workspace
 
 _SHOWN = 1e-6
 """Of the sum: what one joint gets less than this is the room for rounding."""
@@ -84,7 +84,7 @@ def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]
     has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "it has none that is known"
     more = f"{more} more for each newton of the wall"
     yield "Coulomb friction", f"{enough} in joint {_joints(space)}, and {more}, cover the steps; {has}"
-    from zwidth.passivity.arms.held import in_words
+    from zwidth.arms.held import in_words
 
     covered = f"covered up to {in_words(steps.covered)}" if steps.covered else "covered at no force"
     known = (

@@ -17,8 +17,8 @@ from zwidth.passivity.witness.witness import Witness
 
 if TYPE_CHECKING:
     from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
-    from zwidth.passivity.storage import WorstHand
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.storage import AvailableStorage
+    from zwidth.passivity.storage.evidence.gain import Gain
 
 Finding = Literal["open", "unconfirmed", "between corners", "depends on values", "no lowest energy"]
 """Why a loop is undecided: neither shown; a proof that the checker did not confirm; proved at the corners of
@@ -48,7 +48,7 @@ class Found(PassivityAnswer):
     certificate: Certificate | None = None
     violation: Violation | EndlessPull | None = None
     motion: Witness | Gain | None = None
-    worst_hand: WorstHand | None = None
+    worst_hand: AvailableStorage | None = None
     finding: Finding = "open"
     at_limit: bool = False
     theorem: str = ""

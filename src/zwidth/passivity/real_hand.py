@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from zwidth.device.device import Device
     from zwidth.operator.operator import Operator
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.storage.evidence.gain import Gain
 
 SLOWEST = 1.0
 """Bandwidth of the slowest hand that is tried [Hz]."""

@@ -14,9 +14,6 @@ from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.scope import Scope
 from zwidth.showing import Headline, Lines, Part, Shown, Table
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 EVIDENCE = ("certificate", "violation", "witness")
 """Where a result, and a document, holds what the checker can check."""
 
@@ -58,7 +55,7 @@ class Documented(Shown):
         """
         save_json(path, self.saved())
 
-    def plot(self, path: str | Path | None = None) -> Figure:
+    def plot(self, path: str | Path | None = None) -> Any:
         """Its picture, a matplotlib figure that belongs to no window; saved where a path is given.
 
         Parameters
@@ -76,12 +73,11 @@ class Documented(Shown):
             import_module("zwidth.plots.files").save_figure(lambda: figure, path, overwrite=True)
         return figure
 
-    def figure(self) -> Figure:
+    def figure(self) -> Any:
         """What `plot` returns."""
         if not self.PICTURE:
             raise InputError(f"there is no picture of this {type(self).__name__}")
-        figure: Figure = getattr(import_module("zwidth.plots"), self.PICTURE)(self)
-        return figure
+        return getattr(import_module("zwidth.plots"), self.PICTURE)(self)
 
 
 class Result(Documented):

@@ -12,9 +12,9 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
+from zwidth.arms.held import in_words
 from zwidth.errors import InputError
-from zwidth.passivity.arms import Workspace
-from zwidth.passivity.arms.held import in_words
+from zwidth.passivity.workspace import Workspace
 from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, verbatim
 from zwidth.quantity.text import unit_text
 

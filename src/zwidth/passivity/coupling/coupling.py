@@ -41,7 +41,7 @@ from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Scope
-from zwidth.passivity.storage.gain import Gain
+from zwidth.passivity.storage.evidence.gain import Gain
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import quantity_unit
