@@ -20,7 +20,6 @@ from zwidth.cli.options import device_parameters, environment_parameters, joined
 from zwidth.device import catalogue
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.text import shown
 from zwidth.specification.read import Specification
 
 PASSIVE = ("check", "haptic-paddle", "--stiffness", "300")
@@ -370,28 +369,6 @@ def test_nothing_is_imported_before_it_is_needed(code: str, absent: tuple[str, .
 
 
 # --- pieces -------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("value", "unit", "text"),
-    [
-        (22.4e-6, "m", "22.4 µm"),
-        (0.12, "N", "0.12 N"),
-        (0.00336, "N", "3.36 mN"),
-        (999.96e-6, "s", "1 ms"),
-        (-0.001427, "J", "-1.427 mJ"),
-        (300, "N/m", "300 N/m"),
-        (0.15, "N*m*s/rad", "0.15 N·m·s/rad"),
-        (5, "1", "5"),
-        (0, "m", "0 m"),
-        (1e30, "J", "1e+30 J"),
-        (5e-324, "J", "4.941e-324 J"),
-        (float("inf"), "N/m", "any"),
-        (None, "N/m", "none"),
-    ],
-)
-def test_numerals(value: float | None, unit: str, text: str) -> None:
-    assert shown(value, unit) == text
 
 
 def test_bars_fill_their_share() -> None:
