@@ -91,6 +91,7 @@ def test_an_answer_says_the_same_everywhere(name: str, tmp_path: Path) -> None:
     assert told["format"].startswith("zwidth ")
     assert told["scope"]["contact"] == answer.scope.contact
     assert (told["outcome"], told["claim"]) == (answer.outcome, answer.claim)
+    assert (answer.certificate is None) or (answer.witness is None)
     assert told["assumptions"][: len(answer.assumptions)] == list(answer.assumptions)
     answer.save(tmp_path / "answer.json")
     if name == "springs":

@@ -140,8 +140,8 @@ class Answer(Result):
         The same in a sentence.
     scope
         What it is about.
-    certificate, violation, witness
-        The evidence; None where there is none of its kind.
+    certificate, witness
+        The proof, or the motion against it; None where there is none.  Of a loop `violation` too.
     """
 
     YES: ClassVar[str]

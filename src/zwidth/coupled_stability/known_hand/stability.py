@@ -71,6 +71,7 @@ class Stability(Answer):
 
     FORMAT = "zwidth stability 1"
     YES = "stable"
+    witness = None
 
     outcome: Outcome
     claim: str

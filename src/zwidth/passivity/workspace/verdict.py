@@ -79,6 +79,7 @@ class Workspace(PassivityAnswer):
 
     FORMAT = "zwidth workspace 1"
     PICTURE = "workspace_figure"
+    witness = None  # its motion is reckoned in doubles, and no evidence
 
     outcome: Outcome
     claim: str
