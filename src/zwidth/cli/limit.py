@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
+from zwidth.cli.options import Once, add_law_option, add_output, add_parameters, overrides
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.device.catalogue import PROPERTIES
 from zwidth.errors import InputError
@@ -50,13 +50,7 @@ def configure_limit(parser: argparse.ArgumentParser) -> None:
         ("--count-force-resolution", "count in the steps of its D/A converter"),
     ):
         search.add_argument(option, action="store_true", help=meaning)
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help="print the bracket as JSON, units in the keys")
-    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
-    output.add_argument(
-        "-o", "--save", metavar="FILE", action=Once, help="save bracket and evidence, for zwidth verify"
-    )
-    output.add_argument("--force", action="store_true", help="replace files that exist")
+    add_output(parser, "the bracket", "the plots", "bracket and evidence, for zwidth verify")
     add_parameters(parser)
 
 
@@ -80,9 +74,7 @@ def run_limit(arguments: argparse.Namespace) -> int:
         with writing(save):
             bracket.save(save)
     if plot is not None:
-        from zwidth.plots import save_limit  # matplotlib takes its time
-
-        save_limit(bracket, plot, overwrite=True)
+        bracket.plot(plot)
     if arguments.json:
         print_json(_json(bracket))
     else:

@@ -42,7 +42,13 @@ _SECONDS = 3.0
 
 
 def save_identification(identified: IdentifiedNumbers, path: str | Path, overwrite: bool = False) -> None:
-    """Write `identification_figure` to a file; its ending, png, svg or pdf, says how."""
+    """Write `identification_figure` to a file; its ending, png, svg or pdf, says how.
+
+    Raises
+    ------
+    InputError
+        If the ending is another one, or the file exists or cannot be written.
+    """
     save_figure(lambda: identification_figure(identified), path, overwrite)
 
 
