@@ -16,7 +16,7 @@ from zwidth.specification.laws import with_laws
 from zwidth.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
-    from zwidth.passivity.passive_limit import Bracket
+    from zwidth.passivity.bracket import Bracket
 
 BOTH, ONE_OR_NONE = 0, 3
 """Exit status by the sides that were found; 2 is bad input."""

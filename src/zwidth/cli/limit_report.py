@@ -12,7 +12,7 @@ from zwidth.cli.motion import motion_lines
 from zwidth.cli.numerals import shown
 from zwidth.cli.output import encodes
 from zwidth.cli.report import assumption_lines, page, section
-from zwidth.passivity.passive_limit import Bracket
+from zwidth.passivity.bracket import Bracket
 from zwidth.specification.read import Specification
 
 _DIGITS = 6

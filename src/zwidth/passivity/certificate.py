@@ -15,10 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.checker import Scope, Verified, verify
+from zwidth.environment.velocity_weights import Decay
 from zwidth.errors import InputError
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import loop_document, save_json, unit_key
-from zwidth.passivity.linear.contact import DampedWall, Decay
+from zwidth.passivity.linear.contact import DampedWall
 from zwidth.passivity.linear.delay_interval import Piece
 from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.linear.one_norm import NormBound

@@ -10,7 +10,7 @@ from math import cos, pi
 from typing import Any
 
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
-from zwidth.passivity import limits
+from zwidth.passivity import parameter_limits
 from zwidth.passivity.advice import Advice, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.decision import Decision
@@ -75,12 +75,12 @@ class LinearVerdict(Verdict):
         inf if every stiffness is passive; None if none is, or the law has none
         (see `max_gain`).
         """
-        return limits.max_stiffness(self.device, self.environment, self._with_contact_broken)
+        return parameter_limits.max_stiffness(self.device, self.environment, self._with_contact_broken)
 
     @cached_property
     def max_gain(self) -> float | None:
         """Largest passive factor on H(z), for a law without a stiffness of its own."""
-        return limits.max_gain(self.device, self.environment, self._with_contact_broken)
+        return parameter_limits.max_gain(self.device, self.environment, self._with_contact_broken)
 
     @cached_property
     def required_damping(self) -> float | None:
@@ -88,7 +88,7 @@ class LinearVerdict(Verdict):
 
         None if no damping would do.  Coulomb friction is a need of its own: see `margins`.
         """
-        return limits.required_damping(self.decision, self._with_contact_broken)
+        return parameter_limits.required_damping(self.decision, self._with_contact_broken)
 
     @property
     def critical_frequency(self) -> float:
@@ -153,7 +153,7 @@ class LinearVerdict(Verdict):
 
         document: dict[str, Any] = {"limit": self.limit, "mode": self.mode}
         document[key("max_stiffness", "stiffness")] = self.max_stiffness
-        if not limits.has_stiffness(self.environment):
+        if not parameter_limits.has_stiffness(self.environment):
             document["max_gain"] = self.max_gain
         document[key("required_damping", "damping")] = self.required_damping
         document["critical_frequency_Hz"] = self.critical_frequency
@@ -169,7 +169,7 @@ class LinearVerdict(Verdict):
         """The main numbers as (name, text) for a report."""
         unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
         rows = [("limit", self.limit)]
-        if limits.has_stiffness(self.environment):
+        if parameter_limits.has_stiffness(self.environment):
             rows.append(("largest passive stiffness", as_text(self.max_stiffness, unit["stiffness"])))
         else:
             rows.append(("largest passive gain", as_text(self.max_gain, "times this law")))

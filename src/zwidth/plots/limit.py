@@ -17,7 +17,7 @@ from zwidth.plots.style import LOOK, OUTCOME, new_figure, number, pretty
 from zwidth.plots.witness import draw_motion
 
 if TYPE_CHECKING:
-    from zwidth.passivity.passive_limit import Bracket
+    from zwidth.passivity.bracket import Bracket
 
 _WIDTH = 120
 """Characters of the heading on one line."""

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import worst_hand
 from zwidth.passivity.storage.board import Board
 from zwidth.passivity.storage.hand import game_of

@@ -18,7 +18,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.loop.law import rounded
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import worst_hand
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
 from zwidth.passivity.storage.playback import settled_round

@@ -10,7 +10,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import worst_hand
 from zwidth.passivity.storage.losses import Losses, generous, strict
 

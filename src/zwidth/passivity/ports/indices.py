@@ -21,7 +21,7 @@ from zwidth.environment.matrix_system import size_of
 from zwidth.environment.system import is_system
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
-from zwidth.passivity import limits
+from zwidth.passivity import parameter_limits
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import decide
 from zwidth.passivity.linear.supremum import frequency, tightest
@@ -214,7 +214,9 @@ def _sampled(
             return None
     decision = decide(device, as_environment(system, discretization))
     _, cosine = tightest(decision.loop)
-    return SampledDamping(limits.required_damping(decision), frequency(cosine, decision.loop.period), device)
+    return SampledDamping(
+        parameter_limits.required_damping(decision), frequency(cosine, decision.loop.period), device
+    )
 
 
 def _bare(system: Any) -> Device | None:

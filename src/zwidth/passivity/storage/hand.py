@@ -35,7 +35,7 @@ from zwidth.passivity.storage.storage import Storage
 from zwidth.passivity.witness.witness import rounded_energy
 from zwidth.passivity.wording import claim_of_passivity, lines
 from zwidth.quantity.exact import RealLike
-from zwidth.rendering.rendered import Rendered
+from zwidth.rendering.rendered import stages_of
 from zwidth.showing import Html, bullets, element
 
 if TYPE_CHECKING:
@@ -312,7 +312,7 @@ def game_of(
     if friction is not None and not isinstance(friction, FrictionCurve):
         raise InputError(f"friction is a FrictionCurve, got {type(friction).__name__}")
     given = as_environment(environment)
-    if isinstance(given, Rendered):
+    if stages_of(given):
         return row_game(device, given, penetration, speed, force_limit, force_resolution, friction)
     law = finite_law(device, given, force_limit=force_limit, force_resolution=force_resolution)
     losses = losses_of(device, friction)

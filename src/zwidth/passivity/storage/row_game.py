@@ -11,6 +11,7 @@ from typing import Any
 
 from zwidth.device.device import Device
 from zwidth.device.friction import FrictionCurve
+from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity.scope import Contact, Hands, Law
 from zwidth.passivity.storage.board import Domain
@@ -26,7 +27,6 @@ from zwidth.passivity.storage.row_storage import RowStorage
 from zwidth.passivity.storage.row_table import MOST_STATES, DoesNotClose, Table, tabulate
 from zwidth.passivity.storage.solve import Played
 from zwidth.quantity.exact import RealLike
-from zwidth.rendering.rendered import Rendered
 
 COUNTS = ((32, 16), (16, 8), (8, 4), (4, 2))
 """Counts on either side and counts a sample that are tried by default, until the law closes."""
@@ -40,7 +40,7 @@ class RowGame:
     """Laws in a row and one domain, to be played with either set of rules; as `hand.Game`."""
 
     device: Device
-    environment: Rendered
+    environment: Environment
     law: RowLaw
     losses: Losses
     domain: Domain
@@ -135,7 +135,7 @@ class RowGame:
 
 def row_game(
     device: Device,
-    environment: Rendered,
+    environment: Environment,
     penetration: RealLike | None = None,
     speed: RealLike | None = None,
     force_limit: bool = False,

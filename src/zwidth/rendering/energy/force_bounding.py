@@ -74,6 +74,7 @@ class ForceBounding(Stage):
 
     code: ClassVar[float] = FORCE_BOUNDING
     slots: ClassVar[int] = 3
+    bounds_the_force: ClassVar[bool] = True
 
     encoder: Literal["counted", "ideal"]
     resets: bool
