@@ -13,7 +13,7 @@ import numpy as np
 from zwidth.bench import scores
 from zwidth.bench.adversary import FASTEST, Attack, attack
 from zwidth.bench.advice import advice
-from zwidth.bench.laws import standard_laws
+from zwidth.bench.laws import standard_laws, wall_to_render
 from zwidth.bench.motions import found_motions
 from zwidth.bench.perceived import SOURCE, WEBER, noticeable_differences
 from zwidth.bench.standing import Standing, standing
@@ -149,9 +149,7 @@ def compare(
         If the device is rotary or has no mass, the environment is no wall with a stiffness, or the speed is
         not > 0.
     """
-    wall = as_environment(environment)
-    if not isinstance(wall, Wall):
-        raise InputError(f"the bench compares how a wall is rendered, got {wall.describe()}")
+    wall = wall_to_render(as_environment(environment))
     if device.motion != "linear":
         raise InputError(
             "the touches of the bench are a finger's, in metres: give the device at its handle, by "

@@ -114,6 +114,11 @@ class Wall(Environment):
         return "position"
 
     @property
+    def turns(self) -> int:
+        """Rotations among its coordinates before an arm: none."""
+        return 0
+
+    @property
     def rests_on_spring(self) -> bool:
         """True: at rest there is no velocity."""
         return True
