@@ -107,7 +107,7 @@ def _chosen(
 
 
 def _json(found: LawComparison) -> str:
-    from zwidth.passivity.document import unit_suffix
+    from zwidth.quantity.glossary import unit_suffix
 
     rows = {}
     for name in found.scores["law"].values:

@@ -12,7 +12,7 @@ from rich.text import Text
 from zwidth.cli.numerals import shown
 from zwidth.cli.report import page
 from zwidth.device.catalogue import Datum, Entry
-from zwidth.passivity.document import unit_suffix
+from zwidth.quantity.glossary import unit_suffix
 
 
 def print_entries(entries: Sequence[Entry], in_full: bool) -> None:

@@ -187,6 +187,10 @@ class Device:
         """The SI unit that a quantity of the glossary has here: of "force" "N", of a rotary device "N*m"."""
         return GLOSSARY[quantity].unit_for(self.motion)
 
+    def key(self, quantity: str) -> str:
+        """The key of a quantity in a file, unit included: "force_N", of a rotary device "force_N_m"."""
+        return GLOSSARY[quantity].key_for(self.motion)
+
     def __repr__(self) -> str:
         inside = ", ".join(f"{k}={_shown(v)}" for k, v in self.parameters().items())
         extra = f", motion={self.motion!r}" if self.motion != "linear" else ""

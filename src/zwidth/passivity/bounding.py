@@ -20,11 +20,11 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import save_json, unit_key, unit_suffix
+from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.outcome import Answer
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.wording import if_friction_goes_on, lines
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
 from zwidth.rendering.rendered import stages_of
 from zwidth.rendering.stage import Surroundings

@@ -14,10 +14,9 @@ from zwidth.passivity import parameter_limits
 from zwidth.passivity.advice import Advice, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.document import unit_suffix
 from zwidth.passivity.formulas.stability_plane import admissible_speed
 from zwidth.passivity.verdict import Verdict, as_text
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)

@@ -21,10 +21,10 @@ import numpy as np
 from zwidth.coupled_stability.active_hand.band import PI, Band
 from zwidth.coupled_stability.known_hand.characteristic import as_floats, decays
 from zwidth.coupled_stability.known_hand.plant import ball
-from zwidth.passivity.document import unit_key, unit_suffix
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.quantity.balls import precision
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 
 EXCESS = 1e-3
 """By how much more than its limit the hand is active."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import save_json, unit_suffix
+from zwidth.passivity.document import save_json
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.storage.gain import Gain
 from zwidth.passivity.storage.hand_bounds import HandBounds
@@ -17,6 +17,7 @@ from zwidth.passivity.storage.storage import Storage
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness, rounded_energy
 from zwidth.passivity.wording import describe_hands, lines
+from zwidth.quantity.glossary import unit_suffix
 from zwidth.showing import Html, bullets, element
 
 
