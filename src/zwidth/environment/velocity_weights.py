@@ -30,6 +30,11 @@ class Average:
         steps = zip((*self.weights, Fraction(0)), (Fraction(0), *self.weights), strict=True)
         return sum((abs(w - before) for w, before in steps), Fraction(0))
 
+    @property
+    def document(self) -> list[str]:
+        """As exact data."""
+        return [str(w) for w in self.weights]
+
 
 @dataclass(frozen=True)
 class Decay:
@@ -46,6 +51,11 @@ class Decay:
     def variation(self) -> Fraction:
         """T ‖h_v‖₁ = 2 (1 − p)."""
         return 2 * (1 - self.pole)
+
+    @property
+    def document(self) -> dict[str, str]:
+        """As exact data."""
+        return {"pole": str(self.pole)}
 
 
 def finite_response(numerator: tuple[Fraction, ...], denominator: tuple[Fraction, ...]) -> Average | None:

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.checker import Scope, Verified, verify
-from zwidth.environment.velocity_weights import Decay
 from zwidth.errors import InputError
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import loop_document, save_json, unit_key
@@ -115,14 +114,10 @@ def linear_proof(decision: Decision) -> dict[str, Any]:
 
 
 def wall_document(wall: DampedWall, motion: str) -> dict[str, Any]:
-    estimate = wall.estimate
-    weights: object = (
-        {"pole": str(estimate.pole)} if isinstance(estimate, Decay) else [str(w) for w in estimate.weights]
-    )
     return {
         unit_key("stiffness", motion): exact_text(wall.stiffness),
         unit_key("virtual_damping", motion): exact_text(wall.damping),
-        "weights": weights,
+        "weights": wall.estimate.document,
     }
 
 
