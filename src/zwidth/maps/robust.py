@@ -84,7 +84,7 @@ def robust_boundary(
     return xr.Dataset(
         variables,
         {"virtual_damping": ("virtual_damping", axis, unit)},
-        {"device": device.name, "hand": as_hand(hand).describe(), "motion": device.motion},
+        {"device": device.name, "hand": as_hand(hand).describe(device.motion), "motion": device.motion},
     )
 
 

@@ -248,7 +248,7 @@ def _scope(device: Device, hand: PassiveHand, law: Environment) -> Scope:
     """One linear system: contact is kept, and neither Coulomb friction nor the encoder's steps are in it."""
     asked = scope_of(device, law)
     return asked.replace(
-        hands=Hands(impedance=hand.describe()),
+        hands=Hands(impedance=hand.describe(device.motion)),
         contact="kept" if law.unilateral else "both sides",
         encoder="not counted" if asked.encoder == "counted" else "ideal",
         coulomb_friction=None,
