@@ -50,8 +50,9 @@ def passive_limit(
     parameter
         A parameter of the environment ("stiffness", "damping") or of the device
         ("coulomb_friction", "device.damping", "sample_period", "resolution", …);
-        of a `NonlinearSpring` "gain", a factor on its forces; of a `HuntCrossley` contact
-        "stiffness" or "dissipation".  Of laws in a row one of the environment that they render.
+        of a `NonlinearSpring` or a transfer function "gain", a factor on its force; of a
+        `HuntCrossley` contact "stiffness" or "dissipation".  Of laws in a row one of the
+        environment that they render.
     penetration, speed
         Bounds on the hand [m; rad], [m/s; rad/s], as for `worst_hand`.
     force_limit, force_resolution
