@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 import zwidth as zw
+
+
+def seeds(number: int) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Runs a test for so many seeds of its random numbers; the one that fails is named."""
+
+    def decorated(test: Callable[..., None]) -> Callable[..., None]:
+        # no seed is simpler than another: to shrink one would take long and tell nothing
+        limits = settings(max_examples=number, phases=(Phase.explicit, Phase.reuse, Phase.generate))
+        return limits(given(seed=st.integers(0, 10**9))(test))
+
+    return decorated
 
 
 def decimals(low: str, high: str, places: int = 6) -> st.SearchStrategy[Decimal]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from cases import Case, all_cases, failure
+from cases import cases_of, failure, files
 
 from zwidth import checker
 
 
-@pytest.mark.parametrize("case", all_cases(), ids=lambda case: case.name)
-def test_a_case(case: Case) -> None:
+@pytest.mark.parametrize("file", files())
+def test_the_cases_of_a_file(file: str) -> None:
     """The checker accepts what is true, with the facts that are named, and refuses what is false."""
-    assert failure(case, checker.verify) == ""
+    said = {case.name: failure(case, checker.verify) for case in cases_of(file)}
+    assert said
+    assert {name: wrong for name, wrong in said.items() if wrong} == {}

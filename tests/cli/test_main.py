@@ -15,11 +15,11 @@ import zwidth as zw
 from zwidth.cli.bars import bar, levels
 from zwidth.cli.decision import decided
 from zwidth.cli.main import main
-from zwidth.cli.numerals import shown
 from zwidth.cli.options import device_parameters, environment_parameters, joined
 from zwidth.device import catalogue
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.text import shown
 from zwidth.specification.read import Specification
 
 PASSIVE = ("check", "haptic-paddle", "--stiffness", "300")

@@ -16,6 +16,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
+from strategies import seeds
 
 import zwidth as zw
 from zwidth import checker
@@ -415,7 +416,7 @@ def plain_energy(law, setting, x, y, kind=Fraction):
     )
 
 
-@pytest.mark.parametrize("seed", range(60))
+@seeds(40)
 def test_energy_against_plain_simulation(seed):
     """Random motions: the same joules in Fractions exactly, in floats to rounding."""
     random = Random(seed)
@@ -428,7 +429,7 @@ def test_energy_against_plain_simulation(seed):
         assert float(energy) == pytest.approx(plain_energy(law, setting, x, y, float), rel=1e-9, abs=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@seeds(30)
 def test_wall_against_plain_simulation(seed):
     """A one-sided spring, in and out at will: the same joules."""
     random = Random(300 + seed)
@@ -441,7 +442,7 @@ def test_wall_against_plain_simulation(seed):
     assert setting.energy(Motion(tuple(x))) == plain_energy(([k], [1]), setting, x, [])
 
 
-@pytest.mark.parametrize("seed", range(60))
+@seeds(40)
 def test_repeats_against_listing_every_round(seed):
     """Repeated parts, closed or advancing, one or several: the same joules as with every round listed."""
     random = Random(600 + seed)
@@ -463,7 +464,7 @@ def test_repeats_against_listing_every_round(seed):
     assert energy == plain_energy(law, setting, *(expanded(document)))
 
 
-@pytest.mark.parametrize("seed", range(30))
+@seeds(30)
 def test_advancing_rounds_behind_a_surface(seed):
     """A ratchet into or out of a one-sided spring, through the surface too: as with every round listed."""
     random = Random(900 + seed)

@@ -7,6 +7,7 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
+from strategies import seeds
 
 from zwidth.checker.exact.enclosed import Enclosed, between, in_z, known
 from zwidth.checker.known_hand.held_motion import motion_of, sampled, sampled_free
@@ -21,7 +22,7 @@ def value(x: Enclosed, places: tuple[Fraction, ...] = ()) -> tuple[Fraction, Fra
     return Fraction(middle - x.radius, 1 << x.bits), Fraction(middle + x.radius, 1 << x.bits)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(20)
 def test_sums_and_products_hold_the_true_number(seed: int) -> None:
     """A random formula of three variables, at random places of a box: inside, and tight at the middle."""
     rng = np.random.default_rng(seed)

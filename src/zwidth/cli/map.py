@@ -8,11 +8,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.numerals import shown, unit_text
 from zwidth.cli.options import Once, add_all, device_parameters, given
 from zwidth.cli.output import print_json, print_text, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import shown, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.specification.read import read_tables, specified_device
 from zwidth.specification.table import plain, quoted, suggestion

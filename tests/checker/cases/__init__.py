@@ -88,19 +88,24 @@ def plain(value: Any) -> Any:
     return json.loads(json.dumps(value, default=str))
 
 
+def files() -> list[str]:
+    """The names of the files in this folder."""
+    return [module.name for module in iter_modules(__path__)]
+
+
+def cases_of(file: str) -> Iterator[Case]:
+    """Of one file, each named after it."""
+    cases = import_module(f"{__name__}.{file}").CASES
+    names = [case.name for case in cases]
+    if len(set(names)) < len(names):
+        raise ValueError(f"two cases of one name in {file}: {sorted(names)}")
+    for case in cases:
+        yield case._replace(name=f"{file}: {case.name}", document=plain(case.document))
+
+
 def all_cases() -> list[Case]:
     """Of every file in this folder."""
-    return list(_collected())
-
-
-def _collected() -> Iterator[Case]:
-    for module in iter_modules(__path__):
-        cases = import_module(f"{__name__}.{module.name}").CASES
-        names = [case.name for case in cases]
-        if len(set(names)) < len(names):
-            raise ValueError(f"two cases of one name in {module.name}: {sorted(names)}")
-        for case in cases:
-            yield case._replace(name=f"{module.name}: {case.name}", document=plain(case.document))
+    return [case for file in files() for case in cases_of(file)]
 
 
 def failure(case: Case, verify: Callable[[Any], Any]) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from checked import read
 from scipy.linalg import expm
+from strategies import seeds
 
 from zwidth import checker
 from zwidth.checker.known_hand.plant import plant_of
@@ -51,7 +52,7 @@ def left_side(doc, angles):
     return (m * (1 + k * g)).real + convex + smooth
 
 
-@pytest.mark.parametrize("seed", range(30))
+@seeds(20)
 def test_sign_is_that_of_the_definition(seed):
     """A random multiplier is accepted exactly where the inequality, evaluated on a fine grid, is positive."""
     rng = np.random.default_rng(seed)

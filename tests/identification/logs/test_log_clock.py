@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from strategies import seeds
 
 import zwidth as zw
 from zwidth.identification.logs.log import BLOCK_SIZE
@@ -211,7 +212,7 @@ def test_rows_without_a_number_cut_the_run(recording) -> None:
         zw.log_of(time=recording.time, position=x, hand_force=mostly)
 
 
-@pytest.mark.parametrize("seed", range(40))
+@seeds(20)
 def test_every_gap_is_found_behind_jitter(seed: int) -> None:
     """Gaps of any length, wherever they fall, and stamps off by up to T/5: runs and times as they were."""
     random = np.random.default_rng(seed)

@@ -8,6 +8,7 @@ from itertools import accumulate
 from random import Random
 
 import pytest
+from strategies import seeds
 
 import zwidth as zw
 from zwidth import checker
@@ -76,7 +77,7 @@ def test_proved_at_each_bound_and_not_below_it(name, delay, clamped):
             assert verdict.scope.contact == "kept"
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(20)
 def test_both_bounds_are_necessary_for_the_backward_difference(seed):
     """B ≥ 0 without delay: a thousandth below either bound a motion takes energy out."""
     random = Random(seed)
@@ -95,7 +96,7 @@ def test_both_bounds_are_necessary_for_the_backward_difference(seed):
         assert verdict.witness.verify()
 
 
-@pytest.mark.parametrize("seed", range(40))
+@seeds(30)
 def test_closed_forms(seed):
     """Both bounds by hand: any delay in whole samples, windows and one pole by the span of their memory."""
     random = Random(seed)

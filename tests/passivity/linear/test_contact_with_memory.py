@@ -8,12 +8,13 @@ from fractions import Fraction
 from random import Random
 
 import pytest
+from strategies import seeds
 
 import zwidth as zw
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.storage.domain import domain_for, losses_of
-from zwidth.passivity.storage.hand import Game
 from zwidth.passivity.storage.law import finite_law
+from zwidth.passivity.storage.program import DynamicProgram
 
 ZERO = Fraction(0)
 
@@ -32,7 +33,7 @@ def moved(random, x, size):
 
 
 @pytest.mark.parametrize("anew", [False, True])
-@pytest.mark.parametrize("seed", range(200))
+@seeds(60)
 def test_a_law_that_relaxes_gives_no_more_than_in_contact(seed, anew):
     """Fed with the penetration: in each interval the hand pays at least what the motion y pays, T = 1."""
     random = Random(seed)
@@ -57,7 +58,7 @@ def test_a_law_that_relaxes_gives_no_more_than_in_contact(seed, anew):
 
 
 @pytest.mark.parametrize("anew", [False, True])
-@pytest.mark.parametrize("seed", range(200))
+@seeds(60)
 def test_a_solid_that_never_pulls_has_this_storage(seed, anew):
     """Exactly at the two conditions, with encoder, the storage of the proof rises by no more than is paid."""
     random = Random(seed)
@@ -108,7 +109,7 @@ def played(surface, damping, friction, time_constant, counts=12, clamped=False):
         mass=1,
     )
     law, losses = replace(finite_law(device, wall), surface=surface, clamped=clamped), losses_of(device)
-    return Game(law, losses, domain_for(law, losses, counts, counts), "linear")
+    return DynamicProgram(law, losses, domain_for(law, losses, counts, counts), "linear")
 
 
 def test_a_slow_filter_fed_with_the_position_breaks_the_criterion():

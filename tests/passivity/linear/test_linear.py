@@ -9,6 +9,7 @@ from random import Random
 import numpy as np
 import pytest
 from polynomials import product
+from strategies import seeds
 
 from zwidth import checker
 from zwidth.environment.environment import RationalFunction
@@ -236,7 +237,7 @@ def random_law(seed):
     return law(*([repr(float(c)) for c in part] for part in (numerator, denominator)), 5, delay)
 
 
-@pytest.mark.parametrize("seed", range(60))
+@seeds(40)
 def test_random_laws(seed):
     """At b (1 + 1e-9) the checker accepts the certificate; at b (1 − 1e-9) a motion gains, exactly."""
     loop = random_law(seed)

@@ -7,6 +7,7 @@ from random import Random
 
 import mpmath
 import pytest
+from strategies import seeds
 
 import zwidth as zw
 from zwidth.environment.environment import RationalFunction
@@ -63,7 +64,7 @@ def needed(h, period, delay, turn):
     return (a + mpmath.sqrt(a * a + t * t * alpha * (1 - alpha) * abs(value) ** 2)) / 2
 
 
-@pytest.mark.parametrize("seed", range(60))
+@seeds(40)
 def test_criterion_has_the_sign_of_what_the_formula_asks(seed):
     """q(c) ≥ 0 exactly where b is at least what the formula with complex numbers asks for."""
     random = Random(seed)
@@ -77,7 +78,7 @@ def test_criterion_has_the_sign_of_what_the_formula_asks(seed):
         assert (value > 0) == (mpmath.mpf(float(damping)) > needed(h, period, delay, turn))
 
 
-@pytest.mark.parametrize("seed", range(40))
+@seeds(30)
 def test_required_damping_at_a_frequency(seed):
     """The damping named for a frequency is the formula's, to 1e-9."""
     random = Random(1000 + seed)
@@ -92,7 +93,7 @@ def test_required_damping_at_a_frequency(seed):
         assert loop.required_damping_at(c) == pytest.approx(float(expected), rel=1e-9, abs=1e-9 * scale)
 
 
-@pytest.mark.parametrize("seed", range(40))
+@seeds(30)
 def test_hold_is_minus_r_plus_one_plus_c_times_s(seed):
     """−R + (1 + c) S with M D̄ = R + j sin θ S taken from complex values on the circle."""
     random = Random(2000 + seed)

@@ -8,6 +8,7 @@ from random import Random
 import mpmath
 import pytest
 from checked import loop as read_loop
+from strategies import seeds
 
 import zwidth as zw
 from zwidth import checker
@@ -61,7 +62,7 @@ def random_law(random):
     return zw.PulseTransferFunction([draw(random, -9, 9) for _ in range(3)], [1, -2 * r * c, r * r])
 
 
-@pytest.mark.parametrize("seed", range(50))
+@seeds(30)
 def test_bound_holds_and_is_tight(seed):
     """‖h‖₁ ≤ bound ≤ ‖h‖₁ (1 + 1e-8); within a tenth where a slow mode is bounded by itself."""
     random = Random(seed)
@@ -95,7 +96,7 @@ def test_no_bound_for_laws_that_do_not_decay(denominator):
     assert bound_one_norm(linear_loop(zw.Device(damping="0.3", rate=1000), law)) is None
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(20)
 def test_checker_finds_the_same_bound(seed):
     """The checker's own arithmetic gives the same rational, and any other inverse only a larger one."""
     random = Random(100 + seed)

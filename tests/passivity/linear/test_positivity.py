@@ -12,6 +12,7 @@ import pytest
 from flint import fmpz_poly
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from strategies import seeds
 
 from zwidth.passivity.linear import positivity
 from zwidth.passivity.linear.positivity import Positivity, TooClose, prove_nonnegative
@@ -118,7 +119,7 @@ def test_degree_sixty(seed):
 
 
 @pytest.mark.filterwarnings("ignore:Descending")
-@pytest.mark.parametrize("seed", range(60))
+@seeds(40)
 def test_against_roots(seed):
     """Random polynomials agree with the sign between the real roots that mpmath finds."""
     random = Random(seed)

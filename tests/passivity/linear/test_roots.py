@@ -9,6 +9,7 @@ from random import Random
 import polynomials
 import pytest
 from flint import fmpz_poly
+from strategies import seeds
 
 from zwidth.passivity.linear.roots import rational_roots_inside, real_roots, roots_inside
 
@@ -50,7 +51,7 @@ def test_placed_roots(name):
     assert all(abs(a - b) < NEAR for a, b in zip(found, expected, strict=True))
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(20)
 def test_random_polynomials(seed):
     """The same as from all complex roots."""
     random = Random(seed)

@@ -9,6 +9,7 @@ from random import Random
 
 import pytest
 from polynomials import product
+from strategies import seeds
 
 from zwidth.checker.exact.roots import inside_unit_circle
 from zwidth.passivity.linear.schur import is_schur
@@ -75,7 +76,7 @@ def test_zero_is_not_stable():
     assert not is_schur([0, 0])
 
 
-@pytest.mark.parametrize("seed", range(80))
+@seeds(50)
 def test_random_roots(seed):
     """Products of random factors: stable exactly if every factor is."""
     random = Random(seed)

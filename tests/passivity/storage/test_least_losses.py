@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from strategies import seeds
 
 from zwidth.passivity.storage.losses import Losses
 
@@ -73,7 +74,7 @@ def test_turning_back_and_resting_cost(made, rest):
     assert loss(rested) > loss(ways)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(20)
 def test_smooth_motions_by_quadrature(seed):
     """Polynomials of degree 6 with random speeds at both ends: above the least by more than rounding."""
     rng = np.random.default_rng(seed)

@@ -9,6 +9,7 @@ from math import sqrt
 from random import Random
 
 import pytest
+from strategies import seeds
 
 import zwidth as zw
 from zwidth import checker
@@ -148,7 +149,7 @@ def test_one_pole_in_closed_form(seed):
     assert decide(device(1), pole(k, b, tau)).contact_damping == k * T / 2 + T * need
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(20)
 def test_a_slow_filter_is_active_below_the_bound_of_the_page(seed):
     """b < (B/2)√(T/(T + 2τ)), or < B/((1 + p)√(8(1 + p²))): active, whatever K, f_c and Δ, clamped or not."""
     random = Random(seed)
@@ -213,7 +214,7 @@ def wander(random, x, step):
     )
 
 
-@pytest.mark.parametrize("seed", range(60))
+@seeds(30)
 def test_nothing_that_is_proved_is_refuted(seed):
     """At the bound itself: the best motions in a rhythm, and a hand that tries anything, take nothing out."""
     random = Random(seed)

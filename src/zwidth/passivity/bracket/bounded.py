@@ -10,17 +10,17 @@ from zwidth.errors import InputError
 from zwidth.passivity.bracket.bracket import Bracket
 from zwidth.passivity.bracket.search import Found, Search
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.storage.coarse_proof import CELLS
-from zwidth.passivity.storage.gain import Gain
-from zwidth.passivity.storage.hand import FINE, STEPS, Game, game_scope
-from zwidth.passivity.storage.row_game import RowGame
-from zwidth.passivity.storage.row_storage import RowStorage
-from zwidth.passivity.storage.row_table import DoesNotClose
-from zwidth.passivity.storage.storage import Storage
+from zwidth.passivity.storage.evidence.coarse import CELLS
+from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.evidence.storage_function import StorageFunction
+from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_scope
+from zwidth.passivity.storage.row.program import RowProgram
+from zwidth.passivity.storage.row.storage_function import RowStorage
+from zwidth.passivity.storage.row.table import DoesNotClose
 from zwidth.passivity.storage.two_sides import approach
 from zwidth.quantity.exact import Exact
 
-Proof = Certificate | Storage | RowStorage
+Proof = Certificate | StorageFunction | RowStorage
 
 
 class BoundedSearch:
@@ -30,8 +30,8 @@ class BoundedSearch:
     ----------
     search
         The parameter, and the time that is left.
-    game
-        The game at a value.
+    program
+        The dynamic program at a value.
     slow
         A closed form that covers this hand at a value, or None.
     every
@@ -41,12 +41,12 @@ class BoundedSearch:
     def __init__(
         self,
         search: Search,
-        game: Callable[[Exact], Game | RowGame],
+        program: Callable[[Exact], DynamicProgram | RowProgram],
         slow: Callable[[Exact], Certificate | None],
         every: Found,
     ) -> None:
-        self.search, self.game, self.slow, self.every = search, game, slow, every
-        self.at_first = game(search.first)
+        self.search, self.program, self.slow, self.every = search, program, slow, every
+        self.at_first = program(search.first)
         self.proofs: dict[Exact, Proof] = {}
         self.motions: dict[Exact, Gain] = {}
         self.proving, self.refuting = search.sides(self._covers_slow_hands, partial(self._gains, FINE[0]))
@@ -77,7 +77,7 @@ class BoundedSearch:
                 passive, storage = closed, None
                 certificate = by_closed_form if isinstance(by_closed_form, Certificate) else None
         motion = None if active is None else self.motions[active]
-        scope = game_scope(*self.search.parameter.change(self.search.first), self.at_first)
+        scope = program_scope(*self.search.parameter.change(self.search.first), self.at_first)
         known = Found(passive, active, certificate, motion, scope)
         beyond = every.passive, _nearer(every.active, active, self.refuting.towards)
         return self.search.bracket(known, beyond, self.at_first.bounds, storage)
@@ -89,7 +89,7 @@ class BoundedSearch:
         return side.good
 
     def _on_cells(self) -> None:
-        """Proofs on coarse cells, of games that are too large for each count: half of the time for each."""
+        """Proofs on coarse cells where counts are too many, each in half of the time that is left."""
         for cells in CELLS:
             self.proving.holds = partial(self._is_proved_on_cells, cells)
             self._approach(self.search.share(0.5))
@@ -121,21 +121,21 @@ class BoundedSearch:
 
     def _is_proved_on_cells(self, cells: int, value: Exact, deadline: float) -> bool:
         self.search.count()
-        return self._keep_proof(value, self.game(value).prove_on_cells(cells, deadline, self.search.tell))
+        return self._keep_proof(value, self.program(value).prove_on_cells(cells, deadline, self.search.tell))
 
     def _is_proved(self, steps: int, value: Exact, deadline: float) -> bool:
         self.search.count()
         try:
-            game = self.game(value)
-            in_time = min(deadline, self.search.deadline - game.checking_time(steps))
-            return self._keep_proof(value, game.prove(steps, in_time, self.search.tell))
+            program = self.program(value)
+            in_time = min(deadline, self.search.deadline - program.checking_time(steps))
+            return self._keep_proof(value, program.prove(steps, in_time, self.search.tell))
         except DoesNotClose:
             return False
 
     def _gains(self, fine: int, value: Exact, deadline: float) -> bool:
         self.search.count()
         try:
-            motion = self.game(value).refute(fine, deadline, self.search.tell)
+            motion = self.program(value).refute(fine, deadline, self.search.tell)
         except DoesNotClose:
             return False
         if motion is not None:

@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from pathlib import Path
 from typing import Any
 
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import save_json
+from zwidth.passivity.result import Result, evidence_of
 from zwidth.passivity.scope import Scope
-from zwidth.passivity.storage.gain import Gain
+from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.evidence.storage_function import StorageFunction
 from zwidth.passivity.storage.hand_bounds import HandBounds
-from zwidth.passivity.storage.row_storage import RowStorage
-from zwidth.passivity.storage.storage import Storage
+from zwidth.passivity.storage.row.storage_function import RowStorage
 from zwidth.passivity.witness.violation import Violation
-from zwidth.passivity.witness.witness import Witness, rounded_energy
+from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands, lines
 from zwidth.quantity.glossary import unit_suffix
-from zwidth.showing import Html, bullets, element
+from zwidth.quantity.text import in_unit, in_words
 
 
-@dataclass(frozen=True)
-class Bracket:
+@dataclass(frozen=True, repr=False)
+class Bracket(Result):
     """The last value of a parameter that is proved passive, and the first that is refuted.
 
     Attributes
@@ -48,6 +47,9 @@ class Bracket:
         What of the linear criterion is violated at `active`, where closed conditions found it.
     """
 
+    FORMAT = "zwidth limit 1"
+    PICTURE = "limit_figure"
+
     parameter: str
     unit: str
     passive: float | None
@@ -58,7 +60,7 @@ class Bracket:
     every_hand: tuple[float | None, float | None]
     evaluations: int
     seconds: float
-    storage: Storage | RowStorage | None = None
+    storage: StorageFunction | RowStorage | None = None
     bounds: HandBounds | None = None
     violation: Violation | None = None
 
@@ -81,23 +83,21 @@ class Bracket:
 
     def describe(self) -> str:
         """The bracket in a sentence."""
-        name = self.parameter.replace("_", " ").replace("environment.", "").replace("device.", "device ")
+        name = in_words(self.parameter).replace("environment.", "").replace("device.", "device ")
         if self.passive is None and self.active is None:
             return f"{name}: nothing was decided in the time given"
+        passive, active = in_unit(self.passive, self.unit), in_unit(self.active, self.unit)
         if self.active is None:
-            return f"{name}: {self.passive:.6g} {self.unit} is proved passive, and nothing is refuted"
+            return f"{name}: {passive} is proved passive, and nothing is refuted"
         if self.passive is None:
-            return f"{name}: no value is proved passive; {self.active:.6g} {self.unit} is active"
-        return (
-            f"{name}: {self.passive:.6g} {self.unit} is proved passive, {self.active:.6g} {self.unit} is "
-            f"active, for {self.hand}"
-        )
+            return f"{name}: no value is proved passive; {active} is active"
+        return f"{name}: {passive} is proved passive, {active} is active, for {self.hand}"
 
     def to_dict(self) -> dict[str, Any]:
         """Values, assumptions and evidence as plain data."""
         suffix = unit_suffix(self.unit)
-        document: dict[str, Any] = {
-            "format": "zwidth limit 1",
+        return {
+            "format": self.FORMAT,
             "parameter": self.parameter,
             f"proved_passive_{suffix}": self.passive,
             f"proved_active_{suffix}": self.active,
@@ -107,22 +107,5 @@ class Bracket:
             f"every_hand_{suffix}": list(self.every_hand),
             "assumptions": list(self.assumptions),
             "evaluations": self.evaluations,
+            **evidence_of(self),
         }
-        if self.certificate is not None:
-            document["certificate"] = self.certificate.to_dict()
-        if self.violation is not None:
-            document["violation"] = self.violation.to_dict()
-        if self.witness is not None:
-            document["witness"] = rounded_energy(self.witness.to_dict())
-        return document
-
-    def save(self, path: str | Path) -> None:
-        """Write the bracket with its evidence as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
-
-    def __repr__(self) -> str:
-        return f"<Bracket {self.describe()}>"
-
-    def _repr_html_(self) -> Html:
-        assumed = element("details", element("summary", "assumptions"), bullets(self.assumptions))
-        return element("div", self.describe(), assumed)

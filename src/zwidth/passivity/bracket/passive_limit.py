@@ -16,9 +16,10 @@ from zwidth.passivity.bracket.bracket import Bracket
 from zwidth.passivity.bracket.parameter import parameter_of, refuse_without_part
 from zwidth.passivity.bracket.search import NOTHING, Search
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.storage.hand import Game, game_of, patience
-from zwidth.passivity.storage.row_game import RowGame, row_game
+from zwidth.passivity.storage.program import DynamicProgram, program_of
+from zwidth.passivity.storage.row.program import RowProgram, row_program
 from zwidth.passivity.storage.slow_hands import slow_hands
+from zwidth.passivity.storage.solution import patience
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.rendering.rendered import stages_of
 
@@ -86,7 +87,7 @@ def passive_limit(
     counted = penetration, speed, force_limit, force_resolution, friction
     ideal = ends(device.resolution)[1] == 0
     in_a_row = bool(stages_of(law))
-    if not (ideal or in_a_row) and isinstance(first := game_of(device, law, *counted), Game):
+    if not (ideal or in_a_row) and isinstance(first := program_of(device, law, *counted), DynamicProgram):
         first.warm_up()
     search = Search(asked, tolerance, time.monotonic(), patience(seconds), progress)
     if friction is not None and asked.name in ("device.damping", "device.coulomb_friction"):
@@ -98,18 +99,18 @@ def passive_limit(
     if not bounded and (search.is_close(every.passive, every.active) or (settled and ideal)):
         return search.bracket(every, (every.passive, every.active))  # no game narrows an ideal encoder's
 
-    # laws in a row are played on one board for all values: that on which they close as they are given
-    boards = (row_game(device, law, *counted).board,) if in_a_row else ()
+    # laws in a row have one grid for all values: that on which they close as they are given
+    boards = (row_program(device, law, *counted).counts,) if in_a_row else ()
 
-    def game(value: Exact) -> Game | RowGame:
+    def program(value: Exact) -> DynamicProgram | RowProgram:
         changed, rendered = asked.change(value)
         if in_a_row:
-            return row_game(changed, rendered, *counted, boards)
-        return game_of(changed, rendered, *counted)
+            return row_program(changed, rendered, *counted, boards)
+        return program_of(changed, rendered, *counted)
 
     def slow(value: Exact) -> Certificate | None:
         if not closed or in_a_row:
             return None
-        return slow_hands(*asked.change(value), game(value).bounds.speed)
+        return slow_hands(*asked.change(value), program(value).bounds.speed)
 
-    return BoundedSearch(search, game, slow, every).bracket()
+    return BoundedSearch(search, program, slow, every).bracket()

@@ -12,10 +12,10 @@ from zwidth.passivity.bracket.parameter import Parameter
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.scope import Scope
-from zwidth.passivity.storage.gain import Gain
+from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.evidence.storage_function import StorageFunction
 from zwidth.passivity.storage.hand_bounds import HandBounds
-from zwidth.passivity.storage.row_storage import RowStorage
-from zwidth.passivity.storage.storage import Storage
+from zwidth.passivity.storage.row.storage_function import RowStorage
 from zwidth.passivity.storage.two_sides import Side, approach
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
@@ -73,7 +73,7 @@ class Search:
 
         try:
             verdict(self.first)
-        except InputError:  # a law without H(z), which only the game can decide
+        except InputError:  # a law without H(z), which only value iteration can decide
             return None
         sides = self.sides(proved, refuted)
         approach(*sides, self.tolerance / 4, self.deadline)
@@ -90,7 +90,7 @@ class Search:
         found: Found,
         every_hand: tuple[Exact | None, Exact | None],
         bounds: HandBounds | None = None,
-        storage: Storage | RowStorage | None = None,
+        storage: StorageFunction | RowStorage | None = None,
     ) -> Bracket:
         """What was found, as it is given back."""
         return Bracket(
