@@ -28,6 +28,7 @@ from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.glossary import unit_suffix
 from zwidth.showing import Part
 
 if TYPE_CHECKING:
