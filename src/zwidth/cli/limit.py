@@ -107,8 +107,8 @@ def _parameter(typed: str) -> str:
 
 def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     """The search as `passive_limit` takes it."""
-    length = "rad" if motion == "rotary" else "m"
-    units = {"penetration": length, "speed": f"{length}/s", "tolerance": "1", "seconds": "s"}
+    length, speed = (GLOSSARY[name].unit_for(motion) for name in ("position", "velocity"))
+    units = {"penetration": length, "speed": speed, "tolerance": "1", "seconds": "s"}
     options: dict[str, Any] = {
         "force_limit": arguments.count_force_limit,
         "force_resolution": arguments.count_force_resolution,

@@ -144,7 +144,7 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
         options["hands"] = {name: known[name] for name in names}
     if arguments.speed is not None:
         options["speed"] = float(
-            parse_number(arguments.speed, "rad/s" if motion == "rotary" else "m/s", "speed")
+            parse_number(arguments.speed, GLOSSARY["velocity"].unit_for(motion), "speed")
         )
     if arguments.workers is not None:
         options["workers"] = _whole(arguments.workers, "--workers")

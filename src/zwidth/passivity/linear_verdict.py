@@ -158,8 +158,7 @@ class LinearVerdict(Verdict):
         document[key("required_damping", "damping")] = self.required_damping
         document["critical_frequency_Hz"] = self.critical_frequency
         if self.admissible_speed is not None:
-            speed_unit = "rad_per_s" if motion == "rotary" else "m_per_s"
-            document[f"admissible_speed_{speed_unit}"] = self.admissible_speed
+            document[f"admissible_speed_{unit_suffix(self.device.unit('velocity'))}"] = self.admissible_speed
         document["advice"] = [advice.to_dict() for advice in self.advice]
         document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
         return document
@@ -178,8 +177,8 @@ class LinearVerdict(Verdict):
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
             rows.append((f"margin of {in_words(name)}", in_unit(value, margin_unit)))
         if self.admissible_speed is not None:
-            per_second = "rad/s" if self.device.motion == "rotary" else "m/s"
-            rows.append(("slower hands are safe up to", in_unit(self.admissible_speed, per_second)))
+            speed = in_unit(self.admissible_speed, self.device.unit("velocity"))
+            rows.append(("slower hands are safe up to", speed))
         if self.outcome == "passive in contact" and self.decision.contact_damping is not None:
             enough = in_unit(float(self.decision.contact_damping), unit["damping"])
             rows.append(("damping, contact broken too", enough))

@@ -20,6 +20,7 @@ from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact
+from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import exact_text, quantity_unit
 
 
@@ -124,6 +125,6 @@ def certify_spring(device: Device, spring: Environment) -> Certificate:
 def _document(device: Device, spring: Environment, kind: str) -> dict[str, Any]:
     names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
     loop = {unit_key(name, device.motion): exact_text(device.exact(name)) for name in names}
-    units = "rad_N_m" if device.motion == "rotary" else "m_N"
+    length, force = (unit_suffix(device.unit(name)) for name in ("position", "force"))
     points = [[exact_text(x.fraction), exact_text(f.fraction)] for x, f in spring.points]
-    return {"format": FORMAT, "kind": kind, "loop": loop, "law": {f"points_{units}": points}}
+    return {"format": FORMAT, "kind": kind, "loop": loop, "law": {f"points_{length}_{force}": points}}
