@@ -66,6 +66,7 @@ class Environment(Parametric, ABC):
 
     A subclass is a frozen data class whose fields are made by `parameter`, `flag`
     or `part` of `zwidth.quantity.parameter`, and implements `pulse_transfer_function` and `describe`.
+    Whatever else is asked of a law has a default that claims nothing.
     """
 
     @property

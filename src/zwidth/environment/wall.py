@@ -138,10 +138,10 @@ class Wall(Environment):
 
         A one-pole filter and B ≥ 0, without delay: KT/2 + B T/(2τ+T) and K + 2B/(T+τ) are monotone in each.
 
-        Contact made and broken covered at every corner, without delay: the conditions increase in K and
-        |B|, the one for b in T, the one for f_c in 1/T and 1/(T+τ).  What the multiplier asks for is never
-        more, and does so as well: K T/2 + |B| times a number of the filter, for one pole one that falls
-        with τ/T.
+        Contact made and broken covered at every corner, without delay: the conditions increase in K and the
+        size of B, the one for b in T, the one for f_c in 1/T and 1/(T+τ).  What the multiplier asks for is
+        never more, and increases as well: K T/2 plus the size of B times a number of the filter, for one
+        pole one that falls with τ/T.
         """
         if box.covers_contact and box.is_undelayed:
             return True
