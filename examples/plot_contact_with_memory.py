@@ -32,7 +32,7 @@ import zwidth as zw
 from zwidth import plots
 from zwidth.cli.main import main as command_line
 from zwidth.passivity.decision import decide
-from zwidth.passivity.limits import required_damping
+from zwidth.passivity.parameter_limits import required_damping
 from zwidth.passivity.storage.domain import Domain, domain_for, losses_of
 from zwidth.passivity.storage.evidence.gain import gain
 from zwidth.passivity.storage.grid.grid import Grid

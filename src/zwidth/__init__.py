@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from zwidth.loop.timing import Timing
     from zwidth.maps import robust_boundary, stability_boundary, z_width, z_width_certificate, z_width_factors
     from zwidth.passivity.bounding import Bounding, check_bounding
+    from zwidth.passivity.bracket import Bracket
     from zwidth.passivity.coupling import two_port
     from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling.coupling_design import CouplingDesign, design_coupling
@@ -59,7 +60,6 @@ if TYPE_CHECKING:
         transformed_blocks,
         transformed_condition,
     )
-    from zwidth.passivity.passive_limit import Bracket
     from zwidth.passivity.ports.extracting_input import ExtractingInput
     from zwidth.passivity.ports.index import PassivityIndex
     from zwidth.passivity.ports.indices import PassivityIndices, passivity_indices
@@ -184,7 +184,7 @@ _LATER = {
     "absolute_stability": "zwidth.coupled_stability.absolute",
     "Bounding": "zwidth.passivity.bounding",
     "check_bounding": "zwidth.passivity.bounding",
-    "Bracket": "zwidth.passivity.passive_limit",
+    "Bracket": "zwidth.passivity.bracket",
     "CouplingCondition": "zwidth.passivity.coupling.coupling",
     "CouplingDesign": "zwidth.passivity.coupling.coupling_design",
     "LawComparison": "zwidth.bench",

@@ -19,7 +19,7 @@ from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, progra
 from zwidth.passivity.storage.row.program import COUNTS, RowProgram, row_program
 from zwidth.passivity.storage.row.table import DoesNotClose
 from zwidth.passivity.wording import describe_hands
-from zwidth.rendering.rendered import Rendered
+from zwidth.rendering.rendered import stages_of
 
 MOVES = 4e9
 """Moves that are looked at."""
@@ -32,7 +32,7 @@ def by_the_game(device: Device, law: Environment, found: Attack) -> tuple[bool, 
     """Whether a motion refutes the law, and what is known; a proof is one of hands on a small grid."""
     no_proof = f"{found}; no criterion covers this law"
     try:
-        refuted, said = _of_a_row(device, law) if isinstance(law, Rendered) else _of_a_law(device, law)
+        refuted, said = _of_a_row(device, law) if stages_of(law) else _of_a_law(device, law)
     except InputError as error:
         return False, f"{no_proof}; values were not iterated: {_cause(error)}"
     except Spent:
@@ -54,7 +54,7 @@ def _of_a_law(device: Device, law: Environment) -> tuple[bool, str]:
     return played.outcome == "active", played.claim if played.outcome == "active" else _proved(game)
 
 
-def _of_a_row(device: Device, law: Rendered) -> tuple[bool, str]:
+def _of_a_row(device: Device, law: Environment) -> tuple[bool, str]:
     """On the largest domain on which the law closes."""
     game = _largest(device, law)
     width = game.table.successors.shape[1]
@@ -75,7 +75,7 @@ def _rounds(game: RowProgram, told: Budget) -> Iterator[bool | Gain | None]:
         yield None if fine is None else game.refute(fine, progress=told)
 
 
-def _largest(device: Device, law: Rendered) -> RowProgram:
+def _largest(device: Device, law: Environment) -> RowProgram:
     """The dynamic program on the largest domain with no more than `STATES`; a larger one has no fewer.
 
     Raises

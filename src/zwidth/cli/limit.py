@@ -16,7 +16,7 @@ from zwidth.specification.laws import with_laws
 from zwidth.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
-    from zwidth.passivity.passive_limit import Bracket
+    from zwidth.passivity.bracket import Bracket
 
 BOTH, ONE_OR_NONE = 0, 3
 """Exit status by the sides that were found; 2 is bad input."""
@@ -99,8 +99,8 @@ def _parameter(typed: str) -> str:
 
 def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     """The search as `passive_limit` takes it."""
-    length = "rad" if motion == "rotary" else "m"
-    units = {"penetration": length, "speed": f"{length}/s", "tolerance": "1", "seconds": "s"}
+    length, speed = (GLOSSARY[name].unit_for(motion) for name in ("position", "velocity"))
+    units = {"penetration": length, "speed": speed, "tolerance": "1", "seconds": "s"}
     options: dict[str, Any] = {
         "force_limit": arguments.count_force_limit,
         "force_resolution": arguments.count_force_resolution,

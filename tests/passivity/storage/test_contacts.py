@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.evidence.playback import settled_round
 from zwidth.passivity.storage.grid.grid import Grid

@@ -19,7 +19,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.loop.law import rounded
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.evidence.playback import settled_round
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
