@@ -80,6 +80,18 @@ def environment_parameters() -> Iterator[Parameter]:
         yield Parameter(key, symbol, kind.meaning + _bracket(_units(kind.quantity)))
 
 
+def add_output(
+    parser: argparse.ArgumentParser, printed: str, drawn: str, saved: str
+) -> argparse._ArgumentGroup:
+    """The options of what comes out: as JSON, as a picture, in a file."""
+    output = parser.add_argument_group("output")
+    output.add_argument("--json", action="store_true", help=f"print {printed} as JSON, units in the keys")
+    output.add_argument("--plot", metavar="FILE", action=Once, help=f"save {drawn}: .png, .svg or .pdf")
+    output.add_argument("-o", "--save", metavar="FILE", action=Once, help=f"save {saved}")
+    output.add_argument("--force", action="store_true", help="replace files that exist")
+    return output
+
+
 def add_parameters(parser: argparse.ArgumentParser) -> None:
     """Give a command every parameter of a device and of an environment."""
     device = parser.add_argument_group("device", "override what SOURCE says, or replace it")

@@ -14,7 +14,6 @@ from fractions import Fraction
 
 from zwidth.device.device import Device
 from zwidth.quantity.exact import Exact, as_parameter, ends
-from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Given
 
 FINE = Fraction(10)
@@ -55,7 +54,7 @@ def actuator_checks(device: Device, stiffness: Given | None = None) -> tuple[Act
 
 
 def _force_resolution(device: Device, stiffness: Given | None) -> ActuatorCheck:
-    name, unit = "force resolution", GLOSSARY["force_resolution"].unit_for(device.motion)
+    name, unit = "force resolution", device.unit("force_resolution")
     slope = Fraction(0) if stiffness is None else ends(as_parameter(stiffness))[0]
     count = slope * ends(device.resolution)[0]
     missing = [] if slope > 0 else ["a stiffness"]

@@ -239,6 +239,14 @@ class Device(Parametric):
         known = {f.name: getattr(self, f.name) for f in fields(self)}
         return {k: v for k, v in known.items() if isinstance(v, (Exact, Interval))}
 
+    def unit(self, quantity: str) -> str:
+        """The SI unit that a quantity of the glossary has here: of "force" "N", of a rotary device "N*m"."""
+        return GLOSSARY[quantity].unit_for(self.motion)
+
+    def key(self, quantity: str) -> str:
+        """The key of a quantity in a file, unit included: "force_N", of a rotary device "force_N_m"."""
+        return GLOSSARY[quantity].key_for(self.motion)
+
     def __repr__(self) -> str:
         inside = ", ".join(f"{k}={_shown(v)}" for k, v in self.parameters().items())
         extra = f", motion={self.motion!r}" if self.motion != "linear" else ""

@@ -190,6 +190,15 @@ class NonlinearSpring(Environment):
             f"force {low} to {high}, slope up to {slope}"
         )
 
+    @property
+    def points(self) -> tuple[tuple[Exact, Exact], ...]:
+        """(xᵢ, fᵢ) [m; rad], [N; N·m]."""
+        return tuple(zip(self.positions, self.forces, strict=True))
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The spring with forces factor · fᵢ."""
+        return self.replace(forces=[f.fraction * factor for f in self.forces])
+
     def _steepest(self) -> Fraction:
         points = list(zip(self.positions, self.forces, strict=True))
         slopes = [

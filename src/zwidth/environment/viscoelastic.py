@@ -29,8 +29,16 @@ from zwidth.environment.discretization import (
     discretize,
     discretized_by,
 )
-from zwidth.environment.environment import Environment, RationalFunction, add, certain, clamping, multiply
-from zwidth.environment.wall import NEGATIVE_SPRING
+from zwidth.environment.environment import (
+    Box,
+    Environment,
+    RationalFunction,
+    add,
+    certain,
+    clamping,
+    multiply,
+)
+from zwidth.environment.wall import NEGATIVE_SPRING, Wall
 from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -126,6 +134,22 @@ class StandardLinearSolid(Environment):
         branch = _branch_text((self.branch_stiffness, self.branch_damping), motion)
         return f"standard linear solid, {k} beside {branch}, {_ending(self)}"
 
+    @property
+    def rests_on_spring(self) -> bool:
+        """True: the branch relaxes to nothing."""
+        return True
+
+    def decided_by_corners(self, box: Box) -> bool:
+        """For the spring μ0, which enters H linearly; without delay for a branch ≥ 0, backward or Tustin.
+
+        The required damping is then μ0T/2 + μ1η1T/(2η1+μ1T), or (T/2)(μ0+μ1); ‖h‖₁ is
+        μ0 + 2μ1η1/(μ1T+η1), or μ0 + μ1 max(1, 4η1/(μ1T+2η1)).
+        """
+        if box.of_law <= {"stiffness"} and not box.of_timing:
+            return True
+        is_positive = min(ends(self.branch_stiffness)[0], ends(self.branch_damping)[0]) >= 0
+        return box.is_undelayed and is_positive and self.discretization in ("backward", "tustin")
+
 
 @dataclass(frozen=True)
 class GeneralizedMaxwell(Environment):
@@ -186,6 +210,28 @@ class GeneralizedMaxwell(Environment):
         parts = [with_unit("stiffness", self.stiffness, motion)]
         parts += [_branch_text(branch, motion) for branch in self.branches]
         return f"generalized Maxwell, {' beside '.join(parts)}, {_ending(self)}"
+
+    @property
+    def rests_on_spring(self) -> bool:
+        """True: the branches relax to nothing."""
+        return True
+
+    def decided_by_corners(self, box: Box) -> bool:
+        """For the spring μ0, which enters H linearly."""
+        return box.of_law <= {"stiffness"} and not box.of_timing
+
+    def side_by_side(self) -> tuple[Environment, ...]:
+        """Spring and branches, but for the matched rule, which matches their sum.
+
+        Multiplied out, slow branches would lose each other's digits.
+        """
+        if self.discretization == "matched":
+            return (self,)
+        branches = (
+            Maxwell(stiffness=mu, damping=eta, discretization=self.discretization)
+            for mu, eta in self.branches
+        )
+        return (Wall(stiffness=self.stiffness), *branches)
 
 
 @dataclass(frozen=True)

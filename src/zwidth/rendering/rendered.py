@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, Literal
 
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.environment.transfer_function import as_environment
@@ -88,6 +88,20 @@ class Rendered(Environment):
         laws = ", ".join(stage.describe(motion) for stage in self.stages)
         return f"{self.environment.describe(motion)}, with {laws}"
 
+    @property
+    def fed_with(self) -> Literal["position", "penetration"]:
+        """As the environment."""
+        return self.environment.fed_with
+
+    @property
+    def met(self) -> Environment:
+        """The environment."""
+        return self.environment
+
+    def around(self, environment: Environment) -> Environment:
+        """Another environment behind the same laws."""
+        return Rendered(environment, self.stages)
+
 
 def render(environment: Environment | Any, *stages: Stage) -> Rendered:
     """An environment rendered by laws in a row, from the environment to the actuator.
@@ -105,3 +119,8 @@ def render(environment: Environment | Any, *stages: Stage) -> Rendered:
         If there is no law, or one of them is none.
     """
     return Rendered(environment, stages)
+
+
+def stages_of(environment: Environment) -> tuple[Stage, ...]:
+    """The laws that render an environment, from it to the actuator; none where it is given as it is."""
+    return environment.stages if isinstance(environment, Rendered) else ()

@@ -56,6 +56,9 @@ class Stage(Parametric, ABC):
     slots: ClassVar[int]
     """Numbers that it remembers."""
 
+    bounds_the_force: ClassVar[bool] = False
+    """True for force bounding: last in a row, it keeps to what the device pays for, whatever came before."""
+
     @abstractmethod
     def numbers(self, at: Surroundings) -> list[float]:
         """The parameters of the step, defaults filled in from the device."""

@@ -12,7 +12,7 @@ from typing import Literal
 
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
-from zwidth.environment.wall import Wall
+from zwidth.environment.wall import wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.parameter import Parametric
@@ -64,9 +64,10 @@ def largest_damping(given: Limit, device: Device, spring: Exact | None) -> Fract
 
 def spring_of(environment: Environment) -> Exact | None:
     """K of a wall that is a spring and nothing else; None of all others."""
-    if not isinstance(environment, Wall) or environment.damping:
+    wall = wall_of(environment)
+    if wall is None or wall.damping:
         return None
-    return environment.stiffness if isinstance(environment.stiffness, Exact) else None
+    return wall.stiffness if isinstance(wall.stiffness, Exact) else None
 
 
 def as_read(alpha: Fraction | None) -> float:

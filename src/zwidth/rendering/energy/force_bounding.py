@@ -75,6 +75,7 @@ class ForceBounding(Stage):
 
     code: ClassVar[float] = FORCE_BOUNDING
     slots: ClassVar[int] = 3
+    bounds_the_force: ClassVar[bool] = True
 
     encoder: Literal["counted", "ideal"] = word("counted", "ideal")
     resets: bool = flag("to forget the energy where there was no force", False)

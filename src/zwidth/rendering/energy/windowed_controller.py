@@ -28,8 +28,6 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.device.device import Device
-from zwidth.environment.viscoelastic import GeneralizedMaxwell, StandardLinearSolid
-from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import PLAIN, Certain, CertainOrNone, Count, parameter, part, plain
@@ -45,9 +43,6 @@ LONGEST = 1000
 
 SLOWEST = {"linear": 0.01, "rotary": sqrt(0.001)}
 """v₀ where none is given [m/s; rad/s]."""
-
-_WITH_A_SPRING = (Wall, StandardLinearSolid, GeneralizedMaxwell)
-"""Whose stiffness is that of a spring from the surface, all of the force at rest."""
 
 _PERIOD, _MOST, _FLOOR, _HALF_STIFFNESS, _WINDOW = range(5)
 _BEFORE, _LOST, _HEAD, _RING = range(4)
@@ -151,7 +146,7 @@ class WindowedController(Stage):
             at.period,
             below(self.most_damping(at.device, spring_of(at.environment))),
             slowest * at.period,
-            at.stiffness / 2 if isinstance(at.environment, _WITH_A_SPRING) else 0.0,
+            at.stiffness / 2 if at.environment.rests_on_spring else 0.0,
             float(self.window),
         ]
 

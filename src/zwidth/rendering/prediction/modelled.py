@@ -26,7 +26,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from zwidth.compiled import Array, compiled
-from zwidth.environment.wall import Wall
+from zwidth.environment.wall import wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.parameter import Certain, CertainOrNone, parameter
@@ -149,11 +149,11 @@ class Modelled(Stage):
         InputError
             If it is no wall.
         """
-        wall = at.environment
-        if not isinstance(wall, Wall):
+        wall = wall_of(at.environment)
+        if wall is None:
             raise InputError(
                 f"{type(self).__name__} computes how a wall K x + B v would move the hand and needs a Wall, "
-                f"got {wall.describe()}"
+                f"got {at.environment.describe()}"
             )
         return float(ends(wall.stiffness)[0]), float(ends(wall.damping)[0])
 
