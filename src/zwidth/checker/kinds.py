@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from functools import cache
 from typing import Any, NamedTuple
 
 from . import scope
@@ -169,7 +168,9 @@ def kind_of(document: Mapping[str, Any]) -> str:
     return told
 
 
-@cache
+_FIELDS = {kind: told.fields.extended(kind=Choice(kind, shown=False)) for kind, told in KINDS.items()}
+
+
 def fields_of(kind: str) -> Record:
     """All that a document of a kind consists of."""
-    return KINDS[kind].fields.extended(kind=Choice(kind, shown=False))
+    return _FIELDS[kind]

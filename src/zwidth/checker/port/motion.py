@@ -134,14 +134,13 @@ def _require_few_lines(p: Port, motion: Read) -> None:
         raise Invalid("the burst has too many lines for so large a port")
 
 
-_Parts = tuple[Polynomial, Polynomial]
-"""Even and odd part."""
-
-
 def _line(
-    side: list[list[_Parts]], omega: Fraction, alpha: Sequence[Fraction], beta: Sequence[Fraction]
+    side: list[list[tuple[Polynomial, Polynomial]]],
+    omega: Fraction,
+    alpha: Sequence[Fraction],
+    beta: Sequence[Fraction],
 ) -> list[tuple[Fraction, Fraction]]:
-    """A row's answer at jω to α_i − jβ_i."""
+    """A row's answer at jω to α_i − jβ_i, from even and odd parts."""
     answers, square = [], omega * omega
     for row in side:
         real = imaginary = Fraction(0)
