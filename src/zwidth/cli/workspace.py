@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from zwidth.cli.options import Once
+from zwidth.cli.options import Once, add_output
 from zwidth.cli.output import print_json, targets, writing
 from zwidth.cli.workspace_arm import arm_of
 from zwidth.cli.workspace_joints import add_joint_options
@@ -65,17 +65,8 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the hand turns with the end, and the wall resists that too",
     )
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help="print the verdict as JSON, units in the keys")
-    output.add_argument("--plot", metavar="FILE", action=Once, help="save the map: .png, .svg or .pdf")
-    output.add_argument(
-        "-o",
-        "--save",
-        metavar="FILE",
-        action=Once,
-        help="save the verdict with its certificate, for zwidth verify (.json), or the map as NetCDF (.nc)",
-    )
-    output.add_argument("--force", action="store_true", help="replace files that exist")
+    saved = "the verdict with its certificate, for zwidth verify (.json), or the map as NetCDF (.nc)"
+    add_output(parser, "the verdict", "the map", saved)
 
 
 def run_workspace(arguments: argparse.Namespace) -> int:
@@ -92,9 +83,7 @@ def run_workspace(arguments: argparse.Namespace) -> int:
     if save is not None:
         _save(space, save)
     if plot is not None:
-        from zwidth.plots.workspace import save_workspace  # matplotlib takes its time
-
-        save_workspace(space, plot, overwrite=True)
+        space.plot(plot)
     if arguments.json:
         print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
     else:

@@ -59,9 +59,14 @@ class PassivityIndices(PassivityAnswer):
     def claim(self) -> str:
         """The outcome in a sentence."""
         if self.outcome == "undecided":
-            return "No input takes energy out of this port; the checker did not confirm it."
+            return "ν ≥ 0 was found, and the checker did not confirm it: nothing is proved."
         some = {"passive": "No", "active": "An"}[self.outcome]
         return f"{some} input, from rest, takes energy out of this port."
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """Nothing: a port by itself has neither hand nor actuator."""
+        return ()
 
     @property
     def margin(self) -> float:

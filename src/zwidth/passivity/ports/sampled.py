@@ -20,7 +20,7 @@ from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
-from zwidth.passivity import limits
+from zwidth.passivity import parameter_limits
 from zwidth.passivity.decision import decide
 from zwidth.passivity.linear.supremum import frequency, tightest
 from zwidth.passivity.ports.largest import Largest, largest_level
@@ -91,7 +91,9 @@ def sampled_damping(
         return _of_several_axes(port, on)
     decision = decide(on, as_environment(system, discretization))
     _, cosine = tightest(decision.loop)
-    return SampledDamping(limits.required_damping(decision), frequency(cosine, decision.loop.period), on)
+    return SampledDamping(
+        parameter_limits.required_damping(decision), frequency(cosine, decision.loop.period), on
+    )
 
 
 def _bare(system: Any) -> Device | None:

@@ -62,6 +62,8 @@ class TransformedCondition(Answer):
 
     FORMAT = "zwidth transformed condition 1"
     YES = "holds"
+    certificate = None  # the proof is on paper
+    witness = None
 
     device: Device
     environment: SlopeBounds | PassivityExcess
