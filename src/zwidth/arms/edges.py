@@ -64,13 +64,13 @@ class Corner(NamedTuple):
 
 
 def first_motion(
-    arm: Chain, wall: Wall | MatrixWall, period: float, samples: int, joints: Array, torque_held: bool
+    arm: Chain, wall: Wall | MatrixWall, period: float, delay_samples: int, joints: Array, torque_held: bool
 ) -> ArmMotion | None:
     """A motion inside the region that takes energy out, with the smallest force for which one was found.
 
     Parameters
     ----------
-    arm, wall, period, samples
+    arm, wall, period, delay_samples
         The loop: chains with encoders, T [s], whole samples of delay.
     joints
         Places of the region, (…, m).
@@ -81,7 +81,7 @@ def first_motion(
     forces = [-c.change / c.per_force for c in corners if c.per_force > 0]
     least = max(min(forces, default=0.0), _step_force(arm, wall, corners))
     for times in _TIMES:
-        motion = motion_at(arm, wall, period, samples, corners, times * least, torque_held)
+        motion = motion_at(arm, wall, period, delay_samples, corners, times * least, torque_held)
         if motion is not None:
             return motion
     return None
@@ -91,7 +91,7 @@ def motion_at(
     arm: Chain,
     wall: Wall | MatrixWall,
     period: float,
-    samples: int,
+    delay_samples: int,
     corners: Sequence[Corner],
     force: float,
     torque_held: bool,
@@ -102,8 +102,8 @@ def motion_at(
     """
     gaining = [c for c in corners if c.change_at(force) > 0]
     for corner in sorted(gaining, key=lambda c: -c.change_at(force))[:_TRIES]:
-        for waits in (1, samples + 2):
-            motion = _within(arm, wall, period, samples, corner, waits, force, torque_held)
+        for waits in (1, delay_samples + 2):
+            motion = _within(arm, wall, period, delay_samples, corner, waits, force, torque_held)
             if motion is not None:
                 return motion
     return None
@@ -180,7 +180,7 @@ def _within(
     arm: Chain,
     wall: Wall | MatrixWall,
     period: float,
-    samples: int,
+    delay_samples: int,
     corner: Corner,
     waits: int,
     force: float,
@@ -194,7 +194,7 @@ def _within(
     pull = force
     for _ in range(3):
         rest = here.forward(corner.at) - softness @ corner.direction * pull
-        motion = replay_cycle(here, wall, period, samples, path, torque_held, counted=True, rest=rest)
+        motion = replay_cycle(here, wall, period, delay_samples, path, torque_held, counted=True, rest=rest)
         if motion.largest_force <= force:
             return motion if motion.takes_energy else None
         pull -= _MORE * (motion.largest_force - force)

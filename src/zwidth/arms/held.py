@@ -21,7 +21,7 @@ from zwidth.errors import InputError
 _DIGITS = 4
 
 
-def held_torque_damping(arm: Arm, period: float, samples: int, largest: tuple[float, ...]) -> float:
+def held_torque_damping(arm: Arm, period: float, delay_samples: int, largest: tuple[float, ...]) -> float:
     """c, to be taken from every joint; 0 where the torque follows the arm [N·m·s/rad].
 
     Parameters
@@ -30,7 +30,7 @@ def held_torque_damping(arm: Arm, period: float, samples: int, largest: tuple[fl
         With a known curvature.
     period
         T [s].
-    samples
+    delay_samples
         Of delay: the bound is for none.
     largest
         F [N], in pose F and M [N], [N·m], from `forces_of`; empty: the torque follows the arm.
@@ -38,7 +38,7 @@ def held_torque_damping(arm: Arm, period: float, samples: int, largest: tuple[fl
     if not largest:
         return 0.0
     curvatures = (arm.curvature, arm.turning_curvature) if arm.turns else (arm.curvature,)
-    if None in curvatures or samples:
+    if None in curvatures or delay_samples:
         raise InputError(
             "a bound for held torques is known for chains and descriptions without delay; "
             "compute the torque several times in each period, and leave torque_held_up_to out"

@@ -73,7 +73,7 @@ def with_motion(
     arm: Arm,
     wall: Wall | MatrixWall,
     period: float,
-    samples: int,
+    delay_samples: int,
     sites: Sites,
     torque_held: bool,
 ) -> EncoderSteps | None:
@@ -81,7 +81,7 @@ def with_motion(
     chain, steps = with_encoders(arm), found.steps
     if chain is None or steps is None or wall.clamped:
         return steps  # a wall that never pulls has a normal, and the motion's forces may not be along it
-    motion = first_motion(chain, wall, period, samples, sites.joints, torque_held)
+    motion = first_motion(chain, wall, period, delay_samples, sites.joints, torque_held)
     return steps if motion is None else replace(steps, refuted=motion.largest_force, motion=motion)
 
 
