@@ -72,7 +72,7 @@ def complaint(result: Result) -> str:
 @pytest.mark.parametrize(
     ("argv", "what"),
     [
-        (("limit", "haptic-paddle", "--stiffness", "100"), "the game of the worst hand"),
+        (("limit", "haptic-paddle", "--stiffness", "100"), "the value iteration"),
         (
             ("simulate", "haptic-paddle", "--stiffness", "100", "--operator", "dowel", "--duration", "1"),
             "the simulator",

@@ -110,7 +110,7 @@ def run_identify(arguments: argparse.Namespace) -> int:
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     from zwidth.cli.patience import warn_of_compiling_the_estimates
-    from zwidth.identification.logs import join_logs
+    from zwidth.identification.logs import Log
     from zwidth.identification.recording import identify, log_from
     from zwidth.traces.progress import progress_bar
 
@@ -120,7 +120,7 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     with _as_options():
         reading = _reading(arguments)
         logs = [log_from(Path(name), **reading) for name in (arguments.log, *_further_logs(arguments))]
-        log = logs[0] if len(logs) == 1 else join_logs(logs)
+        log = logs[0] if len(logs) == 1 else Log.concatenate(logs)
         environment = environment_of(log.motion)
         with progress_bar("samples") as progress:
             identified = identify(log, **options, progress=progress)

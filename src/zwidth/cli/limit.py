@@ -16,7 +16,7 @@ from zwidth.specification.laws import with_laws
 from zwidth.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
-    from zwidth.passivity.passive_limit import Bracket
+    from zwidth.passivity.bracket import Bracket
 
 BOTH, ONE_OR_NONE = 0, 3
 """Exit status by the sides that were found; 2 is bad input."""
@@ -65,10 +65,10 @@ def run_limit(arguments: argparse.Namespace) -> int:
     loop = Specification(given.device, rendered)
     parameter = _parameter(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
-    from zwidth.cli.patience import warn_of_compiling_the_game
+    from zwidth.cli.patience import warn_of_compiling_the_iteration
     from zwidth.traces import passive_limit
 
-    warn_of_compiling_the_game()
+    warn_of_compiling_the_iteration()
     bracket = passive_limit(loop.device, loop.environment, parameter, **options)
     if save is not None:
         with writing(save):
@@ -99,8 +99,8 @@ def _parameter(typed: str) -> str:
 
 def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     """The search as `passive_limit` takes it."""
-    length = "rad" if motion == "rotary" else "m"
-    units = {"penetration": length, "speed": f"{length}/s", "tolerance": "1", "seconds": "s"}
+    length, speed = (GLOSSARY[name].unit_for(motion) for name in ("position", "velocity"))
+    units = {"penetration": length, "speed": speed, "tolerance": "1", "seconds": "s"}
     options: dict[str, Any] = {
         "force_limit": arguments.count_force_limit,
         "force_resolution": arguments.count_force_resolution,
@@ -115,7 +115,7 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
 
 
 def _json(bracket: Bracket) -> str:
-    """The bracket without the storage function, which is as large as the board; --save writes it."""
+    """The bracket without the storage function, which is as large as the grid; --save writes it."""
     from zwidth.passivity.document import to_json
 
     document = bracket.to_dict()

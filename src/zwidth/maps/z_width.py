@@ -158,7 +158,7 @@ def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Da
     variables: dict[str, Any] = {
         name: (dims, values, dict(_MEANINGS.get(name, {}))) for name, values in layers.items()
     }
-    variables["admissible_speed"][2]["units"] = "rad/s" if motion == "rotary" else "m/s"
+    variables["admissible_speed"][2]["units"] = GLOSSARY["velocity"].unit_for(motion)
     variables["quiet"] = (dims, layers["admissible_speed"] >= speed, {"speed": speed})
     units = [GLOSSARY[name].unit_for(motion) for name in axes]
     variables["limit_passive"] = (dims[1], ready.limit, {"units": units[0]})

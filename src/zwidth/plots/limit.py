@@ -16,7 +16,7 @@ from zwidth.plots.witness import draw_motion
 from zwidth.quantity.text import unit_text
 
 if TYPE_CHECKING:
-    from zwidth.passivity.passive_limit import Bracket
+    from zwidth.passivity.bracket import Bracket
 
 _WIDTH = 120
 """Characters of the heading on one line."""
