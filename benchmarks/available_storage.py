@@ -76,8 +76,8 @@ def bracket() -> dict:
     first = least_time(call, 1)
     found = call()
     return {
-        "passive_N_per_m": found.passive,
-        "active_N_per_m": found.active,
+        "passive_N_per_m": found.proved_passive,
+        "active_N_per_m": found.proved_active,
         "relative_width": found.relative_width,
         "evaluations": found.evaluations,
         "first_s": first,

@@ -63,8 +63,10 @@ for depth, marker, colour in (
     for n in counts:
         found = brackets[depth, n] = bracket(depth, n)
         speed = float(n * count / period)
-        left.plot([speed, speed], [found.passive, found.active], color=colour, lw=1.2)
-        left.plot(speed, (found.passive + found.active) / 2, marker, color=colour, mfc="white", ms=5.5)
+        left.plot([speed, speed], [found.proved_passive, found.proved_active], color=colour, lw=1.2)
+        left.plot(
+            speed, (found.proved_passive + found.proved_active) / 2, marker, color=colour, mfc="white", ms=5.5
+        )
     left.plot(
         [],
         [],
@@ -105,14 +107,16 @@ print(f"every hand: {sampling:g} N/m; hands that creep: {encoder:.0f} N/m")
 for n in counts:
     v = n * count / period
     found = [brackets[depth, n] for depth in ("0.0005", "0.01")]
-    values = "; ".join(f"{bracket.passive:.0f} to {bracket.active:.0f} N/m" for bracket in found)
+    values = "; ".join(
+        f"{bracket.proved_passive:.0f} to {bracket.proved_active:.0f} N/m" for bracket in found
+    )
     print(
         f"hands up to {float(v):.3f} m/s: {formula(v):.0f} N/m by the formula; 0.5 mm, 10 mm deep: {values}"
     )
 deep = [(formula(n * count / period), bracket) for (depth, n), bracket in brackets.items() if depth == "0.01"]
-hold = sum(bracket.passive <= limit <= bracket.active for limit, bracket in deep)
+hold = sum(bracket.proved_passive <= limit <= bracket.proved_active for limit, bracket in deep)
 print(f"10 mm deep: {hold} of {len(deep)} brackets hold the formula")
-print(f"just above the limit, at {winner.active:.0f} N/m: {winner.witness.describe()}")
+print(f"just above the limit, at {winner.proved_active:.0f} N/m: {winner.witness.describe()}")
 print(f"admissible speed at 770 N/m: {zw.check(paddle, zw.Wall(stiffness=770)).admissible_speed:.3f} m/s")
 half = Fraction(1, 2)
 print(f"every hand: {sampling:g} N/m; hands up to {float(half):g} m/s: {formula(half):.0f} N/m")

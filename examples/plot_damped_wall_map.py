@@ -41,7 +41,7 @@ def largest_stiffness(friction, damping, start, depth, reach, **law):
     """Bracket of y = KT/(2b) for hands of so many counts of depth and counts per sample."""
     wall = zw.Wall(stiffness=2 * start, damping=damping, **law)
     found = zw.passive_limit(device(friction), wall, penetration=depth, speed=reach)
-    return found.passive / 2, found.active / 2
+    return found.proved_passive / 2, found.proved_active / 2
 
 
 def draw_bracket(axes, x, bracket, marker, colour):
@@ -94,7 +94,7 @@ for beta_v in (Fraction(k, 4) for k in (0, 1, 2, 4, 6, 8, 12, 16)):
     found = zw.passive_limit(
         device(enough, enough), wall, "coulomb_friction", penetration=24, speed=2, tolerance=0.005
     )
-    friction_brackets.append((float(enough), (found.active, found.passive)))
+    friction_brackets.append((float(enough), (found.proved_active, found.proved_passive)))
     draw_bracket(friction, float(beta_v), friction_brackets[-1][1], "o", RED)
 friction.fill_between([0, 4.2], [0.5, 4.7], 5, color=GREEN, alpha=0.15, lw=0)
 friction.plot([0, 4.2], [0.5, 4.7], color=RED, label="every hand: σ = ½ + β$_v$")

@@ -45,6 +45,7 @@ def bracket(seed: int, seconds: float = 2.0) -> str:
         if motion.depth > depth * (1 + SLACK):
             return f"a motion to {float(motion.depth):.4g} m: {words}"
     every = zw.passive_limit(device, zw.Wall(k), seconds=seconds)
-    if found.passive is not None and every.passive is not None and found.passive < every.passive:
-        return f"this hand {float(found.passive):.6g}, every hand {float(every.passive):.6g}: {words}"
+    here, anywhere = found.proved_passive, every.proved_passive
+    if here is not None and anywhere is not None and here < anywhere:
+        return f"this hand {float(here):.6g}, every hand {float(anywhere):.6g}: {words}"
     return ""

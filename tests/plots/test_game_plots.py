@@ -64,8 +64,8 @@ def test_both_sides_of_a_limit_stand_beside_each_other():
     bracket = zw.passive_limit(PADDLE, zw.Wall(100, 0.05), **BOUNDS)
     figure = plots.limit_figure(bracket)
     left, *right = figure.axes
-    assert left.get_title(loc="left").startswith(f"{bracket.passive:.4g} N/m")
-    assert right[0].get_title(loc="left").startswith(f"{bracket.active:.4g} N/m")
+    assert left.get_title(loc="left").startswith(f"{bracket.proved_passive:.4g} N/m")
+    assert right[0].get_title(loc="left").startswith(f"{bracket.proved_active:.4g} N/m")
     assert len(right) == 3
 
 

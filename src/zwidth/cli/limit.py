@@ -82,7 +82,7 @@ def run_limit(arguments: argparse.Namespace) -> int:
 
         print_bracket(bracket, loop)
         say_written(save, plot)
-    return BOTH if bracket.passive is not None and bracket.active is not None else ONE_OR_NONE
+    return BOTH if bracket.proved_passive is not None and bracket.proved_active is not None else ONE_OR_NONE
 
 
 def _parameter(typed: str) -> str:

@@ -25,13 +25,13 @@ def print_bracket(bracket: Bracket, loop: Specification) -> None:
         out.print(below(_loop(bracket, loop)))
         out.print(below(_values(bracket)))
         if bracket.witness is not None:
-            at = _shown(bracket, bracket.active)
+            at = _shown(bracket, bracket.proved_active)
             section(out, f"the motion, at {at}", motion_lines(bracket.witness, fancy))
         section(out, "assumes", items(bracket.assumptions, "dim"))
 
 
 def _headline(bracket: Bracket) -> Padding:
-    sides = [side is not None for side in (bracket.passive, bracket.active)]
+    sides = [side is not None for side in (bracket.proved_passive, bracket.proved_active)]
     badge, colour = {2: ("BRACKETED", "green"), 1: ("ONE SIDE", "yellow"), 0: ("UNDECIDED", "yellow")}[
         sum(sides)
     ]
@@ -39,12 +39,16 @@ def _headline(bracket: Bracket) -> Padding:
 
 
 def _claim(bracket: Bracket) -> str:
-    name, passive, active = _name(bracket), _shown(bracket, bracket.passive), _shown(bracket, bracket.active)
-    if bracket.passive is None and bracket.active is None:
+    name, passive, active = (
+        _name(bracket),
+        _shown(bracket, bracket.proved_passive),
+        _shown(bracket, bracket.proved_active),
+    )
+    if bracket.proved_passive is None and bracket.proved_active is None:
         return f"Neither a proof nor a motion was found for any {name} that was tried."
-    if bracket.active is None:
+    if bracket.proved_active is None:
         return f"{name}: {passive} is proved passive; no value was found at which a hand gains."
-    if bracket.passive is None:
+    if bracket.proved_passive is None:
         return f"{name}: {active} is active; no value was found that is proved passive."
     apart = f"{100 * bracket.relative_width:.2g} % apart"
     return f"{name}: {passive} is proved passive, {active} is active, {apart}."
@@ -66,7 +70,7 @@ def _values(bracket: Bracket) -> Table:
     table = Table(box=None, padding=(0, 3, 0, 0), header_style="dim", pad_edge=False)
     table.add_column(_name(bracket), style="dim")
     bounded = bracket.hand != "every hand"
-    columns = [("this hand" if bounded else "every hand", (bracket.passive, bracket.active))]
+    columns = [("this hand" if bounded else "every hand", (bracket.proved_passive, bracket.proved_active))]
     if bounded:
         columns.append(("every hand", bracket.every_hand))
     for title, _ in columns:

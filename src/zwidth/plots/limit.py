@@ -59,7 +59,7 @@ def _proved(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
     axes = figure.add_subplot(place)
     draw_storage(axes, bracket.storage)
     axes.set_title(
-        f"{_value(bracket, bracket.passive)}\n{axes.get_title(loc='left')}", color=OUTCOME["passive"]
+        f"{_value(bracket, bracket.proved_passive)}\n{axes.get_title(loc='left')}", color=OUTCOME["passive"]
     )
 
 
@@ -71,7 +71,9 @@ def _refuted(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
     for upper in axes[:-1]:
         upper.tick_params(labelbottom=False)
     draw_motion(axes, bracket.witness)
-    top.set_title(f"{_value(bracket, bracket.active)}\n{top.get_title(loc='left')}", color=OUTCOME["active"])
+    top.set_title(
+        f"{_value(bracket, bracket.proved_active)}\n{top.get_title(loc='left')}", color=OUTCOME["active"]
+    )
 
 
 def _value(bracket: Bracket, value: float | None) -> str:

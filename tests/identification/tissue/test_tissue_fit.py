@@ -210,7 +210,7 @@ def test_how_a_fit_shows_itself():
     fit = fit_tissue(*noisy("white", np.random.default_rng(6)), motion="rotary")
     text = repr(fit)
     assert "standard-linear-solid, 150 samples: r² = " in text
-    assert "N*m*s/rad" in text
+    assert "N·m·s/rad" in text
     assert "<td>branch_damping</td>" in fit._repr_html_()
     document = fit.to_dict()
     assert document["parameters"]["stiffness"]["unit"] == "N*m/rad"

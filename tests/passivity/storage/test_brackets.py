@@ -78,7 +78,7 @@ def test_both_sides_are_evidence(name, bounds):
     assert bracket.parameter.endswith(parameter)
     assert bracket.relative_width <= 0.02
     safer = parameter.endswith(("coulomb_friction", "device.damping", "rate"))
-    assert (bracket.passive > bracket.active) is safer
+    assert (bracket.proved_passive > bracket.proved_active) is safer
     assert bracket.certificate.verify()
     assert bracket.witness.verify()
     if parameter not in (
@@ -87,10 +87,11 @@ def test_both_sides_are_evidence(name, bounds):
         "rate",
     ):  # these change how many counts the bounds are
         passive, active = (
-            available_storage(*at(loop, parameter, v), **bounds) for v in (bracket.passive, bracket.active)
+            available_storage(*at(loop, parameter, v), **bounds)
+            for v in (bracket.proved_passive, bracket.proved_active)
         )
         assert (passive.outcome, active.outcome) == ("passive", "active")
-    held, law = at(loop, parameter, bracket.passive)
+    held, law = at(loop, parameter, bracket.proved_passive)
     proof = bracket.certificate.to_dict()
     assert Fraction(proof["loop"]["damping_N_s_per_m"]) == held.exact("damping")
     assert Fraction(proof["loop"]["coulomb_friction_N"]) == held.exact("coulomb_friction")
@@ -98,12 +99,12 @@ def test_both_sides_are_evidence(name, bounds):
     assert Fraction(proof["loop"]["sample_period_s"]) == held.exact("sample_period")
     if proof["kind"] != "storage":  # no worse than what covers every hand
         assert proof["kind"] in ("spring", "contact")
-        assert bracket.passive == bracket.every_hand[0]
+        assert bracket.proved_passive == bracket.every_hand[0]
     elif law.linear:
         taps = sum(Fraction(c) for c in proof["law"]["taps_N_per_m"])
         assert taps == law.stiffness.fraction
         motion = bracket.witness.to_dict()
-        other = at(loop, parameter, bracket.active)[1]
+        other = at(loop, parameter, bracket.proved_active)[1]
         assert sum(Fraction(c) for c in motion["law"]["taps_N_per_m"]) == other.stiffness.fraction
 
 
@@ -122,9 +123,9 @@ def test_as_close_as_asked_for(name, tolerance):
     bracket = passive_limit(held, law, parameter, tolerance=tolerance)
     assert bracket.hand == "every hand"
     assert bracket.relative_width <= tolerance
-    low, high = sorted((bracket.passive, bracket.active))
+    low, high = sorted((bracket.proved_passive, bracket.proved_active))
     assert low <= exact <= high
-    assert bracket.every_hand == (bracket.passive, bracket.active)
+    assert bracket.every_hand == (bracket.proved_passive, bracket.proved_active)
 
 
 @pytest.mark.parametrize("seconds", [0, 0.01, 0.05, 0.2])
@@ -133,20 +134,20 @@ def test_out_of_time(name, seconds):
     """What was found so far is returned, each side with its evidence or missing altogether."""
     loop, parameter, _ = LIMITS[name]
     bracket = passive_limit(*loop, parameter, penetration="0.002", speed="0.9", seconds=seconds)
-    assert (bracket.passive is None) is (bracket.certificate is None)
-    assert (bracket.active is None) is (bracket.witness is None)
+    assert (bracket.proved_passive is None) is (bracket.certificate is None)
+    assert (bracket.proved_active is None) is (bracket.witness is None)
     assert bracket.certificate is None or bracket.certificate.verify()
     assert bracket.witness is None or bracket.witness.verify()
     assert bracket.describe()
     assert bracket.to_dict()["evaluations"] == bracket.evaluations
     if seconds == 0:
-        assert (bracket.passive, bracket.active) == (None, None)
+        assert (bracket.proved_passive, bracket.proved_active) == (None, None)
         assert "nothing was decided" in bracket.describe()
 
 
 def test_out_of_time_with_a_law_without_a_transfer_function():
     """A spring given by points as well: nothing decided is an answer."""
-    assert passive_limit(*DETENT, "gain", **BOUNDS, seconds=0).passive is None
+    assert passive_limit(*DETENT, "gain", **BOUNDS, seconds=0).proved_passive is None
 
 
 GROWING = {
@@ -170,10 +171,10 @@ def test_a_faster_or_deeper_hand_never_admits_more(loop, way):
     """A hand with wider bounds can do all that one with narrower bounds can."""
     brackets = [passive_limit(*loop, **bounds) for bounds in GROWING[way]]
     for narrow, wide in pairwise(brackets):
-        assert wide.passive < narrow.active
-        assert wide.passive <= narrow.passive * 1.01
+        assert wide.proved_passive < narrow.proved_active
+        assert wide.proved_passive <= narrow.proved_passive * 1.01
     everyone = brackets[0].every_hand[0]
-    assert all(bracket.active > everyone for bracket in brackets)
+    assert all(bracket.proved_active > everyone for bracket in brackets)
 
 
 def test_progress_is_told():
@@ -245,7 +246,7 @@ def test_what_it_refuses(loop, arguments, said):
 def test_virtual_damping_below_zero():
     """Starting from B < 0 the largest damping is found as well."""
     bracket = passive_limit(device("0.3", "0.03"), zw.Wall(300, "-0.05"), "damping", **BOUNDS)
-    assert bracket.active > bracket.passive > 0
+    assert bracket.proved_active > bracket.proved_passive > 0
 
 
 def test_a_motion_keeps_to_the_bounds_that_were_given():
@@ -301,7 +302,7 @@ def test_the_gain_of_a_transfer_function_is_bracketed():
     ideal = device("0.15", "0.1", resolution=0)
     bracket = passive_limit(ideal, law, "gain", tolerance=1e-4)
     assert (bracket.parameter, bracket.unit) == ("environment.gain", "1")
-    assert bracket.passive <= zw.check(ideal, law).max_gain <= bracket.active
+    assert bracket.proved_passive <= zw.check(ideal, law).max_gain <= bracket.proved_active
     assert bracket.relative_width < 1e-4
     with pytest.raises(zw.InputError, match="no parameter 'gain'"):
         passive_limit(ideal, zw.Wall(100), "gain")

@@ -62,10 +62,10 @@ def test_friction_stiffness_and_dissipation_from_both_sides(exponent, dissipatio
     limit = float(contact.stiffness) * jump(exponent, dissipation, clamped) / 2
     near = f"{limit:.6g}"
     friction = passive_limit(device(damping, near), contact, "coulomb_friction", **BOUNDS)
-    assert friction.active < limit <= friction.passive
+    assert friction.proved_active < limit <= friction.proved_passive
     bracket = passive_limit(device(damping, near), contact, **BOUNDS)
-    assert bracket.passive <= float(contact.stiffness) * (1 + 1e-5)
-    assert bracket.active > float(contact.stiffness) * (1 - 1e-5)
+    assert bracket.proved_passive <= float(contact.stiffness) * (1 + 1e-5)
+    assert bracket.proved_active > float(contact.stiffness) * (1 - 1e-5)
     for found in (friction, bracket):
         assert found.relative_width <= 0.01
         assert found.certificate.verify()
@@ -73,8 +73,8 @@ def test_friction_stiffness_and_dissipation_from_both_sides(exponent, dissipatio
         assert max(found.witness.cycle) - min(found.witness.cycle) < COUNT / 10
     if dissipation:
         found = passive_limit(device(damping, near), contact, "dissipation", **BOUNDS)
-        assert found.passive <= dissipation * (1 + 1e-4)
-        assert found.active > dissipation * (1 - 1e-4)
+        assert found.proved_passive <= dissipation * (1 + 1e-4)
+        assert found.proved_active > dissipation * (1 - 1e-4)
 
 
 def test_exponent_one_without_dissipation_is_a_spring_wall():
@@ -93,10 +93,10 @@ def test_a_small_dissipation_is_a_damped_wall_around_one_depth():
     held = device(2, "0.001")
     contact = passive_limit(held, zw.HuntCrossley(300, 1, "0.5"), "coulomb_friction", **BOUNDS)
     damped = [
-        passive_limit(held, zw.Wall(300, 0.5 * 300 * n * COUNT), "coulomb_friction", **BOUNDS).passive
+        passive_limit(held, zw.Wall(300, 0.5 * 300 * n * COUNT), "coulomb_friction", **BOUNDS).proved_passive
         for n in (DEEPEST - 1, DEEPEST)
     ]
-    assert damped[0] * 0.99 < contact.passive < damped[1] * 1.01
+    assert damped[0] * 0.99 < contact.proved_passive < damped[1] * 1.01
 
 
 def test_forces_are_written_down_at_every_reading():

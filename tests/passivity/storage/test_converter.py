@@ -49,14 +49,14 @@ def test_friction_of_half_the_largest_rise(stiffness, rise):
     bounds = {"penetration": "0.003", "speed": "0.5"}
     loop = device("0.02"), zw.Wall(stiffness)
     bracket = passive_limit(*loop, "coulomb_friction", **bounds, force_resolution=True)
-    assert bracket.active < rise * STEP / 2 <= bracket.passive
+    assert bracket.proved_active < rise * STEP / 2 <= bracket.proved_passive
     assert bracket.relative_width <= 0.01
     assert bracket.certificate.verify()
     assert bracket.witness.verify()
     cycle = bracket.witness.cycle
     assert max(cycle) - min(cycle) < COUNT / 10
     ideal = passive_limit(*loop, "coulomb_friction", **bounds)
-    assert ideal.active < stiffness * COUNT / 2 <= ideal.passive
+    assert ideal.proved_active < stiffness * COUNT / 2 <= ideal.proved_passive
 
 
 def test_how_coarse_a_converter_may_be():
@@ -65,7 +65,7 @@ def test_how_coarse_a_converter_may_be():
     bracket = passive_limit(
         *loop, "force_resolution", penetration="0.002", speed="0.5", force_resolution=True
     )
-    assert bracket.passive <= 0.026 < bracket.active
+    assert bracket.proved_passive <= 0.026 < bracket.proved_active
     assert bracket.relative_width <= 0.011
 
 
@@ -77,10 +77,10 @@ def test_stiffness_up_to_one_step_a_count(counts):
         *loop, penetration=counts * COUNT, speed="0.5", force_resolution=True, tolerance=0.004
     )
     exact = STEP / COUNT * (1 + Fraction(1, 2 * (counts - 1)))
-    assert bracket.passive < exact <= bracket.active
+    assert bracket.proved_passive < exact <= bracket.proved_active
     assert bracket.relative_width <= 0.004
-    assert largest_rise(bracket.passive, counts - 1) == STEP
-    assert largest_rise(bracket.active, counts - 1) == 2 * STEP
+    assert largest_rise(bracket.proved_passive, counts - 1) == STEP
+    assert largest_rise(bracket.proved_active, counts - 1) == 2 * STEP
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,10 @@ def test_cells_of_many_counts_from_both_sides(name):
     assert bracket.certificate.verify()
     assert bracket.witness.verify()
     assert bracket.relative_width < 0.08
-    assert program_of(loop, wall.replace(stiffness=bracket.passive), *bounds.values()).refute(1024) is None
+    assert (
+        program_of(loop, wall.replace(stiffness=bracket.proved_passive), *bounds.values()).refute(1024)
+        is None
+    )
     motion = bracket.witness
     assert motion.peak_speed <= 0.5
     assert motion.depth <= 0.002
@@ -146,7 +149,7 @@ def test_hands_between_the_ends_of_cells(name):
     wall, delay, damping = WALLS[name]
     loop = device(4096 * 20, damping, "0.05", delay)
     bracket = zw.passive_limit(loop, wall, penetration="0.002", speed="0.5", tolerance=0.1, seconds=20)
-    law = program_of(loop, wall.replace(stiffness=bracket.passive), "0.002", "0.5").law
+    law = program_of(loop, wall.replace(stiffness=bracket.proved_passive), "0.002", "0.5").law
     step, period = (float(loop.exact(k)) for k in ("resolution", "sample_period"))
     late = loop.exact("delay") / loop.exact("sample_period")
     whole, part = ceil(late), float(late - ceil(late) + 1)
@@ -238,11 +241,11 @@ def test_this_hand_is_never_worse_than_every_hand():
         delay="0.0003",
     )
     bracket = zw.passive_limit(wheel, zw.Wall(57), speed="12.566", penetration="0.0873", seconds=0.2)
-    assert bracket.passive >= bracket.every_hand[0]
+    assert bracket.proved_passive >= bracket.every_hand[0]
     assert bracket.certificate.verify()
-    if bracket.active is not None:
+    if bracket.proved_active is not None:
         assert bracket.every_hand[1] is not None
-        assert bracket.every_hand[1] <= bracket.active
+        assert bracket.every_hand[1] <= bracket.proved_active
 
 
 def test_the_two_sides_share_the_time(monkeypatch):

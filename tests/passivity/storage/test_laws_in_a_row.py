@@ -92,8 +92,8 @@ def test_the_bracket_of_a_wall_alone_is_that_of_the_wall_behind_such_a_law(name)
     row = zw.passive_limit(at, zw.render(wall, *laws), **BOUNDS, **counted)
     assert row.relative_width <= 0.01
     assert alone.relative_width <= 0.01
-    assert row.passive < alone.active
-    assert alone.passive < row.active
+    assert row.proved_passive < alone.proved_active
+    assert alone.proved_passive < row.proved_active
     assert row.certificate.kind == "row storage"
     assert row.scope.hands.outside == row.scope.hands.inside
 
@@ -374,15 +374,15 @@ def test_a_limit_is_sought_on_one_domain():
     grid = bracket.storage.grid
     assert (grid.domain.highest + 1, grid.domain.reach) == program_of(DEVICE, law).counts
     assert f"({grid.domain.highest + 1} counts) on either side" in bracket.hand
-    assert bracket.passive > 10**12  # its slope is never more than 2b/T
-    assert bracket.active is None
+    assert bracket.proved_passive > 10**12  # its slope is never more than 2b/T
+    assert bracket.proved_active is None
 
 
 def test_a_limit_of_the_device_behind_laws():
     """The friction that h + KΔ/2 asks for, found from both sides."""
     law = zw.render(zw.Wall(200), rendering.Hysteresis("0.04", 2000))
     bracket = zw.passive_limit(device("0.5", "0.05"), law, "coulomb_friction", **BOUNDS)
-    assert bracket.active < 0.05 < bracket.passive
+    assert bracket.proved_active < 0.05 < bracket.proved_passive
     assert bracket.relative_width <= 0.01
     with pytest.raises(zw.InputError, match="no parameter 'force'"):
         zw.passive_limit(DEVICE, law, "force")

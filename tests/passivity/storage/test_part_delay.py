@@ -43,7 +43,7 @@ def test_both_sides(delay, wall):
     assert found.certificate.verify()
     assert found.witness.verify()
     if found.every_hand[0] is not None:
-        assert found.passive > found.every_hand[0]
+        assert found.proved_passive > found.every_hand[0]
 
 
 def test_it_joins_the_delays_of_whole_samples():
@@ -51,11 +51,12 @@ def test_it_joins_the_delays_of_whole_samples():
     whole = [bracket(d) for d in (0, 1)]
     for near, exact in zip(("0.001", "0.999"), whole, strict=True):
         found = bracket(near)
-        assert found.passive == pytest.approx(exact.passive, rel=0.02)
-        assert found.active == pytest.approx(exact.active, rel=0.03)  # no faster in the short part
+        assert found.proved_passive == pytest.approx(exact.proved_passive, rel=0.02)
+        # no faster in the short part
+        assert found.proved_active == pytest.approx(exact.proved_active, rel=0.03)
     between = [bracket(d) for d in ("0.3", "0.6")]
     ordered = [whole[0], *between, whole[1]]
-    assert all(a.passive > b.active for a, b in pairwise(ordered))
+    assert all(a.proved_passive > b.proved_active for a, b in pairwise(ordered))
 
 
 def test_longer_than_a_sample():
@@ -71,7 +72,7 @@ def test_longer_than_a_sample():
 def test_where_the_hand_is_between_samples_matters():
     """The motion that goes straight from sample to sample gains less, and may not gain at all."""
     held = device("0.3", "0.02", "0.5")
-    found = available_storage(held, zw.Wall(bracket("0.5").active), **BOUNDS).witness
+    found = available_storage(held, zw.Wall(bracket("0.5").proved_active), **BOUNDS).witness
     document = found.to_dict()
     x = document["positions_m"]
     straight = {**document, "switch_positions_m": [(a + b) / 2 for a, b in pairwise(x)]}

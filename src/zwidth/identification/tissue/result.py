@@ -20,6 +20,7 @@ from zwidth.identification.tissue.model import Model, unit_of
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Interval
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import unit_text
 from zwidth.showing import Lines, Part, Table
 
 if TYPE_CHECKING:
@@ -283,14 +284,15 @@ class TissueFit(Documented):
         lines = [["parameter", "value", "95 % interval", "unit"]]
         for name, value in self.values.items():
             low, high = self.interval(name)
-            lines.append([name, f"{value:.6g}", f"{low:.4g} … {high:.4g}", self._unit(name)])
+            lines.append([name, f"{value:.6g}", f"{low:.4g} … {high:.4g}", unit_text(self._unit(name))])
         return lines
 
     def _summary(self) -> str:
         noise = "white noise" if not self.noise_order else f"noise of order {self.noise_order}"
         return (
             f"{self.model.name}, {self.residuals.size} samples: r² = {self.r_squared:.6f}, "
-            f"residuals {self.rms:.3g} {self._unit('offset')} RMS, {noise}, condition {self.condition:.3g}"
+            f"residuals {self.rms:.3g} {unit_text(self._unit('offset'))} RMS, {noise}, "
+            f"condition {self.condition:.3g}"
         )
 
     def report(self) -> Iterable[Part]:

@@ -28,7 +28,7 @@ class Bracket(Result):
     ----------
     parameter, unit
         Which, and its SI unit.
-    passive, active
+    proved_passive, proved_active
         Proved passive; refuted.  None where no such value was found.
     certificate, witness
         The evidence at either value.
@@ -40,11 +40,11 @@ class Bracket(Result):
     evaluations, seconds
         Loops decided, and the time that took [s].
     storage
-        The storage function at `passive`, to look at; None where a closed condition proves it.
+        The storage function at `proved_passive`, to look at; None where a closed condition proves it.
     bounds
         The bounds on the hand, exact; None where the bracket is about every hand.
     violation
-        What of the linear criterion is violated at `active`, where closed conditions found it.
+        What of the linear criterion is violated at `proved_active`, where closed conditions found it.
     """
 
     FORMAT = "zwidth limit 1"
@@ -52,8 +52,8 @@ class Bracket(Result):
 
     parameter: str
     unit: str
-    passive: float | None
-    active: float | None
+    proved_passive: float | None
+    proved_active: float | None
     certificate: Certificate | None
     witness: Gain | Witness | None
     scope: Scope
@@ -76,20 +76,20 @@ class Bracket(Result):
 
     @property
     def relative_width(self) -> float:
-        """|active − passive| over the larger of the two; inf where one is missing."""
-        if self.passive is None or self.active is None:
+        """|proved_active − proved_passive| over the larger of the two; inf where one is missing."""
+        if self.proved_passive is None or self.proved_active is None:
             return inf
-        return abs(self.active - self.passive) / max(self.active, self.passive)
+        return abs(self.proved_active - self.proved_passive) / max(self.proved_active, self.proved_passive)
 
     def describe(self) -> str:
         """The bracket in a sentence."""
         name = in_words(self.parameter).replace("environment.", "").replace("device.", "device ")
-        if self.passive is None and self.active is None:
+        if self.proved_passive is None and self.proved_active is None:
             return f"{name}: nothing was decided in the time given"
-        passive, active = in_unit(self.passive, self.unit), in_unit(self.active, self.unit)
-        if self.active is None:
+        passive, active = in_unit(self.proved_passive, self.unit), in_unit(self.proved_active, self.unit)
+        if self.proved_active is None:
             return f"{name}: {passive} is proved passive, and nothing is refuted"
-        if self.passive is None:
+        if self.proved_passive is None:
             return f"{name}: no value is proved passive; {active} is active"
         return f"{name}: {passive} is proved passive, {active} is active, for {self.hand}"
 
@@ -99,8 +99,8 @@ class Bracket(Result):
         return {
             "format": self.FORMAT,
             "parameter": self.parameter,
-            f"proved_passive_{suffix}": self.passive,
-            f"proved_active_{suffix}": self.active,
+            f"proved_passive_{suffix}": self.proved_passive,
+            f"proved_active_{suffix}": self.proved_active,
             "relative_width": None if self.relative_width == inf else self.relative_width,
             "hand": self.hand,
             "scope": self.scope.to_dict(),
