@@ -12,7 +12,7 @@ program at the surface, and there the same H(z) can be written in several ways: 
 the position x, outside too, or with the penetration max(x, 0); its memory goes on
 outside or starts anew; the force may pull or not.
 
-The worst hand is played out against each of them, up to 12 counts deep and up to 8
+The available storage of each of them is computed, up to 12 counts deep and up to 8
 counts per sample.  Every proof and every motion is saved, and counts only if
 ``zwidth verify`` accepts it.
 """

@@ -103,7 +103,7 @@ class HuntCrossley(Environment):
             If one of them is no finite number.
         """
         x = read_number(position, GLOSSARY["position"], "position").fraction
-        v = read_number(velocity, GLOSSARY["friction_speed"], "velocity").fraction
+        v = read_number(velocity, GLOSSARY["speed"], "velocity").fraction
         f = resting_force(self.stiffness.fraction, self.exponent.fraction, x)
         f *= 1 + self.dissipation.fraction * v
         return Exact(max(f, Fraction(0)) if self.clamped else f)

@@ -43,7 +43,7 @@ from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import Given, Reads, Uncertain, check_bound, parameter, part, read_number
+from zwidth.quantity.parameter import Given, Reads, Uncertain, parameter, part, read_number
 
 Branch = tuple[Exact | Interval, Exact | Interval]
 """Spring μ and dashpot η in series."""
@@ -64,9 +64,10 @@ def _branches(given: Iterable[Sequence[Given]], name: str) -> tuple[Branch, ...]
 def _pair(pair: Sequence[Given], name: str) -> Branch:
     if isinstance(pair, str) or not hasattr(pair, "__len__") or len(pair) != 2:
         raise InputError(f"{name} is a pair (stiffness, damping), got {pair!r}")
-    mu = read_number(pair[0], GLOSSARY["branch_stiffness"], f"{name} stiffness", uncertain=True)
-    check_bound(mu, f"{name} stiffness", "≥ 0", NEGATIVE_SPRING)
-    return mu, read_number(pair[1], GLOSSARY["branch_damping"], f"{name} damping", uncertain=True)
+    spring, dashpot = GLOSSARY["branch_stiffness"], GLOSSARY["branch_damping"]
+    bounded = {"bound": "≥ 0", "why": NEGATIVE_SPRING}
+    mu = read_number(pair[0], spring, f"{name} stiffness", uncertain=True, **bounded)
+    return mu, read_number(pair[1], dashpot, f"{name} damping", uncertain=True)
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,6 @@ def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | 
 def _peak_force(witness: Witness | Gain) -> float:
     if isinstance(witness, Witness):
         return witness.peak_force
-    from zwidth.passivity.storage.evidence.playback import peak_force  # the game's libraries are there by now
+    from zwidth.passivity.storage.evidence.playback import peak_force  # numba is there by now
 
     return peak_force(witness)

@@ -22,7 +22,7 @@ from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope, scope_of
-from zwidth.passivity.wording import if_friction_goes_on, lines
+from zwidth.passivity.wording import if_friction_goes_on
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
 from zwidth.rendering.rendered import stages_of
@@ -55,11 +55,6 @@ class Bounding(PassivityAnswer):
     claim: str
     scope: Scope
     certificate: Certificate | None
-
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What the claim covers and takes for granted, line by line."""
-        return lines(self.scope, self.outcome)
 
 
 def check_bounding(device: Device, environment: Environment | Any) -> Bounding:

@@ -60,6 +60,7 @@ GLOSSARY: dict[str, Quantity] = dict(
         _q("branch_stiffness", "μ1", "N/m", "N*m/rad", "spring in series with a dashpot"),
         _q("branch_damping", "η1", "N*s/m", "N*m*s/rad", "dashpot in series with a spring"),
         _q("time_constant", "τ_v", "s", "s", "time constant of a velocity filter"),
+        _q("speed", "v", "m/s", "rad/s", "of the handle"),
         _q("position", "x", "m", "rad", "positive into the wall"),
         _q("velocity", "v", "m/s", "rad/s", "positive into the wall"),
         _q("force", "f", "N", "N*m", "actuator force, positive out of the wall"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
@@ -9,10 +10,23 @@ from typing import Any, Literal
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
+from zwidth.quantity.parameter import Reads, part
 from zwidth.rendering.stage import Stage
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+def _stages(given: Iterable[Any], name: str) -> tuple[Stage, ...]:
+    stages = tuple(given)
+    if not stages:
+        raise InputError("no law was given: an environment alone is simulated as it is")
+    for stage in stages:
+        if not isinstance(stage, Stage):
+            raise InputError(
+                f"a law is one of zwidth.rendering, such as PassivityController(), got {type(stage).__name__}"
+            )
+    return stages
+
+
+@dataclass(frozen=True)
 class Rendered(Environment):
     """An environment behind one or more laws: what `render` gives.
 
@@ -29,24 +43,18 @@ class Rendered(Environment):
         If there is no law, or one of them is none.
     """
 
-    environment: Environment
-    stages: tuple[Stage, ...]
+    environment: Reads[Environment, Any] = part(
+        "environment", lambda given, _: as_environment(given), meaning="what the hand meets"
+    )
+    stages: tuple[Stage, ...] = part("laws", _stages, meaning="from the environment to the actuator")
 
-    def __init__(self, environment: Environment | Any, stages: tuple[Stage, ...]) -> None:
-        inner = as_environment(environment)
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        inner, stages = self.environment, self.stages
         while isinstance(inner, Rendered):
             stages = (*inner.stages, *stages)
             inner = inner.environment
-        if not stages:
-            raise InputError("no law was given: an environment alone is simulated as it is")
-        for stage in stages:
-            if not isinstance(stage, Stage):
-                raise InputError(
-                    f"a law is one of zwidth.rendering, such as PassivityController(), got "
-                    f"{type(stage).__name__}"
-                )
-        object.__setattr__(self, "environment", inner)
-        object.__setattr__(self, "stages", tuple(stages))
+        self._keep(environment=inner, stages=stages)
 
     @property
     def unilateral(self) -> bool:

@@ -1,4 +1,5 @@
-"""The converter's steps in the game: friction of half the largest rise of the force from count to count.
+"""The converter's steps by value iteration: friction of half the largest rise of the force from count to
+count.
 
 A hand that toggles over an edge, a little way ε to either side, meets the two forces
 of its sides: it takes out J ε, J the rise from one count to the next, and pays

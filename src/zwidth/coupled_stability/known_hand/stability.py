@@ -29,7 +29,6 @@ from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Hands, Scope, scope_of
-from zwidth.passivity.wording import lines
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import GLOSSARY
@@ -71,6 +70,7 @@ class Stability(Answer):
 
     FORMAT = "zwidth stability 1"
     YES = "stable"
+    witness = None
 
     outcome: Outcome
     claim: str
@@ -86,11 +86,6 @@ class Stability(Answer):
     def stable(self) -> bool:
         """True where the outcome is "stable": proved for the hand and the wall that were given."""
         return self.outcome == "stable"
-
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What the claim rests on, line by line."""
-        return lines(self.scope)
 
     @property
     def margin(self) -> float:

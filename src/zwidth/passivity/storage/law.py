@@ -213,8 +213,8 @@ def _unlimited(device: Device, environment: Environment) -> FiniteLaw:
         taps = taps[:-1]
     if len(taps) - 1 > LONGEST_MEMORY:
         raise InputError(
-            f"the law remembers {len(taps) - 1} readings, more than the {LONGEST_MEMORY} for which the worst "
-            "hand is sought: the number of states grows with the power of it"
+            f"the law remembers {len(taps) - 1} readings, more than the {LONGEST_MEMORY} for which "
+            "available storage is computed: the number of states grows with the power of it"
         )
     return FiniteLaw(taps, environment.surface, environment.clamped)
 
@@ -226,7 +226,7 @@ def _relaxing(environment: Environment, numerator: list[Fraction], denominator: 
         n, d = n[:-1], d[:-1]
     if len(d) != 2 or not 0 < -d[1] < 1:
         raise InputError(
-            "the worst hand is sought against laws that remember a few readings, or have one part that "
+            "available storage is computed for laws that remember a few readings, or have one part that "
             f"relaxes and does not swing; this one has more: {environment.describe()}; zwidth check covers "
             "it in sustained contact"
         )

@@ -14,9 +14,9 @@ from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.wall import wall_of
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.quantity.exact import Exact, ends
+from zwidth.quantity.parameter import Parametric
 from zwidth.rendering.reading import below
-from zwidth.rendering.stage import positive
 
 Limit = Exact | Literal["unlimited"] | None
 
@@ -26,18 +26,9 @@ NO_LIMIT = 1e300
 """Of a controller without one, as the steps read it: more than any force or damping."""
 
 
-def limit(name: str, value: RealLike | None) -> Limit:
-    """A number > 0, None or "unlimited".
-
-    Raises
-    ------
-    InputError
-        If it is none of these.
-    """
-    if value is None or value == UNLIMITED:
-        return value  # type: ignore[return-value]  # the word itself, by the line above
-    why = 'it limits what the controller adds; leave it out for what the loop can bear, or say "unlimited"'
-    return positive(name, value, why)
+WHY_A_LIMIT = (
+    'it limits what the controller adds; leave it out for what the loop can bear, or say "unlimited"'
+)
 
 
 def largest_damping(given: Limit, device: Device, spring: Exact | None) -> Fraction | None:
@@ -84,8 +75,8 @@ def as_read(alpha: Fraction | None) -> float:
     return NO_LIMIT if alpha is None else below(alpha)
 
 
-def said(given: Limit, unit: str, otherwise: str) -> str:
-    """The limit in a few words."""
-    if given == UNLIMITED:
+def said(controller: Parametric, name: str, otherwise: str, motion: str = "linear") -> str:
+    """One of its limits in a few words; `otherwise` where it was not given."""
+    if getattr(controller, name) == UNLIMITED:
         return "no limit: a hand can take out any energy"
-    return f"at most {otherwise if given is None else f'{float(given):g} {unit}'}"
+    return f"at most {controller.with_unit(name, motion) or otherwise}"
