@@ -11,6 +11,7 @@ from random import Random
 import numpy as np
 import pytest
 from plain_game import PlainGame, exact_gain
+from strategies import seeds
 
 from zwidth.passivity.storage.board import Board, Domain
 from zwidth.passivity.storage.law import FiniteLaw
@@ -102,8 +103,9 @@ def column(board, cell, before):
 
 def compared(board, plain, zeros):
     """Play both from the same start: "passive" with equal V, or "active" with cycles that gain."""
-    guess = {} if zeros else _as_states(board, plain, board.first_guess)
-    value, loop = plain.solved(guess)
+    if zeros:
+        board.__dict__["first_guess"] = np.zeros_like(board.first_guess)
+    value, loop = plain.solved(_as_states(board, plain, board.first_guess))
     played = play(board)
     if loop is not None:
         assert played.value is None
@@ -122,23 +124,19 @@ def _as_states(board, plain, value):
     }
 
 
-@pytest.mark.parametrize("zeros", [False, True])
 @pytest.mark.parametrize("rules", ["generous", "strict"])
 @pytest.mark.parametrize("name", LAWS)
-def test_the_same_value_in_every_state(name, rules, zeros, monkeypatch):
+def test_the_same_value_in_every_state(name, rules):
     """From the guess of the program and from nothing, passive and active."""
-    if zeros:
-        shape = property(lambda b: np.zeros((b.domain.cells, b.histories, len(b.knots)), np.int64))
-        monkeypatch.setattr(Board, "first_guess", shape)
     seen = []
-    for seed, easier in product(range(12), (Fraction(1, 8), Fraction(1, 3), 1, 2)):
+    for seed, easier in product(range(5), (Fraction(1, 8), Fraction(1, 3), 1, 2)):
         random = Random(f"{name} {seed}")
         law, losses = drawn(random, name, easier)
         domain = domain_of(random, law, losses.delay)
         board = Board(law, losses, domain, random.choice([2, 3, 4]), rules)
         knots = board.knots.tolist() if rules == "strict" else list(range(board.steps + 1))
         plain = PlainGame(law, losses, domain, board.steps, knots, rules, board.force_unit)
-        outcome, played = compared(board, plain, zeros)
+        outcome, played = compared(board, plain, zeros=seed % 2 == 1)
         seen.append(outcome)
         if rules == "strict" and outcome == "active":
             positions = [Fraction(knot, board.steps) for knot, _ in played.cycle]
@@ -151,7 +149,7 @@ def test_the_same_value_in_every_state(name, rules, zeros, monkeypatch):
     assert set(seen) == {"passive", "active"}
 
 
-@pytest.mark.parametrize("seed", range(40))
+@seeds(30)
 def test_strict_and_generous_contain_each_other(seed):
     """Whoever wins by the strict rules on the knots wins by the generous ones on the same knots."""
     random = Random(seed)
