@@ -12,6 +12,7 @@ import sys
 import tomllib
 from contextlib import redirect_stdout, suppress
 from fractions import Fraction
+from functools import cache
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -284,6 +285,7 @@ def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> 
                 build_touch(read["operator"], read.get("simulation"), {}, loop.device.motion)
 
 
+@cache
 def _command_line_page() -> str:
     """The page with its generated tables in place, as the docs build makes it."""
     sys.path.insert(0, str(ROOT / "docs" / "_ext"))
