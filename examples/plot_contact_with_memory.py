@@ -119,7 +119,7 @@ def proved(played, steps, rounds=300):
     return shown(search, steps, rounds)
 
 
-def refuted(played, steps=(64,), rounds=60):
+def refuted(played, steps=(64,), rounds=40):
     """True with a motion that is accepted."""
     return shown(played.refute, steps, rounds)
 
@@ -128,10 +128,11 @@ def decided(environment, damping, friction, **implementation):
     """ "proved", "refuted" or "undecided"; what is tried first is what is sooner found."""
     played = game(environment, damping, friction, **implementation)
     enough, outside = min(damping, friction) > 1, implementation["surface"] == "position"
-    steps = (32, 4) if enough else (32,) if implementation["clamped"] else (4,)
-    steps = (8, 16) if played.law.relaxing is None else steps
+    steps = (16, 4) if enough else (32,) if implementation["clamped"] else (4,)
+    rounds = 40 if steps == (32,) else 90
+    steps, rounds = ((8, 16), 300) if played.law.relaxing is None else (steps, rounds)
     attempts = {
-        "proved": lambda: proved(played, steps, 300 if played.law.relaxing is None else 90),
+        "proved": lambda: proved(played, steps, rounds),
         "refuted": lambda: refuted(played, (64, 256, 16) if enough and outside else (64,)),
     }
     for outcome in ("refuted", "proved") if damping < 1 or outside else ("proved", "refuted"):

@@ -51,7 +51,6 @@ def _time_enough() -> Iterator[None]:
     """A game that is to be decided is decided, also on a busy machine and where it is compiled first."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("zwidth.passivity.game.SECONDS", 60.0)
-        patch.setattr("zwidth.maps.workers._PATIENCE", "600 s")
         yield
 
 
