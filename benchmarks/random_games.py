@@ -3,7 +3,7 @@
 Springs, damped walls, windows of two and finite filters of velocity, clamped or not,
 no delay or one sample, stiffness, damping and friction within a third of what is
 needed.  Each loop is decided twice: by the closed forms of `zw.check`, and by the game of
-the worst hand on a small board of a dozen counts.  What may not be:
+the worst hand on a small grid of a dozen counts.  What may not be:
 
   proof against motion     a certificate of kind "spring" or "contact", and a motion of
                            the game that gains
@@ -38,10 +38,9 @@ from rich.progress import track
 
 import zwidth as zw
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.storage.board import Domain
-from zwidth.passivity.storage.domain import losses_of
-from zwidth.passivity.storage.hand import Game
+from zwidth.passivity.storage.domain import Domain, losses_of
 from zwidth.passivity.storage.law import finite_law
+from zwidth.passivity.storage.program import DynamicProgram
 
 COUNTS = {0: 12, 1: 12, 2: 6, 3: 3, 4: 2}
 """How deep and how fast the hand of the game is, in counts, by readings remembered."""
@@ -56,7 +55,7 @@ class Loop:
     device: zw.Device
     wall: zw.Wall
     name: str
-    game: Game
+    game: DynamicProgram
 
 
 @dataclass
@@ -113,7 +112,7 @@ def random_loop(random: Random) -> Loop:
     reach = counts if memory < 2 else random.randint(max(1, counts - 1), counts)
     domain = Domain(1 - (memory + 1) * reach, counts, reach)
     name = f"{kind}{', clamped' if clamped else ''}{', delayed' if delay else ''}"
-    return Loop(device, wall, name, Game(law, losses, domain, device.motion))
+    return Loop(device, wall, name, DynamicProgram(law, losses, domain, device.motion))
 
 
 def described(loop: Loop) -> str:
@@ -123,7 +122,7 @@ def described(loop: Loop) -> str:
         f"[{loop.name}] K {float(loop.wall.stiffness):g} B {float(loop.wall.damping):g} "
         f"taps {[float(c) for c in loop.game.law.taps]} T {float(losses.period):g} "
         f"step {float(losses.resolution):g} b {float(d.damping):g} f_c {float(d.coulomb_friction):g} "
-        f"board {loop.game.domain.highest}/{loop.game.domain.reach}"
+        f"grid {loop.game.domain.highest}/{loop.game.domain.reach}"
     )
 
 
@@ -173,10 +172,10 @@ def within(loop: Loop, positions: tuple[Fraction, ...]) -> bool:
 
 def stored_at(loop: Loop, storage: Any, position: Fraction) -> Fraction:
     """V of a hand that rests outside, at most [J]."""
-    board = storage.played.board
-    cell = max(floor(position / loop.game.losses.resolution), board.domain.lowest)
-    row = storage.played.value[cell - board.domain.lowest, board.histories // 2]
-    return Fraction(int(row.max())) * board.energy_unit
+    grid = storage.grid
+    cell = max(floor(position / loop.game.losses.resolution), grid.domain.lowest)
+    row = storage.value[cell - grid.domain.lowest, grid.histories // 2]
+    return Fraction(int(row.max())) * grid.energy_unit
 
 
 def simulated(loop: Loop, motion: Any) -> tuple[float, float]:
@@ -256,9 +255,9 @@ def _against_proof(loop: Loop, witness: Any, storage: Any, tally: Tally) -> None
     motion = witness.motion.listed() if witness.motion.samples < 20_000 else witness.motion
     positions = motion.positions
     if not within(loop, positions):
-        tally.rounds["check active by a hand beyond the board, game passive"] += 1
+        tally.rounds["check active by a hand beyond the grid, game passive"] += 1
         return
-    tally.rounds["check active by a hand on the board, game passive"] += 1
+    tally.rounds["check active by a hand on the grid, game passive"] += 1
     out = energy_in_game(loop, positions)
     if out > stored_at(loop, storage, positions[0]):
         tally.found("motion against proof", loop, witness.describe())

@@ -33,12 +33,12 @@ from zwidth import plots
 from zwidth.cli.main import main as command_line
 from zwidth.passivity.decision import decide
 from zwidth.passivity.limits import required_damping
-from zwidth.passivity.storage.board import Board, Domain
-from zwidth.passivity.storage.domain import domain_for, losses_of
-from zwidth.passivity.storage.gain import gain
-from zwidth.passivity.storage.hand import Game
+from zwidth.passivity.storage.domain import Domain, domain_for, losses_of
+from zwidth.passivity.storage.evidence.gain import gain
+from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.law import finite_law
-from zwidth.passivity.storage.solve import Played
+from zwidth.passivity.storage.program import DynamicProgram
+from zwidth.passivity.storage.solve.value_iteration import ValueIteration
 
 plt.rcParams.update(plots.LOOK)
 RED, GREEN, BLUE, GREY = "#D55E00", "#009E73", "#0072B2", "#777777"
@@ -69,7 +69,7 @@ def accepted(evidence):
     return verified[-1]
 
 
-def game(environment, damping, friction, counts=COUNTS, reach=REACH, **implementation):
+def program(environment, damping, friction, counts=COUNTS, reach=REACH, **implementation):
     """The loop with so much of the damping and friction that sustained contact asks for."""
     b, f = needs(environment)
     loop = zw.Device(
@@ -81,59 +81,59 @@ def game(environment, damping, friction, counts=COUNTS, reach=REACH, **implement
         mass=1,
     )
     law, losses = replace(finite_law(loop, environment), **implementation), losses_of(loop)
-    return Game(law, losses, domain_for(law, losses, counts, reach), "linear")
+    return DynamicProgram(law, losses, domain_for(law, losses, counts, reach), "linear")
 
 
 class Enough(Exception):
-    """So many rounds were played."""
+    """So many rounds were made."""
 
 
 def until(rounds):
-    """Ends a game after so many rounds: after a time it would end otherwise on another machine."""
+    """Ends a search after so many rounds: after a time it would end otherwise on another machine."""
     left = itertools.count(rounds, -1)
 
-    def tell(_improved):
+    def progress(_improved):
         if next(left) <= 0:
             raise Enough
 
-    return tell
+    return progress
 
 
 def shown(search, steps, rounds):
     """True with evidence that is accepted, on one of so many steps per count."""
     for n in steps:
         with contextlib.suppress(Enough):
-            found = search(n, tell=until(rounds))
+            found = search(n, progress=until(rounds))
             if found is not None and accepted(found):
                 return True
     return False
 
 
-def proved(played, steps, rounds=300):
+def proved(loop, steps, rounds=300):
     """True with a storage function that is accepted."""
 
-    def search(n, tell):
-        storage = played.prove(n, tell=tell)
+    def search(n, progress):
+        storage = loop.prove(n, progress=progress)
         return storage and storage.certificate()
 
     return shown(search, steps, rounds)
 
 
-def refuted(played, steps=(64,), rounds=40):
+def refuted(loop, steps=(64,), rounds=40):
     """True with a motion that is accepted."""
-    return shown(played.refute, steps, rounds)
+    return shown(loop.refute, steps, rounds)
 
 
 def decided(environment, damping, friction, **implementation):
     """ "proved", "refuted" or "undecided"; what is tried first is what is sooner found."""
-    played = game(environment, damping, friction, **implementation)
+    loop = program(environment, damping, friction, **implementation)
     enough, outside = min(damping, friction) > 1, implementation["surface"] == "position"
     steps = (16, 4) if enough else (32,) if implementation["clamped"] else (4,)
     rounds = 40 if steps == (32,) else 90
-    steps, rounds = ((8, 16), 300) if played.law.relaxing is None else (steps, rounds)
+    steps, rounds = ((8, 16), 300) if loop.law.relaxing is None else (steps, rounds)
     attempts = {
-        "proved": lambda: proved(played, steps, rounds),
-        "refuted": lambda: refuted(played, (64, 256, 16) if enough and outside else (64,)),
+        "proved": lambda: proved(loop, steps, rounds),
+        "refuted": lambda: refuted(loop, (64, 256, 16) if enough and outside else (64,)),
     }
     for outcome in ("refuted", "proved") if damping < 1 or outside else ("proved", "refuted"):
         if attempts[outcome]():
@@ -215,8 +215,8 @@ table.set_title("(a) enough of both; 0.9 of friction; 0.9 of damping")
 
 def running_start(environment, damping, size=1000, steps=64):
     """A run outside, to and fro over the surface while the filter still tells of it, and slowly back."""
-    played = game(environment, damping, "1.02", surface="position")
-    p, g, b = (float(v) for v in (*played.law.relaxing, played.losses.damping))
+    loop = program(environment, damping, "1.02", surface="position")
+    p, g, b = (float(v) for v in (*loop.law.relaxing, loop.losses.damping))
     rest = round(12 / (1 - p))
     way = [(1 - p**2) * p**k * size for k in range(rest)][::-1]  # ever faster, to z = size at the surface
     x = [*(1 - np.cumsum(way[::-1])[::-1]), 1.0]
@@ -226,11 +226,11 @@ def running_start(environment, damping, size=1000, steps=64):
         x += [1 - out, 1.0]
         z = p * p * z + (1 - p) * out
     x += [1 - g * z / (2 * b), *np.linspace(0, x[0], 2 * rest)[1:], *[x[0]] * rest]
-    knots = [round(steps * position) for position in x]
+    nodes = [round(steps * position) for position in x]
     reach = int(max(abs(np.diff(x)))) + 1
-    domain = Domain(min(knots) // steps, 1, reach)
-    board = Board(played.law, played.losses, domain, steps, "strict")
-    return gain(Played(board, None, tuple((n, n // steps) for n in knots), 0), "linear")
+    domain = Domain(min(nodes) // steps, 1, reach)
+    grid = Grid(loop.law, loop.losses, domain, steps, "inner")
+    return gain(ValueIteration(grid, None, tuple((n, n // steps) for n in nodes), 0), "linear")
 
 
 tau = np.geomspace(0.5, 40, 200)
@@ -251,14 +251,16 @@ BRACKETS = {  # refuted at and proved at, in parts of what the linear criterion 
 }
 for (surface, at), ends in BRACKETS.items():
     filtered = wall(zw.OnePole(at))
-    low, high = (game(filtered, end, "1.02", COUNTS, COUNTS, surface=surface) for end in ends)
+    low, high = (program(filtered, end, "1.02", COUNTS, COUNTS, surface=surface) for end in ends)
     assert refuted(low, (64, 256, 16)), (surface, at)
     assert proved(high, (32, 64)), (surface, at)
     b = float(needs(filtered)[0])
     place, colour = (at * 0.94, GREEN) if surface == "penetration" else (at * 1.06, RED)
     needed.plot([place, place], [float(end) * b for end in ends], color=colour, lw=1.2)
     needed.plot(place, b * sum(map(float, ends)) / 2, "o", color=colour, mfc="white", ms=5.5, zorder=5)
-few, many = (game(wall(zw.OnePole(9)), "1.02", f, COUNTS, COUNTS, surface="position") for f in ("1.2", "2.1"))
+few, many = (
+    program(wall(zw.OnePole(9)), "1.02", f, COUNTS, COUNTS, surface="position") for f in ("1.2", "2.1")
+)
 assert refuted(few, (64, 256, 16))
 assert proved(many, (32, 64))
 
@@ -282,7 +284,7 @@ for at in (9, 19, 39):
     nearly[at] = 0.7 * proof
     needed.plot(at, nearly[at], "^", color=BLUE, ms=5, mfc="white")
 needed.plot([], [], "^", color=BLUE, mfc="white", label="refuted by check")
-needed.plot([], [], "o", color=GREY, mfc="white", label="game: 12 counts")
+needed.plot([], [], "o", color=GREY, mfc="white", label="value iteration: 12 counts")
 needed.plot([], [], "x", color=RED, mew=2, label="a run of 1900 counts or more")
 needed.set(xscale="log", yscale="log", xticks=(0.5, 1, 3, 9, 19, 40), xticklabels=(0.5, 1, 3, 9, 19, 40))
 needed.set(yticks=(0.5, 1, 2, 5, 10), yticklabels=(0.5, 1, 2, 5, 10), ylim=(0.5, 60))

@@ -14,7 +14,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.showing import OBEYED, Html, element, printable, table
+from zwidth.showing import OBEYED, Headline, Html, Lines, Shown, Table, element, printable
 
 SCRIPT = "<script>alert(1)</script>"
 HOSTILE = f"{SCRIPT} $\\frac{{$ & \x1b[2J\x9b31m \u202e\"'"
@@ -27,8 +27,46 @@ def test_only_html_becomes_a_part_of_html() -> None:
     assert element("p", "a < b") == "<p>a &lt; b</p>"
     assert element("p", element("b", "&")) == "<p><b>&amp;</b></p>"
     assert element("p", style='"><b>') == '<p style="&quot;&gt;&lt;b&gt;"></p>'
-    assert table(["<"], [[1]]) == (
+    assert Table(heads=[["<"]], rows=[["1"]]).html == (
         "<table><thead><tr><th>&lt;</th></tr></thead><tbody><tr><td>1</td></tr></tbody></table>"
+    )
+
+
+class Shows(Shown):
+    """Says one thing of each kind."""
+
+    def report(self):
+        yield Headline("passive", "#123456", "No <motion>.")
+        yield ""
+        yield "in words"
+        yield Table(
+            caption="of <b>", heads=[["name", "", "N"]], rows=[["a <", "of", "10"], ["b", "no", "9"]], lefts=2
+        )
+        yield Lines(["x < 0"], "assumptions")
+        yield Lines(["beware"], mark="!")
+
+
+def test_what_is_said_once_is_shown_in_both_places() -> None:
+    """In a terminal in columns, set left or right; in a notebook in elements, and no blank lines."""
+    assert repr(Shows()) == (
+        "passive: No <motion>.\n\nin words\n"
+        "of <b>\n\nname       N\na <   of  10\nb     no   9\n"
+        "· x < 0\n! beware"
+    )
+    assert Shows()._repr_html_() == (
+        '<div><b style="color:#123456">passive</b> No &lt;motion&gt;.<p>in words</p>'
+        "<table><caption>of &lt;b&gt;</caption>"
+        "<thead><tr><th>name</th><th></th><th>N</th></tr></thead><tbody>"
+        "<tr><td>a &lt;</td><td>of</td><td>10</td></tr><tr><td>b</td><td>no</td><td>9</td></tr>"
+        "</tbody></table><details><summary>assumptions</summary><ul><li>x &lt; 0</li></ul></details>"
+        "<ul><li>beware</li></ul></div>"
+    )
+
+
+def test_rows_without_headings_have_a_name_first() -> None:
+    """The first cell says what the others are."""
+    assert Table(rows=[["K", "1 N/m"]]).html == (
+        '<table><tbody><tr><th align="left">K</th><td align="left">1 N/m</td></tr></tbody></table>'
     )
 
 
@@ -43,16 +81,16 @@ def _pages() -> list[tuple[str, ast.FunctionDef]]:
     return [
         (name, node)
         for name, text in texts
-        if "_repr_html_" in text
+        if "Html" in text
         for node in ast.walk(ast.parse(text))
-        if isinstance(node, ast.FunctionDef) and node.name == "_repr_html_"
+        if isinstance(node, ast.FunctionDef) and node.name in ("_repr_html_", "html")
     ]
 
 
 def test_every_page_of_a_notebook_is_made_of_escaped_parts() -> None:
     """By its type: `Html` comes from one module only, and a text or an f-string is none."""
     pages = _pages()
-    assert len(pages) >= 18
+    assert {name for name, _ in pages} == {"showing.py", "device.py"}
     for name, page in pages:
         assert page.returns is not None
         assert ast.unparse(page.returns) == "Html", name

@@ -17,12 +17,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from zwidth.checker.kinds import KINDS as CHECKED
+
 from .fresh import KINDS, family, fresh
 
 Document = dict[str, Any]
 Path = tuple[Any, ...]
 
-SHARES = {
+_SHARES = {
     "spring": 7, "linear": 7, "quantized": 7, "delays": 4, "contact": 7, "relaxing contact": 6,
     "multiplier contact": 3, "nonlinear spring": 6, "endless pull": 4, "slow hands": 5, "force bounding": 4,
     "active hand": 5, "violation": 8, "motion": 5, "touching motion": 3, "contact motion": 3, "row motion": 3,
@@ -30,6 +32,7 @@ SHARES = {
     "absolute stability": 0.6, "vibration": 4, "arm": 0.5, "positive real": 6, "positive real matrix": 3,
     "extraction": 5, "matrix extraction": 4, "corners": 3,
 }  # fmt: skip
+SHARES = _SHARES | {kind: 1.0 for kind in CHECKED if kind not in _SHARES}
 """How often each kind is written, rare where a check or a judge takes long."""
 
 ILL_FORMED, FROM_NOTHING, ROTARY = 0.12, 0.4, 0.1

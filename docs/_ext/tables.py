@@ -10,7 +10,7 @@ import trust
 from zwidth import catalogue
 from zwidth.cli.options import Parameter, device_parameters, environment_parameters
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.specification.environments import TYPES, Key, all_keys
+from zwidth.specification.environments import TYPES, all_keys
 from zwidth.specification.laws import ESTIMATORS, LAWS, LawType
 
 GENERATED = Path(__file__).parent.parent / "_generated"
@@ -76,7 +76,7 @@ def environment_types() -> str:
 
 def environment_keys() -> str:
     """Every key that an environment table may have, with its unit."""
-    rows = [(f"`{name}`", _key_unit(key), key.meaning) for name, key in all_keys().items()]
+    rows = [(f"`{name}`", _unit(key.unit_for("linear")), key.meaning) for name, key in all_keys().items()]
     return markdown(("key", "unit", "meaning"), rows)
 
 
@@ -133,10 +133,6 @@ def _device(name: str) -> str:
 def _options(parameters: Iterable[Parameter]) -> str:
     rows = [(f"`{p.option}`", f"`{p.key}`", _pretty(p.help)) for p in parameters]
     return markdown(("option", "key in a file", "meaning"), rows)
-
-
-def _key_unit(kind: Key) -> str:
-    return _unit(GLOSSARY[kind.quantity].unit) if kind.quantity else ""
 
 
 def _unit(unit: str) -> str:

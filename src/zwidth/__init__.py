@@ -25,16 +25,16 @@ from zwidth.quantity import Exact, Interval
 from zwidth.rendering import VirtualCoupling
 
 if TYPE_CHECKING:
+    from zwidth import arms
     from zwidth import operator as operators
+    from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.bench import LawComparison
     from zwidth.coupled_stability.absolute import AbsoluteStability, absolute_stability
     from zwidth.coupled_stability.active_hand import ToleratedActivity, tolerated_activity
     from zwidth.coupled_stability.known_hand import PassiveHand, Stability, stability
     from zwidth.coupled_stability.virtual_mass import stable_virtual_masses
     from zwidth.device import amplifier as amplifiers
-    from zwidth.device import arm as arms
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
-    from zwidth.environment.matrix_wall import MatrixWall
     from zwidth.identification import tissue
     from zwidth.identification.device.identified import Identified
     from zwidth.identification.device.plan import Plan, plan_identification
@@ -45,7 +45,6 @@ if TYPE_CHECKING:
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.maps import robust_boundary, stability_boundary, z_width, z_width_certificate, z_width_factors
-    from zwidth.passivity.arms import Workspace, workspace
     from zwidth.passivity.bounding import Bounding, check_bounding
     from zwidth.passivity.coupling import two_port
     from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition
@@ -65,8 +64,10 @@ if TYPE_CHECKING:
     from zwidth.passivity.ports.index import PassivityIndex
     from zwidth.passivity.ports.indices import PassivityIndices, passivity_indices
     from zwidth.passivity.real_hand import RealHand, replay
-    from zwidth.passivity.storage import WorstHand
+    from zwidth.passivity.storage import AvailableStorage as WorstHand
+    from zwidth.passivity.workspace import Workspace, workspace
     from zwidth.rendering.rendered import render
+    from zwidth.traces import available_storage as worst_hand
     from zwidth.traces import (
         compare_traces,
         identify,
@@ -74,7 +75,6 @@ if TYPE_CHECKING:
         passive_limit,
         simulate,
         simulate_batch,
-        worst_hand,
     )
 
 __all__ = [
@@ -200,8 +200,8 @@ _LATER = {
     "Timing": "zwidth.loop.timing",
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
-    "MatrixWall": "zwidth.environment.matrix_wall",
-    "Workspace": "zwidth.passivity.arms",
+    "MatrixWall": "zwidth.arms.matrix_wall",
+    "Workspace": "zwidth.passivity.workspace",
     "amplifiers": "zwidth.device.amplifier",
     "Indices": "zwidth.passivity.coupling.loop_transformation",
     "Slopes": "zwidth.passivity.coupling.loop_transformation",
@@ -215,7 +215,7 @@ _LATER = {
     "PassivityIndex": "zwidth.passivity.ports.index",
     "PassivityIndices": "zwidth.passivity.ports.indices",
     "passivity_indices": "zwidth.passivity.ports.indices",
-    "arms": "zwidth.device.arm",
+    "arms": "zwidth.arms",
     "PassiveHand": "zwidth.coupled_stability.known_hand",
     "RealHand": "zwidth.passivity.real_hand",
     "Stability": "zwidth.coupled_stability.known_hand",
@@ -253,17 +253,20 @@ _LATER = {
     "ToleratedActivity": "zwidth.coupled_stability.active_hand",
     "tolerated_activity": "zwidth.coupled_stability.active_hand",
     "two_port": "zwidth.passivity.coupling.two_port",
-    "workspace": "zwidth.passivity.arms",
+    "workspace": "zwidth.passivity.workspace",
     "worst_hand": "zwidth.traces",
 }
 """Where a name is found when it is first used: the simulator's libraries take their time to load."""
+
+_INSIDE = {"WorstHand": "AvailableStorage", "worst_hand": "available_storage"}
+"""What it is called there, where that is something else."""
 
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
         raise AttributeError(f"module 'zwidth' has no attribute {name!r}")
     module = import_module(_LATER[name])
-    thing = getattr(module, name, module)
+    thing = getattr(module, _INSIDE.get(name, name), module)
     globals()[name] = thing
     return thing
 

@@ -7,7 +7,8 @@ could have them do what its reader did not ask for.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from html import escape
 
 OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
@@ -41,18 +42,99 @@ def row(cells: Iterable[object], tag: str = "td") -> Html:
     return element("tr", *(element(tag, cell) for cell in cells))
 
 
-def table(head: Iterable[object], rows: Iterable[Iterable[object]]) -> Html:
-    """A table below its headings."""
-    return element("table", element("thead", row(head, "th")), element("tbody", *map(row, rows)))
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """Rows of cells, each as text.
+
+    Parameters
+    ----------
+    heads
+        Rows above, such as headings and units; none where the first cell of each row says what it is.
+    lefts
+        Columns that are set left; those after them are set right.
+    caption
+        A line above.
+    """
+
+    rows: Sequence[Sequence[str]]
+    heads: Sequence[Sequence[str]] = ()
+    lefts: int | None = None
+    caption: str = ""
+
+    @property
+    def html(self) -> Html:
+        """The table for a notebook."""
+        caption = [element("caption", self.caption)] if self.caption else []
+        heads = [element("thead", *(row(cells, "th") for cells in self.heads))] if self.heads else []
+        line = row if self.heads else _named
+        return element("table", *caption, *heads, element("tbody", *map(line, self.rows)))
+
+    def __str__(self) -> str:
+        lines = [*self.heads, *self.rows]
+        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+        lefts = len(widths) if self.lefts is None else self.lefts
+        sides = "<" * lefts + ">" * (len(widths) - lefts)
+        texts = (
+            "  ".join(f"{cell:{side}{width}}" for cell, side, width in zip(cells, sides, widths, strict=True))
+            for cells in lines
+        )
+        return "\n".join([*([self.caption, ""] if self.caption else []), *(text.rstrip() for text in texts)])
 
 
-def named(rows: Iterable[tuple[object, object]]) -> Html:
-    """A table whose lines are each a name and what it is."""
-    left = {"align": "left"}
-    lines = (element("tr", element("th", k, **left), element("td", v, **left)) for k, v in rows)
-    return element("table", *lines)
+def _named(cells: Sequence[str]) -> Html:
+    """A row whose first cell says what it is."""
+    tags = ("th", *["td"] * (len(cells) - 1))
+    return element("tr", *(element(tag, c, align="left") for tag, c in zip(tags, cells, strict=True)))
 
 
-def bullets(items: Iterable[object]) -> Html:
-    """A list."""
-    return element("ul", *(element("li", item) for item in items))
+@dataclass(frozen=True)
+class Lines:
+    """A list, a line for each item; below a heading it is folded up in a notebook."""
+
+    items: Iterable[object]
+    heading: str = ""
+    mark: str = "·"
+
+    @property
+    def html(self) -> Html:
+        """The list for a notebook."""
+        items = element("ul", *(element("li", item) for item in self.items))
+        return element("details", element("summary", self.heading), items) if self.heading else items
+
+    def __str__(self) -> str:
+        return "\n".join(f"{self.mark} {item}" for item in self.items)
+
+
+@dataclass(frozen=True)
+class Headline:
+    """The outcome in its colour, and the claim."""
+
+    word: str
+    colour: str
+    claim: str = ""
+
+    @property
+    def html(self) -> Html:
+        """The line for a notebook."""
+        return join(element("b", self.word, style=f"color:{self.colour}"), f" {self.claim}")
+
+    def __str__(self) -> str:
+        return f"{self.word}: {self.claim}"
+
+
+Part = str | Table | Lines | Headline
+
+
+class Shown:
+    """Something that says once what it is, in parts: a terminal and a notebook show the same."""
+
+    def report(self) -> Iterable[Part]:
+        """What it says of itself, from the top down."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return printable("\n".join(map(str, self.report())))
+
+    def _repr_html_(self) -> Html:
+        parts = [element("p", part) if isinstance(part, str) else part.html for part in self.report() if part]
+        return parts[0] if len(parts) == 1 else element("div", *parts)

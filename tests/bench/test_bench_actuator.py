@@ -13,7 +13,6 @@ import zwidth as zw
 from zwidth.bench.adversary import _player, _taken, attack
 from zwidth.bench.motions import fixed_motions
 from zwidth.bench.standing import standing
-from zwidth.cli.comparison import _json
 from zwidth.rendering import DualRate, EnergyBounding, ForceBounding, PassiveLeap, PassivityController
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -296,7 +295,7 @@ def test_a_theorem_is_never_called_passive():
     said = (
         found.evidence["energy"],
         found.advice.split(". ", 1)[1],
-        _json(found),
+        found.to_json(),
         found._repr_html_(),
         repr(found),
     )

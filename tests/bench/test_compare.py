@@ -13,7 +13,6 @@ import zwidth as zw
 from zwidth import rendering
 from zwidth.bench import scores, standard_laws
 from zwidth.bench.adversary import attack
-from zwidth.cli.comparison import _json
 from zwidth.cli.main import main
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -100,7 +99,7 @@ def test_the_table_of_the_docs_is_what_the_bench_says(stiff):
 def test_every_key_of_the_json_is_on_its_page(stiff):
     """Whoever reads scores by program finds each of them explained."""
     page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
-    document = json.loads(_json(stiff))
+    document = json.loads(stiff.to_json())
     keys = {*document, *document["laws"]["wall"]}
     assert not [key for key in keys if f"`{key}`" not in page]
 

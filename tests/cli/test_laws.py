@@ -159,7 +159,7 @@ def test_check_decides_laws_in_a_row_and_a_map_names_who_takes_them(tmp_path, mo
     assert main(["check", "haptic-paddle", "--stiffness", "770", "--law", "force-bounding"]) == 0
     capsys.readouterr()
     Path("device.toml").write_text('[device]\ncatalogue = "haptic-paddle"\n[[law]]\ntype = "held"\n', "utf-8")
-    assert main(["map", "device.toml", "--stiffness", "0:100", "--damping", "0:1"]) == 2
+    assert main(["map", "device.toml", "--stiffness", "0:100", "--virtual-damping", "0:1"]) == 2
     assert "laws in a row have no place in this command: zwidth check decides them" in capsys.readouterr().err
 
 

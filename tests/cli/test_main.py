@@ -15,11 +15,11 @@ import zwidth as zw
 from zwidth.cli.bars import bar, levels
 from zwidth.cli.decision import decided
 from zwidth.cli.main import main
-from zwidth.cli.numerals import shown
 from zwidth.cli.options import device_parameters, environment_parameters, joined
 from zwidth.device import catalogue
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.text import shown
 from zwidth.specification.read import Specification
 
 PASSIVE = ("check", "haptic-paddle", "--stiffness", "300")
@@ -411,7 +411,7 @@ def test_every_command_says_what_it_wrote_in_one_way(
 ) -> None:
     """`written: FILE`, a line each; nothing of it in JSON."""
     monkeypatch.chdir(tmp_path)
-    ranges = ("--stiffness", "0:9", "--damping", "0:1", "--cells", "2x2")
+    ranges = ("--stiffness", "0:9", "--virtual-damping", "0:1", "--cells", "2x2")
     touch = ("simulate", "haptic-paddle", "--stiffness", "300", "--operator", "dowel", "--duration", "0.02")
     cases = (
         ((*PASSIVE, "-o", "a.json", "--plot", "a.svg"), ("a.json", "a.svg")),

@@ -10,7 +10,7 @@ import pytest
 import zwidth as zw
 from zwidth.cli.main import main
 
-MAP = ("map", "haptic-paddle", "--stiffness", "0:600", "--damping", "0:0.3")
+MAP = ("map", "haptic-paddle", "--stiffness", "0:600", "--virtual-damping", "0:0.3")
 
 
 def test_the_report_and_the_json_say_the_same(capsys: pytest.CaptureFixture[str]) -> None:
@@ -35,9 +35,10 @@ def test_the_report_and_the_json_say_the_same(capsys: pytest.CaptureFixture[str]
 def test_options_reach_the_map(capsys: pytest.CaptureFixture[str]) -> None:
     """Units, cells, a filter, a hand, a speed, the damping of the device itself."""
     status = main(
-        ("map", "haptic-paddle", "--stiffness", "0:0.6 kN/m", "--damping", "-0.1:0.3", "--cells", "30x20",
-         "--velocity-filter", "one-pole 30 ms", "--hands", "finger", "--speed", "1 m/s", "--json",
-         "--device-damping", "0.3", "--rate", "2 kHz", "--workers", "1")
+        ("map", "haptic-paddle", "--stiffness", "0:0.6 kN/m", "--virtual-damping", "-0.1:0.3",
+         "--cells", "30x20", "--velocity-filter", "one-pole 30 ms",
+         "--hands", "finger", "--speed", "1 m/s", "--json",
+         "--damping", "0.3", "--rate", "2 kHz", "--workers", "1")
     )  # fmt: skip
     assert status == 0
     document = json.loads(capsys.readouterr().out)
@@ -114,18 +115,31 @@ def test_certificates_of_the_columns(tmp_path: Path, capsys: pytest.CaptureFixtu
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("map", "haptic-paddle", "--damping", "0:1"), "--stiffness LOW:HIGH is missing"),
-        (("map", "haptic-paddle", "--stiffness", "300", "--damping", "0:1"), "--stiffness is a range"),
+        (("map", "haptic-paddle", "--virtual-damping", "0:1"), "--stiffness LOW:HIGH is missing"),
+        (
+            ("map", "haptic-paddle", "--stiffness", "300", "--virtual-damping", "0:1"),
+            "--stiffness is a range",
+        ),
+        ((*MAP, "--damping", "0:1"), "--virtual-damping LOW:HIGH"),
         ((*MAP, "--cells", "40"), "--cells is written NxM"),
         ((*MAP, "--cells", "40xmany"), "whole numbers"),
         ((*MAP, "--hands", "fingr"), "did you mean"),
         ((*MAP, "--plot", "map.gif"), "must end in"),
         ((*MAP, "--plot", "a.png", "--certify", "a.png"), "--plot and --certify"),
         (
-            ("map", "haptic-paddle", "--stiffness", "400:900", "--damping", "0:9", "--certify", "c.json"),
+            (
+                "map",
+                "haptic-paddle",
+                "--stiffness",
+                "400:900",
+                "--virtual-damping",
+                "0:9",
+                "--certify",
+                "c.json",
+            ),
             "no wall",
         ),
-        (("map", "--stiffness", "0:1", "--damping", "0:1"), "no device is given"),
+        (("map", "--stiffness", "0:1", "--virtual-damping", "0:1"), "no device is given"),
         ((*MAP, "--velocity-filter", "wavelet"), "no type"),
     ],
 )
@@ -141,7 +155,7 @@ def test_bad_input_is_one_line(
 
 def test_a_region_without_walls_has_no_largest_one(capsys: pytest.CaptureFixture[str]) -> None:
     """None, not 0 N/m."""
-    arguments = ("--stiffness", "400:600", "--damping", "0:1", "--cells", "5x5", "--hands", "finger")
+    arguments = ("--stiffness", "400:600", "--virtual-damping", "0:1", "--cells", "5x5", "--hands", "finger")
     assert main(("map", "haptic-paddle", *arguments)) == 0
     (line,) = [row for row in capsys.readouterr().out.splitlines() if row.startswith("passive, every hand")]
     assert line.split()[-2:] == ["none", "0.0%"]
@@ -160,7 +174,7 @@ def test_not_covered_is_not_none(tmp_path: Path, capsys: pytest.CaptureFixture[s
         str(wheel),
         "--stiffness",
         "0:100",
-        "--damping",
+        "--virtual-damping",
         "0:0.2",
         "--cells",
         "10x4",

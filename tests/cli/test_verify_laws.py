@@ -18,7 +18,7 @@ from zwidth import rendering
 from zwidth.cli.main import main
 from zwidth.passivity.document import to_json
 from zwidth.passivity.storage import law_of
-from zwidth.passivity.storage import row_document as documents
+from zwidth.passivity.storage.row import document as documents
 
 DEVICE = zw.Device(damping="0.26", coulomb_friction="0.027", resolution="0.0001", sample_period="0.001")
 BOUNDS = {"penetration": "0.0008", "speed": "0.4"}

@@ -217,3 +217,18 @@ def test_another_unit_is_refused(key: str, other: str, kind: str) -> None:
     found = checker.verify({"kind": kind, "loop": renamed})
     assert not found.valid
     assert "the unit of" in found.reason
+
+
+def test_what_is_said_of_a_port_needs_evidence_at_that_level() -> None:
+    """Passive is an input index of 0 or more, active one below 0; nothing else is taken."""
+    port = {"format": "zwidth indices 1", "outcome": "passive"}
+    saved = plain(zw.passivity_indices(zw.PulseTransferFunction([4], [1]), PADDLE).to_dict())
+    assert saved["outcome"] == "passive"
+    assert [part.verification.valid for part in verifications(saved)] == [True]
+    for document in (
+        {**port, "certificate": PORT},
+        {**saved, "outcome": "active"},
+        {**saved, "certificate": {**saved["certificate"], "level": "-1"}},
+        {**saved, "format": "zwidth verdict 1"},
+    ):
+        assert [part.verification.valid for part in verifications(document)] == [False]

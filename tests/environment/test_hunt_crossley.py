@@ -96,13 +96,13 @@ def test_it_is_loaded_when_it_is_first_used() -> None:
     ("arguments", "said"),
     [
         ((-1,), "stiffness must be ≥ 0"),
-        ((float("nan"),), "stiffness: expected a finite number"),
-        (((1, 2),), "stiffness: expected a number"),
+        ((float("nan"),), "stiffness is a plain number: expected a finite number"),
+        (((1, 2),), "stiffness is a plain number; got a list where a number belongs"),
         ((1, "0.9"), "exponent must be from 1 to 10"),
         ((1, 11), "exponent must be from 1 to 10"),
-        ((1, None), "exponent: expected a number"),
+        ((1, None), "exponent is a plain number; got nothing where a number belongs"),
         ((1, 2, "-0.1"), "dissipation must be ≥ 0"),
-        ((1, 2, "2 s/m"), "dissipation: expected a number"),
+        ((1, 2, "2 N"), "dissipation is in s/m; got .2 N., a force"),
         ((1, 2, 0, 1), "clamped is True"),
     ],
 )

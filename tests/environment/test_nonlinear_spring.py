@@ -118,10 +118,13 @@ def test_it_is_loaded_when_it_is_first_used() -> None:
         ),
         (lambda: zw.NonlinearSpring("01", [0, 1]), "positions is a list of numbers, got '01'"),
         (lambda: zw.NonlinearSpring([0, 1], 5), "forces is a list of numbers, got 5"),
-        (lambda: zw.NonlinearSpring([0, float("nan")], [0, 1]), r"positions\[1\]: expected a finite number"),
-        (lambda: zw.NonlinearSpring([0, 1], [0, True]), r"forces\[1\]: expected a number"),
+        (lambda: zw.NonlinearSpring([0, float("nan")], [0, 1]), r"positions\[1\] is in m: expected"),
+        (lambda: zw.NonlinearSpring([0, 1], [0, True]), r"forces\[1\] is in N; got true or false"),
         (lambda: zw.NonlinearSpring([0, "1e-39"], [0, 100]), "the largest slope of a nonlinear spring: "),
-        (lambda: zw.NonlinearSpring([0, 1], [0, 1]).force("x"), "position: expected a number"),
+        (
+            lambda: zw.NonlinearSpring([0, 1], [0, 1]).force("x"),
+            "position is in m; got .x.: expected a number",
+        ),
         (lambda: zw.NonlinearSpring.detents(0, 1, 1), "count is a whole number from 1 to 10000, got 0"),
         (lambda: zw.NonlinearSpring.detents(2.0, 1, 1), "count is a whole number"),
         (lambda: zw.NonlinearSpring.detents(True, 1, 1), "count is a whole number"),
@@ -131,7 +134,7 @@ def test_it_is_loaded_when_it_is_first_used() -> None:
         (lambda: zw.NonlinearSpring.bump_stop(0, 1, -1, 1), "hardening must be ≥ 0"),
         (lambda: zw.NonlinearSpring.bump_stop(0, 1, 1, 0), "depth must be > 0"),
         (lambda: zw.NonlinearSpring.bump_stop(0, 1, 1, 1, 1), "points is a whole number from 2 to 10000"),
-        (lambda: zw.NonlinearSpring.bump_stop("x", 1, 1, 1), "start: expected a number"),
+        (lambda: zw.NonlinearSpring.bump_stop("x", 1, 1, 1), "start is in m; got .x.: expected a number"),
     ],
 )
 def test_bad_input_has_one_clear_message(make, message) -> None:

@@ -191,9 +191,12 @@ def test_intervals_are_kept_and_not_evaluated():
     [
         (lambda: zw.StandardLinearSolid(-1, 2, 3), "stiffness must be ≥ 0"),
         (lambda: zw.StandardLinearSolid(1, (-2, 2), 3), "branch_stiffness must be ≥ 0"),
-        (lambda: zw.StandardLinearSolid(1, 2, "x"), "branch_damping: expected a number"),
+        (
+            lambda: zw.StandardLinearSolid(1, 2, "x"),
+            r"branch_damping is in N\*s/m; got .x.: expected",
+        ),
         (lambda: zw.StandardLinearSolid(1, 2, 3, "euler"), 'one of "backward"'),
-        (lambda: zw.Maxwell(float("nan"), 3), "stiffness: expected a finite number"),
+        (lambda: zw.Maxwell(float("nan"), 3), "stiffness is in N/m: expected a finite number"),
         (lambda: zw.Maxwell(1, 3, None), 'one of "backward"'),
         (lambda: zw.GeneralizedMaxwell(1, [(2, 3, 4)]), r"branches\[0\] is a pair"),
         (lambda: zw.GeneralizedMaxwell(1, [(2, 3), (-2, 3)]), r"branches\[1\] stiffness must be ≥ 0"),

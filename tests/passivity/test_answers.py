@@ -1,15 +1,24 @@
-"""An answer is neither true nor false; passive means the same of all."""
+"""An answer is neither true nor false; passive means the same of all; each describes itself once."""
 
 from __future__ import annotations
 
+import json
 from functools import cache
+from math import isfinite
+from pathlib import Path
 
+import control
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.outcome import Answer
+from zwidth.passivity.certificate import read_document, verify_document
+from zwidth.passivity.result import Answer, PassivityAnswer
+from zwidth.showing import Html
 
 PADDLE = zw.catalogue.device("haptic-paddle")
+HEAVY = PADDLE.replace(mass=0.04)
+HAND = zw.PassiveHand(mass=0.1, stiffness=100, damping=1)
+s = control.tf("s")
 
 
 @cache
@@ -19,27 +28,86 @@ def answers() -> dict[str, Answer]:
     return {
         "passive": zw.check(PADDLE, zw.Wall(250)),
         "active": zw.check(PADDLE, zw.Wall(770)),
+        "spring": zw.check(PADDLE, zw.NonlinearSpring([0, 0.001, 0.002], [0, 0.1, 0.4])),
         "bounding": zw.check_bounding(PADDLE, zw.render(zw.Wall(2000), zw.rendering.ForceBounding())),
         "worst hand": zw.worst_hand(PADDLE, zw.Wall(250), penetration=0.001, speed=0.1),
         "arm": zw.workspace(arm, zw.Wall(1), rate=1000),
+        "port": zw.passivity_indices((s + 2) / (s + 1)),
+        "active port": zw.passivity_indices((s - 2) / (s * s + s + 1)),
+        "stable": zw.stability(HEAVY, zw.Wall(500), HAND),
+        "unstable": zw.stability(HEAVY, zw.Wall(50_000, -1), HAND),
+        "coupling": zw.coupling_condition(PADDLE, 100, 0.02),
+        "poor coupling": zw.coupling_condition(PADDLE, 1000, 0.2),
+        "springs": zw.transformed_condition(PADDLE, zw.Slopes(0, 100, bounded_below=True)),
     }
 
 
-@pytest.mark.parametrize("name", ["passive", "active", "bounding", "worst hand", "arm"])
+NAMES = [
+    "passive", "active", "spring", "bounding", "worst hand", "arm", "port", "active port", "stable",
+    "unstable", "coupling", "poor coupling", "springs",
+]  # fmt: skip
+OF_PASSIVITY = ["passive", "active", "spring", "bounding", "worst hand", "arm", "port", "active port"]
+YES = {"passive", "spring", "bounding", "worst hand", "arm", "port", "stable", "coupling", "springs"}
+
+
+@pytest.mark.parametrize("name", OF_PASSIVITY)
 def test_passive_is_the_outcome_and_nothing_else(name: str) -> None:
     """True of a proof alone."""
     answer = answers()[name]
+    assert isinstance(answer, PassivityAnswer)
     assert answer.passive is (answer.outcome == "passive")
 
 
-def test_both_are_among_them() -> None:
-    """A passive one and an active one."""
-    assert answers()["passive"].passive
-    assert not answers()["active"].passive
-
-
-@pytest.mark.parametrize("name", ["passive", "active", "bounding", "worst hand", "arm"])
+@pytest.mark.parametrize("name", NAMES)
 def test_no_answer_is_true_or_false(name: str) -> None:
-    """`if verdict:` would take every answer for a proof; the message says what to ask."""
-    with pytest.raises(zw.InputError, match=r"neither true nor false: ask \.passive"):
-        bool(answers()[name])
+    """`if verdict:` would take every answer for a proof; the message says what to ask, and that is a bool."""
+    answer = answers()[name]
+    with pytest.raises(zw.InputError, match=rf"neither true nor false: ask \.{answer.YES}, which"):
+        bool(answer)
+    assert getattr(answer, answer.YES) is (name in YES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_margin_is_on_the_side_of_the_outcome(name: str) -> None:
+    """Positive for yes, negative for no; some have none."""
+    margin = answers()[name].margin
+    if name in ("bounding", "worst hand"):
+        assert margin is None
+    else:
+        assert margin is not None
+        assert isfinite(margin)
+        assert (margin > 0) is (name in YES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_answer_says_the_same_everywhere(name: str, tmp_path: Path) -> None:
+    """In a line, in a notebook, as plain data, and in a file, whose evidence the checker accepts."""
+    answer = answers()[name]
+    told = json.loads(answer.to_json())
+    page = answer._repr_html_()
+    assert isinstance(page, Html)
+    assert answer.outcome in page
+    assert type(answer).__name__.removeprefix("Linear") in repr(answer)
+    assert told["format"].startswith("zwidth ")
+    assert told["scope"]["contact"] == answer.scope.contact
+    assert (told["outcome"], told["claim"]) == (answer.outcome, answer.claim)
+    assert told["assumptions"][: len(answer.assumptions)] == list(answer.assumptions)
+    answer.save(tmp_path / "answer.json")
+    if name == "springs":
+        assert answer.outcome == "theorem"
+    else:
+        assert verify_document(read_document(tmp_path / "answer.json")).valid
+
+
+@pytest.mark.parametrize("name", ["active", "worst hand", "arm", "port"])
+def test_an_answer_is_drawn(name: str, tmp_path: Path) -> None:
+    """A figure, saved where a path is given."""
+    path = tmp_path / "picture.png"
+    assert answers()[name].plot(path).axes
+    assert path.stat().st_size > 1000
+
+
+def test_what_has_no_picture_says_so() -> None:
+    """One sentence, by its name."""
+    with pytest.raises(zw.InputError, match="no picture of this Bounding"):
+        answers()["bounding"].plot()

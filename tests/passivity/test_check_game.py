@@ -15,8 +15,8 @@ from zwidth.cli.verification import verifications
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
 from zwidth.passivity.game import has_gap
-from zwidth.passivity.storage.gain import Gain
-from zwidth.passivity.storage.playback import peak_force, settled_round
+from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.evidence.playback import peak_force, settled_round
 from zwidth.passivity.wording import describe_hands
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -101,7 +101,7 @@ def test_limits_and_advice_play_no_games(monkeypatch: pytest.MonkeyPatch) -> Non
     def never(*_: object, **__: object) -> None:
         raise AssertionError("a game was played")
 
-    monkeypatch.setattr("zwidth.passivity.storage.hand.worst_hand", never)
+    monkeypatch.setattr("zwidth.passivity.storage.solution.available_storage", never)
     assert verdict.max_stiffness == 200
     assert verdict.required_damping == pytest.approx(0.8)
     assert any(a.to for a in verdict.advice)

@@ -10,7 +10,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import plots
-from zwidth.device.arm import PlanarChain, built_in
+from zwidth.arms import PlanarChain, built_in
 
 
 def _space(name: str, stiffness: float) -> zw.Workspace:

@@ -103,7 +103,7 @@ def test_nested_couplings_and_text():
     ("make", "message"),
     [
         (lambda: zw.VirtualCoupling(-1, 2, zw.Wall(3)), "stiffness must be ≥ 0"),
-        (lambda: zw.VirtualCoupling(1, "x", zw.Wall(3)), "damping: expected a number"),
+        (lambda: zw.VirtualCoupling(1, "x", zw.Wall(3)), r"damping is in N\*s/m; got .x.: expected a number"),
         (lambda: zw.VirtualCoupling(1, 2, None), "an environment is"),
         (lambda: zw.VirtualCoupling(1, 2, control.tf([1], [1, 2])), "needs a discretization"),
         (lambda: zw.VirtualCoupling((1, 2), 2, zw.Wall(3)).pulse_transfer_function(T), "interval"),

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from math import isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from zwidth.bench.laws import standard_laws
 from zwidth.bench.motions import found_motions
 from zwidth.bench.perceived import SOURCE, WEBER, noticeable_differences
 from zwidth.bench.standing import Standing, standing
-from zwidth.bench.table import as_html, as_text
+from zwidth.bench.table import legend, table
 from zwidth.bench.touches import Touch, standard_touches
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
@@ -26,11 +26,14 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
+from zwidth.passivity.document import unit_suffix
+from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import RealLike
-from zwidth.showing import Html
+from zwidth.showing import Part
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 _TIMED = 20_000
 """Samples over which a step is timed."""
@@ -62,8 +65,8 @@ SCORES: Mapping[str, Score] = {
 """What is computed of each law, by variable."""
 
 
-@dataclass(frozen=True)
-class LawComparison:
+@dataclass(frozen=True, repr=False)
+class LawComparison(Documented):
     """What became of each law.
 
     Attributes
@@ -84,6 +87,8 @@ class LawComparison:
         What was compared.
     """
 
+    FORMAT = "zwidth laws 1"
+
     scores: xr.Dataset
     attacks: Mapping[str, Attack]
     standings: Mapping[str, Standing]
@@ -101,22 +106,49 @@ class LawComparison:
         """What to do, in a paragraph."""
         return advice(self.scores, self.device, self.environment)
 
-    def __repr__(self) -> str:
-        title = f"{self.environment.describe()} on {self.device.name or 'the device'}"
-        return as_text(title, self.scores, self.advice)
+    def report(self) -> Iterable[Part]:
+        """The table under its title, what its words mean, and what to do about it."""
+        yield f"{self.environment.describe()} on {self.device.name or 'the device'}"
+        yield ""
+        yield table(self.scores)
+        yield ""
+        yield legend(self.scores)
+        if self.advice:
+            yield self.advice
 
-    def _repr_html_(self) -> Html:
-        return as_html(self.scores, self.advice)
+    def to_dict(self) -> dict[str, Any]:
+        """The scores of each law, a unit in every key, what is known of it, and the advice."""
+        laws = {name: self._known(name) | self._scored(name) for name in map(str, self.scores["law"].values)}
+        return {"format": self.FORMAT, "advice": self.advice, "laws": laws}
 
-    def plot(self, path: str | Path | None = None) -> Any:
-        """Stability against fidelity, and the touches of each law; saved where a path is given."""
-        from zwidth.plots.files import save_figure  # matplotlib takes its time
-        from zwidth.plots.laws import laws_figure
+    def _known(self, name: str) -> dict[str, Any]:
+        known = self.standings[name]
+        return {
+            "status": known.status,
+            "proof": known.proof,
+            "evidence": known.evidence,
+            "withheld": list(known.withheld),
+            "scope": known.scope.to_dict(),
+        }
 
-        figure = laws_figure(self)
-        if path is not None:
-            save_figure(lambda: figure, path, overwrite=True)
-        return figure
+    def _scored(self, name: str) -> dict[str, float | None]:
+        """By name and unit; None for what has no bound."""
+        scores = self.scores.sel(law=name).drop_vars("status").data_vars.items()
+        units = {key: value.attrs["units"] for key, value in scores}
+        return {
+            str(key) if units[key] == "1" else f"{key}_{unit_suffix(units[key])}": _finite(float(value))
+            for key, value in scores
+        }
+
+    def figure(self) -> Figure:
+        """Stability against fidelity, and the touches of each law."""
+        from zwidth.plots.laws import laws_figure  # matplotlib takes its time
+
+        return laws_figure(self)
+
+
+def _finite(number: float) -> float | None:
+    return number if isfinite(number) else None
 
 
 def compare(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from zwidth.errors import InputError
-from zwidth.passivity.storage.hand import Game
+from zwidth.passivity.storage.program import DynamicProgram
 
 KNOTS = 9
 """Places in a cell, about."""
@@ -40,7 +40,7 @@ class Budget:
             raise Spent
 
 
-def budget_of(game: Game, moves: float) -> Budget:
+def budget_of(game: DynamicProgram, moves: float) -> Budget:
     """For so many moves in a game against one law.
 
     Raises

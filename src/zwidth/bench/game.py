@@ -13,11 +13,11 @@ from zwidth.bench.budget import KNOTS, Budget, Spent, budget_of
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
-from zwidth.passivity.storage import worst_hand
-from zwidth.passivity.storage.gain import Gain
-from zwidth.passivity.storage.hand import FINE, STEPS, Game, game_of
-from zwidth.passivity.storage.row_game import COUNTS, RowGame, row_game
-from zwidth.passivity.storage.row_table import DoesNotClose
+from zwidth.passivity.storage import available_storage
+from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of
+from zwidth.passivity.storage.row.program import COUNTS, RowProgram, row_program
+from zwidth.passivity.storage.row.table import DoesNotClose
 from zwidth.passivity.wording import describe_hands
 from zwidth.rendering.rendered import Rendered
 
@@ -43,12 +43,12 @@ def by_the_game(device: Device, law: Environment, found: Attack) -> tuple[bool, 
 
 
 def _of_a_law(device: Device, law: Environment) -> tuple[bool, str]:
-    """Played by `worst_hand`."""
+    """Played by `available_storage`."""
     actuator = _actuator(device)
-    game = game_of(device, law, **actuator)
-    assert isinstance(game, Game)  # it is no row
+    game = program_of(device, law, **actuator)
+    assert isinstance(game, DynamicProgram)  # it is no row
     told = budget_of(game, MOVES)
-    played = worst_hand(device, law, **actuator, seconds=float("inf"), progress=told)
+    played = available_storage(device, law, **actuator, seconds=float("inf"), progress=told)
     if played.outcome == "undecided":
         return False, "nor does the game of the worst hand decide it"
     return played.outcome == "active", played.claim if played.outcome == "active" else _proved(game)
@@ -67,15 +67,15 @@ def _of_a_row(device: Device, law: Rendered) -> tuple[bool, str]:
     return False, "nor does the game of the worst hand decide it"
 
 
-def _rounds(game: RowGame, told: Budget) -> Iterator[bool | Gain | None]:
+def _rounds(game: RowProgram, told: Budget) -> Iterator[bool | Gain | None]:
     """On finer and finer steps: whether it is proved, or a motion."""
     for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
-        storage = game.prove(steps, tell=told)
+        storage = game.prove(steps, progress=told)
         yield storage is not None and storage.certificate().verify()
-        yield None if fine is None else game.refute(fine, tell=told)
+        yield None if fine is None else game.refute(fine, progress=told)
 
 
-def _largest(device: Device, law: Rendered) -> RowGame:
+def _largest(device: Device, law: Rendered) -> RowProgram:
     """The game on the largest board with no more than `STATES`; a larger board has no fewer.
 
     Raises
@@ -86,7 +86,7 @@ def _largest(device: Device, law: Rendered) -> RowGame:
     game = None
     for board in reversed(COUNTS):
         try:
-            game = row_game(device, law, boards=(board,), most=STATES, **_actuator(device))
+            game = row_program(device, law, domains=(board,), most=STATES, **_actuator(device))
         except DoesNotClose:
             if game is None:
                 raise
@@ -100,7 +100,7 @@ def _actuator(device: Device) -> Any:
     return {key: getattr(device, key) is not None for key in ("force_limit", "force_resolution")}
 
 
-def _proved(game: Game | RowGame) -> str:
+def _proved(game: DynamicProgram | RowProgram) -> str:
     hands = describe_hands(game.hands, game.motion)
     return f"{hands} take no energy out, proved; others may"
 

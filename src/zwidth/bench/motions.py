@@ -28,8 +28,8 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.storage import worst_hand
-from zwidth.passivity.storage.hand import Game, game_of
+from zwidth.passivity.storage import available_storage
+from zwidth.passivity.storage.program import DynamicProgram, program_of
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
@@ -306,10 +306,10 @@ def _worst(device: Device, wall: Wall, speed: Fraction) -> Floats | None:
     bounded = speed * Fraction(999, 1000)  # the game's moves may be a step longer
     deep = 2 * bounded * device.exact("sample_period")
     try:
-        game = game_of(device, wall, deep, bounded)
-        assert isinstance(game, Game)  # a wall is no row
+        game = program_of(device, wall, deep, bounded)
+        assert isinstance(game, DynamicProgram)  # a wall is no row
         told = budget_of(game, GAME)
-        played = worst_hand(
+        played = available_storage(
             device, wall, speed=bounded, penetration=deep, seconds=float("inf"), progress=told
         )
     except (InputError, Spent):  # an ideal encoder, a board that is too large or too small

@@ -6,7 +6,8 @@ from math import isfinite, isinf
 from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.bench.perceived import SOURCE, WEBER
-from zwidth.showing import Html, element, printable, row
+from zwidth.quantity.text import in_a_table
+from zwidth.showing import Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,18 +43,16 @@ ON_PAPER = "on paper"
 """What the table calls a proof on paper, no certificate."""
 
 
-def rows(scores: xr.Dataset) -> list[list[str]]:
+def table(scores: xr.Dataset) -> Table:
     """Headings, units, and a row for each law."""
-    table = [
-        ["law", "status", *(c.heading for c in COLUMNS)],
-        ["", "", *(c.unit for c in COLUMNS)],
-    ]
-    for name in scores["law"].values:
-        one = scores.sel(law=name)
-        cells = [_number(float(one[c.variable]) * c.factor) for c in COLUMNS]
-        status = str(one["status"].item())
-        table.append([str(name), ON_PAPER if status == "theorem" else status, *cells])
-    return table
+    heads = [["law", "status", *(c.heading for c in COLUMNS)], ["", "", *(c.unit for c in COLUMNS)]]
+    return Table(heads=heads, rows=[_row(scores.sel(law=name)) for name in scores["law"].values], lefts=2)
+
+
+def _row(one: xr.Dataset) -> list[str]:
+    status = str(one["status"].item())
+    cells = (_number(float(one[c.variable]) * c.factor) for c in COLUMNS)
+    return [str(one["law"].item()), ON_PAPER if status == "theorem" else status, *cells]
 
 
 def legend(scores: xr.Dataset) -> str:
@@ -64,29 +63,6 @@ def legend(scores: xr.Dataset) -> str:
     return f"{paper}JNDs: felt against the stiffness that is wanted, in {steps}; below 0 it is softer"
 
 
-def as_text(title: str, scores: xr.Dataset, advice: str) -> str:
-    """The table in columns under its title, and what to do about it."""
-    table = rows(scores)
-    widths = [max(len(row[i]) for row in table) for i in range(len(table[0]))]
-    lines = [
-        "  ".join(
-            cell.ljust(width) if i < 2 else cell.rjust(width)
-            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in table
-    ]
-    below = [text for text in (legend(scores), advice) if text]
-    return printable("\n".join([title, "", *lines, "", *below]))
-
-
-def as_html(scores: xr.Dataset, advice: str) -> Html:
-    """The same for a notebook, without a title."""
-    head, units, *body = rows(scores)
-    table = element("table", row(head, "th"), row(units, "th"), *map(row, body))
-    below = (element("p", text) for text in (legend(scores), advice) if text)
-    return element("div", table, *below)
-
-
 def _number(value: float) -> str:
     if isinf(value):
         return "never"
@@ -94,4 +70,4 @@ def _number(value: float) -> str:
         return "–"
     if abs(value) < 5e-4:
         return "0"
-    return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.3g}"
+    return in_a_table(value, 3)

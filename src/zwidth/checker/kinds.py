@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import cache
 from typing import Any, NamedTuple
 
 from . import scope
@@ -30,8 +31,7 @@ from .loop.spring import SPRING, spring
 from .loop.violation import VIOLATION, violation
 from .port.index import POSITIVE_REAL, positive_real
 from .port.matrix import POSITIVE_REAL_MATRIX, positive_real_matrix
-from .port.matrix_motion import MATRIX_EXTRACTION, matrix_extraction
-from .port.motion import EXTRACTION, extraction
+from .port.motion import EXTRACTION, MATRIX_EXTRACTION, extraction
 from .scope import ACTIVE, BROKEN, INDEX, KEPT, NO_INDEX, PASSIVE, STABLE, UNSTABLE, Scope
 from .storage.board import STORAGE
 from .storage.choice import checked
@@ -157,7 +157,7 @@ KINDS: dict[str, Kind] = {
     "positive real": Kind(POSITIVE_REAL, _proof(positive_real), scope.of_a_port(INDEX)),
     "positive real matrix": Kind(POSITIVE_REAL_MATRIX, _proof(positive_real_matrix), scope.of_a_port(INDEX)),
     "extraction": Kind(EXTRACTION, _taken(extraction), scope.of_a_port(NO_INDEX)),
-    "matrix extraction": Kind(MATRIX_EXTRACTION, _taken(matrix_extraction), scope.of_a_port(NO_INDEX)),
+    "matrix extraction": Kind(MATRIX_EXTRACTION, _taken(extraction), scope.of_a_port(NO_INDEX)),
 }
 
 
@@ -169,6 +169,7 @@ def kind_of(document: Mapping[str, Any]) -> str:
     return told
 
 
+@cache
 def fields_of(kind: str) -> Record:
     """All that a document of a kind consists of."""
     return KINDS[kind].fields.extended(kind=Choice(kind, shown=False))

@@ -27,13 +27,7 @@ MEANT = (
 
 
 def schema_of(kind: str) -> dict[str, Any]:
-    """The schema of documents of a kind, or of corners.
-
-    Raises
-    ------
-    KeyError
-        If there is no such kind.
-    """
+    """The schema of documents of a kind, or of corners."""
     defined = {"rational": RATIONAL}
     if kind == CORNERS:
         body = _corners()

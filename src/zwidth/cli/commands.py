@@ -312,9 +312,11 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "the same command is given again.\n\n"
             "exit status: 0, or 2 on bad input\n\n"
             "examples:\n"
-            "  zwidth map haptic-paddle --stiffness 0:3000 --damping 0:5 --plot map.png\n"
-            "  zwidth map haptic-paddle --stiffness 0:30000 --damping 0:90 --cells 1000x1000 -o map.zarr\n"
-            "  zwidth map haptic-paddle --stiffness 0:3000 --damping 0:5 -o map.zarr --address tcp://cluster:8786",
+            "  zwidth map haptic-paddle --stiffness 0:3000 --virtual-damping 0:5 --plot map.png\n"
+            "  zwidth map haptic-paddle --stiffness 0:30000 --virtual-damping 0:90 "
+            "--cells 1000x1000 -o map.zarr\n"
+            "  zwidth map haptic-paddle --stiffness 0:3000 --virtual-damping 0:5 -o map.zarr "
+            "--address tcp://cluster:8786",
             _configure_map,
             _map,
         ),

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
 from zwidth.cli.output import print_json, print_text, say_written, targets, writing
@@ -13,10 +12,8 @@ from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 from zwidth.specification.laws import with_laws
 from zwidth.specification.table import quoted, suggestion
-from zwidth.writing import writing_whole
 
 if TYPE_CHECKING:
-    from zwidth.bench import LawComparison
     from zwidth.environment import Environment
 
 YOURS = "yours"
@@ -73,13 +70,12 @@ def run_compare(arguments: argparse.Namespace) -> int:
     laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
     found = compare(loop.device, loop.environment, laws, fastest=_speed(arguments.fastest))
     if save is not None:
-        with writing_whole(save) as file:
-            file.write(f"{_json(found)}\n".encode())
+        found.save(save)
     if plot is not None:
         with writing(plot):
             found.plot(plot)
     if arguments.json:
-        print_json(_json(found))
+        print_json(found.to_json())
     else:
         print_text(found)
         say_written(save, plot)
@@ -104,28 +100,3 @@ def _chosen(
             raise InputError(f"there is no law {quoted(name)}; {suggestion(name, list(laws))}")
         chosen[name] = laws[name]
     return {**chosen, **yours}
-
-
-def _json(found: LawComparison) -> str:
-    from zwidth.passivity.document import unit_suffix
-
-    rows = {}
-    for name in found.scores["law"].values:
-        one = found.scores.sel(law=name)
-        known = found.standings[str(name)]
-        row: dict[str, Any] = {
-            "status": known.status,
-            "proof": known.proof,
-            "evidence": known.evidence,
-            "withheld": list(known.withheld),
-            "scope": known.scope.to_dict(),
-        }
-        for key, value in one.data_vars.items():
-            if key != "status":
-                unit = value.attrs["units"]
-                number = float(value)
-                finite = number if abs(number) < float("inf") else None
-                row[str(key) if unit == "1" else f"{key}_{unit_suffix(unit)}"] = finite
-        rows[str(name)] = row
-    document = {"format": "zwidth laws 1", "advice": found.advice, "laws": rows}
-    return json.dumps(document, indent=2, ensure_ascii=False)

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from zwidth.cli.numerals import shown
 from zwidth.device import Device
 from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.specification.environments import TYPES, Key
+from zwidth.quantity.parameter import Parameter
+from zwidth.quantity.text import shown
+from zwidth.specification.environments import TYPES
+from zwidth.specification.kinds import name_of
 from zwidth.specification.table import plain
 
 _OF_A_DEVICE = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
 """What a verdict depends on."""
+
+_SHORT = ("environment", "flag", "velocity filter", "word")
 
 GLUE = "\ue000"
 """Stands for a blank at which no line may break; whoever prints it puts the blank back."""
@@ -28,19 +32,22 @@ def device_line(device: Device) -> str:
 
 def environment_line(environment: Environment, motion: str) -> str:
     """The environment's type and its parameters."""
-    found = next((n for n, t in TYPES.items() if t.class_name == type(environment).__name__), None)
-    if found is None or any(
-        k.form in ("coefficients", "branches", "list", "number") for k in TYPES[found].keys.values()
-    ):
+    found = name_of(environment, TYPES)
+    if found is None or not all(map(_is_short, TYPES[found].keys.values())):
         return environment.describe(motion)
     parts = [_part(environment, name, key, motion) for name, key in TYPES[found].keys.items()]
     return f"{found.replace('-', ' ')}: {', '.join(p for p in parts if p)}"
 
 
-def _part(environment: Environment, name: str, key: Key, motion: str) -> str:
+def _is_short(own: Parameter) -> bool:
+    """True for a number of the glossary, and what is said in a word or two."""
+    return own.quantity.name in GLOSSARY if own.is_number else own.form in _SHORT
+
+
+def _part(environment: Environment, name: str, key: Parameter, motion: str) -> str:
     value = getattr(environment, name)
-    if key.form == "quantity":
-        return _named(key.quantity, value, motion) if value or key.required else ""
+    if key.is_number:
+        return _named(key.quantity.name, value, motion) if value or key.required else ""
     if key.form == "environment":
         return f"around {environment_line(value, motion)}"
     if key.form == "flag":

@@ -9,10 +9,10 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.numerals import shown
-from zwidth.cli.report import page
+from zwidth.cli.page import page
 from zwidth.device.catalogue import Datum, Entry
 from zwidth.passivity.document import unit_suffix
+from zwidth.quantity.text import in_words, shown
 
 
 def print_entries(entries: Sequence[Entry], in_full: bool) -> None:
@@ -38,7 +38,7 @@ def _table(entry: Entry, in_full: bool) -> Table:
     grid.add_column(style="dim")
     unknown = []
     for key, datum in entry.values.items():
-        name = key.replace("_", " ")
+        name = in_words(key)
         if datum.value is not None:
             grid.add_row("", name, Text(shown(datum.value, datum.unit, 6)), Text(datum.source))
         elif in_full:

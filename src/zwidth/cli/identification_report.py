@@ -10,8 +10,7 @@ from rich.text import Text
 
 from zwidth.cli.description import environment_line
 from zwidth.cli.identification_result import Result
-from zwidth.cli.numerals import shown
-from zwidth.cli.report import page, section
+from zwidth.cli.page import below, grid, headline, items, page, section
 from zwidth.environment import Wall
 from zwidth.identification.device.estimate import MOST_CONFIDENCE
 from zwidth.identification.device.limits import advice, percent
@@ -19,6 +18,7 @@ from zwidth.identification.device.table import rows, source_name
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.verdict import Verdict
+from zwidth.quantity.text import shown
 
 _SHOWN = 0.95
 """Confidence of the intervals in the table."""
@@ -37,17 +37,15 @@ def print_identified(found: Result) -> None:
         section(out, "what the data show", _findings(own))
         if found.verdict is not None:
             section(out, "the environment", _checked(found, found.verdict))
-        section(out, "to know it better", _bullets(advice(found.identified, found.confidence)))
-        section(out, "the log", _bullets(str(finding) for finding in found.log.findings))
+        section(out, "to know it better", items(advice(found.identified, found.confidence)))
+        section(out, "the log", items(str(finding) for finding in found.log.findings))
 
 
 def _headline(found: Result) -> Padding:
     badge, colour = "IDENTIFIED", "green"
     if found.identified.shows("wrong model"):
         badge, colour = "WRONG MODEL", "yellow"
-    grid = Table.grid(padding=(0, 1))
-    grid.add_row(Text(f" {badge} ", style=f"bold white on {colour}"), Text(_claim(found), style="bold"))
-    return Padding(grid, (0, 0, 1, 0))
+    return headline(badge, colour, _claim(found))
 
 
 def _claim(found: Result) -> str:
@@ -72,14 +70,12 @@ def _log(found: Result) -> Padding:
     runs = "" if log.runs == 1 else f" in {log.runs} runs"
     forces = ", ".join(name.replace("_", " ") for name in log.channels) or "no force, mass given"
     step = shown(log.resolution, length) if log.resolution else "no step seen"
-    grid = Table.grid(padding=(0, 2))
-    for name, text in (
+    rows = [
         ("log", f"{source_name(found.identified)}: {shown(log.duration, 's')}{runs}, {log.samples} samples"),
         ("samples", f"T = {shown(log.sample_period, 's', 6)}, Δ = {step}, {forces}"),
         ("numbers rest on", _basis(found)),
-    ):
-        grid.add_row(Text(name, style="dim"), Text(text))
-    return Padding(grid, (0, 0, 1, 0))
+    ]
+    return below(grid(rows))
 
 
 def _basis(found: Result) -> str:
@@ -133,8 +129,3 @@ def _for_how_much(confidence: float | None) -> str:
         return f"passive for {percent(confidence)} or more of what the data allow"
     tenths = int(confidence * 1000) / 1000  # of a per cent, downwards
     return f"passive for {percent(tenths)} of what the data allow"
-
-
-def _bullets(lines: Sequence[str] | Iterator[str]) -> Iterator[Text]:
-    for line in lines:
-        yield Text(f"· {line}")

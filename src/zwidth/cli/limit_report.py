@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from rich.padding import Padding
 from rich.table import Table
-from rich.text import Text
 
 from zwidth.cli.bars import PICTURE
 from zwidth.cli.description import device_line, environment_line
 from zwidth.cli.motion import motion_lines
-from zwidth.cli.numerals import shown
 from zwidth.cli.output import encodes
-from zwidth.cli.report import assumption_lines, page, section
+from zwidth.cli.page import below, grid, headline, items, page, section
 from zwidth.passivity.passive_limit import Bracket
+from zwidth.quantity.text import in_words, shown
 from zwidth.specification.read import Specification
 
 _DIGITS = 6
@@ -23,12 +22,12 @@ def print_bracket(bracket: Bracket, loop: Specification) -> None:
     fancy = encodes(PICTURE)
     with page() as out:
         out.print(_headline(bracket))
-        out.print(Padding(_loop(bracket, loop), (0, 0, 1, 0)))
-        out.print(Padding(_values(bracket), (0, 0, 1, 0)))
+        out.print(below(_loop(bracket, loop)))
+        out.print(below(_values(bracket)))
         if bracket.witness is not None:
             at = _shown(bracket, bracket.active)
             section(out, f"the motion, at {at}", motion_lines(bracket.witness, fancy))
-        section(out, "assumes", assumption_lines(bracket.assumptions))
+        section(out, "assumes", items(bracket.assumptions, "dim"))
 
 
 def _headline(bracket: Bracket) -> Padding:
@@ -36,9 +35,7 @@ def _headline(bracket: Bracket) -> Padding:
     badge, colour = {2: ("BRACKETED", "green"), 1: ("ONE SIDE", "yellow"), 0: ("UNDECIDED", "yellow")}[
         sum(sides)
     ]
-    grid = Table.grid(padding=(0, 1))
-    grid.add_row(Text(f" {badge} ", style=f"bold white on {colour}"), Text(_claim(bracket), style="bold"))
-    return Padding(grid, (0, 0, 1, 0))
+    return headline(badge, colour, _claim(bracket))
 
 
 def _claim(bracket: Bracket) -> str:
@@ -54,29 +51,29 @@ def _claim(bracket: Bracket) -> str:
 
 
 def _loop(bracket: Bracket, loop: Specification) -> Table:
-    grid = Table.grid(padding=(0, 2))
-    grid.add_row(Text("device", style="dim"), Text(device_line(loop.device)))
-    environment = environment_line(loop.environment, loop.device.motion)
-    grid.add_row(Text("environment", style="dim"), Text(environment))
-    grid.add_row(Text("hand", style="dim"), Text(bracket.hand))
-    decided = f"{bracket.evaluations} loops in {shown(bracket.seconds, 's', 3)}"
-    grid.add_row(Text("decided", style="dim"), Text(decided))
-    return grid
+    return grid(
+        [
+            ("device", device_line(loop.device)),
+            ("environment", environment_line(loop.environment, loop.device.motion)),
+            ("hand", bracket.hand),
+            ("decided", f"{bracket.evaluations} loops in {shown(bracket.seconds, 's', 3)}"),
+        ]
+    )
 
 
 def _values(bracket: Bracket) -> Table:
     """The two values, and beside them those of every hand where the bracket is about bounded ones."""
-    grid = Table(box=None, padding=(0, 3, 0, 0), header_style="dim", pad_edge=False)
-    grid.add_column(_name(bracket), style="dim")
+    table = Table(box=None, padding=(0, 3, 0, 0), header_style="dim", pad_edge=False)
+    table.add_column(_name(bracket), style="dim")
     bounded = bracket.hand != "every hand"
     columns = [("this hand" if bounded else "every hand", (bracket.passive, bracket.active))]
     if bounded:
         columns.append(("every hand", bracket.every_hand))
     for title, _ in columns:
-        grid.add_column(title)
+        table.add_column(title)
     for row, side in enumerate(("proved passive", "active")):
-        grid.add_row(side, *(_shown(bracket, values[row]) for _, values in columns))
-    return grid
+        table.add_row(side, *(_shown(bracket, values[row]) for _, values in columns))
+    return table
 
 
 def _shown(bracket: Bracket, value: float | None) -> str:
@@ -87,4 +84,4 @@ def _name(bracket: Bracket) -> str:
     """The parameter as people say it; damping is the device's, virtual damping the environment's."""
     owner, _, key = bracket.parameter.partition(".")
     name = "virtual_damping" if (owner, key) == ("environment", "damping") else key
-    return name.replace("_", " ").replace("coulomb", "Coulomb")
+    return in_words(name)

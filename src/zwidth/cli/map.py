@@ -8,11 +8,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.numerals import shown, unit_text
-from zwidth.cli.options import Once, Parameter, add_all, device_parameters, given
+from zwidth.cli.options import Once, add_all, device_parameters, given
 from zwidth.cli.output import print_json, print_text, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import shown, unit_text
 from zwidth.quantity.units import parse_number
 from zwidth.specification.read import read_tables, specified_device
 from zwidth.specification.table import plain, quoted, suggestion
@@ -23,14 +23,11 @@ if TYPE_CHECKING:
     from zwidth.device import Device
     from zwidth.environment.velocity import VelocityEstimator
 
-_DEVICE_DAMPING = "device_damping"
-"""The option for b of the device: `--damping` is the range of B here."""
-
 
 def configure_map(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth map`."""
     parser.usage = (
-        "%(prog)s [SOURCE] --stiffness LOW:HIGH --damping LOW:HIGH [--cells NxM] [--hands NAMES] "
+        "%(prog)s [SOURCE] --stiffness LOW:HIGH --virtual-damping LOW:HIGH [--cells NxM] [--hands NAMES] "
         "[--PARAMETER VALUE ...] [--json] [--plot FILE] [--certify FILE] "
         "[-o DIRECTORY] [--force]"
     )
@@ -43,7 +40,7 @@ def configure_map(parser: argparse.ArgumentParser) -> None:
     walls = parser.add_argument_group("walls")
     for option, metavar, meaning in (
         ("--stiffness", "LOW:HIGH", "range of K [N/m; rotary N*m/rad]"),
-        ("--damping", "LOW:HIGH", "range of the virtual damping B [N*s/m; rotary N*m*s/rad]"),
+        ("--virtual-damping", "LOW:HIGH", "range of B [N*s/m; rotary N*m*s/rad]"),
         ("--cells", "NxM", "how many along K and along B (default: 200x200)"),
         ("--velocity-filter", "FILTER", "backward-difference, window N, one-pole τ or f, filter"),
         ("--hands", "NAMES", "known hands, of none, finger, dowel, with commas between (default: all)"),
@@ -67,7 +64,9 @@ def configure_map(parser: argparse.ArgumentParser) -> None:
         help="zarr store, written as it goes; one that was begun is gone on with",
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
-    add_all(parser.add_argument_group("device", "override what SOURCE says, or replace it"), _parameters())
+    add_all(
+        parser.add_argument_group("device", "override what SOURCE says, or replace it"), device_parameters()
+    )
 
 
 def run_map(arguments: argparse.Namespace) -> int:
@@ -112,14 +111,13 @@ def _certify(device: Device, found: xr.Dataset, velocity: VelocityEstimator | No
         certificate.save(path)
 
 
-def _parameters() -> list[Parameter]:
-    """The options of a device, its damping under a name of its own."""
-    return [p if p.key != "damping" else p._replace(key=_DEVICE_DAMPING) for p in device_parameters()]
-
-
 def _device(arguments: argparse.Namespace) -> Device:
-    typed = given(arguments, [p.key for p in _parameters()])
-    overrides = {key.removeprefix("device_"): value for key, value in typed.items()}
+    overrides = given(arguments, [p.key for p in device_parameters()])
+    if ":" in overrides.get("damping", ""):
+        raise InputError(
+            "--damping is the friction of the device itself, one value; the range of the wall's damping is "
+            "--virtual-damping LOW:HIGH"
+        )
     return specified_device(read_tables(arguments.sources, ("device",)), overrides)
 
 
@@ -130,7 +128,7 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
 
     options: dict[str, Any] = {
         "stiffness": _range(arguments.stiffness, "stiffness", "stiffness", motion),
-        "virtual_damping": _range(arguments.damping, "damping", "virtual_damping", motion),
+        "virtual_damping": _range(arguments.virtual_damping, "virtual-damping", "virtual_damping", motion),
         "path": arguments.save,
         "address": arguments.address,
     }

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from rich.text import Text
 
 from zwidth.cli.bars import levels
-from zwidth.cli.numerals import shown
-from zwidth.passivity.witness.witness import Witness
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.storage.evidence.gain import Gain
+    from zwidth.passivity.witness.witness import Witness
 
 _SAMPLES_SHOWN = 48
 
@@ -27,11 +27,10 @@ def joules(witness: Witness | Gain) -> str:
 
 def motion_lines(witness: Witness | Gain, fancy: bool) -> Iterator[Text]:
     """The motion, line by line."""
-    length = witness.unit if not isinstance(witness, Witness) else _unit(witness)
     yield Text(
         f"{witness.motion.samples:.6g} samples in "
         f"{shown(witness.motion.samples * witness.sample_period, 's')}, to "
-        f"{shown(witness.depth, length)} at up to {shown(witness.peak_speed, length + '/s')}"
+        f"{shown(witness.depth, witness.unit)} at up to {shown(witness.peak_speed, witness.unit + '/s')}"
     )
     for part in witness.motion.repeats:
         if part.times > 1:
@@ -40,7 +39,3 @@ def motion_lines(witness: Witness | Gain, fancy: bool) -> Iterator[Text]:
     first = witness.positions[:_SAMPLES_SHOWN]
     more = " …" if len(witness.positions) > len(first) else ""
     yield Text(f"x(kT)  {levels(first, fancy)}{more}", style="cyan")
-
-
-def _unit(witness: Witness) -> str:
-    return "rad" if witness.setting.motion == "rotary" else "m"

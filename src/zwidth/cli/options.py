@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from zwidth.errors import InputError
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.specification.environments import TYPES, option_keys
 from zwidth.specification.laws import LAWS
 from zwidth.specification.read import DEVICE_KEYS, ROTARY_KEYS
@@ -77,11 +77,8 @@ def environment_parameters() -> Iterator[Parameter]:
     """The options of an environment."""
     yield Parameter("type", "TYPE", f"{', '.join(TYPES)} (default: wall)")
     for key, kind in option_keys().items():
-        if kind.form == "quantity":
-            yield _quantity(kind.quantity if key not in GLOSSARY else key)
-        else:
-            units = _units(kind.quantity) if kind.quantity else ""
-            yield Parameter(key, _word(key), kind.meaning + _bracket(units))
+        symbol = kind.quantity.symbol if kind.is_number else _word(key)
+        yield Parameter(key, symbol, kind.meaning + _bracket(_units(kind.quantity)))
 
 
 def add_parameters(parser: argparse.ArgumentParser) -> None:
@@ -170,12 +167,13 @@ def _dest(key: str) -> str:
 
 def _quantity(key: str) -> Parameter:
     entry = GLOSSARY[key]
-    return Parameter(key, entry.symbol, entry.meaning + _bracket(_units(key)))
+    return Parameter(key, entry.symbol, entry.meaning + _bracket(_units(entry)))
 
 
-def _units(key: str) -> str:
-    entry = GLOSSARY[key]
-    return entry.unit if entry.unit == entry.rotary_unit else f"{entry.unit}; rotary {entry.rotary_unit}"
+def _units(quantity: Quantity) -> str:
+    if quantity.unit == quantity.rotary_unit:
+        return quantity.unit
+    return f"{quantity.unit}; rotary {quantity.rotary_unit}"
 
 
 def _word(key: str) -> str:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from zwidth.cli.numerals import shown
-from zwidth.cli.report import page
+from zwidth.cli.page import below, grid, headline, page
 from zwidth.energy.ledger import ROUNDING
 from zwidth.loop.trace import UNITS
+from zwidth.quantity.text import shown
 from zwidth.specification.table import plain
 from zwidth.traces import Comparison, compare_traces
 
@@ -25,56 +26,44 @@ def print_trace(trace: xr.Dataset) -> None:
     """Print the report of one trace."""
     with page() as out:
         out.print(_headline(trace))
-        out.print()
-        out.print(_grid(_about(trace)))
-        out.print()
-        out.print(_grid(_measures(trace)))
-        out.print()
+        out.print(below(grid(_about(trace))))
+        out.print(below(grid(_measures(trace))))
         out.print(Text("energy", style="bold"))
-        out.print(_grid((text, shown(value, "J")) for text, value in trace.zwidth.energy.rows()))
+        out.print(grid((text, shown(value, "J")) for text, value in trace.zwidth.energy.rows()))
 
 
 def print_comparison(comparison: Comparison) -> None:
     """Print the numbers of several traces, a column for each."""
     with page() as out:
-        grid = Table.grid(padding=(0, 2))
+        table = Table.grid(padding=(0, 2))
         head, *lines = comparison.table()
         for cells in zip(head, *lines, strict=True):
             first, *others = cells
-            grid.add_row(
+            table.add_row(
                 Text(first, style="dim"), *(Text(plain(cell, 40), justify="right") for cell in others)
             )
-        out.print(grid)
+        out.print(table)
 
 
-def _headline(trace: xr.Dataset) -> Table:
+def _headline(trace: xr.Dataset) -> Padding:
     book = trace.zwidth.energy
     got, held = shown(book.got_out, "J"), book.held_at_start
     significant = book.got_out > ROUNDING * book.moved
-    grid = Table.grid(padding=(0, 1))
     if book.active:
-        badge = Text(" ACTIVE ", style="bold white on red")
         there = f"the {shown(held, 'J')} that" if held else "there"
         words = f"This hand got {got} out of the loop, more than {there} was in it."
-    elif significant and book.unknown:
-        badge = Text(" OUT ", style="bold white on yellow")
+        return headline("active", "red", words)
+    if significant and book.unknown:
         words = (
             f"This hand got {got} out. That does not show whether the loop is active: how much it held at "
             f"the start is not known, for {book.unknown}."
         )
-    elif significant:
-        badge = Text(" TOUCH ", style="bold white on blue")
-        words = (
-            f"{got} came out, {shown(held, 'J')} were stored at the start: nothing was gained. That proves "
-            "nothing of other hands: see zwidth check."
-        )
+        return headline("out", "yellow", words)
+    if significant:
+        words = f"{got} came out, {shown(held, 'J')} were stored at the start: nothing was gained."
     else:
-        badge = Text(" TOUCH ", style="bold white on blue")
-        words = (
-            "This hand got no energy out of the loop. That proves nothing of other hands: see zwidth check."
-        )
-    grid.add_row(badge, Text(words, style="bold"))
-    return grid
+        words = "This hand got no energy out of the loop."
+    return headline("touch", "blue", f"{words} That proves nothing of other hands: see zwidth check.")
 
 
 def _about(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
@@ -108,10 +97,3 @@ def _measures(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
     state = "at rest" if abs(v) <= _MOVING else f"moving at {shown(v, speed)}"
     yield "at the end", f"{state}, at {shown(x, length)}"
     yield "swing in the last quarter", shown(values["last_swing"], length)
-
-
-def _grid(rows: Iterator[tuple[str, str]]) -> Table:
-    grid = Table.grid(padding=(0, 2))
-    for name, text in rows:
-        grid.add_row(Text(name, style="dim"), Text(text))
-    return grid

@@ -7,14 +7,11 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from rich.table import Table
-from rich.text import Text
-
 from zwidth.checker import Scope, Verified
-from zwidth.cli.numerals import shown
-from zwidth.cli.report import page
+from zwidth.cli.page import below, grid, headline, page
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import evidence, verify_document
+from zwidth.quantity.text import shown
 from zwidth.specification.table import plain
 
 _LAWS_IN_A_ROW = ("row storage", "row motion")
@@ -22,6 +19,9 @@ _LAWS_IN_A_ROW = ("row storage", "row motion")
 
 _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 """A document that claims nothing of hands beyond its bounds."""
+
+_OF_A_PORT = "zwidth indices 1"
+"""A document about a port by itself."""
 
 
 class Part(NamedTuple):
@@ -52,14 +52,14 @@ def verifications(document: object) -> list[Part]:
     bounded = all(scope is not None and scope.hands == "bounded" for scope in scopes)
     if outcome != "active" and bounded and told.get("format") != _OF_BOUNDED_HANDS:
         return [_refused(part, outcome, "covers hands within bounds only") for part in found]
-    return [_refused(part, outcome, _misfit(part.verification.scope, outcome, told)) for part in found]
+    return [_refused(part, outcome, _misfit(part, outcome, told)) for part in found]
 
 
 def _with_law(part: Part) -> Part:
     """Laws in a row stepped again from the parameters in the document."""
     if not part.verification.valid or part.evidence["kind"] not in _LAWS_IN_A_ROW:
         return part
-    from zwidth.passivity.storage.row_document import law_of  # the compiler of their steps takes its time
+    from zwidth.passivity.storage.row.document import law_of  # the compiler of their steps takes its time
 
     try:
         return part._replace(law=law_of(part.evidence))
@@ -76,14 +76,15 @@ def _refused(part: Part, outcome: str, misfit: str | None) -> Part:
     )
 
 
-def _misfit(covered: Scope | None, outcome: str, told: Mapping[str, Any]) -> str | None:
+def _misfit(part: Part, outcome: str, told: Mapping[str, Any]) -> str | None:
     """Why evidence that is valid does not show an outcome; None where it does."""
+    covered = part.verification.scope
     if covered is None:
         return "is of corners that show different things"
     if covered.shows in ("stable", "unstable"):
         return "is of a hand that is known"
     if covered.shows in ("index at least", "index below"):
-        return "is of a port"
+        return _misfit_of_a_port(part.evidence, covered.shows, outcome, told)
     if outcome == "active":
         return None if covered.shows == "active" else "is a proof of passivity"
     if covered.shows == "active":
@@ -92,6 +93,21 @@ def _misfit(covered: Scope | None, outcome: str, told: Mapping[str, Any]) -> str
     if kept and outcome == "passive" and _contact(told) != "kept":
         return "covers a hand that keeps contact only"
     return None
+
+
+def _misfit_of_a_port(
+    evidence: Mapping[str, Any], shows: str, outcome: str, told: Mapping[str, Any]
+) -> str | None:
+    """The same of a port: it is passive for an input index of 0 or more, and active for one below."""
+    if told.get("format") != _OF_A_PORT:
+        return "is of a port"
+    level = Fraction(str(evidence["level"]))
+    if evidence["index"] == "input" and (shows, outcome, level) in (
+        ("index at least", "passive", 0),
+        ("index below", "active", 0),
+    ):
+        return None
+    return "is of another level"
 
 
 def _contact(told: Mapping[str, Any]) -> object:
@@ -104,17 +120,9 @@ def print_verifications(parts: Sequence[Part]) -> None:
     """Print whether each holds, of which loop, and the joules of a motion."""
     with page() as out:
         for part in parts:
-            headline = Table.grid(padding=(0, 1))
             word, colour = ("VALID", "green") if part.verification.valid else ("NOT VALID", "red")
-            badge = Text(f" {word} ", style=f"bold white on {colour}")
-            headline.add_row(badge, Text(_claim(part), style="bold"))
-            details = Table.grid(padding=(0, 2))
-            for name, text in _rows(part):
-                details.add_row(Text(name, style="dim"), Text(text))
-            out.print(headline)
-            out.print()
-            out.print(details)
-            out.print()
+            out.print(headline(word, colour, _claim(part)))
+            out.print(below(grid(_rows(part))))
 
 
 def _claim(part: Part) -> str:

@@ -82,8 +82,8 @@ def run_workspace(arguments: argparse.Namespace) -> int:
             f"--save: a file must end in .json for the verdict with its certificate, or in .nc for the map; "
             f"got {save.name!r}"
         )
-    from zwidth.passivity.arms import workspace
     from zwidth.passivity.outcome import TOLD
+    from zwidth.passivity.workspace import workspace
 
     arm = _arm(arguments)
     space = workspace(
@@ -115,7 +115,7 @@ def run_workspace(arguments: argparse.Namespace) -> int:
 
 
 def _arm(arguments: argparse.Namespace) -> Any:
-    from zwidth.device.arm import BUILT_IN, built_in, read_arm
+    from zwidth.arms import BUILT_IN, built_in, read_arm
 
     given = joints_of(arguments)
     if arguments.rest is not None and not arguments.pose:

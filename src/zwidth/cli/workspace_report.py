@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from math import isfinite
 from typing import TYPE_CHECKING
 
 from zwidth.cli.workspace_joints import damping_in_words
 from zwidth.cli.workspace_wall import wall_in_words
+from zwidth.quantity.text import shown
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
-    from zwidth.passivity.arms import ArmMotion, Workspace
-    from zwidth.passivity.arms.encoders import EncoderSteps
+    from zwidth.arms import ArmMotion, EncoderSteps
+    from zwidth.passivity.workspace import Workspace
 
 _SHOWN = 1e-6
 """Of the sum: what one joint gets less than this is the room for rounding."""
@@ -21,36 +20,17 @@ _SHOWN = 1e-6
 
 def print_workspace(space: Workspace) -> None:
     """Print the verdict and what to change on standard output."""
-    from rich.padding import Padding
-    from rich.table import Table
-    from rich.text import Text
-
-    from zwidth.cli.report import page, section
+    from zwidth.cli.page import below, grid, headline, page, section
     from zwidth.passivity.outcome import TOLD
 
     with page() as out:
-        head = Table.grid(padding=(0, 1))
-        badge = Text(f" {space.outcome.upper()} ", style=f"bold white on {TOLD[space.outcome].terminal}")
-        head.add_row(badge, Text(space.claim, style="bold"))
-        out.print(Padding(head, (0, 0, 1, 0)))
-        out.print(Padding(_grid(_numbers(space)), (0, 0, 1, 0)))
+        out.print(headline(space.outcome, TOLD[space.outcome].terminal, space.claim))
+        out.print(below(grid(_numbers(space))))
         changes = list(_changes(space))
-        section(out, "what to change", [_grid(changes)] if changes else [])
-
-
-def _grid(rows: Iterable[tuple[str, str]]) -> Table:
-    from rich.table import Table
-    from rich.text import Text
-
-    grid = Table.grid(padding=(0, 2))
-    for name, text in rows:
-        grid.add_row(Text(name, style="dim"), Text(text))
-    return grid
+        section(out, "what to change", [grid(changes)] if changes else [])
 
 
 def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
-    from zwidth.cli.numerals import shown
-
     yield from _asked(space)
     data, motion = space.data, space.motion
     kind, unit, where = ("margin", "N*s/m", "at the hand")
@@ -78,8 +58,6 @@ def _numbers(space: Workspace) -> Iterator[tuple[str, str]]:
 
 def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
     """What the verdict is about."""
-    from zwidth.cli.numerals import shown
-
     count = f"{space.arm.joint_count} joint{'s' if space.arm.joint_count > 1 else ''}"
     yield "arm", f"{space.arm.name}, {count}, {shown(1 / space.sample_period, 'Hz')}"
     yield "joint damping", damping_in_words(space.arm.damping)
@@ -91,8 +69,6 @@ def _asked(space: Workspace) -> Iterator[tuple[str, str]]:
 
 
 def _motion(motion: ArmMotion) -> str:
-    from zwidth.cli.numerals import shown
-
     middle = ", ".join(f"{q:.4g}" for q in motion.joints.mean(axis=0))
     gain, force = shown(-motion.energy, "J"), shown(motion.largest_force, "N")
     read = "" if motion.encoder == "ideal" else ", at the readings of the encoders"
@@ -102,15 +78,13 @@ def _motion(motion: ArmMotion) -> str:
 
 def _friction(space: Workspace, steps: EncoderSteps) -> Iterator[tuple[str, str]]:
     """What the encoder steps ask of it, what there is, and up to which force that goes."""
-    from zwidth.cli.numerals import shown
-
     own = space.arm.coulomb_friction
     enough = ", ".join(shown(f, "N*m") for f in steps.friction)
     more = ", ".join(shown(f, "N*m") for f in steps.friction_per_force)
     has = f"it has {', '.join(shown(f, 'N*m') for f in own)}" if own else "it has none that is known"
     more = f"{more} more for each newton of the wall"
     yield "Coulomb friction", f"{enough} in joint {_joints(space)}, and {more}, cover the steps; {has}"
-    from zwidth.passivity.arms.held import in_words
+    from zwidth.arms.held import in_words
 
     covered = f"covered up to {in_words(steps.covered)}" if steps.covered else "covered at no force"
     known = (
@@ -124,8 +98,6 @@ def _joints(space: Workspace) -> str:
 
 
 def _changes(space: Workspace) -> Iterator[tuple[str, str]]:
-    from zwidth.cli.numerals import shown
-
     if space.addition_to_all == 0:
         return
     if space.largest_stiffness is None and space.stiffness_factor > 0:

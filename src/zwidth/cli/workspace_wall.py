@@ -18,7 +18,7 @@ from zwidth.quantity.units import parse_number
 from zwidth.specification.table import located
 
 if TYPE_CHECKING:
-    from zwidth.environment.matrix_wall import MatrixWall
+    from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.environment.wall import Wall
 
 WALL_OPTIONS = (
@@ -37,7 +37,7 @@ _UNITS = {
 
 def wall_of(arguments: argparse.Namespace, turns: int) -> Any:
     """The wall for a hand with so many rotations, 0: a point."""
-    from zwidth.environment.matrix_wall import MatrixWall
+    from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.environment.wall import Wall
 
     given = {
@@ -74,7 +74,7 @@ def read_wall(path: Path, turns: int) -> Any:
     InputError
         If the file cannot be read, or a matrix in it cannot be used.
     """
-    from zwidth.environment.matrix_wall import MatrixWall
+    from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.specification.read import read_tables
 
     table = read_tables([path], ("wall",))["wall"]

@@ -19,8 +19,9 @@ from typing import Any, Literal
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
 from zwidth.quantity.units import parse
-from zwidth.showing import Html, element, row
+from zwidth.showing import Html, Table
 
 Parameter = RealLike | Interval | tuple[RealLike, RealLike]
 Motion = Literal["linear", "rotary"]
@@ -189,11 +190,9 @@ class Device:
         return f"Device({inside}{extra}, name={self.name!r})"
 
     def _repr_html_(self) -> Html:
-        rows = (
-            row((GLOSSARY[k].symbol, k, _shown(v), GLOSSARY[k].unit_for(self.motion)))
-            for k, v in self.parameters().items()
-        )
-        return element("table", element("caption", self.name), *rows)
+        known = self.parameters().items()
+        rows = [(GLOSSARY[k].symbol, k, _shown(v), quantity_unit(k, self.motion)) for k, v in known]
+        return Table(caption=self.name, rows=rows).html
 
 
 def _shown(value: Exact | Interval) -> str:

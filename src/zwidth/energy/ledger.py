@@ -19,6 +19,7 @@ has got out more than there was: the loop was active under it.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import isnan, nan
@@ -27,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.showing import Html, table
+from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -51,8 +52,8 @@ _ROWS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class Ledger:
+@dataclass(frozen=True, eq=False, repr=False)
+class Ledger(Shown):
     """What crossed the port, what was stored and what was lost, from sample 0 on.
 
     Parameters
@@ -143,19 +144,16 @@ class Ledger:
         shown = [name for name in _ROWS if own or not name.startswith("hand_") or name == "hand_work"]
         rows = [(_ROWS[name], totals[name]) for name in shown]
         worst = float(max(np.abs(self.residual).max(), np.abs(self.hand_residual).max()))
-        rows += [("does not add up by, at most", worst), ("the hand got out at most", self.got_out)]
+        rows += [("energy balance error, at most", worst), ("the hand got out at most", self.got_out)]
         if isnan(self.held_at_start) or not self.held_at_start:
             return rows
         return [*rows, ("the loop held at the start, at most", self.held_at_start)]
 
-    def __repr__(self) -> str:
+    def report(self) -> Iterable[Part]:
+        """The rows, below the time that they are of."""
         seconds = float(self.trace["time"].values[-1] - self.trace["time"].values[0])
-        lines = [f"Energy over {seconds:g} s [J]"]
-        lines += [f"  {text:<42} {value: .6e}" for text, value in self.rows()]
-        return "\n".join(lines)
-
-    def _repr_html_(self) -> Html:
-        return table(("energy", "J"), ((text, f"{value:.6e}") for text, value in self.rows()))
+        rows = [(text, f"{value:.6e}") for text, value in self.rows()]
+        yield Table(heads=[(f"energy over {seconds:g} s", "J")], rows=rows, lefts=1)
 
 
 def ledger(trace: xr.Dataset) -> Ledger:

@@ -19,11 +19,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from zwidth.environment import exponential
 from zwidth.environment.environment import RationalFunction
 from zwidth.errors import InputError
+from zwidth.quantity.parameter import part
 
 Polynomial = tuple[Fraction, ...]
 Discretization = Literal["backward", "forward", "tustin", "zoh", "impulse", "matched"]
@@ -47,6 +48,15 @@ def as_discretization(name: object) -> Discretization:
     if name not in CHOICES:
         raise InputError(f"discretization is one of {choices()}; got {name!r}")
     return name  # type: ignore[return-value]
+
+
+def discretized_by(default: Discretization | None) -> Any:
+    """The field `discretization` of a law in continuous time."""
+
+    def read(value: Any, name: str) -> Discretization:
+        return as_discretization(value)
+
+    return part("word", read, default, meaning=f"{', '.join(CHOICES[:-1])} or {CHOICES[-1]}", words=CHOICES)
 
 
 def choices() -> str:

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Self
 
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.parameter import Parametric, flag
 
 
 class RationalFunction(NamedTuple):
@@ -25,11 +26,11 @@ class RationalFunction(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Environment(ABC):
+class Environment(Parametric, ABC):
     """What renders a force from sampled positions.
 
-    A subclass is a frozen data class of `Exact`, `Interval` or other frozen
-    parts, and implements `pulse_transfer_function` and `describe`.
+    A subclass is a frozen data class whose fields are made by `parameter`, `flag`
+    or `part` of `zwidth.quantity.parameter`, and implements `pulse_transfer_function` and `describe`.
     """
 
     @property
@@ -94,17 +95,10 @@ def _uncertain(value: object) -> bool:
     return isinstance(value, Environment) and not value.is_certain
 
 
-def as_clamped(value: object) -> bool:
-    """Read the keyword of a law that never pulls.
-
-    Raises
-    ------
-    InputError
-        If it is not True or False.
-    """
-    if not isinstance(value, bool):
-        raise InputError(f"clamped is True for a law that never pulls, or False; got {value!r}")
-    return value
+def clamping(default: bool = False) -> Any:
+    """The field `clamped` of a law that may be told never to pull."""
+    more = ", f = max(0, …); by default only of a Hunt–Crossley contact"
+    return flag("for a law that never pulls", default, more=more)
 
 
 def certain(value: Exact | Interval, key: str) -> Fraction:

@@ -18,11 +18,12 @@ from decimal import Context, Decimal
 from fractions import Fraction
 from typing import NoReturn
 
-from zwidth.environment.coefficients import read_coefficient
-from zwidth.environment.environment import Environment, as_clamped
+from zwidth.environment.environment import Environment, clamping
 from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import Certain, parameter, plain, read_number
 
 LARGEST_EXPONENT = 10
 """A contact much harder than any is."""
@@ -31,7 +32,7 @@ DIGITS = 17
 """Digits to which K uⁿ is rounded where n is no whole number: more than a double has."""
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class HuntCrossley(Environment):
     """Contact inside x > 0 whose damping grows with the depth, ``f = K uⁿ (1 + λ v)``.
 
@@ -54,35 +55,25 @@ class HuntCrossley(Environment):
         If one of them is not such a number, or clamped is not a bool.
     """
 
-    stiffness: Exact
-    exponent: Exact
-    dissipation: Exact
-    clamped: bool = True
+    stiffness: Certain = parameter(
+        plain("hunt_crossley_stiffness", "K of a Hunt–Crossley contact, in N/mⁿ"),
+        kept=Exact,
+        bound="≥ 0",
+        why="a contact that pulls the hand in has no end",
+    )
+    exponent: Certain = parameter("exponent", "1.5", kept=Exact)
+    dissipation: Certain = parameter(
+        "dissipation", 0, kept=Exact, bound="≥ 0", why="it would give energy to the hand"
+    )
+    clamped: bool = clamping(default=True)
 
-    def __init__(
-        self,
-        stiffness: RealLike,
-        exponent: RealLike = "1.5",
-        dissipation: RealLike = 0,
-        clamped: bool = True,
-    ) -> None:
-        k, n, d = (
-            read_coefficient(value, key)
-            for value, key in ((stiffness, "stiffness"), (exponent, "exponent"), (dissipation, "dissipation"))
-        )
-        if k < 0:
-            raise InputError(f"stiffness must be ≥ 0, got {k:g}: a contact that pulls the hand in has no end")
-        if not 1 <= n <= LARGEST_EXPONENT:
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 1 <= self.exponent <= LARGEST_EXPONENT:
             raise InputError(
-                f"exponent must be from 1 to {LARGEST_EXPONENT}, got {n:g}: below 1 a contact is stiffest "
-                "where it begins; a sphere on a plane has 1.5"
+                f"exponent must be from 1 to {LARGEST_EXPONENT}, got {self.exponent:g}: below 1 a contact is "
+                "stiffest where it begins; a sphere on a plane has 1.5"
             )
-        if d < 0:
-            raise InputError(f"dissipation must be ≥ 0, got {d:g}: it would give energy to the hand")
-        object.__setattr__(self, "stiffness", k)
-        object.__setattr__(self, "exponent", n)
-        object.__setattr__(self, "dissipation", d)
-        object.__setattr__(self, "clamped", as_clamped(clamped))
 
     @property
     def unilateral(self) -> bool:
@@ -111,10 +102,8 @@ class HuntCrossley(Environment):
         InputError
             If one of them is no finite number.
         """
-        x, v = (
-            read_coefficient(value, key).fraction
-            for value, key in ((position, "position"), (velocity, "velocity"))
-        )
+        x = read_number(position, GLOSSARY["position"], "position").fraction
+        v = read_number(velocity, GLOSSARY["friction_speed"], "velocity").fraction
         f = resting_force(self.stiffness.fraction, self.exponent.fraction, x)
         f *= 1 + self.dissipation.fraction * v
         return Exact(max(f, Fraction(0)) if self.clamped else f)

@@ -10,7 +10,6 @@ through 0.  There is no memory, and no H(z).
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -18,15 +17,20 @@ from typing import NoReturn, Self
 
 from zwidth.environment.coefficients import read_coefficient
 from zwidth.environment.environment import Environment
+from zwidth.environment.wall import NEGATIVE_SPRING
 from zwidth.environment.wording import with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.glossary import GLOSSARY, Quantity
+from zwidth.quantity.parameter import Numbers, check_bound, listed, read_number
 
 MOST_POINTS = 10_000
 """More points than any force profile is measured with."""
 
+_HARDENING = Quantity("hardening", "H", "N/m^3", "N*m/rad^3", "of a stop, with the cube of the depth")
 
-@dataclass(frozen=True, init=False, kw_only=True)
+
+@dataclass(frozen=True)
 class NonlinearSpring(Environment):
     """A memoryless spring through points, linear between them and constant beyond.
 
@@ -46,11 +50,12 @@ class NonlinearSpring(Environment):
         do not increase.
     """
 
-    positions: tuple[Exact, ...]
-    forces: tuple[Exact, ...]
+    positions: Numbers = listed("position", meaning="positions of the points, increasing")
+    forces: Numbers = listed("force", meaning="forces at the points, > 0 towards smaller positions")
 
-    def __init__(self, positions: Iterable[RealLike], forces: Iterable[RealLike]) -> None:
-        x, f = _numbers(positions, "positions"), _numbers(forces, "forces")
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        x, f = self.positions, self.forces
         if len(x) != len(f):
             raise InputError(f"a nonlinear spring has a force at each position; got {len(x)} and {len(f)}")
         if not 2 <= len(x) <= MOST_POINTS:
@@ -61,8 +66,6 @@ class NonlinearSpring(Environment):
                     f"positions must increase strictly; positions[{i}] is {low:g} and "
                     f"positions[{i + 1}] is {high:g}"
                 )
-        object.__setattr__(self, "positions", x)
-        object.__setattr__(self, "forces", f)
         read_coefficient(self._steepest(), "the largest slope of a nonlinear spring")
 
     @classmethod
@@ -87,7 +90,7 @@ class NonlinearSpring(Environment):
             If one of them is not such a number.
         """
         _check_count(count, "count", 1)
-        p, top = _positive(pitch, "pitch"), _positive(force, "force")
+        p, top = _positive(pitch, "pitch", "position"), _positive(force, "force", "force")
         inner = [(k * p + side * p / 4, side * top) for k in range(count) for side in (-1, 1)]
         points = [(-p / 2, Fraction(0)), *inner, ((count - 1) * p + p / 2, Fraction(0))]
         return cls(*zip(*points, strict=True))
@@ -125,8 +128,10 @@ class NonlinearSpring(Environment):
             If one of them is not such a number.
         """
         _check_count(points, "points", 2)
-        x0, d = read_coefficient(start, "start").fraction, _positive(depth, "depth")
-        k, h = (_not_negative(v, key) for v, key in ((stiffness, "stiffness"), (hardening, "hardening")))
+        x0 = read_number(start, GLOSSARY["position"], "start").fraction
+        d = _positive(depth, "depth", "position")
+        k = _bounded(stiffness, "stiffness", GLOSSARY["stiffness"], "≥ 0", NEGATIVE_SPRING)
+        h = _bounded(hardening, "hardening", _HARDENING, "≥ 0", NEGATIVE_SPRING)
         depths = [d * i / (points - 1) for i in range(points)]
         return cls([x0 + u for u in depths], [k * u + h * u**3 for u in depths])
 
@@ -152,7 +157,7 @@ class NonlinearSpring(Environment):
         InputError
             If the position is no finite number.
         """
-        x = read_coefficient(position, "position").fraction
+        x = read_number(position, GLOSSARY["position"], "position").fraction
         places = [p.fraction for p in self.positions]
         i = bisect_right(places, x)
         if i == 0 or i == len(places):
@@ -192,26 +197,16 @@ class NonlinearSpring(Environment):
         return max(Fraction(0), *slopes)
 
 
-def _numbers(given: Iterable[RealLike], key: str) -> tuple[Exact, ...]:
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise InputError(f"{key} is a list of numbers, got {given!r}")
-    return tuple(read_coefficient(value, f"{key}[{i}]") for i, value in enumerate(given))
-
-
 def _check_count(value: object, key: str, least: int) -> None:
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= MOST_POINTS:
         raise InputError(f"{key} is a whole number from {least} to {MOST_POINTS}, got {value!r}")
 
 
-def _positive(value: RealLike, key: str) -> Fraction:
-    number = read_coefficient(value, key)
-    if number <= 0:
-        raise InputError(f"{key} must be > 0, got {number:g}")
-    return number.fraction
+def _positive(value: RealLike, key: str, quantity: str) -> Fraction:
+    return _bounded(value, key, GLOSSARY[quantity], "> 0", "without it there are no points")
 
 
-def _not_negative(value: RealLike, key: str) -> Fraction:
-    number = read_coefficient(value, key)
-    if number < 0:
-        raise InputError(f"{key} must be ≥ 0, got {number:g}: a negative spring gives out energy without end")
+def _bounded(value: RealLike, key: str, quantity: Quantity, bound: str, why: str) -> Fraction:
+    number: Exact = read_number(value, quantity, key)
+    check_bound(number, key, bound, why)
     return number.fraction

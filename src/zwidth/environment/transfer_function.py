@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Self
 
-from zwidth.environment.coefficients import Coefficients, read_coefficient, read_transfer_function
+from zwidth.environment.coefficients import Coefficients, read_transfer_function
 from zwidth.environment.discretization import (
     ROUNDED,
     Discretization,
-    as_discretization,
     choices,
     discretize,
+    discretized_by,
     trimmed,
 )
 from zwidth.environment.environment import Environment, RationalFunction
@@ -25,12 +25,20 @@ from zwidth.environment.system import LinearSystem, is_system, read_system
 from zwidth.environment.wording import polynomial_text
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import CertainOrNone, Reads, parameter, part
 
 _SAME_PERIOD = Fraction(1, 10**9)
 """Two sample periods that differ by less, relatively, are one."""
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+def _side(name: str, *default: None) -> Any:
+    """Numerator or denominator, which are read together."""
+    return part(
+        "coefficients", lambda value, _: value, *default, meaning=f"{name}, descending powers", required=True
+    )
+
+
+@dataclass(frozen=True)
 class PulseTransferFunction(Environment):
     """A law given as the controller runs it, H(z) from sampled position to force.
 
@@ -53,25 +61,21 @@ class PulseTransferFunction(Environment):
         continuous, complex, or has several inputs or outputs.
     """
 
-    numerator: Coefficients
-    denominator: Coefficients
-    sample_period: Exact | None
+    numerator: Reads[Coefficients, Any] = _side("numerator")
+    denominator: Reads[Coefficients, Sequence[RealLike] | None] = _side("denominator", None)
+    sample_period: CertainOrNone = parameter(
+        "sample_period", None, kept=Exact, bound="> 0", why="the force is held for T"
+    )
 
-    def __init__(
-        self,
-        numerator: Sequence[RealLike] | Any,
-        denominator: Sequence[RealLike] | None = None,
-        sample_period: RealLike | None = None,
-    ) -> None:
-        num, den, system = read_transfer_function(numerator, denominator)
+    def __post_init__(self) -> None:
+        num, den, system = read_transfer_function(self.numerator, self.denominator)
         if len(num) > len(den):
             raise InputError(
                 f"H(z) has more zeros ({len(num) - 1}) than poles ({len(den) - 1}): it would need positions "
                 "that are still to come; multiply the denominator by a power of z"
             )
-        object.__setattr__(self, "numerator", num)
-        object.__setattr__(self, "denominator", den)
-        object.__setattr__(self, "sample_period", _period(sample_period, system))
+        self._keep(numerator=num, denominator=den, sample_period=_period(self.sample_period, system))
+        super().__post_init__()
 
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
         """H(z) as given [N/m].
@@ -99,7 +103,7 @@ class PulseTransferFunction(Environment):
         return f"H(z) = {_ratio(self.numerator, self.denominator, 'z')}{period}"
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class ContinuousTransferFunction(Environment):
     """A law given as H(s) from position to force, and how the controller discretizes it.
 
@@ -122,28 +126,21 @@ class ContinuousTransferFunction(Environment):
         an order; if a system is discrete, complex, or has several inputs or outputs.
     """
 
-    numerator: Coefficients
-    denominator: Coefficients
-    discretization: Discretization
+    numerator: Reads[Coefficients, Any] = _side("numerator")
+    denominator: Reads[Coefficients, Sequence[RealLike] | None] = _side("denominator", None)
+    discretization: Reads[Discretization, Discretization | None] = discretized_by(None)
 
-    def __init__(
-        self,
-        numerator: Sequence[RealLike] | Any,
-        denominator: Sequence[RealLike] | None = None,
-        discretization: Discretization | None = None,
-    ) -> None:
-        if discretization is None:
+    def __post_init__(self) -> None:
+        if self.discretization is None:
             raise InputError(
                 "a continuous H(s) needs a discretization, for the verdict depends on it: "
                 f"give discretization = one of {choices()}"
             )
-        method = as_discretization(discretization)
-        num, den, system = read_transfer_function(numerator, denominator)
+        super().__post_init__()
+        num, den, system = read_transfer_function(self.numerator, self.denominator)
         if system is not None and system.time == "discrete":
             raise InputError("the system is discrete already; give it as PulseTransferFunction(system)")
-        object.__setattr__(self, "numerator", num)
-        object.__setattr__(self, "denominator", den)
-        object.__setattr__(self, "discretization", method)
+        self._keep(numerator=num, denominator=den)
 
     @property
     def coefficients_rounded(self) -> bool:
@@ -223,7 +220,7 @@ def _fractions(coefficients: Coefficients) -> tuple[Fraction, ...]:
     return tuple(c.fraction for c in coefficients)
 
 
-def _period(given: RealLike | None, system: LinearSystem | None) -> Exact | None:
+def _period(given: Exact | None, system: LinearSystem | None) -> Exact | Fraction | None:
     if system is not None and system.time == "continuous" and not _is_constant(system):
         raise InputError(
             "the system is continuous; give it as ContinuousTransferFunction(system, discretization=…) "
@@ -232,13 +229,7 @@ def _period(given: RealLike | None, system: LinearSystem | None) -> Exact | None
     own = None if system is None else system.sample_period
     if own is not None and given is not None:
         raise InputError("the system has its own sample period; leave sample_period out")
-    value = own if own is not None else given
-    if value is None:
-        return None
-    period = read_coefficient(value, "sample_period [s]")
-    if period <= 0:
-        raise InputError(f"sample_period must be > 0 s, got {period}")
-    return period
+    return own if own is not None else given
 
 
 def _ratio(numerator: Coefficients, denominator: Coefficients, variable: str) -> str:

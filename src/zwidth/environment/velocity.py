@@ -16,7 +16,8 @@ from fractions import Fraction
 
 from zwidth.environment.environment import RationalFunction, certain, multiply
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
+from zwidth.quantity.exact import Exact, Interval, RealLike, ends
+from zwidth.quantity.parameter import Parametric, Reads, Uncertain, parameter, part
 
 LONGEST_TIME_CONSTANT = 1000
 """Largest time constant of a velocity filter [s]."""
@@ -68,8 +69,8 @@ class Window:
         return RationalFunction((_ONE, *zeros, -_ONE), (self.samples * period, *zeros, Fraction(0)))
 
 
-@dataclass(frozen=True, init=False)
-class OnePole:
+@dataclass(frozen=True)
+class OnePole(Parametric):
     """τ v̇ + v = ẋ by backward Euler: v(k) = (τ v(k−1) + x(k) − x(k−1))/(τ + T).
 
     Parameters
@@ -78,21 +79,17 @@ class OnePole:
         τ ≥ 0 [s]; the cut-off frequency is 1/(2πτ).
     """
 
-    time_constant: Exact | Interval
+    time_constant: Uncertain = parameter(
+        "time_constant", bound="≥ 0", why="a filter with a negative one grows without bound"
+    )
 
-    def __init__(self, time_constant: RealLike | Interval | tuple[RealLike, RealLike]) -> None:
-        value = as_parameter(time_constant)
-        low, high = ends(value)
-        if low < 0:
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if ends(self.time_constant)[1] > LONGEST_TIME_CONSTANT:
             raise InputError(
-                f"time_constant must be ≥ 0 s, got {value}: a filter with a negative one grows without bound"
+                f"time_constant must be at most {LONGEST_TIME_CONSTANT} s, got {self.time_constant}: such a "
+                "filter never follows a hand; check the unit, or leave the virtual damping out"
             )
-        if high > LONGEST_TIME_CONSTANT:
-            raise InputError(
-                f"time_constant must be at most {LONGEST_TIME_CONSTANT} s, got {value}: such a filter never "
-                "follows a hand; check the unit, or leave the virtual damping out"
-            )
-        object.__setattr__(self, "time_constant", value)
 
     def describe(self) -> str:
         """In words."""
@@ -105,8 +102,12 @@ class OnePole:
         return RationalFunction((_ONE, -_ONE), (period + tau, -tau))
 
 
-@dataclass(frozen=True, init=False)
-class VelocityFilter:
+def _coefficients(given: Sequence[RealLike], name: str) -> tuple[Exact, ...]:
+    return tuple(Exact(c) for c in given)
+
+
+@dataclass(frozen=True)
+class VelocityFilter(Parametric):
     """F(z) applied to the backward difference.
 
     Parameters
@@ -115,11 +116,16 @@ class VelocityFilter:
         Coefficients of F in descending powers of z; F proper.
     """
 
-    numerator: tuple[Exact, ...]
-    denominator: tuple[Exact, ...]
+    numerator: Reads[tuple[Exact, ...], Sequence[RealLike]] = part(
+        "coefficients", _coefficients, meaning="numerator, descending powers"
+    )
+    denominator: Reads[tuple[Exact, ...], Sequence[RealLike]] = part(
+        "coefficients", _coefficients, meaning="denominator, descending powers"
+    )
 
-    def __init__(self, numerator: Sequence[RealLike], denominator: Sequence[RealLike]) -> None:
-        num, den = (tuple(Exact(c) for c in part) for part in (numerator, denominator))
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        num, den = self.numerator, self.denominator
         while den and den[0] == 0:
             den = den[1:]
         while len(num) > 1 and num[0] == 0:
@@ -131,8 +137,7 @@ class VelocityFilter:
                 f"a velocity filter cannot have more zeros ({len(num) - 1}) than poles ({len(den) - 1}): "
                 "it would need samples that are still to come"
             )
-        object.__setattr__(self, "numerator", num)
-        object.__setattr__(self, "denominator", den)
+        self._keep(numerator=num, denominator=den)
 
     def describe(self) -> str:
         """In words."""

@@ -14,17 +14,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from zwidth.environment.coefficients import read_coefficient
-from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import Certain, Parametric, parameter, word
 
 Integration = Literal["implicit", "explicit"]
 
 INTEGRATIONS: tuple[Integration, ...] = ("implicit", "explicit")
 
+_GIVES_OUT = "the body itself would give out energy"
 
-@dataclass(frozen=True, init=False, kw_only=True)
-class VirtualBody:
+
+@dataclass(frozen=True)
+class VirtualBody(Parametric):
     """A mass with a damper and a spring to the ground, ``M v̇ + B v + K y = f``, stepped with the samples.
 
     Parameters
@@ -44,35 +45,16 @@ class VirtualBody:
         If a number is outside its bound, or integration is none of the two.
     """
 
-    mass: Exact
-    damping: Exact
-    stiffness: Exact
-    integration: Integration
-
-    def __init__(
-        self,
-        mass: RealLike,
-        damping: RealLike = 0,
-        stiffness: RealLike = 0,
-        integration: Integration = "implicit",
-    ) -> None:
-        m, b, k = (
-            read_coefficient(value, key)
-            for value, key in ((mass, "mass"), (damping, "damping"), (stiffness, "stiffness"))
-        )
-        if m <= 0:
-            raise InputError(
-                f"mass must be > 0, got {m:g}: a body without mass follows every jump of the force; a light "
-                "one is unstable against a stiff hand, see zwidth.stable_virtual_masses"
-            )
-        for key, value in (("damping", b), ("stiffness", k)):
-            if value < 0:
-                raise InputError(f"{key} must be ≥ 0, got {value:g}: the body itself would give out energy")
-        if integration not in INTEGRATIONS:
-            raise InputError(f'integration is "implicit" or "explicit", got {integration!r}')
-        own = {"mass": m, "damping": b, "stiffness": k, "integration": integration}
-        for name, given in own.items():
-            object.__setattr__(self, name, given)
+    mass: Certain = parameter(
+        "mass",
+        kept=Exact,
+        bound="> 0",
+        why="a body without mass follows every jump of the force; a light one is unstable against a stiff "
+        "hand, see zwidth.stable_virtual_masses",
+    )
+    damping: Certain = parameter("virtual_damping", 0, kept=Exact, bound="≥ 0", why=_GIVES_OUT)
+    stiffness: Certain = parameter("stiffness", 0, kept=Exact, bound="≥ 0", why=_GIVES_OUT)
+    integration: Integration = word(*INTEGRATIONS)
 
     def describe(self) -> str:
         """The body with its numbers, on one line."""

@@ -26,14 +26,16 @@ from fractions import Fraction
 from zwidth.environment.discretization import (
     ROUNDED,
     Discretization,
-    as_discretization,
     discretize,
+    discretized_by,
 )
-from zwidth.environment.environment import Environment, RationalFunction, add, as_clamped, certain, multiply
-from zwidth.environment.wall import Parameter
+from zwidth.environment.environment import Environment, RationalFunction, add, certain, clamping, multiply
+from zwidth.environment.wall import NEGATIVE_SPRING
 from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, as_parameter, ends
+from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import Given, Reads, Uncertain, check_bound, parameter, part, read_number
 
 Branch = tuple[Exact | Interval, Exact | Interval]
 """Spring μ and dashpot η in series."""
@@ -41,10 +43,25 @@ Branch = tuple[Exact | Interval, Exact | Interval]
 MOST_BRANCHES = 60
 """More branches than any fitted Prony series has."""
 
-_NEGATIVE = "a negative spring pulls the hand in and gives out energy without end"
+
+def _branches(given: Iterable[Sequence[Given]], name: str) -> tuple[Branch, ...]:
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise InputError(f"{name} is a list of pairs (stiffness, damping), got {given!r}")
+    pairs = [_pair(pair, f"{name}[{i}]") for i, pair in enumerate(given)]
+    if len(pairs) > MOST_BRANCHES:
+        raise InputError(f"{name} has {len(pairs)} pairs; at most {MOST_BRANCHES} are read")
+    return tuple(pairs)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+def _pair(pair: Sequence[Given], name: str) -> Branch:
+    if isinstance(pair, str) or not hasattr(pair, "__len__") or len(pair) != 2:
+        raise InputError(f"{name} is a pair (stiffness, damping), got {pair!r}")
+    mu = read_number(pair[0], GLOSSARY["branch_stiffness"], f"{name} stiffness", uncertain=True)
+    check_bound(mu, f"{name} stiffness", "≥ 0", NEGATIVE_SPRING)
+    return mu, read_number(pair[1], GLOSSARY["branch_damping"], f"{name} damping", uncertain=True)
+
+
+@dataclass(frozen=True)
 class StandardLinearSolid(Environment):
     """A spring with one Maxwell branch beside it, ``H(s) = μ0 + μ1 η1 s/(μ1 + η1 s)``.
 
@@ -76,25 +93,11 @@ class StandardLinearSolid(Environment):
     b ≥ (μ0 + μ1) T/2 with Tustin's rule.
     """
 
-    stiffness: Exact | Interval
-    branch_stiffness: Exact | Interval
-    branch_damping: Exact | Interval
-    discretization: Discretization
-    clamped: bool = False
-
-    def __init__(
-        self,
-        stiffness: Parameter,
-        branch_stiffness: Parameter,
-        branch_damping: Parameter,
-        discretization: Discretization = "backward",
-        clamped: bool = False,
-    ) -> None:
-        object.__setattr__(self, "stiffness", _stiffness("stiffness", stiffness))
-        object.__setattr__(self, "branch_stiffness", _stiffness("branch_stiffness", branch_stiffness))
-        object.__setattr__(self, "branch_damping", _read("branch_damping", branch_damping))
-        object.__setattr__(self, "discretization", as_discretization(discretization))
-        object.__setattr__(self, "clamped", as_clamped(clamped))
+    stiffness: Uncertain = parameter("stiffness", bound="≥ 0", why=NEGATIVE_SPRING)
+    branch_stiffness: Uncertain = parameter("branch_stiffness", bound="≥ 0", why=NEGATIVE_SPRING)
+    branch_damping: Uncertain = parameter("branch_damping")
+    discretization: Discretization = discretized_by("backward")
+    clamped: bool = clamping()
 
     @property
     def unilateral(self) -> bool:
@@ -123,7 +126,7 @@ class StandardLinearSolid(Environment):
         return f"standard linear solid, {k} beside {branch}, {_ending(self)}"
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class GeneralizedMaxwell(Environment):
     """A spring with Maxwell branches beside it, ``H(s) = μ0 + Σ μᵢ ηᵢ s/(μᵢ + ηᵢ s)``.
 
@@ -148,22 +151,12 @@ class GeneralizedMaxwell(Environment):
         clamped is not a bool.
     """
 
-    stiffness: Exact | Interval
-    branches: tuple[Branch, ...]
-    discretization: Discretization
-    clamped: bool = False
-
-    def __init__(
-        self,
-        stiffness: Parameter,
-        branches: Iterable[Sequence[Parameter]],
-        discretization: Discretization = "backward",
-        clamped: bool = False,
-    ) -> None:
-        object.__setattr__(self, "stiffness", _stiffness("stiffness", stiffness))
-        object.__setattr__(self, "branches", _branches(branches))
-        object.__setattr__(self, "discretization", as_discretization(discretization))
-        object.__setattr__(self, "clamped", as_clamped(clamped))
+    stiffness: Uncertain = parameter("stiffness", bound="≥ 0", why=NEGATIVE_SPRING)
+    branches: Reads[tuple[Branch, ...], Iterable[Sequence[Given]]] = part(
+        "branches", _branches, meaning="pairs of branch stiffness and branch damping"
+    )
+    discretization: Discretization = discretized_by("backward")
+    clamped: bool = clamping()
 
     @property
     def unilateral(self) -> bool:
@@ -194,7 +187,7 @@ class GeneralizedMaxwell(Environment):
         return f"generalized Maxwell, {' beside '.join(parts)}, {_ending(self)}"
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class Maxwell(Environment):
     """A spring and a dashpot in series, ``H(s) = μ η s/(μ + η s)``: a viscoelastic fluid.
 
@@ -216,22 +209,10 @@ class Maxwell(Environment):
         If the stiffness is negative, the discretization is unknown, or clamped is not a bool.
     """
 
-    stiffness: Exact | Interval
-    damping: Exact | Interval
-    discretization: Discretization
-    clamped: bool = False
-
-    def __init__(
-        self,
-        stiffness: Parameter,
-        damping: Parameter,
-        discretization: Discretization = "backward",
-        clamped: bool = False,
-    ) -> None:
-        object.__setattr__(self, "stiffness", _stiffness("stiffness", stiffness))
-        object.__setattr__(self, "damping", _read("damping", damping))
-        object.__setattr__(self, "discretization", as_discretization(discretization))
-        object.__setattr__(self, "clamped", as_clamped(clamped))
+    stiffness: Uncertain = parameter("stiffness", bound="≥ 0", why=NEGATIVE_SPRING)
+    damping: Uncertain = parameter("virtual_damping")
+    discretization: Discretization = discretized_by("backward")
+    clamped: bool = clamping()
 
     @property
     def unilateral(self) -> bool:
@@ -272,35 +253,6 @@ def _discretized(
 def _acts(branch: Branch) -> bool:
     """False when the branch transmits no force, whatever its uncertain value."""
     return all(ends(value) != (Fraction(0), Fraction(0)) for value in branch)
-
-
-def _read(key: str, value: Parameter) -> Exact | Interval:
-    try:
-        return as_parameter(value)
-    except InputError as error:
-        raise InputError(f"{key}: {error}") from None
-
-
-def _stiffness(key: str, value: Parameter) -> Exact | Interval:
-    parameter = _read(key, value)
-    if ends(parameter)[0] < 0:
-        raise InputError(f"{key} must be ≥ 0, got {parameter}: {_NEGATIVE}")
-    return parameter
-
-
-def _branches(given: Iterable[Sequence[Parameter]]) -> tuple[Branch, ...]:
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise InputError(f"branches is a list of pairs (stiffness, damping), got {given!r}")
-    pairs = [_pair(i, pair) for i, pair in enumerate(given)]
-    if len(pairs) > MOST_BRANCHES:
-        raise InputError(f"branches has {len(pairs)} pairs; at most {MOST_BRANCHES} are read")
-    return tuple(pairs)
-
-
-def _pair(index: int, pair: Sequence[Parameter]) -> Branch:
-    if isinstance(pair, str) or not hasattr(pair, "__len__") or len(pair) != 2:
-        raise InputError(f"branches[{index}] is a pair (stiffness, damping), got {pair!r}")
-    return _stiffness(f"branches[{index}] stiffness", pair[0]), _read(f"branches[{index}] damping", pair[1])
 
 
 def _branch_text(branch: Branch, motion: str) -> str:

@@ -13,18 +13,31 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from zwidth.environment.environment import Environment, RationalFunction, add, as_clamped, certain, multiply
+from zwidth.environment.environment import Environment, RationalFunction, add, certain, clamping, multiply
 from zwidth.environment.velocity import BackwardDifference, VelocityEstimator
 from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
+from zwidth.quantity.exact import ends
+from zwidth.quantity.parameter import Reads, Uncertain, parameter, part
 
-Parameter = RealLike | Interval | tuple[RealLike, RealLike]
+NEGATIVE_SPRING = "a negative spring pulls the hand in and gives out energy without end"
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+def _filter(given: VelocityEstimator | None, name: str) -> VelocityEstimator:
+    velocity = BackwardDifference() if given is None else given
+    if not isinstance(velocity, VelocityEstimator):
+        raise InputError(
+            f"{name} is BackwardDifference(), Window(samples), OnePole(time_constant) or "
+            f"VelocityFilter(numerator, denominator), got {type(velocity).__name__}"
+        )
+    return velocity
+
+
+@dataclass(frozen=True)
 class Wall(Environment):
     """A unilateral spring–damper wall, ``f = K x + B v if x > 0``.
+
+    A number may be an interval, a pair of ends, or a text with its unit, such as "0.3 N/mm".
 
     Parameters
     ----------
@@ -45,34 +58,12 @@ class Wall(Environment):
         if velocity_filter is none of these, or clamped is not a bool.
     """
 
-    stiffness: Exact | Interval
-    damping: Exact | Interval
-    velocity_filter: VelocityEstimator
-    clamped: bool = False
-
-    def __init__(
-        self,
-        stiffness: Parameter,
-        damping: Parameter = 0,
-        velocity_filter: VelocityEstimator | None = None,
-        clamped: bool = False,
-    ) -> None:
-        k, b = as_parameter(stiffness), as_parameter(damping)
-        if ends(k)[0] < 0:
-            raise InputError(
-                f"stiffness must be ≥ 0, got {k}: a negative spring pulls the hand in "
-                "and gives out energy without end"
-            )
-        velocity = BackwardDifference() if velocity_filter is None else velocity_filter
-        if not isinstance(velocity, VelocityEstimator):
-            raise InputError(
-                f"velocity_filter is BackwardDifference(), Window(samples), OnePole(time_constant) or "
-                f"VelocityFilter(numerator, denominator), got {type(velocity).__name__}"
-            )
-        object.__setattr__(self, "stiffness", k)
-        object.__setattr__(self, "damping", b)
-        object.__setattr__(self, "velocity_filter", velocity)
-        object.__setattr__(self, "clamped", as_clamped(clamped))
+    stiffness: Uncertain = parameter("stiffness", bound="≥ 0", why=NEGATIVE_SPRING)
+    damping: Uncertain = parameter("virtual_damping", 0)
+    velocity_filter: Reads[VelocityEstimator, VelocityEstimator | None] = part(
+        "velocity filter", _filter, None, meaning="backward-difference, window N, one-pole τ or f, filter"
+    )
+    clamped: bool = clamping()
 
     @property
     def unilateral(self) -> bool:

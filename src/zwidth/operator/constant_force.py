@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zwidth.operator.operator import Signals
-from zwidth.operator.parameter import ParametricOperator, parameter
+from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.quantities import FORCE
+from zwidth.quantity.parameter import parameter
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class ConstantForce(ParametricOperator):
     """``f_h = F``, whatever the handle does.
 
@@ -33,7 +34,7 @@ class ConstantForce(ParametricOperator):
         If the force is not a finite number.
     """
 
-    force: float = parameter(FORCE, 1.0, kw_only=False)
+    force: float = parameter(FORCE, 1.0, kept=float)
 
     def signals(self, times: Signal) -> Signals:
         """F over every interval."""

@@ -9,8 +9,9 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.operator.operator import Signals
-from zwidth.operator.parameter import ParametricOperator, parameter
+from zwidth.operator.parameter import ParametricOperator
 from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import parameter
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
@@ -39,8 +40,14 @@ class Cycle(ParametricOperator):
         If a number is not finite, or low ≥ high.
     """
 
-    low: float = parameter(Quantity("low", "x_low", "m", "rad", "position at even samples"), -1e-6)
-    high: float = parameter(Quantity("high", "x_high", "m", "rad", "position at odd samples"), 1e-3)
+    called = "cycle"
+
+    low: float = parameter(
+        Quantity("low", "x_low", "m", "rad", "position at even samples"), -1e-6, kept=float
+    )
+    high: float = parameter(
+        Quantity("high", "x_high", "m", "rad", "position at odd samples"), 1e-3, kept=float
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -63,7 +70,3 @@ class Cycle(ParametricOperator):
     def signals(self, times: Signal) -> Signals:
         """low and high in turn."""
         return Signals(position=np.where(np.arange(len(times)) % 2, self.high, self.low))
-
-    def describe(self, motion: str = "linear") -> str:
-        """The cycle with its numbers, on one line."""
-        return f"cycle, {self.describe_parameters(motion)}"

@@ -15,7 +15,7 @@ import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.operator.operator import LinearHand, Signals
-from zwidth.operator.parameter import ParametricOperator, parameter
+from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.quantities import (
     DAMPING,
     FORCE,
@@ -25,6 +25,7 @@ from zwidth.operator.quantities import (
     OUTSIDE,
     START,
 )
+from zwidth.quantity.parameter import parameter
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
@@ -64,10 +65,12 @@ class Dowel(ParametricOperator):
         If a number is not finite or outside its bound.
     """
 
-    force: float = parameter(FORCE, 4.0)
-    mass: float = parameter(MASS, 0.0049, bound="≥ 0", why=NO_NEGATIVE_MASS)
-    damping: float = parameter(DAMPING, 0.0, bound="≥ 0", why=NO_NEGATIVE_DAMPING)
-    start: float = parameter(START, -0.005, bound="≤ 0", why=OUTSIDE)
+    called = "dowel"
+
+    force: float = parameter(FORCE, 4.0, kept=float)
+    mass: float = parameter(MASS, 0.0049, bound="≥ 0", why=NO_NEGATIVE_MASS, kept=float)
+    damping: float = parameter(DAMPING, 0.0, bound="≥ 0", why=NO_NEGATIVE_DAMPING, kept=float)
+    start: float = parameter(START, -0.005, bound="≤ 0", why=OUTSIDE, kept=float)
 
     @classmethod
     def of_size(cls, length: float, diameter: float, density: float = WOOD_DENSITY, **others: Any) -> Dowel:
@@ -106,7 +109,3 @@ class Dowel(ParametricOperator):
         """F over every interval; a grip that damps is at rest."""
         anchor = np.full(len(times), self.start) if self.damping else None
         return Signals(force=np.full(len(times) - 1, self.force), anchor=anchor)
-
-    def describe(self, motion: str = "linear") -> str:
-        """The dowel with its numbers, on one line."""
-        return f"dowel, {self.describe_parameters(motion)}"

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zwidth.operator.operator import LinearHand, Signals
-from zwidth.operator.parameter import ParametricOperator, parameter
+from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.quantities import (
     DAMPING,
     MASS,
@@ -25,6 +25,7 @@ from zwidth.operator.quantities import (
     STIFFNESS,
 )
 from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import parameter
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
@@ -72,12 +73,14 @@ class Finger(ParametricOperator):
         If a number is not finite or outside its bound.
     """
 
-    mass: float = parameter(MASS, 0.006, bound="≥ 0", why=NO_NEGATIVE_MASS)
-    stiffness: float = parameter(STIFFNESS, 500.0, bound="> 0", why=NO_SPRING)
-    damping: float = parameter(DAMPING, 1.7, bound="≥ 0", why=NO_NEGATIVE_DAMPING)
-    force: float = parameter(PRESS, 2.0, bound="≥ 0", why=NO_PULL)
-    speed: float = parameter(SPEED, 0.1, bound="> 0", why=NO_APPROACH)
-    start: float = parameter(START, -0.02, bound="≤ 0", why=OUTSIDE)
+    called = "finger"
+
+    mass: float = parameter(MASS, 0.006, bound="≥ 0", why=NO_NEGATIVE_MASS, kept=float)
+    stiffness: float = parameter(STIFFNESS, 500.0, bound="> 0", why=NO_SPRING, kept=float)
+    damping: float = parameter(DAMPING, 1.7, bound="≥ 0", why=NO_NEGATIVE_DAMPING, kept=float)
+    force: float = parameter(PRESS, 2.0, bound="≥ 0", why=NO_PULL, kept=float)
+    speed: float = parameter(SPEED, 0.1, bound="> 0", why=NO_APPROACH, kept=float)
+    start: float = parameter(START, -0.02, bound="≤ 0", why=OUTSIDE, kept=float)
 
     @property
     def hand(self) -> LinearHand:
@@ -92,11 +95,3 @@ class Finger(ParametricOperator):
     def signals(self, times: Signal) -> Signals:
         """The anchor, approaching and then still."""
         return Signals(anchor=np.minimum(self.start + self.speed * times, self.force / self.stiffness))
-
-    def describe(self, motion: str = "linear") -> str:
-        """The finger with its numbers, on one line."""
-        return f"{self._name}, {self.describe_parameters(motion)}"
-
-    @property
-    def _name(self) -> str:
-        return "finger"

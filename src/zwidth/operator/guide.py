@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zwidth.operator.operator import Signals
-from zwidth.operator.parameter import ParametricOperator, parameter
+from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.quantities import SPEED, START
 from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import parameter
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
@@ -43,15 +44,20 @@ class Guide(ParametricOperator):
         If a number is not finite or outside its bound.
     """
 
+    called = "linear guide"
+
     start: float = parameter(
-        START, -0.005, bound="≤ 0", why="the push starts outside or at the surface, x = 0"
+        START, -0.005, bound="≤ 0", why="the push starts outside or at the surface, x = 0", kept=float
     )
-    speed: float = parameter(SPEED, 0.02, bound="> 0", why="a guide that stands still meets no wall")
+    speed: float = parameter(
+        SPEED, 0.02, bound="> 0", why="a guide that stands still meets no wall", kept=float
+    )
     depth: float = parameter(
         Quantity("depth", "x_end", "m", "rad", "where the guide stops, inside the wall"),
         0.01,
         bound="≥ 0",
         why="the push ends inside or at the surface, x = 0",
+        kept=float,
     )
 
     @property
@@ -67,7 +73,3 @@ class Guide(ParametricOperator):
     def signals(self, times: Signal) -> Signals:
         """The ramp at the sample instants."""
         return Signals(position=np.minimum(self.start + self.speed * times, self.depth))
-
-    def describe(self, motion: str = "linear") -> str:
-        """The push with its numbers, on one line."""
-        return f"linear guide, {self.describe_parameters(motion)}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING
 
 from zwidth.errors import InputError
@@ -11,6 +11,7 @@ from zwidth.operator.motion import UNIT, as_path, first, sampled
 from zwidth.operator.operator import Signals
 from zwidth.operator.record import RecordedOperator, as_record
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import Parametric, Reads, part
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -19,8 +20,12 @@ if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
 
 
-@dataclass(frozen=True, init=False, eq=False, repr=False)
-class PrescribedMotion(RecordedOperator):
+def _switches(given: ArrayLike | None, name: str) -> Signal | None:
+    return None if given is None else as_record(given, "switch positions", UNIT)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PrescribedMotion(Parametric, RecordedOperator):
     """``x(kT) = x_k``, at constant velocity between the samples.
 
     Parameters
@@ -39,13 +44,15 @@ class PrescribedMotion(RecordedOperator):
         more or fewer than the touch has instants.
     """
 
-    positions: Signal | Callable[[float], float]
-    switch_positions: Signal | None
-
-    def __init__(self, positions: Path, *, switch_positions: ArrayLike | None = None) -> None:
-        switches = None if switch_positions is None else as_record(switch_positions, "switch positions", UNIT)
-        object.__setattr__(self, "positions", as_path(positions))
-        object.__setattr__(self, "switch_positions", switches)
+    positions: Reads[Signal | Callable[[float], float], Path] = part(
+        "positions",
+        lambda given, _: as_path(given),
+        meaning="where the handle is at the samples",
+    )
+    _: KW_ONLY
+    switch_positions: Reads[Signal | None, ArrayLike | None] = part(
+        "positions", _switches, None, meaning="where it is when the force changes"
+    )
 
     @property
     def kinematic(self) -> bool:

@@ -11,6 +11,7 @@ from zwidth.operator.column import read_column
 from zwidth.operator.operator import Signals
 from zwidth.operator.record import RecordedOperator, as_record
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import Parametric, Reads, part
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -18,8 +19,12 @@ if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
 
 
-@dataclass(frozen=True, init=False, eq=False, repr=False)
-class RecordedForce(RecordedOperator):
+def _record(given: ArrayLike, name: str) -> Signal:
+    return as_record(given, "recorded force", "N or N·m")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RecordedForce(Parametric, RecordedOperator):
     """``f_h = F_k`` from the sample instant kT to (k+1)T.
 
     Parameters
@@ -35,10 +40,7 @@ class RecordedForce(RecordedOperator):
         more or fewer than the intervals of the touch.
     """
 
-    newtons: Signal
-
-    def __init__(self, newtons: ArrayLike) -> None:
-        object.__setattr__(self, "newtons", as_record(newtons, "recorded force", "N or N·m"))
+    newtons: Reads[Signal, ArrayLike] = part("force record", _record, meaning="the force of each interval")
 
     @classmethod
     def from_file(cls, path: str | Path, column: str | int | None = None) -> RecordedForce:

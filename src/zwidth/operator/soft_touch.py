@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zwidth.operator.operator import LinearHand, Signals
-from zwidth.operator.parameter import ParametricOperator, parameter
+from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.quantities import (
     DAMPING,
     FORCE,
@@ -25,6 +25,7 @@ from zwidth.operator.quantities import (
     START,
 )
 from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import parameter
 
 if TYPE_CHECKING:
     from zwidth.operator.operator import Signal
@@ -63,11 +64,15 @@ class SoftTouch(ParametricOperator):
         If a number is not finite or outside its bound.
     """
 
-    force: float = parameter(FORCE, 0.135)
-    rise: float = parameter(RISE, 0.5, bound="≥ 0", why="a push grows forward in time; 0 is a sudden push")
-    mass: float = parameter(MASS, 0.006, bound="≥ 0", why=NO_NEGATIVE_MASS)
-    damping: float = parameter(DAMPING, 1.7, bound="≥ 0", why=NO_NEGATIVE_DAMPING)
-    start: float = parameter(START, -0.001, bound="≤ 0", why=OUTSIDE)
+    called = "soft touch"
+
+    force: float = parameter(FORCE, 0.135, kept=float)
+    rise: float = parameter(
+        RISE, 0.5, bound="≥ 0", why="a push grows forward in time; 0 is a sudden push", kept=float
+    )
+    mass: float = parameter(MASS, 0.006, bound="≥ 0", why=NO_NEGATIVE_MASS, kept=float)
+    damping: float = parameter(DAMPING, 1.7, bound="≥ 0", why=NO_NEGATIVE_DAMPING, kept=float)
+    start: float = parameter(START, -0.001, bound="≤ 0", why=OUTSIDE, kept=float)
 
     @property
     def hand(self) -> LinearHand:
@@ -85,7 +90,3 @@ class SoftTouch(ParametricOperator):
         part = np.where(grown, 1.0, times[:-1] / (self.rise or 1.0))
         anchor = np.full(len(times), self.start) if self.damping else None
         return Signals(force=self.force * part, anchor=anchor)
-
-    def describe(self, motion: str = "linear") -> str:
-        """The touch with its numbers, on one line."""
-        return f"soft touch, {self.describe_parameters(motion)}"

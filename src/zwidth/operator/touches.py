@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from zwidth.operator.finger import NO_APPROACH, NO_SPRING, Finger
-from zwidth.operator.parameter import parameter
 from zwidth.operator.quantities import (
     DAMPING,
     NO_NEGATIVE_DAMPING,
@@ -21,6 +20,7 @@ from zwidth.operator.quantities import (
     START,
     STIFFNESS,
 )
+from zwidth.quantity.parameter import parameter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,9 +42,7 @@ class TypicalTouch(Finger):
         If a number is not finite or outside its bound.
     """
 
-    @property
-    def _name(self) -> str:
-        return "typical touch"
+    called = "typical touch"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,11 +73,9 @@ class MaliciousTouch(Finger):
         If a number is not finite or outside its bound.
     """
 
-    stiffness: float = parameter(STIFFNESS, 128.0, bound="> 0", why=NO_SPRING)
-    damping: float = parameter(DAMPING, 0.3, bound="≥ 0", why=NO_NEGATIVE_DAMPING)
-    speed: float = parameter(SPEED, 0.5, bound="> 0", why=NO_APPROACH)
-    start: float = parameter(START, -0.03, bound="≤ 0", why=OUTSIDE)
+    called = "malicious touch"
 
-    @property
-    def _name(self) -> str:
-        return "malicious touch"
+    stiffness: float = parameter(STIFFNESS, 128.0, bound="> 0", why=NO_SPRING, kept=float)
+    damping: float = parameter(DAMPING, 0.3, bound="≥ 0", why=NO_NEGATIVE_DAMPING, kept=float)
+    speed: float = parameter(SPEED, 0.5, bound="> 0", why=NO_APPROACH, kept=float)
+    start: float = parameter(START, -0.03, bound="≤ 0", why=OUTSIDE, kept=float)

@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from math import inf, pi, sqrt
 from typing import TYPE_CHECKING, Any
 
 from zwidth.errors import InputError
 from zwidth.operator.motion import as_path, check_period, first, listed, sampled
 from zwidth.operator.operator import LinearHand, Signals
-from zwidth.operator.parameter import ParametricOperator, parameter
+from zwidth.operator.parameter import ParametricOperator
 from zwidth.operator.quantities import DAMPING, MASS, NO_NEGATIVE_DAMPING, NO_NEGATIVE_MASS, STIFFNESS
 from zwidth.operator.record import RecordedOperator
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import Reads, parameter, part
 
 if TYPE_CHECKING:
     from zwidth.operator.motion import Path
     from zwidth.operator.operator import Signal
 
 
-@dataclass(frozen=True, init=False, eq=False, repr=False)
+def _path(given: Path | Any, name: str) -> Signal | Callable[[float], float]:
+    found = hasattr(given, "motion") or hasattr(given, "listed")
+    return listed(given, None)[0] if found else as_path(given)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Tracking(RecordedOperator, ParametricOperator):
     """``f_h = k (x_a(t) − x) + c (ẋ_a(t) − ẋ) − m_h ẍ``, ``x_a(kT) = x_k``.
 
@@ -48,23 +54,19 @@ class Tracking(RecordedOperator, ParametricOperator):
         outside its bound.
     """
 
-    positions: Signal | Callable[[float], float]
-    stiffness: float = parameter(STIFFNESS, bound="≥ 0", why="a negative spring drives the handle away")
-    damping: float = parameter(DAMPING, bound="≥ 0", why=NO_NEGATIVE_DAMPING)
-    mass: float = parameter(MASS, 0.0, bound="≥ 0", why=NO_NEGATIVE_MASS)
+    positions: Reads[Signal | Callable[[float], float], Path | Any] = part(
+        "positions", _path, meaning="where the anchor is at the samples"
+    )
+    _: KW_ONLY
+    stiffness: float = parameter(
+        STIFFNESS, bound="≥ 0", why="a negative spring drives the handle away", kept=float
+    )
+    damping: float = parameter(DAMPING, bound="≥ 0", why=NO_NEGATIVE_DAMPING, kept=float)
+    mass: float = parameter(MASS, 0.0, bound="≥ 0", why=NO_NEGATIVE_MASS, kept=float)
 
-    def __init__(self, positions: Path | Any, *, stiffness: float, damping: float, mass: float = 0.0) -> None:
-        found = hasattr(positions, "motion") or hasattr(positions, "listed")
-        path = listed(positions, None)[0] if found else as_path(positions)
-        for name, value in {
-            "positions": path,
-            "stiffness": stiffness,
-            "damping": damping,
-            "mass": mass,
-        }.items():
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_period", getattr(positions, "sample_period", None))
-        self.__post_init__()
+    def __post_init__(self) -> None:
+        self._keep(_period=getattr(self.positions, "sample_period", None))
+        super().__post_init__()
 
     @classmethod
     def of_bandwidth(

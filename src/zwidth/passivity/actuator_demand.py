@@ -9,7 +9,7 @@ from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.storage.evidence.gain import Gain
 
 
 def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | Gain) -> str:
@@ -27,6 +27,6 @@ def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | 
 def _peak_force(witness: Witness | Gain) -> float:
     if isinstance(witness, Witness):
         return witness.peak_force
-    from zwidth.passivity.storage.playback import peak_force  # the game's libraries are there by now
+    from zwidth.passivity.storage.evidence.playback import peak_force  # the game's libraries are there by now
 
     return peak_force(witness)

@@ -25,6 +25,7 @@ from zwidth.passivity.linear.boundary import (
 )
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import in_words, unit_text
 
 _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
 
@@ -93,9 +94,7 @@ def _knobs(device: Device, environment: Environment) -> Iterator[_Knob]:
 
     yield _Knob("rate", float(device.exact("sample_period") ** -1), _rate(device, environment), True, "rate")
     for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False), ("delay", False)):
-        name = {"damping": "device damping", "resolution": "encoder resolution"}.get(
-            key, key.replace("_", " ")
-        )
+        name = {"damping": "device damping", "resolution": "encoder resolution"}.get(key, in_words(key))
         yield _Knob(key, float(device.exact(key)), on_device(key), more, name)
     if has_stiffness(environment):
         now = float(stiffness_of(environment))
@@ -135,7 +134,7 @@ def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"], grain: int
         to = None
     unit = GLOSSARY[knob.parameter].unit_for(motion)
     shown = None if to is None else _outward(to, knob)
-    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit, kind))
+    return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit_text(unit), kind))
 
 
 def _simplest_near(value: float, holds: Holds, more: bool, grain: int) -> float:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from pathlib import Path
 from typing import Any, Literal
 
 from zwidth.checker import verify
@@ -20,8 +19,8 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import save_json, unit_key, unit_suffix
-from zwidth.passivity.outcome import Answer
+from zwidth.passivity.document import unit_key, unit_suffix
+from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.wording import if_friction_goes_on, lines
 from zwidth.quantity.glossary import GLOSSARY
@@ -31,8 +30,8 @@ ROUNDOFF = Fraction(1, 2**53)
 """u: relative error of one operation on doubles, at most."""
 
 
-@dataclass(frozen=True)
-class Bounding(Answer):
+@dataclass(frozen=True, repr=False)
+class Bounding(PassivityAnswer):
     """Whether force bounding at the end of a row of laws keeps every hand from taking energy out.
 
     Attributes
@@ -47,6 +46,9 @@ class Bounding(Answer):
         The proof; None unless passive.
     """
 
+    FORMAT = "zwidth bounding 1"
+    witness = None
+
     outcome: Literal["passive", "undecided"]
     claim: str
     scope: Scope
@@ -56,26 +58,6 @@ class Bounding(Answer):
     def assumptions(self) -> tuple[str, ...]:
         """What the claim covers and takes for granted, line by line."""
         return lines(self.scope, self.outcome)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Outcome, assumptions and certificate as plain data."""
-        document: dict[str, Any] = {
-            "format": "zwidth bounding 1",
-            "outcome": self.outcome,
-            "claim": self.claim,
-            "scope": self.scope.to_dict(),
-            "assumptions": list(self.assumptions),
-        }
-        if self.certificate is not None:
-            document["certificate"] = self.certificate.to_dict()
-        return document
-
-    def save(self, path: str | Path) -> None:
-        """Write it as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
-
-    def __repr__(self) -> str:
-        return f"<Bounding {self.outcome}: {self.claim}>"
 
 
 def check_bounding(device: Device, environment: Environment | Any) -> Bounding:

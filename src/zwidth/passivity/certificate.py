@@ -17,24 +17,22 @@ from typing import Any
 from zwidth.checker import Scope, Verified, verify
 from zwidth.errors import InputError
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.document import loop_document, save_json, unit_key
+from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.linear.contact import DampedWall, Decay
 from zwidth.passivity.linear.delay_interval import Piece
 from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.linear.one_norm import NormBound
 from zwidth.passivity.linear.positivity import Positivity
 from zwidth.passivity.linear.relaxing_contact import RelaxingLaw
+from zwidth.passivity.result import EVIDENCE, Evidence
 from zwidth.quantity.text import exact_text
-from zwidth.showing import Html, element
 
 FORMAT = "zwidth certificate 1"
 LARGEST_FILE = 200_000_000
-EVIDENCE = ("certificate", "violation", "witness")
-"""Where a document holds what the checker can check."""
 
 
-@dataclass(frozen=True)
-class Certificate:
+@dataclass(frozen=True, repr=False)
+class Certificate(Evidence):
     """A proof of passivity for one loop, or for every corner of an interval.
 
     Parameters
@@ -69,14 +67,10 @@ class Certificate:
             return self.documents[0]
         return {"format": FORMAT, "kind": "corners", "corners": list(self.documents)}
 
-    def save(self, path: str | Path) -> None:
-        """Write the certificate as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
-
-    def _repr_html_(self) -> Html:
-        state = "accepted" if self.verify() else "rejected"
-        about = f"{self.kind} certificate, {len(self.documents)} part(s): {state} by the checker"
-        return element("p", about)
+    def describe(self) -> str:
+        """Its kind, and of how many parts it is."""
+        parts = "1 part" if len(self.documents) == 1 else f"{len(self.documents)} parts"
+        return f"{self.kind} certificate, {parts}"
 
 
 def certify(decision: Decision) -> dict[str, Any]:

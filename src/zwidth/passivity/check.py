@@ -36,10 +36,10 @@ from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, ends
 
 if TYPE_CHECKING:
-    from zwidth.device.arm import Arm
+    from zwidth.arms import Arm
+    from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.environment import Wall
-    from zwidth.environment.matrix_wall import MatrixWall
-    from zwidth.passivity.arms import Workspace
+    from zwidth.passivity.workspace import Workspace
 
 MOST_CORNERS_OF_HIGH_DEGREE = 8
 """Corners of intervals that are decided for a law of high order."""
@@ -125,11 +125,11 @@ def check(
 
 def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:
     """The verdict on a device of several joints."""
-    from zwidth.device.arm import Arm  # numpy takes its time
+    from zwidth.arms import Arm  # numpy takes its time
 
     if not isinstance(arm, Arm):
         raise InputError(f"the first argument is a Device or an arm, got {type(arm).__name__}")
-    from zwidth.passivity.arms import workspace
+    from zwidth.passivity.workspace import workspace
 
     if "rate" not in further:
         raise InputError('an arm has no rate of its own: give rate=…, such as rate="1 kHz"')

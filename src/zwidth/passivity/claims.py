@@ -8,6 +8,7 @@ from zwidth.passivity.decision import Decision
 from zwidth.passivity.found import Found
 from zwidth.passivity.linear.linear import LinearRefutation
 from zwidth.passivity.wording import claim_of_passivity, describe_hands, intervals, lines
+from zwidth.quantity.text import in_words
 
 
 def claim(verdict: Found) -> str:
@@ -99,7 +100,7 @@ def _not_found(verdict: Found) -> str:
     """What is known of a law without H(z)."""
     found = "Neither a proof for every hand nor a motion that takes energy out was found"
     lacking = [
-        f"{need.name.replace('_', ' ')} of {need.needed:.6g} is proved enough, and there is {need.has:.6g}"
+        f"{in_words(need.name)} of {need.needed:.6g} is proved enough, and there is {need.has:.6g}"
         for need in verdict.needs
         if need.has < need.needed
     ]

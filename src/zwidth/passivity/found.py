@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.outcome import Answer, Outcome
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.witness.violation import Violation
 from zwidth.passivity.witness.witness import Witness
 
 if TYPE_CHECKING:
     from zwidth.passivity.formulas.nonlinear_spring import EndlessPull
-    from zwidth.passivity.storage import WorstHand
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.storage import AvailableStorage
+    from zwidth.passivity.storage.evidence.gain import Gain
 
 Finding = Literal["open", "unconfirmed", "between corners", "depends on values", "no lowest energy"]
 """Why a loop is undecided: neither shown; a proof that the checker did not confirm; proved at the corners of
@@ -34,7 +35,7 @@ class Need(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Found(Answer):
+class Found(PassivityAnswer):
     """What was found of a sampled loop: the outcome, what it is about, and the evidence.
 
     `Verdict` is this in words, and says what each entry is.
@@ -47,7 +48,7 @@ class Found(Answer):
     certificate: Certificate | None = None
     violation: Violation | EndlessPull | None = None
     motion: Witness | Gain | None = None
-    worst_hand: WorstHand | None = None
+    worst_hand: AvailableStorage | None = None
     finding: Finding = "open"
     at_limit: bool = False
     theorem: str = ""

@@ -33,10 +33,10 @@ def with_game(
     device: Device, law: Environment, verdict: Verdict, progress: Callable[[int], None] | None = None
 ) -> Verdict:
     """The verdict with what the game adds to it; as it is, for a law that the game cannot play."""
-    from zwidth.passivity.storage.hand import worst_hand  # numpy and numba take their time
+    from zwidth.passivity.storage.solution import available_storage  # numpy and numba take their time
 
     try:
-        found = worst_hand(device, law, seconds=SECONDS, progress=progress)
+        found = available_storage(device, law, seconds=SECONDS, progress=progress)
     except InputError:
         return verdict
     if found.witness is not None:

@@ -16,8 +16,9 @@ from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import unit_suffix
 from zwidth.passivity.formulas.stability_plane import admissible_speed
-from zwidth.passivity.verdict import Verdict, as_text
+from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import in_unit, in_words
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -151,7 +152,7 @@ class LinearVerdict(Verdict):
         def key(prefix: str, quantity: str) -> str:
             return f"{prefix}_{unit_suffix(GLOSSARY[quantity].unit_for(motion))}"
 
-        document: dict[str, Any] = {"limit": self.limit, "mode": self.mode}
+        document = {**super().numbers(), "limit": self.limit, "mode": self.mode}
         document[key("max_stiffness", "stiffness")] = self.max_stiffness
         if not limits.has_stiffness(self.environment):
             document["max_gain"] = self.max_gain
@@ -160,7 +161,6 @@ class LinearVerdict(Verdict):
         if self.admissible_speed is not None:
             speed_unit = "rad_per_s" if motion == "rotary" else "m_per_s"
             document[f"admissible_speed_{speed_unit}"] = self.admissible_speed
-        document["margins"] = {key(name, name): value for name, value in self.margins.items()}
         document["advice"] = [advice.to_dict() for advice in self.advice]
         document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
         return document
@@ -170,19 +170,19 @@ class LinearVerdict(Verdict):
         unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
         rows = [("limit", self.limit)]
         if limits.has_stiffness(self.environment):
-            rows.append(("largest passive stiffness", as_text(self.max_stiffness, unit["stiffness"])))
+            rows.append(("largest passive stiffness", in_unit(self.max_stiffness, unit["stiffness"])))
         else:
-            rows.append(("largest passive gain", as_text(self.max_gain, "times this law")))
-        rows.append(("required device damping", as_text(self.required_damping, unit["damping"])))
-        rows.append(("critical frequency", as_text(self.critical_frequency, "Hz")))
+            rows.append(("largest passive gain", in_unit(self.max_gain, "times this law")))
+        rows.append(("required device damping", in_unit(self.required_damping, unit["damping"])))
+        rows.append(("critical frequency", in_unit(self.critical_frequency, "Hz")))
         for name, value in self.margins.items():
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
-            rows.append((f"margin of {name.replace('_', ' ')}", as_text(value, margin_unit)))
+            rows.append((f"margin of {in_words(name)}", in_unit(value, margin_unit)))
         if self.admissible_speed is not None:
             per_second = "rad/s" if self.device.motion == "rotary" else "m/s"
-            rows.append(("slower hands are safe up to", as_text(self.admissible_speed, per_second)))
+            rows.append(("slower hands are safe up to", in_unit(self.admissible_speed, per_second)))
         if self.outcome == "passive in contact" and self.decision.contact_damping is not None:
-            enough = as_text(float(self.decision.contact_damping), unit["damping"])
+            enough = in_unit(float(self.decision.contact_damping), unit["damping"])
             rows.append(("damping, contact broken too", enough))
         return [*rows, *super().rows()]
 

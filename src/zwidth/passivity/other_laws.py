@@ -167,10 +167,11 @@ def _on_paper(verdict: Verdict) -> Verdict | None:
 
 def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
     """What value iteration adds: a motion refutes, a proof of bounded hands stands beside the verdict."""
-    from zwidth.passivity.storage.hand import worst_hand  # numpy and numba take their time
+    from zwidth.passivity.storage.solution import available_storage  # numpy and numba take their time
 
     try:
-        found = worst_hand(verdict.device, verdict.environment, seconds=game.SECONDS, progress=progress)
+        device, law = verdict.device, verdict.environment
+        found = available_storage(device, law, seconds=game.SECONDS, progress=progress)
     except InputError:  # an ideal encoder, or a law that remembers too much
         return verdict
     if found.witness is not None:

@@ -15,35 +15,9 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
-from zwidth.errors import InputError
-
 Outcome = Literal[
     "passive", "passive in contact", "passive without encoder steps", "theorem", "active", "undecided"
 ]
-
-
-class Answer:
-    """Something with an outcome: there are more answers than yes and no, so none of them is true or false."""
-
-    outcome: Outcome
-
-    @property
-    def passive(self) -> bool:
-        """True where the outcome is "passive": a proof, with contact made and broken, or as was asked."""
-        return self.outcome == "passive"
-
-    def __bool__(self) -> bool:
-        """Refuse to be true or false.
-
-        Raises
-        ------
-        InputError
-            Always: every object is true, and "if verdict:" would read as a proof.
-        """
-        raise InputError(
-            f"this answer is {self.outcome!r}, and an answer is neither true nor false: "
-            'ask .passive, which is True for "passive" alone, or compare .outcome'
-        )
 
 
 class Told(NamedTuple):
@@ -73,3 +47,9 @@ TOLD: Mapping[str, Told] = MappingProxyType(
     }
 )
 """By outcome."""
+
+COLOUR: Mapping[str, str] = MappingProxyType(
+    {outcome: told.colour for outcome, told in TOLD.items()}
+    | {"stable": TOLD["passive"].colour, "unstable": TOLD["active"].colour}
+)
+"""By outcome, in a page; of a hand that is known too."""

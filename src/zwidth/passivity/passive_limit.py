@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from fractions import Fraction
 from math import inf
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from zwidth.device.device import Device
@@ -19,26 +18,28 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.document import save_json, unit_suffix
+from zwidth.passivity.document import unit_suffix
+from zwidth.passivity.result import Result, evidence_of
 from zwidth.passivity.scope import Scope
-from zwidth.passivity.storage.coarse_proof import CELLS
-from zwidth.passivity.storage.gain import Gain
-from zwidth.passivity.storage.hand import FINE, STEPS, Game, game_of, game_scope, patience
+from zwidth.passivity.storage.evidence.coarse import CELLS
+from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.evidence.storage_function import StorageFunction
 from zwidth.passivity.storage.hand_bounds import HandBounds
-from zwidth.passivity.storage.row_game import RowGame, row_game
-from zwidth.passivity.storage.row_storage import RowStorage
-from zwidth.passivity.storage.row_table import DoesNotClose
+from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, program_of, program_scope
+from zwidth.passivity.storage.row.program import RowProgram, row_program
+from zwidth.passivity.storage.row.storage_function import RowStorage
+from zwidth.passivity.storage.row.table import DoesNotClose
 from zwidth.passivity.storage.slow_hands import slow_hands
-from zwidth.passivity.storage.solve import Tell
-from zwidth.passivity.storage.storage import Storage
+from zwidth.passivity.storage.solution import patience
+from zwidth.passivity.storage.solve.value_iteration import Progress
 from zwidth.passivity.storage.two_sides import Side, approach
 from zwidth.passivity.witness.violation import Violation
-from zwidth.passivity.witness.witness import Witness, rounded_energy
+from zwidth.passivity.witness.witness import Witness
 from zwidth.passivity.wording import describe_hands, lines
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import in_unit, in_words
 from zwidth.rendering.rendered import Rendered
-from zwidth.showing import Html, bullets, element
 
 MORE_IS_SAFER = frozenset({"device.damping", "device.coulomb_friction", "device.rate"})
 """Parameters of which a loop needs enough; of all others it may have too much."""
@@ -47,8 +48,8 @@ _Holds = Callable[[Exact, float], bool]
 """Whether a claim is shown at a value by a time."""
 
 
-@dataclass(frozen=True)
-class Bracket:
+@dataclass(frozen=True, repr=False)
+class Bracket(Result):
     """The last value of a parameter that is proved passive, and the first that is refuted.
 
     Attributes
@@ -74,6 +75,9 @@ class Bracket:
         What of the linear criterion is violated at `active`, where closed conditions found it.
     """
 
+    FORMAT = "zwidth limit 1"
+    PICTURE = "limit_figure"
+
     parameter: str
     unit: str
     passive: float | None
@@ -84,7 +88,7 @@ class Bracket:
     every_hand: tuple[float | None, float | None]
     evaluations: int
     seconds: float
-    storage: Storage | RowStorage | None = None
+    storage: StorageFunction | RowStorage | None = None
     bounds: HandBounds | None = None
     violation: Violation | None = None
 
@@ -107,23 +111,21 @@ class Bracket:
 
     def describe(self) -> str:
         """The bracket in a sentence."""
-        name = self.parameter.replace("_", " ").replace("environment.", "").replace("device.", "device ")
+        name = in_words(self.parameter).replace("environment.", "").replace("device.", "device ")
         if self.passive is None and self.active is None:
             return f"{name}: nothing was decided in the time given"
+        passive, active = in_unit(self.passive, self.unit), in_unit(self.active, self.unit)
         if self.active is None:
-            return f"{name}: {self.passive:.6g} {self.unit} is proved passive, and nothing is refuted"
+            return f"{name}: {passive} is proved passive, and nothing is refuted"
         if self.passive is None:
-            return f"{name}: no value is proved passive; {self.active:.6g} {self.unit} is active"
-        return (
-            f"{name}: {self.passive:.6g} {self.unit} is proved passive, {self.active:.6g} {self.unit} is "
-            f"active, for {self.hand}"
-        )
+            return f"{name}: no value is proved passive; {active} is active"
+        return f"{name}: {passive} is proved passive, {active} is active, for {self.hand}"
 
     def to_dict(self) -> dict[str, Any]:
         """Values, assumptions and evidence as plain data."""
         suffix = unit_suffix(self.unit)
-        document: dict[str, Any] = {
-            "format": "zwidth limit 1",
+        return {
+            "format": self.FORMAT,
             "parameter": self.parameter,
             f"proved_passive_{suffix}": self.passive,
             f"proved_active_{suffix}": self.active,
@@ -133,25 +135,8 @@ class Bracket:
             f"every_hand_{suffix}": list(self.every_hand),
             "assumptions": list(self.assumptions),
             "evaluations": self.evaluations,
+            **evidence_of(self),
         }
-        if self.certificate is not None:
-            document["certificate"] = self.certificate.to_dict()
-        if self.violation is not None:
-            document["violation"] = self.violation.to_dict()
-        if self.witness is not None:
-            document["witness"] = rounded_energy(self.witness.to_dict())
-        return document
-
-    def save(self, path: str | Path) -> None:
-        """Write the bracket with its evidence as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
-
-    def __repr__(self) -> str:
-        return f"<Bracket {self.describe()}>"
-
-    def _repr_html_(self) -> Html:
-        assumed = element("details", element("summary", "assumptions"), bullets(self.assumptions))
-        return element("div", self.describe(), assumed)
 
 
 class _Parameter(NamedTuple):
@@ -225,7 +210,9 @@ def passive_limit(
     patience(seconds)
     counted = penetration, speed, force_limit, force_resolution, friction
     ideal = ends(device.resolution)[1] == 0
-    if not (ideal or isinstance(law, Rendered)) and isinstance(first := game_of(device, law, *counted), Game):
+    if not (ideal or isinstance(law, Rendered)) and isinstance(
+        first := program_of(device, law, *counted), DynamicProgram
+    ):
         first.warm_up()
     search = _Search(asked, tolerance, time.monotonic(), patience(seconds), progress)
     if friction is not None and search.parameter.name in ("device.damping", "device.coulomb_friction"):
@@ -239,11 +226,11 @@ def passive_limit(
 
     boards = _one_board(device, law, *counted) if isinstance(law, Rendered) else ()
 
-    def game(value: Exact) -> Game | RowGame:
+    def game(value: Exact) -> DynamicProgram | RowProgram:
         changed, environment = search.parameter.change(value)
         if isinstance(environment, Rendered):
-            return row_game(changed, environment, *counted, boards)
-        return game_of(changed, environment, *counted)
+            return row_program(changed, environment, *counted, boards)
+        return program_of(changed, environment, *counted)
 
     def slow(value: Exact) -> Certificate | None:
         if not closed or isinstance(law, Rendered):
@@ -255,7 +242,7 @@ def passive_limit(
 
 def _one_board(device: Device, law: Rendered, *counted: Any) -> tuple[tuple[int, int]]:
     """The board on which laws in a row close as they are given, for all values of a parameter."""
-    return (row_game(device, law, *counted).board,)
+    return (row_program(device, law, *counted).counts,)
 
 
 class _Found(NamedTuple):
@@ -322,13 +309,13 @@ class _Search:
     def by_games(
         self,
         device: Device,
-        game: Callable[[Exact], Game | RowGame],
+        game: Callable[[Exact], DynamicProgram | RowProgram],
         slow: Callable[[Exact], Certificate | None],
         every: _Found,
     ) -> Bracket:
         """A bracket of a bounded hand: by what covers slow hands, and by games on finer and finer boards."""
         at_first = game(self.first)
-        proofs: dict[Exact, Certificate | Storage | RowStorage] = {}
+        proofs: dict[Exact, Certificate | StorageFunction | RowStorage] = {}
         motions: dict[Exact, Gain] = {}
         tell = self._tell()
 
@@ -400,7 +387,7 @@ class _Search:
             if not certificate.verify():  # nothing is claimed that the checker does not accept
                 passive, storage, certificate = closed, None, shown.get(closed)
         motion = None if active is None else motions[active]
-        scope = game_scope(*self.parameter.change(self.first), at_first)
+        scope = program_scope(*self.parameter.change(self.first), at_first)
         known = _Found(passive, active, certificate, motion, scope)
         beyond = every.passive, _nearer(every.active, active, second.towards)
         return self.bracket(known, beyond, at_first.bounds, storage)
@@ -416,7 +403,7 @@ class _Search:
         found: _Found,
         every_hand: tuple[Exact | None, Exact | None],
         bounds: HandBounds | None = None,
-        storage: Storage | RowStorage | None = None,
+        storage: StorageFunction | RowStorage | None = None,
     ) -> Bracket:
         """What was found, as it is given back."""
         return Bracket(
@@ -459,7 +446,7 @@ class _Search:
         if self.progress is not None:
             self.progress(self.evaluations, max(30, self.evaluations + 1))
 
-    def _tell(self) -> Tell:
+    def _tell(self) -> Progress:
         def tell(_: int) -> None:
             if self.progress is not None:
                 self.progress(self.evaluations, max(30, self.evaluations + 1))

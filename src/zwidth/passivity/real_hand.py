@@ -17,23 +17,26 @@ at rest at the surface, where nothing is stored.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from math import floor, log10, pi, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zwidth.errors import InputError
+from zwidth.passivity.document import unit_key
+from zwidth.passivity.result import Documented
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
-from zwidth.showing import Html, element, row
+from zwidth.quantity.text import quantity_unit
+from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from zwidth.device.device import Device
     from zwidth.operator.operator import Operator
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.storage.evidence.gain import Gain
 
 SLOWEST = 1.0
 """Bandwidth of the slowest hand that is tried [Hz]."""
@@ -67,8 +70,8 @@ class Threshold(NamedTuple):
     bandwidth: float | None
 
 
-@dataclass(frozen=True)
-class RealHand:
+@dataclass(frozen=True, repr=False)
+class RealHand(Documented):
     """A witness replayed by the ideal hand and by hands of finite stiffness.
 
     Attributes
@@ -88,6 +91,8 @@ class RealHand:
     motion
         "linear" or "rotary".
     """
+
+    FORMAT = "zwidth real hand 1"
 
     rounds: int
     rounds_found: int
@@ -110,10 +115,9 @@ class RealHand:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, units in the keys."""
-        turn = self.motion == "rotary"
-        k, m = ("N_m_per_rad", "kg_m2") if turn else ("N_per_m", "kg")
+        k, m = (unit_key(name, self.motion) for name in ("stiffness", "mass"))
         return {
-            "format": "zwidth real hand 1",
+            "format": self.FORMAT,
             "rounds": self.rounds,
             "rounds_found": self.rounds_found,
             "energy_claimed_J": self.claimed,
@@ -121,18 +125,14 @@ class RealHand:
             "damping_ratio": self.damping_ratio,
             "best_share": self.best_share,
             "hands": [
-                {f"stiffness_{k}": h.stiffness, "bandwidth_Hz": h.bandwidth, "energy_J": h.energy}
-                for h in self.curve
+                {k: h.stiffness, "bandwidth_Hz": h.bandwidth, "energy_J": h.energy} for h in self.curve
             ],
-            "thresholds": [
-                {f"mass_{m}": t.mass, f"stiffness_{k}": t.stiffness, "bandwidth_Hz": t.bandwidth}
-                for t in self.thresholds
-            ],
+            "thresholds": [{m: t.mass, k: t.stiffness, "bandwidth_Hz": t.bandwidth} for t in self.thresholds],
         }
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """What a person reads."""
-        k, m = ("N·m/rad", "kg·m²") if self.motion == "rotary" else ("N/m", "kg")
+        k, m = (quantity_unit(name, self.motion) for name in ("stiffness", "mass"))
         times = f" (its cycle {self.rounds} of {self.rounds_found:,} times)" if self.rounds_found > 1 else ""
         yield "ideal hand", f"{self.claimed:.4g} J by the proof, {self.replayed:.4g} J simulated{times}"
         for threshold in self.thresholds:
@@ -146,13 +146,9 @@ class RealHand:
             yield f"a hand on {threshold.mass:.3g} {m}", text
         yield "best hand tried", f"{100 * self.best_share:.3g} % of the ideal energy"
 
-    def __repr__(self) -> str:
-        rows = list(self.rows())
-        width = max(len(name) for name, _ in rows)
-        return "\n".join(f"{name:<{width}}  {text}" for name, text in rows)
-
-    def _repr_html_(self) -> Html:
-        return element("table", *map(row, self.rows()))
+    def report(self) -> Iterable[Part]:
+        """The rows."""
+        yield Table(rows=list(self.rows()))
 
 
 def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> RealHand:

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from pathlib import Path
 from typing import Any
 
 from zwidth.passivity import claims
 from zwidth.passivity.actuator_demand import actuator_demand
-from zwidth.passivity.document import save_json, to_json, unit_key
+from zwidth.passivity.document import save_json, unit_key
 from zwidth.passivity.found import Found
-from zwidth.passivity.outcome import TOLD
-from zwidth.passivity.witness.witness import rounded_energy
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.showing import Html, bullets, element, named
+from zwidth.quantity.text import in_unit, in_words
 
 
 @dataclass(frozen=True, repr=False)
@@ -57,6 +56,9 @@ class Verdict(Found):
         What of the device is proved to be enough, where that is known.
     """
 
+    FORMAT = "zwidth verdict 1"
+    PICTURE = "check_figure"
+
     @property
     def claim(self) -> str:
         """The verdict in a sentence or two."""
@@ -79,30 +81,10 @@ class Verdict(Found):
             return ()
         return (actuator_demand(self.device, self.device.force_limit, self.witness),)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The whole verdict as plain data, a unit in every key of a physical quantity."""
-        document: dict[str, Any] = {
-            "format": "zwidth verdict 1",
-            "outcome": self.outcome,
-            "claim": self.claim,
-            "decided_by": self.decided_by,
-            "scope": self.scope.to_dict(),
-            "assumptions": [*self.assumptions, *self.demand],
-            **self.numbers(),
-        }
-        if self.certificate is not None:
-            document["certificate"] = self.certificate.to_dict()
-        if self.violation is not None:
-            document["violation"] = self.violation.to_dict()
-        if self.witness is not None:
-            document["witness"] = rounded_energy(self.witness.to_dict())
-        if self.worst_hand is not None:
-            document["worst_hand"] = self.worst_hand.to_dict(evidence=False)
-        return document
-
-    def to_json(self) -> str:
-        """`to_dict` as JSON text, every exact number digit for digit."""
-        return to_json(self.to_dict())
+    def evidence(self) -> dict[str, Any]:
+        """Proofs and motions as plain data; of bounded hands what is said, the proof only if saved."""
+        hand = {} if self.worst_hand is None else {"worst_hand": self.worst_hand.stated()}
+        return {**super().evidence(), **hand}
 
     def save(self, path: str | Path, reports: Mapping[str, Any] | None = None) -> None:
         """Write verdict and evidence as JSON for `zwidth verify`, and `reports` under their names."""
@@ -112,37 +94,52 @@ class Verdict(Found):
         save_json(path, document)
 
     def __repr__(self) -> str:
-        return f"<Verdict {self.outcome}: {self.claim}>"
+        return f"<Verdict {self.describe()}>"
 
-    def _repr_html_(self) -> Html:
-        word = element("b", self.outcome, style=f"color:{TOLD[self.outcome].colour}")
-        assumed = bullets((*self.assumptions, *self.demand))
-        small = element("details", element("summary", "assumptions"), assumed)
-        return element("div", word, f" {self.claim}", named(self.rows()), small)
+    def small_print(self) -> tuple[str, ...]:
+        """The assumptions, and what the motion asks of the actuator."""
+        return (*self.assumptions, *self.demand)
 
     def numbers(self) -> dict[str, Any]:
         """What is needed and what there is, as plain data, a unit in every key of a physical quantity."""
-        return {
-            "margins": {unit_key(n.name, self.device.motion): n.has - n.needed for n in self.needs},
-        }
+        margins = {unit_key(name, self.device.motion): left for name, left in self.margins.items()}
+        return {"decided_by": self.decided_by, "margins": margins}
+
+    @property
+    def margins(self) -> Mapping[str, float | None]:
+        """What is left of damping and of Coulomb friction over what is needed; < 0 if too little.
+
+        Keys "damping" [N·s/m; N·m·s/rad] and "coulomb_friction" [N; N·m]; None where the need is unbounded.
+        """
+        return {need.name: need.has - need.needed for need in self.needs}
+
+    @property
+    def margin(self) -> float | None:
+        """Of damping and Coulomb friction the part that could go, (has − needed)/has; of both the lesser.
+
+        < 0 if there is too little; None where a need is not known, or the outcome does not rest on it.
+        """
+        if not self.margins or None in self.margins.values():
+            return None
+        least = min(_part(left, float(self.device.exact(name))) for name, left in self.margins.items())
+        return least if (least >= 0) == self.is_proved else None
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
         rows = [("decided by", self.decided_by)]
         for need in self.needs:
             unit = GLOSSARY[need.name].unit_for(self.device.motion)
-            name = need.name.replace("_", " ")
-            rows.append((f"required {name}", as_text(need.needed, unit)))
-            rows.append((f"margin of {name}", as_text(need.has - need.needed, unit)))
+            name = in_words(need.name)
+            rows.append((f"required {name}", in_unit(need.needed, unit)))
+            rows.append((f"margin of {name}", in_unit(need.has - need.needed, unit)))
         if self.witness is not None:
             rows.append(("motion", self.witness.describe()))
         return rows
 
 
-def as_text(value: float | None, unit: str) -> str:
-    """A number of six digits with its unit; "none" and "any" for what is no number."""
-    if value is None:
-        return "none"
-    if value == float("inf"):
-        return "any"
-    return f"{value:.6g} {unit}"
+def _part(left: float | None, has: float) -> float:
+    """What is left, as a part of what there is."""
+    assert left is not None
+    if has:
+        return left / has
+    return -inf if left < 0 else inf

@@ -15,7 +15,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, label, new_figure, number, unit_text
+from zwidth.plots.style import BLUE, GREY, LOOK, OUTCOME, RED, label, new_figure, number
+from zwidth.quantity.text import quantity_unit
 
 _NEAR = 120
 """Extra points on each side of the tightest frequency."""
@@ -50,7 +51,7 @@ def draw_criterion(axes: Axes, verdict: LinearVerdict, log_frequency: bool = Fal
             frequencies, b, needs, where=wanting, color=RED, alpha=0.2, lw=0, label="b too small"
         )
     axes.plot(frequencies, needs, color=BLUE, label="asked of the device")
-    unit = unit_text("damping", motion)
+    unit = quantity_unit("damping", motion)
     axes.axhline(b, color="black", ls="--", lw=1.4, label=f"device damping b = {number(b)} {unit}")
     nyquist = 0.5 / float(verdict.decision.loop.period)
     slowest = nyquist / 1000 if log_frequency else 0.0
@@ -95,7 +96,7 @@ def _range(needs: list[float], b: float) -> tuple[float, float]:
 
 def _mark(axes: Axes, verdict: LinearVerdict, needs: list[float], limits: tuple[float, float]) -> None:
     peak, need = verdict.critical_frequency, verdict.budget.required
-    unit = unit_text("damping", verdict.device.motion)
+    unit = quantity_unit("damping", verdict.device.motion)
     if limits[0] < 0:
         axes.axhline(0, color=GREY, lw=0.6)
     if verdict.required_damping is None and need < inf:

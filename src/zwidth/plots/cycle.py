@@ -15,7 +15,7 @@ from zwidth.plots.style import BLUE, GREY, LOOK, PURPLE, RED, label, new_figure,
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.storage.evidence.gain import Gain
 
 _EDGES = 16
 """Encoder edges up to which each is drawn."""
@@ -42,7 +42,9 @@ def cycle(gain: Gain) -> Figure:
 
 def draw_cycle(rows: Sequence[Axes], gain: Gain) -> None:
     """The same on three given axes, one above the other."""
-    from zwidth.passivity.storage.playback import settled_round  # the game's libraries take their time
+    from zwidth.passivity.storage.evidence.playback import (
+        settled_round,  # the game's libraries take their time
+    )
 
     motion = "rotary" if gain.unit == "rad" else "linear"
     once = settled_round(gain)

@@ -13,8 +13,9 @@ from matplotlib.gridspec import SubplotSpec
 from zwidth.errors import InputError
 from zwidth.plots.files import save_figure
 from zwidth.plots.storage import draw_storage
-from zwidth.plots.style import LOOK, OUTCOME, new_figure, number, pretty
+from zwidth.plots.style import LOOK, OUTCOME, new_figure, number
 from zwidth.plots.witness import draw_motion
+from zwidth.quantity.text import unit_text
 
 if TYPE_CHECKING:
     from zwidth.passivity.passive_limit import Bracket
@@ -69,7 +70,7 @@ def limit_figure(bracket: Bracket) -> Figure:
     grid = figure.add_gridspec(1, len(sides))
     for k, draw in enumerate(sides):
         draw(figure, grid[k], bracket)
-    text = fill(pretty(bracket.describe()), _WIDTH)
+    text = fill(bracket.describe(), _WIDTH)
     figure.suptitle(text, x=0.01, ha="left", fontsize=11, parse_math=False)
     figure.set_layout_engine("constrained", w_pad=0.08, h_pad=0.08, hspace=0.06, wspace=0.05)
     return figure
@@ -97,4 +98,4 @@ def _refuted(figure: Figure, place: SubplotSpec, bracket: Bracket) -> None:
 
 def _value(bracket: Bracket, value: float | None) -> str:
     assert value is not None
-    return f"{number(value)} {pretty(bracket.unit)}".removesuffix(" 1")
+    return f"{number(value)} {unit_text(bracket.unit)}".rstrip()

@@ -30,9 +30,9 @@ from zwidth.plots.style import (
     note,
     number,
     shown_name,
-    unit_text,
 )
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.text import quantity_unit
 
 _NEEDED = ("damping", "coulomb_friction", "resolution")
 
@@ -88,7 +88,7 @@ def draw_plane(
     passive = point.region == "globally stable"
     axes.plot([beta], [sigma], "o", color=GREEN if passive else RED, ms=8, zorder=6, gid="device")
     axes.annotate(
-        f"{shown_name(device)}\nK = {number(k)} {unit_text('stiffness', device.motion)}\n{point.region}",
+        f"{shown_name(device)}\nK = {number(k)} {quantity_unit('stiffness', device.motion)}\n{point.region}",
         (beta, sigma), (9, -4), textcoords="offset points", va="top", fontsize=8.5, color=BLACK, zorder=7,
         parse_math=False,
         bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.8},
@@ -151,7 +151,7 @@ def _line(
         [beta / softest, beta / stiffest], [sigma / softest, sigma / stiffest],
         color=BLUE, lw=1.8, gid="stiffnesses",
     )  # fmt: skip
-    unit = unit_text("stiffness", device.motion)
+    unit = quantity_unit("stiffness", device.motion)
     decades = [10.0**n for n in range(ceil(log10(softest * 1.1)), floor(log10(stiffest / 1.1)) + 1)]
     for k in decades:
         axes.plot([beta / k], [sigma / k], "o", color="white", mec=BLUE, ms=4, zorder=4)
@@ -179,7 +179,7 @@ def _mark_others(axes: Axes, others: list[Device]) -> None:
         k = number(float(_limit(other)))
         axes.plot(*([v] for v in _corner(other)), "s", color=GREY, ms=5, gid="catalogue")
         axes.annotate(
-            f"{other.name} at {k} {unit_text('stiffness', other.motion)}",
+            f"{other.name} at {k} {quantity_unit('stiffness', other.motion)}",
             _corner(other), (7, 5), textcoords="offset points", fontsize=7.5, color=GREY,
         )  # fmt: skip
 

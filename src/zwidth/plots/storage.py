@@ -19,8 +19,8 @@ from zwidth.errors import InputError
 from zwidth.plots.style import BLUE, LOOK, OUTCOME, SKY, label, new_figure, number, scale
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage import WorstHand
-    from zwidth.passivity.storage.storage import Storage
+    from zwidth.passivity.storage import AvailableStorage
+    from zwidth.passivity.storage.evidence.storage_function import StorageFunction
 
 _EDGES = 400
 """Encoder edges up to which each has a tick."""
@@ -30,7 +30,7 @@ _OUTSIDE = 1.0
 
 
 @rc_context(LOOK)
-def storage(found: WorstHand) -> Figure:
+def storage(found: AvailableStorage) -> Figure:
     """V against position, for a hand that waits and over all that the law can remember.
 
     Parameters
@@ -53,13 +53,13 @@ def storage(found: WorstHand) -> Figure:
     return figure
 
 
-def draw_storage(axes: Axes, found: Storage) -> None:
+def draw_storage(axes: Axes, found: StorageFunction) -> None:
     """The same on given axes."""
     energy = found.to_xarray()
     before, position = (energy[d].values for d in energy.dims)
-    resolution = float(found.played.board.losses.resolution)
-    points = len(position) // found.played.board.domain.cells
-    cells = np.arange(len(position)) // points + found.played.board.domain.lowest
+    resolution = float(found.grid.losses.resolution)
+    points = len(position) // found.grid.domain.cells
+    cells = np.arange(len(position)) // points + found.grid.domain.lowest
     low, high = np.nanmin(energy.values, axis=0), np.nanmax(energy.values, axis=0)
     joules, energy_unit = scale([float(high.max())], "J")
     metres, length_unit = scale([float(np.abs(position).max())], str(energy["position"].attrs["units"]))

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from zwidth.device import Device
 from zwidth.passivity.outcome import TOLD
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import PREFIXES, in_words, unit_text
 from zwidth.showing import printable
 
 BLACK, GREY = "#222222", "#777777"
@@ -44,7 +45,6 @@ LOOK: Any = {
 _LONGEST = 36
 """Characters of a device's name that are drawn."""
 
-_PREFIXES = {0: "", -3: "m", -6: "µ", -9: "n", -12: "p", 3: "k", 6: "M"}
 _SCALED = ("m", "s", "J", "N", "rad", "N*m")
 
 
@@ -53,21 +53,11 @@ def new_figure(width: float = 6.4, height: float = 4.0) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def unit_text(name: str, motion: str = "linear") -> str:
-    """The unit of a quantity as people write it: N·s/m."""
-    return pretty(GLOSSARY[name].unit_for(motion))
-
-
-def pretty(unit: str) -> str:
-    """ "N*m^2" becomes "N·m²"."""
-    return unit.replace("*", "·").replace("^2", "²")
-
-
 def label(name: str, motion: str = "linear", text: str | None = None, unit: str | None = None) -> str:
     """An axis label from the glossary: name, symbol, unit."""
     quantity = GLOSSARY[name]
-    words = quantity.name.replace("_", " ") if text is None else text
-    shown = pretty(quantity.unit_for(motion) if unit is None else unit)
+    words = in_words(quantity.name) if text is None else text
+    shown = unit_text(quantity.unit_for(motion) if unit is None else unit) or "1"
     return f"{words} {symbol(name)} [{shown}]".strip()
 
 
@@ -97,9 +87,9 @@ def scale(values: Iterable[float], unit: str) -> tuple[float, str]:
     """(factor, unit) with which these values are read without exponents, such as (1000, "mm")."""
     largest = max((abs(v) for v in values if isfinite(v)), default=0.0)
     if unit not in _SCALED or largest == 0:
-        return 1.0, pretty(unit)
+        return 1.0, unit_text(unit)
     power = max(-12, min(6, 3 * floor(log10(largest * 1.0000001) / 3)))
-    return 10.0**-power, _PREFIXES[power] + pretty(unit)
+    return 10.0**-power, PREFIXES[power] + unit_text(unit)
 
 
 def quantity_text(value: float, name: str, motion: str = "linear") -> str:

@@ -23,7 +23,7 @@ from zwidth.plots.style import BLUE, GREY, LOOK, PURPLE, RED, label, new_figure,
 from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
-    from zwidth.passivity.storage.gain import Gain
+    from zwidth.passivity.storage.evidence.gain import Gain
 
 _DOTS = 60
 """Samples up to which each is marked."""

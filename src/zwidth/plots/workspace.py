@@ -13,11 +13,12 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
+from zwidth.arms.held import in_words
 from zwidth.errors import InputError
-from zwidth.passivity.arms import Workspace
-from zwidth.passivity.arms.held import in_words
+from zwidth.passivity.workspace import Workspace
 from zwidth.plots.files import save_figure
-from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, pretty, verbatim
+from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, verbatim
+from zwidth.quantity.text import unit_text
 
 _ARROWS = 14
 """Marks of the worst direction along each side."""
@@ -92,7 +93,7 @@ def draw_workspace(axes: Axes, space: Workspace, variable: str | None = None) ->
     if variable not in space.data:
         raise InputError(f"the map has no {variable!r}; it has {', '.join(map(str, space.data))}")
     data = space.data[variable]
-    label = f"{variable.replace('_', ' ')} [{pretty(data.attrs.get('units', '1'))}]"
+    label = f"{variable.replace('_', ' ')} [{unit_text(data.attrs['units']) or '1'}]"
     if data.ndim == 1:
         _line(axes, space, data, label)
         return
@@ -164,4 +165,4 @@ def _directions(axes: Axes, space: Workspace, across: Any, up: Any) -> None:
 def _axis(space: Workspace, name: str) -> str:
     if name in ("x", "y"):
         return f"{name} [m]"
-    return f"joint {verbatim(name)} [{pretty(space.data[name].attrs['units'])}]"
+    return f"joint {verbatim(name)} [{unit_text(space.data[name].attrs['units'])}]"

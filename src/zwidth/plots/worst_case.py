@@ -29,10 +29,10 @@ from zwidth.plots.style import (
     number,
     scale,
     shown_name,
-    unit_text,
 )
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
 
 _POINTS = 100
 
@@ -82,7 +82,7 @@ def draw_worst_case(axes: Axes, device: Device, stiffness: RealLike, span: RealL
         axes.text(place, 0.02, word, transform=axes.transAxes, ha="center", va="bottom", color=GREY)
     axes.set_xlabel(f"way out in one sample λ [{metres}]")
     axes.set_ylabel(label("energy", text="beyond an ideal spring,", unit=joules).replace(" W ", " J* "))
-    unit = unit_text("stiffness", device.motion)
+    unit = quantity_unit("stiffness", device.motion)
     axes.set_title(
         f"{shown_name(device)}, K = {number(float(Exact(stiffness)))} {unit}: {region}", parse_math=False
     )

@@ -33,9 +33,9 @@ from zwidth.plots.style import (
     new_figure,
     note,
     number,
-    pretty,
     verbatim,
 )
+from zwidth.quantity.text import unit_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -131,7 +131,7 @@ def draw_z_width(axes: Axes, found: xr.Dataset) -> None:
     """
     motion = found.attrs["motion"]
     b, k = (_edges(found[name].values) for name in ("virtual_damping", "stiffness"))
-    speed = f"{number(found['quiet'].attrs['speed'])} {pretty(found['admissible_speed'].attrs['units'])}"
+    speed = f"{number(found['quiet'].attrs['speed'])} {unit_text(found['admissible_speed'].attrs['units'])}"
     for name, colour, alpha, text in (
         *_sustained(found),
         ("quiet", SKY, 0.35, f"no hand up to {speed} gains"),
@@ -200,7 +200,7 @@ def _speeds(axes: Axes, found: xr.Dataset) -> bool:
         found["virtual_damping"], found["stiffness"], shown, levels=[log10(level) for level in inside],
         colors=[GREY], linewidths=0.7, linestyles="-",
     )  # fmt: skip
-    unit = pretty(found["admissible_speed"].attrs["units"])
+    unit = unit_text(found["admissible_speed"].attrs["units"])
     axes.clabel(drawn, fontsize=7.5, fmt=lambda level: f"{number(10**level)} {unit}")
     return True
 
@@ -223,7 +223,7 @@ def _corner(found: xr.Dataset) -> xr.Dataset | None:
 
 def _free(found: xr.Dataset) -> str:
     parts = [
-        f"{number(float(found[name]))} {pretty(found[name].attrs['units'])}"
+        f"{number(float(found[name]))} {unit_text(found[name].attrs['units'])}"
         for name in ("free_mass", "free_damping", "free_friction")
     ]
     return f"Felt in free air: {', '.join(parts)}."

@@ -1,9 +1,71 @@
-"""Rationals as text, digit for digit."""
+"""Numbers as text: rationals digit for digit, and values with their units as people read them."""
 
 from __future__ import annotations
 
 from decimal import Decimal
 from fractions import Fraction
+from math import floor, inf, log10
+
+from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.glossary import GLOSSARY
+
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+"""By the power of ten."""
+
+_PREFIXED = ("m", "s", "J", "N", "Hz", "m/s")
+"""Units that people prefix in text; N·s/m stays as it is, and 300 N/m too."""
+
+
+def unit_text(unit: str) -> str:
+    """A unit as people write it: "N*s/m" as "N·s/m", "1" as nothing."""
+    return "" if unit == "1" else unit.replace("*", "·").replace("^2", "²")
+
+
+def quantity_unit(name: str, motion: str = "linear") -> str:
+    """The unit of a quantity of the glossary as people write it."""
+    return unit_text(GLOSSARY[name].unit_for(motion))
+
+
+def in_words(key: str) -> str:
+    """A key as words, in which Coulomb is a name."""
+    return key.replace("_", " ").replace("coulomb", "Coulomb")
+
+
+def shown(value: float | Exact | Interval | None, unit: str, digits: int = 4) -> str:
+    """A value with its unit, to `digits` significant digits: 22.4e-6 m is "22.4 µm"."""
+    if value is None:
+        return "none"
+    if isinstance(value, Interval):
+        return f"{float(value.low):g} … {float(value.high):g} {unit_text(unit)}".rstrip()
+    number = float(value)
+    if abs(number) == inf:
+        return "any" if number > 0 else "none"
+    power, name = _prefix(number, unit, digits)
+    return f"{number / 10.0**power:.{digits}g} {name}".rstrip()
+
+
+def _prefix(number: float, unit: str, digits: int) -> tuple[int, str]:
+    if unit not in _PREFIXED or number == 0:
+        return 0, unit_text(unit)
+    rounded = float(f"{abs(number):.{digits}g}")
+    power = 3 * floor(floor(log10(rounded)) / 3)
+    if (unit == "m" and power > 0) or (unit == "N" and 0.01 <= rounded < 1000) or not -9 <= power <= 9:
+        return 0, unit  # nobody says kilometres here, nor 120 mN for 0.12 N
+    return power, PREFIXES[power] + unit
+
+
+def in_unit(value: float | None, unit: str) -> str:
+    """A value of six digits in this very unit; "none" and "any" for what is no number."""
+    if value is None:
+        return "none"
+    if value == inf:
+        return "any"
+    return f"{value:.6g} {unit_text(unit)}"
+
+
+def in_a_table(value: float, digits: int = 4) -> str:
+    """A number without its unit; a whole one where there are more digits before the point."""
+    return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.{digits}g}"
 
 
 def exact_text(value: Fraction) -> str:

@@ -18,13 +18,24 @@ from typing import Any
 from zwidth.environment.discretization import trimmed
 from zwidth.environment.environment import Environment, RationalFunction, add, certain, multiply
 from zwidth.environment.transfer_function import as_environment
-from zwidth.environment.wall import Parameter
+from zwidth.environment.wall import NEGATIVE_SPRING
 from zwidth.environment.wording import with_unit
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, as_parameter, ends
+from zwidth.quantity.exact import ends
+from zwidth.quantity.parameter import Reads, Uncertain, parameter, part
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+def _linear(given: Any, name: str) -> Environment:
+    """The environment, if H(z) says all about it: that of coupling and environment is made of it."""
+    environment = as_environment(given)
+    if not environment.linear:
+        raise InputError(
+            f"the {name} behind a coupling must be linear, which this is not: {environment.describe()}"
+        )
+    return environment
+
+
+@dataclass(frozen=True)
 class VirtualCoupling(Environment):
     """A spring–damper in series before an environment, ``H = Z_c E/(Z_c + E)``.
 
@@ -43,20 +54,11 @@ class VirtualCoupling(Environment):
         If K_c < 0, or the environment is none or not linear.
     """
 
-    stiffness: Exact | Interval
-    damping: Exact | Interval
-    environment: Environment
-
-    def __init__(self, stiffness: Parameter, damping: Parameter, environment: Environment | Any) -> None:
-        k, b = _read("stiffness", stiffness), _read("damping", damping)
-        if ends(k)[0] < 0:
-            raise InputError(
-                f"stiffness must be ≥ 0, got {k}: a negative spring pulls the hand in "
-                "and gives out energy without end"
-            )
-        object.__setattr__(self, "stiffness", k)
-        object.__setattr__(self, "damping", b)
-        object.__setattr__(self, "environment", _linear(as_environment(environment)))
+    stiffness: Uncertain = parameter("stiffness", bound="≥ 0", why=NEGATIVE_SPRING)
+    damping: Uncertain = parameter("virtual_damping")
+    environment: Reads[Environment, Any] = part(
+        "environment", _linear, meaning="the environment behind the coupling"
+    )
 
     @property
     def unilateral(self) -> bool:
@@ -105,22 +107,6 @@ class VirtualCoupling(Environment):
         k = with_unit("stiffness", self.stiffness, motion)
         b = with_unit("virtual_damping", self.damping, motion)
         return f"virtual coupling, {k} and {b}, before {self.environment.describe(motion)}"
-
-
-def _read(key: str, value: Parameter) -> Exact | Interval:
-    try:
-        return as_parameter(value)
-    except InputError as error:
-        raise InputError(f"{key}: {error}") from None
-
-
-def _linear(environment: Environment) -> Environment:
-    """The environment, if H(z) says all about it: that of coupling and environment is made of it."""
-    if not environment.linear:
-        raise InputError(
-            f"the environment behind a coupling must be linear, which this is not: {environment.describe()}"
-        )
-    return environment
 
 
 def _proper(numerator: tuple[Fraction, ...], denominator: tuple[Fraction, ...]) -> RationalFunction:

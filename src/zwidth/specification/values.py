@@ -1,22 +1,57 @@
-"""Values of a specification that are more than one quantity.
+"""Values of a specification, read as the fields of the classes say.
 
-Polynomials, lists of quantities, Maxwell branches, velocity filters, true and
-false: a TOML list, table or word, or one text on the command line.
+Quantities; words, true and false; polynomials, lists of quantities, Maxwell branches and velocity
+filters: a TOML number, list, table or word, or one text on the command line.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
+from typing import Any
 
 from zwidth.environment import BackwardDifference, OnePole, VelocityFilter, Window
+from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import Parameter
 from zwidth.quantity.units import parse, parse_number
 from zwidth.specification.table import Table, quoted, suggestion
+
+
+def read(value: Any, key: str, own: Parameter, motion: str) -> Any:
+    """The value of one key, in the unit of the device's motion.
+
+    Raises
+    ------
+    InputError
+        If it is not what the field takes.
+    """
+    unit = own.unit_for(motion)
+    if own.form == "uncertain":
+        return parse(value, unit, key)
+    if own.form == "quantity":
+        named = isinstance(value, str) and value in own.words
+        return value if named else parse_number(value, unit, key)
+    if own.form == "word":
+        return word(value, key, own.words)
+    if own.form == "list":
+        return quantities(value, unit, key)
+    if own.form == "branches":
+        return branches(value, motion)
+    return _READ[own.form](value, key)
+
+
+def word(value: object, key: str, words: tuple[str, ...]) -> str:
+    """One of the words that a key may have."""
+    if not isinstance(value, str):
+        raise InputError(f'{key} is a text in quotes, such as {key} = "{words[0]}"')
+    if value not in words:
+        raise InputError(f"{key}: there is no {quoted(value)}; {suggestion(value, words)}")
+    return value
 
 
 def coefficients(value: object, key: str) -> list[Exact]:
@@ -78,7 +113,9 @@ FILTERS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """The types of velocity filter and their keys."""
 
 
-def velocity_filter(value: object) -> BackwardDifference | Window | OnePole | VelocityFilter:
+def velocity_filter(
+    value: object, key: str = "velocity_filter"
+) -> BackwardDifference | Window | OnePole | VelocityFilter:
     """A velocity estimator from a table, or a text such as "window 5" or "one-pole 50 Hz".
 
     Raises
@@ -89,22 +126,20 @@ def velocity_filter(value: object) -> BackwardDifference | Window | OnePole | Ve
     if isinstance(value, str):
         value = _filter_table(value)
     if not isinstance(value, Mapping):
-        raise InputError(f'velocity_filter is {{ type = "…" }} with one of the types {", ".join(FILTERS)}')
-    table = Table("velocity_filter", value)
+        raise InputError(f'{key} is {{ type = "…" }} with one of the types {", ".join(FILTERS)}')
+    table = Table(key, value)
     name = table.text("type") if "type" in value else ""
     if name not in FILTERS:
-        raise InputError(f"velocity_filter: there is no type {quoted(name)}; {suggestion(name, FILTERS)}")
+        raise InputError(f"{key}: there is no type {quoted(name)}; {suggestion(name, FILTERS)}")
     table.check_keys(("type", *FILTERS[name]), f'a filter of type "{name}"')
     arguments = {k: v for k, v in table.values.items() if k != "type"}
     if len(arguments) != (1 if name == "one-pole" else len(FILTERS[name])):
         needed = " or ".join(FILTERS[name]) if name == "one-pole" else " and ".join(FILTERS[name])
-        raise InputError(f'velocity_filter: type "{name}" needs {needed}')
+        raise InputError(f'{key}: type "{name}" needs {needed}')
     return _filter(name, arguments)
 
 
-def _filter(
-    name: str, arguments: Mapping[str, object]
-) -> BackwardDifference | Window | OnePole | VelocityFilter:
+def _filter(name: str, arguments: Mapping[str, object]) -> VelocityEstimator:
     if name == "window":
         return Window(parse_number(arguments["samples"], "1", "samples"))  # type: ignore[arg-type]  # checks it is whole
     if name == "one-pole":
@@ -136,3 +171,9 @@ def _filter_table(text: str) -> dict[str, object]:
         parts = rest.split("/")
         return {"type": name, **dict(zip(("numerator", "denominator"), parts, strict=False))}
     return {"type": name, (*FILTERS.get(name, ()), "samples")[0]: rest}
+
+
+_READ: Mapping[str, Callable[[Any, str], Any]] = MappingProxyType(
+    {"coefficients": coefficients, "flag": flag, "velocity filter": velocity_filter}
+)
+"""By form, what has no unit."""

@@ -20,6 +20,7 @@ from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import exact_text
 from zwidth.specification.environments import TYPES
+from zwidth.specification.kinds import name_of
 from zwidth.specification.laws import ESTIMATORS, LAWS, LawType, with_laws
 from zwidth.specification.read import WITH_LAWS, Specification, specified, tables_of
 
@@ -92,20 +93,16 @@ def _quantity(value: Exact | Interval | int, unit: str) -> object:
     if isinstance(value, Interval):
         return [_quantity(end, unit) for end in (value.low, value.high)]
     number = str(value) if isinstance(value, int) else exact_text(value.fraction)
-    return number if unit == "1" else f"{number} {unit}"
+    return number if unit in ("", "1") else f"{number} {unit}"
 
 
 def _environment(environment: Environment, motion: str) -> dict[str, object]:
-    name, row = next(
-        ((name, row) for name, row in TYPES.items() if row.class_name == type(environment).__name__),
-        (None, None),
-    )
-    if name is None or row is None:
+    name = name_of(environment, TYPES)
+    if name is None:
         raise InputError(f"a specification has no {type(environment).__name__}")
     values: dict[str, object] = {"type": name}
-    for key, kind in row.keys.items():
+    for key, kind in TYPES[name].keys.items():
         value = getattr(environment, key)
-        unit = GLOSSARY[kind.quantity].unit_for(motion) if kind.quantity else "1"
         if kind.form == "branches":
             values[key] = [_branch(branch, motion) for branch in value]
         elif kind.form == "environment":
@@ -113,7 +110,7 @@ def _environment(environment: Environment, motion: str) -> dict[str, object]:
         elif kind.form == "velocity filter":
             values[key] = _filter(value)
         elif value is not None:
-            values[key] = _value(value, unit)
+            values[key] = _value(value, kind.unit_for(motion))
     return values
 
 

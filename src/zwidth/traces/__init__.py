@@ -3,12 +3,13 @@
 from zwidth.traces.accessor import TraceAccessor
 from zwidth.traces.comparison import Comparison, compare_traces
 from zwidth.traces.files import load_trace, save_trace
-from zwidth.traces.run import compare, identify, passive_limit, simulate, simulate_batch, worst_hand
+from zwidth.traces.run import available_storage, compare, identify, passive_limit, simulate, simulate_batch
 from zwidth.traces.sound import save_sound
 
 __all__ = [
     "Comparison",
     "TraceAccessor",
+    "available_storage",
     "compare",
     "compare_traces",
     "identify",
@@ -18,5 +19,4 @@ __all__ = [
     "save_trace",
     "simulate",
     "simulate_batch",
-    "worst_hand",
 ]

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import isnan
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,7 +12,8 @@ import numpy as np
 from zwidth.energy import ledger
 from zwidth.errors import InputError
 from zwidth.loop.trace import UNITS
-from zwidth.showing import Html, printable, table
+from zwidth.passivity.result import Documented
+from zwidth.showing import Part, Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,8 +52,8 @@ the last quarter of the time.
 """
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Documented):
     """A few numbers of each trace, one row per trace.
 
     Parameters
@@ -116,29 +115,16 @@ class Comparison:
         lines = [[label, *(_written(row[name]) for name in COLUMNS)] for label, row in self.rows.items()]
         return [head, *lines]
 
-    def plot(self, path: str | PathLike[str] | None = None) -> Figure:
-        """All traces in one figure; saved if a path is given."""
-        from zwidth.plots.files import save_figure  # matplotlib takes its time
-        from zwidth.plots.trace import comparison_figure
+    def figure(self) -> Figure:
+        """All traces in one figure."""
+        from zwidth.plots.trace import comparison_figure  # matplotlib takes its time
 
-        figure = comparison_figure(self.traces)
-        if path is not None:
-            save_figure(lambda: figure, Path(path), overwrite=True)
-        return figure
+        return comparison_figure(self.traces)
 
-    def __repr__(self) -> str:
-        table = self.table()
-        widths = [max(len(row[i]) for row in table) for i in range(len(table[0]))]
-        lines = []
-        for row in table:
-            cells = [row[0].ljust(widths[0])]
-            cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
-            lines.append("  ".join(cells))
-        return printable("\n".join(lines))
-
-    def _repr_html_(self) -> Html:
-        head, *lines = self.table()
-        return table(head, lines)
+    def report(self) -> Iterable[Part]:
+        """The table."""
+        head, *rows = self.table()
+        yield Table(heads=[head], rows=rows, lefts=1)
 
 
 def compare_traces(*traces: xr.Dataset | Mapping[str, xr.Dataset]) -> Comparison:

@@ -12,7 +12,7 @@ from zwidth.identification import recording as _recording
 from zwidth.loop import batch as _batch
 from zwidth.loop import simulate as _simulate
 from zwidth.passivity import passive_limit as _limit
-from zwidth.passivity.storage import hand as _hand
+from zwidth.passivity.storage import solution as _storage
 from zwidth.traces.progress import progress_bar
 
 P = ParamSpec("P")
@@ -43,13 +43,13 @@ def falling(progress: Callable[[int, int], None]) -> Callable[[int], None]:
     return tell
 
 
-@wraps(_hand.worst_hand)
-def worst_hand(*args: Any, **kwargs: Any) -> _hand.WorstHand:
+@wraps(_storage.available_storage)
+def available_storage(*args: Any, **kwargs: Any) -> _storage.AvailableStorage:
     """As in `passivity`, with a bar of the states that no longer improve."""
     if "progress" in kwargs:
-        return _hand.worst_hand(*args, **kwargs)
+        return _storage.available_storage(*args, **kwargs)
     with progress_bar("states") as progress:
-        return _hand.worst_hand(*args, progress=falling(progress), **kwargs)
+        return _storage.available_storage(*args, progress=falling(progress), **kwargs)
 
 
 simulate = _with_bar(_simulate.simulate, "samples")

@@ -117,7 +117,8 @@ def what_may_be_0_has_no_inverse() -> str:
     """Nor a root; the smallest number that is not 0 has both."""
     functions, enclosed = module("functions"), module("enclosed").Enclosed
     for function in (functions.inverse, functions.root):
-        for x in (enclosed(8, 0), enclosed(8, 3, (), 3), enclosed(8, 3, (2, -1)), enclosed(8, 3, (2,), 2)):
+        known = ((0,), (3, (), 3), (-3, (), 3), (3, (), 5), (3, (2, -1)), (3, (2,), 2))
+        for x in (enclosed(8, *numbers) for numbers in known):
             if not refuses(function, x, functions.NotPositive):
                 return f"{function.__name__} of {x.middle} ± {x.reach}"
         for x in (enclosed(8, 1), enclosed(8, 4, (2, -1)), enclosed(8, 4, (2,), 1)):

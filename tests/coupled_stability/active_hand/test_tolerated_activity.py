@@ -255,7 +255,7 @@ def test_the_band_may_be_a_text() -> None:
     """With a unit, as on the command line; another unit is refused by name; the result shows in a line."""
     found = zw.tolerated_activity(paddle(), zw.Wall(100), "0.01 kHz")
     assert found.below == 10
-    assert repr(found).startswith("<ToleratedActivity below 10 Hz: up to 0.1 N*s/m, contact kept; at any")
+    assert repr(found).startswith("<ToleratedActivity below 10 Hz: up to 0.1 N·s/m, contact kept; at any")
     with pytest.raises(zw.InputError, match=r'below is in Hz; got "10 s", a time'):
         zw.tolerated_activity(paddle(), zw.Wall(100), "10 s")
 

@@ -13,8 +13,8 @@ from strategies import seeds
 import zwidth as zw
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.storage.domain import domain_for, losses_of
-from zwidth.passivity.storage.hand import Game
 from zwidth.passivity.storage.law import finite_law
+from zwidth.passivity.storage.program import DynamicProgram
 
 ZERO = Fraction(0)
 
@@ -109,7 +109,7 @@ def played(surface, damping, friction, time_constant, counts=12, clamped=False):
         mass=1,
     )
     law, losses = replace(finite_law(device, wall), surface=surface, clamped=clamped), losses_of(device)
-    return Game(law, losses, domain_for(law, losses, counts, counts), "linear")
+    return DynamicProgram(law, losses, domain_for(law, losses, counts, counts), "linear")
 
 
 def test_a_slow_filter_fed_with_the_position_breaks_the_criterion():

@@ -413,9 +413,7 @@ def test_evidence_is_saved_and_verified_from_the_command_line(tmp_path, capsys):
 def test_it_says_what_it_found():
     """The representations name both indices with their frequency, and why one is infinite."""
     found = zw.passivity_indices(1 / (s + 1) - 1e-9)
-    assert repr(found).startswith(
-        "<PassivityIndices not passive: input index ν = −1e−09 as the frequency grows"
-    )
+    assert repr(found).startswith("<PassivityIndices active: input index ν = −1e−09 as the frequency grows")
     assert "unstable zero at s = 1e+09" in found._repr_html_()
     assert "comes out above the level" in repr(found.witness)
     assert "burst" in found.witness._repr_html_()

@@ -1,4 +1,4 @@
-"""Many hands at once on one board: the law, the energy and V in floating point, from their definitions."""
+"""Many hands at once on one grid: the law, the energy and V in floating point, from their definitions."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ def force(law, readings, resolution):
 
 
 class Crowd:
-    """A board, its losses, and hands that are somewhere on it: cells, places in them, readings before."""
+    """A grid, its losses, and hands that are somewhere on it: cells, places in them, readings before."""
 
     def __init__(self, game, storage=None, seed=0):
         self.law, self.losses, self.domain = game.law, game.losses, game.domain
         self.taps = self.law.memory + 1
         self.memory = self.taps - 1 + self.losses.delay
         self.step, self.random = float(self.losses.resolution), np.random.default_rng(seed)
-        self.board = None if storage is None else storage.played.board
-        self.value = None if storage is None else storage.played.value * float(self.board.energy_unit)
+        self.grid = None if storage is None else storage.grid
+        self.value = None if storage is None else storage.value * float(self.grid.energy_unit)
 
     def energy(self, cells, places, before, next_cells, next_places):
         """What the hand takes out by one move [J]."""
@@ -52,17 +52,17 @@ class Crowd:
         )
 
     def stored(self, cells, places, before):
-        """V there [J], linear between the knots."""
+        """V there [J], linear between the nodes."""
         reach, column = self.domain.reach, np.zeros(cells.shape, np.int64)
         newer = cells
         for i in range(self.memory):
             column = column * (2 * reach + 1) + before[..., i] - newer + reach
             newer = before[..., i]
-        at = places * self.board.steps
-        knot = np.minimum(at.astype(np.int64), self.board.steps - 1)
+        at = places * self.grid.steps
+        node = np.minimum(at.astype(np.int64), self.grid.steps - 1)
         rows = cells - self.domain.lowest
-        low, high = self.value[rows, column, knot], self.value[rows, column, knot + 1]
-        return low + (at - knot) * (high - low)
+        low, high = self.value[rows, column, node], self.value[rows, column, node + 1]
+        return low + (at - node) * (high - low)
 
     def somewhere(self, number):
         """States at random: readings before as a hand could have left them."""
@@ -76,7 +76,7 @@ class Crowd:
         return readings[0], self.place(number), before
 
     def place(self, number):
-        """Where in a cell: on its edges, next to them, on a knot or anywhere."""
+        """Where in a cell: on its edges, next to them, on a node or anywhere."""
         choices = np.stack(
             [
                 np.zeros(number),

@@ -10,7 +10,7 @@ import pytest
 import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.passive_limit import passive_limit
-from zwidth.passivity.storage import worst_hand
+from zwidth.passivity.storage import available_storage
 
 BOUNDS = {"penetration": "0.001", "speed": "0.5"}
 
@@ -87,7 +87,7 @@ def test_both_sides_are_evidence(name, bounds):
         "rate",
     ):  # these change how many counts the bounds are
         passive, active = (
-            worst_hand(*at(loop, parameter, v), **bounds) for v in (bracket.passive, bracket.active)
+            available_storage(*at(loop, parameter, v), **bounds) for v in (bracket.passive, bracket.active)
         )
         assert (passive.outcome, active.outcome) == ("passive", "active")
     held, law = at(loop, parameter, bracket.passive)
@@ -251,7 +251,7 @@ def test_virtual_damping_below_zero():
 def test_a_motion_keeps_to_the_bounds_that_were_given():
     """Deeper or faster than was asked for is no answer to the question."""
     wall = zw.Wall(400, "0.1")
-    found = worst_hand(device("0.2", "0.03"), wall, penetration="0.00042", speed="0.42")
+    found = available_storage(device("0.2", "0.03"), wall, penetration="0.00042", speed="0.42")
     assert found.outcome == "active"
     assert found.witness.depth <= 0.00042
     assert found.witness.peak_speed <= 0.42
@@ -270,7 +270,7 @@ def test_a_speed_between_two_counts_is_bounded_as_given(name, speed):
 
 def test_a_proof_of_slow_hands_is_none_of_faster_ones():
     """The longest move in the certificate is the one that was proved, to the part of a count."""
-    found = worst_hand(device("0.1", "0.04"), zw.Wall(395), penetration="0.0012", speed="0.237")
+    found = available_storage(device("0.1", "0.04"), zw.Wall(395), penetration="0.0012", speed="0.237")
     document = found.certificate.documents[0]
     assert document["domain"]["largest_move_counts"] == "2.37"
     assert "2.37 counts a sample" in checker.verify(document).reason

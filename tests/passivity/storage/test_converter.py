@@ -19,9 +19,9 @@ import pytest
 import zwidth as zw
 from zwidth.loop.law import rounded
 from zwidth.passivity.passive_limit import passive_limit
-from zwidth.passivity.storage import worst_hand
+from zwidth.passivity.storage import available_storage
+from zwidth.passivity.storage.evidence.playback import settled_round
 from zwidth.passivity.storage.law import FiniteLaw, finite_law
-from zwidth.passivity.storage.playback import settled_round
 
 STEP, COUNT, PERIOD = Fraction(2, 100), Fraction(1, 10**4), Fraction(1, 1000)
 
@@ -98,7 +98,7 @@ def test_the_simulator_gives_the_forces_of_the_motion(wall, more):
     # counts that doubles hold, and a step that makes no ties, which they could miss
     held = device("0.004", "0.1", "0.0170001", resolution=Fraction(1, 8192), **more)
     limited = "force_limit" in more
-    found = worst_hand(
+    found = available_storage(
         held, wall, penetration="0.0008", speed="0.4", force_limit=limited, force_resolution=True
     )
     assert found.outcome == "active"
@@ -137,5 +137,7 @@ def test_the_force_step_stands_in_the_document():
     assert law.document("linear")["force_step_N"] == "0.02"
     assert law.document("rotary")["force_step_N_m"] == "0.02"
     assert "force_step_N" not in finite_law(loop, zw.Wall(60)).document("linear")
-    said = worst_hand(loop, zw.Wall(60), penetration="0.001", speed="0.3", force_resolution=True).assumptions
+    said = available_storage(
+        loop, zw.Wall(60), penetration="0.001", speed="0.3", force_resolution=True
+    ).assumptions
     assert "the converter steps are counted in; force limit, current rise and added filters are not" in said

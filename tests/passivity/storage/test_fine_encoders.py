@@ -13,7 +13,7 @@ import pytest
 import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.storage import two_sides
-from zwidth.passivity.storage.hand import game_of
+from zwidth.passivity.storage.program import program_of
 from zwidth.passivity.storage.slow_hands import slow_hands
 from zwidth.quantity.exact import Exact
 
@@ -49,7 +49,7 @@ def test_slow_hands_from_both_sides(counts, virtual):
     assert proof.kind == "slow hands"
     assert slow_hands(loop, zw.Wall(limit * ABOVE, virtual), speed) is None
     assert slow_hands(loop, zw.Wall(limit, virtual), speed * ABOVE) is None
-    beyond = game_of(loop, zw.Wall(limit * Fraction(104, 100), virtual), "0.002", speed)
+    beyond = program_of(loop, zw.Wall(limit * Fraction(104, 100), virtual), "0.002", speed)
     motion = beyond.refute(1024)
     assert motion.verify()
     assert motion.peak_speed <= speed
@@ -97,7 +97,7 @@ WALLS = {
 
 @pytest.mark.parametrize("name", WALLS)
 def test_cells_of_many_counts_from_both_sides(name):
-    """What is proved has no motion on any board, and a little stiffer one has: a few per cent apart."""
+    """What is proved has no motion on any grid, and a little stiffer one has: a few per cent apart."""
     wall, delay, damping = WALLS[name]
     loop = device(2**20, damping, "0.05", delay)
     bounds = {"penetration": "0.002", "speed": "0.5"}
@@ -105,16 +105,16 @@ def test_cells_of_many_counts_from_both_sides(name):
     assert bracket.certificate.verify()
     assert bracket.witness.verify()
     assert bracket.relative_width < 0.08
-    assert game_of(loop, wall.replace(stiffness=bracket.passive), *bounds.values()).refute(1024) is None
+    assert program_of(loop, wall.replace(stiffness=bracket.passive), *bounds.values()).refute(1024) is None
     motion = bracket.witness
     assert motion.peak_speed <= 0.5
     assert motion.depth <= 0.002
 
 
 def test_a_coarse_proof_that_was_tampered_with():
-    """Every number of the loop, the law and the board binds; V may nowhere be less by much."""
+    """Every number of the loop, the law and the grid binds; V may nowhere be less by much."""
     loop = device(2**20, "0.04", "0.05", "0.0003")
-    game = game_of(loop, zw.Wall(150), "0.002", "0.5")
+    game = program_of(loop, zw.Wall(150), "0.002", "0.5")
     document = json.loads(json.dumps(game.prove_on_cells(64).documents[0]))
     assert checker.verify(document).valid
     for path, value in (
@@ -146,7 +146,7 @@ def test_hands_between_the_ends_of_cells(name):
     wall, delay, damping = WALLS[name]
     loop = device(4096 * 20, damping, "0.05", delay)
     bracket = zw.passive_limit(loop, wall, penetration="0.002", speed="0.5", tolerance=0.1, seconds=20)
-    law = game_of(loop, wall.replace(stiffness=bracket.passive), "0.002", "0.5").law
+    law = program_of(loop, wall.replace(stiffness=bracket.passive), "0.002", "0.5").law
     step, period = (float(loop.exact(k)) for k in ("resolution", "sample_period"))
     late = loop.exact("delay") / loop.exact("sample_period")
     whole, part = ceil(late), float(late - ceil(late) + 1)
@@ -201,7 +201,7 @@ def test_refuting_motions_keep_the_stated_bounds(seed):
     counts = Fraction(f"{random.uniform(0.4, 6):.2f}")
     speed, depth = counts * step / Fraction(period), Fraction(f"{random.uniform(2.1, 12):.1f}") * step
     wall = zw.Wall(f"{random.uniform(1000, 30000):.0f}", random.choice(["0", "0.05"]))
-    motion = game_of(loop, wall, depth, speed).refute(1024)
+    motion = program_of(loop, wall, depth, speed).refute(1024)
     if motion is None:
         return
     document = motion.to_dict()
@@ -221,7 +221,7 @@ def test_refuting_motions_keep_the_stated_bounds(seed):
 def test_the_way_in_is_as_slow_as_the_hand():
     """A device whose lead-in was half as fast again as the hand."""
     loop = zw.Device(damping=".454", coulomb_friction=".063", resolution="1e-5", sample_period="0.0005")
-    game = game_of(loop, zw.Wall(7600), "8e-5", "0.0262")
+    game = program_of(loop, zw.Wall(7600), "8e-5", "0.0262")
     motion = game.refute(1024)
     assert motion.peak_speed <= 0.0262
     assert f"{motion.peak_speed:.4g} m/s" in motion.describe()
@@ -267,9 +267,9 @@ def test_the_two_sides_share_the_time(monkeypatch):
 
 def test_the_bounds_are_data():
     """Speed, depth and how far outside, exact."""
-    bounds = game_of(device(4096), zw.Wall(100), "0.002", "0.5").bounds
+    bounds = program_of(device(4096), zw.Wall(100), "0.002", "0.5").bounds
     assert bounds.speed == Fraction(1, 2)
     assert bounds.counts_per_sample == Fraction(1, 2000) / (Fraction(4, 100) / 4096)
-    assert bounds.penetration >= bounds.deepest == Fraction(2, 1000)
+    assert bounds.penetration >= bounds.max_depth == Fraction(2, 1000)
     assert bounds.counts_deep == ceil(Fraction(2, 1000) / (Fraction(4, 100) / 4096))
     assert bounds.outside is None

@@ -12,8 +12,8 @@ from strategies import seeds
 import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.passive_limit import passive_limit
-from zwidth.passivity.storage import worst_hand
-from zwidth.passivity.storage.losses import Losses, generous, strict
+from zwidth.passivity.storage import available_storage
+from zwidth.passivity.storage.losses import Losses, inner_costs, outer_costs
 
 PERIOD, RESOLUTION = Fraction(1, 1000), Fraction(1, 10000)
 DEVICE = zw.Device(damping=0, coulomb_friction=0, resolution=RESOLUTION, sample_period=PERIOD)
@@ -50,7 +50,7 @@ def test_a_spring_below_the_curve(speed):
 
 @seeds(20)
 def test_the_costs_enclose_the_loss(seed):
-    """Generous at most, strict at least; between two steps the chord of the generous ones is below too."""
+    """Outer costs at most, inner ones at least; between two steps the chord of outer ones is below too."""
     random = Random(seed)
     speeds = sorted(random.sample(range(1, 100), 4))
     curve = zw.FrictionCurve(
@@ -59,7 +59,7 @@ def test_the_costs_enclose_the_loss(seed):
     losses = Losses(Fraction(0), Fraction(0), RESOLUTION, PERIOD, 0, Fraction(1), curve)
     step, unit = RESOLUTION / 8, Fraction(1, 2**30)
     far = np.arange(120, dtype=np.int64)
-    low, high = (rule(losses, far, PERIOD, step, unit, 3) for rule in (generous, strict))
+    low, high = (rule(losses, far, PERIOD, step, unit, 3) for rule in (outer_costs, inner_costs))
     assert low[0] == high[0] == 0
     for _ in range(200):
         d = Fraction(random.randint(0, 118_000), 1000)
@@ -73,7 +73,7 @@ def test_the_costs_enclose_the_loss(seed):
 
 def test_the_checker_knows_the_curve():
     """A model above the curve, another curve, none at all: refused."""
-    proof = worst_hand(
+    proof = available_storage(
         DEVICE, zw.Wall(200), friction=STRIBECK, penetration=DEPTH, speed=1
     ).certificate.documents[0]
     assert checker.verify(proof).valid
@@ -90,7 +90,9 @@ def test_the_checker_knows_the_curve():
         (models, []),
     ):
         assert not checker.verify({**proof, "loop": {**loop, key: bad}}).valid
-    motion = worst_hand(DEVICE, zw.Wall(900), friction=STRIBECK, penetration=DEPTH, speed=1).witness.to_dict()
+    motion = available_storage(
+        DEVICE, zw.Wall(900), friction=STRIBECK, penetration=DEPTH, speed=1
+    ).witness.to_dict()
     assert checker.verify(motion).valid
     more = [[v, str(20 * Fraction(f))] for v, f in motion["loop"][curve]]
     assert not checker.verify({**motion, "loop": {**motion["loop"], curve: more}}).valid
@@ -109,4 +111,4 @@ def test_what_it_refuses(change, arguments, said):
     with pytest.raises(zw.InputError, match=said):
         passive_limit(DEVICE.replace(**change), zw.Wall(100), **{"friction": STRIBECK, **arguments})
     with pytest.raises(zw.InputError, match="relaxes"):
-        worst_hand(DEVICE, zw.Maxwell(100, 1), friction=STRIBECK)
+        available_storage(DEVICE, zw.Maxwell(100, 1), friction=STRIBECK)

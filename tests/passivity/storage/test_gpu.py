@@ -1,4 +1,4 @@
-"""The game on a graphics card: thread by thread in numba's simulator of CUDA, on tiny boards."""
+"""The game on a graphics card: thread by thread in numba's simulator of CUDA, on tiny grids."""
 
 from __future__ import annotations
 
@@ -10,18 +10,22 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.passivity.storage.board import Board, Domain, Losses
+from zwidth.passivity.storage.domain import Domain
+from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.law import finite_law
-from zwidth.passivity.storage.solve import play
+from zwidth.passivity.storage.losses import Losses
+from zwidth.passivity.storage.solve.value_iteration import value_iteration
 
 _ON_CARD = """
 import itertools
 
 import zwidth as zw
 from zwidth.passivity.storage import gpu
-from zwidth.passivity.storage.board import Board, Domain, Losses
+from zwidth.passivity.storage.domain import Domain
+from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage.losses import Losses
 from zwidth.passivity.storage.law import finite_law
-from zwidth.passivity.storage.solve import play
+from zwidth.passivity.storage.solve.value_iteration import value_iteration
 
 gpu._SCRATCH = 1  # so that threads have more than one item
 paddle = zw.catalogue.device("haptic-paddle").replace(coulomb_friction="0.004")
@@ -37,11 +41,11 @@ for stiffness, (damping, delay, domain) in itertools.product((200, 20000), (
     law = finite_law(paddle, wall)
     losses = Losses(*(paddle.exact(k) for k in ("damping", "coulomb_friction", "resolution")),
                     paddle.exact("sample_period"), delay)
-    for rules, steps in (("generous", 3), ("strict", 1024)):
-        board = Board(law, losses, domain, steps, rules)
-        board.__dict__["first_guess"] = 0 * board.first_guess  # so that it takes many rounds
-        card, own = (play(board, on=on) for on in ("gpu", "cpu"))
-        assert own.rounds > 2, (rules, wall, own.rounds)
+    for approximation, steps in (("outer", 3), ("inner", 1024)):
+        grid = Grid(law, losses, domain, steps, approximation)
+        grid.__dict__["first_guess"] = 0 * grid.first_guess  # so that it takes many rounds
+        card, own = (value_iteration(grid, backend=one) for one in ("gpu", "cpu"))
+        assert own.rounds > 2, (approximation, wall, own.rounds)
         assert (card.value is None) == (own.value is None)
         assert bool(card.cycle) == bool(own.cycle)
         assert own.value is None or (card.value == own.value).all()
@@ -62,11 +66,11 @@ def test_the_card_finds_what_the_processor_finds() -> None:
     assert done.stdout.split() == ["True"] * 8 + ["False"] * 8
 
 
-def _board() -> Board:
+def _grid() -> Grid:
     paddle = zw.catalogue.device("haptic-paddle")
     keys = ("damping", "coulomb_friction", "resolution", "sample_period")
     losses = Losses(*(paddle.exact(k) for k in keys), 0)
-    return Board(finite_law(paddle, zw.Wall(200)), losses, Domain(-3, 3, 4), 4, "generous")
+    return Grid(finite_law(paddle, zw.Wall(200)), losses, Domain(-3, 3, 4), 4, "outer")
 
 
 def test_without_a_card_one_message_says_what_to_do() -> None:
@@ -79,9 +83,9 @@ def test_without_a_card_one_message_says_what_to_do() -> None:
     except ImportError:
         pass
     with pytest.raises(InputError, match=r"leave out on='gpu'|zwidth\[gpu\]"):
-        play(_board(), on="gpu")
+        value_iteration(_grid(), backend="gpu")
 
 
 def test_anything_else_than_cpu_and_gpu_is_refused() -> None:
-    with pytest.raises(InputError, match='on is "cpu" or "gpu"'):
-        play(_board(), on="tpu")
+    with pytest.raises(InputError, match='backend is "cpu" or "gpu"'):
+        value_iteration(_grid(), backend="tpu")

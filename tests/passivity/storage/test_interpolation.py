@@ -1,4 +1,4 @@
-"""Between the knots: the drag of the generous rules, interpolated, is at most the drag of the true move."""
+"""Between the nodes: the drag of the outer approximation, interpolated, is at most that of the true move."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.passivity.storage.board import Board, Domain
+from zwidth.passivity.storage.domain import Domain
+from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.losses import Losses
 
@@ -55,7 +56,7 @@ def test_never_more_than_the_true_drag(apart, side):
 
 @seeds(30)
 def test_every_move_between_knots_is_covered(seed):
-    """V and V' drawn at random, just large enough at the knots: then nowhere between them too small."""
+    """V and V' drawn at random, just large enough at the nodes: then nowhere between them too small."""
     random = Random(seed)
     steps, drag, force = 5, Fraction(random.randint(0, 9), 4), Fraction(random.randint(-9, 9), 2)
     friction = Fraction(random.randint(0, 4), 2)
@@ -114,7 +115,7 @@ def _descended(random, apart, spared):
 
 @seeds(20)
 def test_the_boards_costs_are_these(seed):
-    """Generous: at most φ D + β L(D) of the true friction and drag; strict: at least φ D + β D²."""
+    """Outer: at most φ D + β L(D) of the true friction and drag; inner: at least φ D + β D²."""
     random = Random(seed)
     losses = Losses(
         *(Fraction(random.randint(1, 10**6), 10**6) for _ in range(2)),
@@ -123,21 +124,21 @@ def test_the_boards_costs_are_these(seed):
         0,
     )
     law = FiniteLaw((Fraction(random.randint(1, 3000)),), "position")
-    for rules in ("generous", "strict"):
-        board = Board(law, losses, Domain(-4, 4, 3), 8, rules)
-        drag = losses.damping / losses.period * (losses.resolution / 8) / board.force_unit
-        friction = losses.coulomb_friction / board.force_unit
-        for distance, cost in enumerate(board.costs.tolist()):
-            if rules == "generous":
+    for approximation in ("outer", "inner"):
+        grid = Grid(law, losses, Domain(-4, 4, 3), 8, approximation)
+        drag = losses.damping / losses.period * (losses.resolution / 8) / grid.force_unit
+        friction = losses.coulomb_friction / grid.force_unit
+        for distance, cost in enumerate(grid.costs.tolist()):
+            if approximation == "outer":
                 assert cost <= friction * distance + drag * lost(distance)
                 assert (
                     cost
-                    >= (friction - board.rounding - 1) * distance + drag * lost(distance) - distance**2 - 1
+                    >= (friction - grid.rounding - 1) * distance + drag * lost(distance) - distance**2 - 1
                 )
             else:
                 assert cost >= friction * distance + drag * distance**2
-                assert cost <= (friction + board.rounding + 1) * distance + (drag + 1) * distance**2
-    assert np.all(np.diff(board.knots) > 0)
+                assert cost <= (friction + grid.rounding + 1) * distance + (drag + 1) * distance**2
+    assert np.all(np.diff(grid.nodes) > 0)
 
 
 def test_the_losses_are_hardly_touched_by_rounding():
@@ -148,6 +149,6 @@ def test_the_losses_are_hardly_touched_by_rounding():
         paddle.exact("damping"), paddle.exact("coulomb_friction"), paddle.exact("resolution"),
         paddle.exact("sample_period"), 1,
     )  # fmt: skip
-    board = Board(law, losses, Domain(-47, 64, 16), 64, "generous")
-    friction = int(board.costs[1]) * board.force_unit
+    grid = Grid(law, losses, Domain(-47, 64, 16), 64, "outer")
+    friction = int(grid.costs[1]) * grid.force_unit
     assert friction > losses.coulomb_friction * (1 - Fraction(1, 10**6))

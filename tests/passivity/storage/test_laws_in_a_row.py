@@ -18,8 +18,8 @@ from zwidth import checker, rendering
 from zwidth.loop.every_reading import after_every_reading, scratch
 from zwidth.passivity.certificate import read_document, verify_document
 from zwidth.passivity.storage import same_law
-from zwidth.passivity.storage.hand import game_of
-from zwidth.passivity.storage.row_document import packed
+from zwidth.passivity.storage.program import program_of
+from zwidth.passivity.storage.row.document import packed
 from zwidth.passivity.witness.saved import saved_motion
 from zwidth.plots import storage as storage_figure
 
@@ -120,7 +120,7 @@ def test_hysteresis_needs_its_width_in_friction(part, outcome):
 def test_the_same_hysteresis_in_steps_of_a_table_is_that_of_the_simulator():
     """A hand at random, in the simulator: each force is that of the state to which the table leads."""
     law = zw.render(zw.Wall(200), rendering.Hysteresis("0.03", 700), rendering.Held(samples=3))
-    table = game_of(DEVICE, law, **BOUNDS).table
+    table = program_of(DEVICE, law, **BOUNDS).table
     random = Random(7)
     counts = [-1]
     while len(counts) < 400:
@@ -137,17 +137,17 @@ def test_the_same_hysteresis_in_steps_of_a_table_is_that_of_the_simulator():
 
 
 def test_no_move_of_random_hands_takes_out_more_than_the_storage_falls():
-    """Anywhere between the knots, in exact arithmetic, with the true cost of a move."""
+    """Anywhere between the nodes, in exact arithmetic, with the true cost of a move."""
     found, _ = proved()
-    board, value = found.storage.played.board, found.storage.played.value
-    table, steps = board.table, board.steps
+    grid, value = found.storage.grid, found.storage.value
+    table, steps = grid.table, grid.steps
     f_c, b, delta = Fraction("0.027"), Fraction("0.26"), Fraction("0.0001")
 
     def stored(state, x):
         inside = (x / delta - int(table.counts[state])) * steps
-        knot = min(int(inside), steps - 1)
-        low, high = (int(v) for v in value[state, knot : knot + 2])
-        return (low + (high - low) * (inside - knot)) * board.energy_unit
+        node = min(int(inside), steps - 1)
+        low, high = (int(v) for v in value[state, node : node + 2])
+        return (low + (high - low) * (inside - node)) * grid.energy_unit
 
     random = Random(3)
     state = int(table.starts[0])
@@ -183,9 +183,9 @@ def test_an_adaptive_window_of_three_readings_closes_and_one_of_fifteen_does_not
 
 
 def test_bounds_are_chosen_where_none_are_given():
-    """The largest of a few boards on which the law closes quickly; a short memory has a large one."""
-    little = game_of(DEVICE, zw.render(zw.Wall(100), FREE))
-    much = game_of(DEVICE, zw.render(zw.Wall(100), rendering.DualRate(samples=3)))
+    """The largest of a few grids on which the law closes quickly; a short memory has a large one."""
+    little = program_of(DEVICE, zw.render(zw.Wall(100), FREE))
+    much = program_of(DEVICE, zw.render(zw.Wall(100), rendering.DualRate(samples=3)))
     assert (little.domain.highest, little.domain.reach) == (31, 16)
     assert much.domain.highest < 31
 
@@ -291,7 +291,7 @@ def test_less_friction_or_damping_is_rejected():
 
 
 def test_a_table_that_is_not_closed_is_rejected():
-    """Each reading on the board leads to a state of that reading, and none off the board anywhere."""
+    """Each reading on the grid leads to a state of that reading, and none off the grid anywhere."""
     _, document = proved()
     table = document["table"]
     width = 2 * 4 + 1
@@ -307,7 +307,7 @@ def test_a_table_that_is_not_closed_is_rejected():
         wrong[state, move] = value
         assert said in rejected(changed(document, ["table", "successors"], packed(wrong)))
     counts[0] = 9
-    assert "not on the board" in rejected(changed(document, ["table", "counts"], packed(counts)))
+    assert "not on the grid" in rejected(changed(document, ["table", "counts"], packed(counts)))
     assert "starts must have 1" in rejected(changed(document, ["table", "starts"], []))
     assert "begins" in rejected(changed(document, ["table", "starts"], [len(counts)]))
 
@@ -351,15 +351,15 @@ def test_the_storage_is_shown_over_all_that_the_law_may_remember():
     least, most = energy.sel(remembered="least"), energy.sel(remembered="most")
     assert (most >= least).all()
     assert float((most - least).max()) > 0
-    game = found.storage.played
-    assert float(most.max()) == float(game.value.max() * game.board.energy_unit)
+    game = found.storage.iteration
+    assert float(most.max()) == float(game.value.max() * game.grid.energy_unit)
     lines = storage_figure(found).axes[0].lines
     assert [line.get_gid() for line in lines] == ["most"]
 
 
 def test_a_reading_off_the_board_leaves_its_row_alone():
-    """The step that the table is made of stays on the board."""
-    game = game_of(DEVICE, zw.render(zw.Wall(200), FREE), **BOUNDS)
+    """The step that the table is made of stays on the grid."""
+    game = program_of(DEVICE, zw.render(zw.Wall(200), FREE), **BOUNDS)
     row = game.law.starts[0]
     out = np.full((1, 5, len(row)), 7.0)
     after_every_reading(game.law.packed, row[None, :], np.array([0.0]), 1, -1, 1, scratch(), out)
@@ -367,13 +367,13 @@ def test_a_reading_off_the_board_leaves_its_row_alone():
     assert (out[0, 1:4, -1] == [0, 0, 200 * 1e-4]).all()
 
 
-def test_a_limit_is_sought_on_one_board():
+def test_a_limit_is_sought_on_one_grid():
     """Where no bounds are given, those on which the law closes as it is hold for every value."""
     law = zw.render(zw.Wall(200), rendering.DualRate(samples=2))
     bracket = zw.passive_limit(DEVICE, law)
-    board = bracket.storage.played.board
-    assert (board.domain.highest + 1, board.domain.reach) == game_of(DEVICE, law).board
-    assert f"({board.domain.highest + 1} counts) on either side" in bracket.hand
+    grid = bracket.storage.grid
+    assert (grid.domain.highest + 1, grid.domain.reach) == program_of(DEVICE, law).grid
+    assert f"({grid.domain.highest + 1} counts) on either side" in bracket.hand
     assert bracket.passive > 10**12  # its slope is never more than 2b/T
     assert bracket.active is None
 

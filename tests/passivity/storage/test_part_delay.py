@@ -10,7 +10,7 @@ import pytest
 import zwidth as zw
 from zwidth import checker
 from zwidth.passivity.passive_limit import passive_limit
-from zwidth.passivity.storage import worst_hand
+from zwidth.passivity.storage import available_storage
 
 BOUNDS = {"penetration": "0.0008", "speed": "0.8"}
 
@@ -60,10 +60,10 @@ def test_it_joins_the_delays_of_whole_samples():
 
 def test_longer_than_a_sample():
     """Two readings on the way."""
-    found = worst_hand(device("0.3", "0.02", "1.5"), zw.Wall(50), **BOUNDS)
+    found = available_storage(device("0.3", "0.02", "1.5"), zw.Wall(50), **BOUNDS)
     assert found.outcome == "passive"
     assert found.certificate.verify()
-    found = worst_hand(device("0.1", "0.01", "1.5"), zw.Wall(300), **BOUNDS)
+    found = available_storage(device("0.1", "0.01", "1.5"), zw.Wall(300), **BOUNDS)
     assert found.outcome == "active"
     assert found.witness.verify()
 
@@ -71,7 +71,7 @@ def test_longer_than_a_sample():
 def test_where_the_hand_is_between_samples_matters():
     """The motion that goes straight from sample to sample gains less, and may not gain at all."""
     held = device("0.3", "0.02", "0.5")
-    found = worst_hand(held, zw.Wall(bracket("0.5").active), **BOUNDS).witness
+    found = available_storage(held, zw.Wall(bracket("0.5").active), **BOUNDS).witness
     document = found.to_dict()
     x = document["positions_m"]
     straight = {**document, "switch_positions_m": [(a + b) / 2 for a, b in pairwise(x)]}
@@ -85,7 +85,7 @@ def test_the_motion_keeps_to_its_bounds_in_each_part():
     """Speed and depth, also between the samples."""
     for delay in ("0.2", "0.7"):
         part = Fraction(delay)
-        motion = worst_hand(device("0.1", "0.02", delay), zw.Wall(700), **BOUNDS).witness.motion
+        motion = available_storage(device("0.1", "0.02", delay), zw.Wall(700), **BOUNDS).witness.motion
         x, y = motion.positions, motion.switch_positions
         assert len(y) == len(x) - 1
         most = Fraction("0.0008") * (1 + Fraction(1, 1000))
@@ -97,11 +97,11 @@ def test_the_motion_keeps_to_its_bounds_in_each_part():
 
 def test_tampered():
     """Another delay, or no position between the samples: refused."""
-    proof = worst_hand(device("0.3", "0.02", "0.5"), zw.Wall(300), **BOUNDS).certificate.documents[0]
+    proof = available_storage(device("0.3", "0.02", "0.5"), zw.Wall(300), **BOUNDS).certificate.documents[0]
     assert checker.verify(proof).valid
     slower = {**proof, "loop": {**proof["loop"], "delay_s": "0.0009"}}
     assert not checker.verify(slower).valid
-    motion = worst_hand(device("0.1", "0.01", "0.5"), zw.Wall(700), **BOUNDS).witness.to_dict()
+    motion = available_storage(device("0.1", "0.01", "0.5"), zw.Wall(700), **BOUNDS).witness.to_dict()
     assert checker.verify(motion).valid
     for bad in (None, motion["switch_positions_m"][1:]):
         changed = {k: v for k, v in motion.items() if k != "switch_positions_m"}
@@ -113,4 +113,4 @@ def test_tampered():
 def test_not_on_a_graphics_card():
     """Said at once."""
     with pytest.raises(zw.InputError, match="processor"):
-        worst_hand(device("0.3", "0.02", "0.5"), zw.Wall(300), **BOUNDS, on="gpu")
+        available_storage(device("0.3", "0.02", "0.5"), zw.Wall(300), **BOUNDS, backend="gpu")

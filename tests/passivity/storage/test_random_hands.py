@@ -10,8 +10,8 @@ import pytest
 from crowd import Crowd
 
 import zwidth as zw
-from zwidth.passivity.storage import worst_hand
-from zwidth.passivity.storage.hand import game_of
+from zwidth.passivity.storage import available_storage
+from zwidth.passivity.storage.program import program_of
 
 BOUNDS = {"penetration": "0.0012", "speed": "0.6"}
 
@@ -72,16 +72,16 @@ def counted(loop):
 def proved(name):
     """The game and the storage function."""
     loop, law = LOOPS[name]
-    found = worst_hand(loop, law, **counted(loop), **bounds(name))
+    found = available_storage(loop, law, **counted(loop), **bounds(name))
     assert found.outcome == "passive"
-    return game_of(loop, law, **counted(loop), **bounds(name)), found.storage
+    return program_of(loop, law, **counted(loop), **bounds(name)), found.storage
 
 
 def weaker(name, share):
     """The same game on a device with a share of the damping and friction."""
     loop, law = LOOPS[name]
     less = {key: loop.exact(key) * share for key in ("damping", "coulomb_friction")}
-    return game_of(loop.replace(**less), law, **counted(loop), **bounds(name))
+    return program_of(loop.replace(**less), law, **counted(loop), **bounds(name))
 
 
 def left_over(crowd, state, move):
@@ -95,7 +95,7 @@ def left_over(crowd, state, move):
 
 @pytest.mark.parametrize("name", LOOPS)
 def test_no_move_takes_out_more_than_the_storage_falls(name):
-    """200 000 moves from states at random, between the knots too, most of them from edge to edge."""
+    """200 000 moves from states at random, between the nodes too, most of them from edge to edge."""
     crowd = Crowd(*proved(name), seed=1)
     state = crowd.somewhere(200_000)
     left, scale = left_over(crowd, state, crowd.wish(*state))
@@ -150,14 +150,14 @@ def test_hands_get_out_no_more_than_was_stored_at_the_start(name):
 
 @pytest.mark.parametrize("name", [n for n, (_, law) in LOOPS.items() if law.unilateral])
 def test_nor_hands_that_go_far_away_in_between(name):
-    """Outside of the board nothing is stored: a hand that leaves it and comes back takes no more."""
+    """Outside of the grid nothing is stored: a hand that leaves it and comes back takes no more."""
     game, storage = proved(name)
     crowd = Crowd(game, storage, seed=4)
     number, reach = 4000, game.domain.reach
     cells, places = np.zeros(number, np.int64), crowd.place(number)
     before = np.zeros((number, crowd.memory), np.int64)
     at_start, out, most = crowd.stored(cells, places, before), np.zeros(number), np.zeros(number)
-    left_the_board = np.zeros(number, bool)
+    left_the_grid = np.zeros(number, bool)
     for _ in range(80):
         ahead = crowd.random.integers(-reach, reach + 1, number)
         there = np.minimum(cells + ahead, game.domain.highest)
@@ -168,8 +168,8 @@ def test_nor_hands_that_go_far_away_in_between(name):
         before = crowd.after(cells, before)
         cells, places = there, stop
         most = np.maximum(most, out)
-        left_the_board |= cells < game.domain.lowest
-    assert left_the_board.mean() > 0.3
+        left_the_grid |= cells < game.domain.lowest
+    assert left_the_grid.mean() > 0.3
     assert (most <= at_start + 1e-12 * crowd.value.max()).all()
 
 

@@ -7,13 +7,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from zwidth.passivity.storage.board import NOWHERE, Board, Domain, Losses
+from zwidth.passivity.storage.domain import Domain
+from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.law import FiniteLaw
-from zwidth.passivity.storage.sweep import sweep
+from zwidth.passivity.storage.losses import Losses
+from zwidth.passivity.storage.solve.hull import NOWHERE, sweep
 
 
 def _drawn(rng, memory):
-    """A random board with cells near, between and at the ends of the reach; losses may be 0."""
+    """A random grid with cells near, between and at the ends of the reach; losses may be 0."""
     taps = tuple(Fraction(f"{tap:.5g}") for tap in 200 * rng.normal(size=memory + 1))
     damping, friction = (
         Fraction(f"{10 ** rng.uniform(low, high):.4g}") * int(rng.random() < 0.7)
@@ -23,47 +25,45 @@ def _drawn(rng, memory):
     domain = Domain(
         -int(rng.integers(0, 9)), int(rng.integers(1, 9)), int(rng.integers(1, (12, 9, 4)[memory]))
     )
-    rules = rng.choice(["generous", "strict"])
-    steps = int(rng.integers(1, 7)) if rules == "generous" else 1024
+    approximation = rng.choice(["outer", "inner"])
+    steps = int(rng.integers(1, 7)) if approximation == "outer" else 1024
     surface = rng.choice(["none", "position", "penetration"])
-    return Board(FiniteLaw(taps, surface, bool(rng.integers(2))), losses, domain, steps, rules)
+    return Grid(FiniteLaw(taps, surface, bool(rng.integers(2))), losses, domain, steps, approximation)
 
 
-def _start(rng, board):
+def _start(rng, grid):
     """V as a game may begin and go on, hills that are worth a walk, or any whole numbers."""
-    guess = board.first_guess
+    guess = grid.first_guess
     some = (guess * rng.random(guess.shape)).astype(np.int64)
-    x = np.arange(board.domain.cells)[:, None] * board.steps + board.knots
-    length = board.steps * rng.uniform(2, 9)
-    force = np.abs(board.forces[board.forces != NOWHERE]).max() + abs(
-        board.costs[-1] / (board.costs.size - 1)
-    )
+    x = np.arange(grid.domain.cells)[:, None] * grid.steps + grid.nodes
+    length = grid.steps * rng.uniform(2, 9)
+    force = np.abs(grid.forces[grid.forces != NOWHERE]).max() + abs(grid.costs[-1] / (grid.costs.size - 1))
     hills = force * length * rng.uniform(0.1, 1) * np.cos(x / length + rng.uniform(0, 6))
-    hills = np.repeat(hills.astype(np.int64)[:, None, :], board.histories, axis=1)
+    hills = np.repeat(hills.astype(np.int64)[:, None, :], grid.histories, axis=1)
     any_ = rng.integers(0, 4, guess.shape) * max(1, int(guess.max()) // int(rng.integers(2, 50)))
     return [0 * guess, guess.copy(), some, hills, hills + some, any_][rng.integers(6)]
 
 
-def _by_definition(board, value, choice):
-    """Group by group and knot by knot; of equal moves the least d, and of one d the cell below."""
+def _by_definition(grid, value, choice):
+    """Group by group and node by node; of equal moves the least d, and of one d the cell below."""
     cells, histories, edges = value.shape
-    reach, knots, steps = board.domain.reach, board.knots, board.steps
-    alike = board.width if board.memory else 1
+    reach, nodes, steps = grid.domain.reach, grid.nodes, grid.steps
+    alike = grid.width if grid.memory else 1
     per_cell = histories // alike
     for n, newer, j in np.ndindex(cells, per_cell, edges):
         targets = [
-            (n2, ((n - n2 + reach) * per_cell + newer) if board.memory else 0, j2)
+            (n2, ((n - n2 + reach) * per_cell + newer) if grid.memory else 0, j2)
             for n2 in range(max(0, n - reach), min(cells, n + reach + 1))
             for j2 in range(edges)
         ]
-        d = np.array([(n2 - n) * steps + knots[j2] - knots[j] for n2, _, j2 in targets])
-        near = np.abs(d) < len(board.costs)
+        d = np.array([(n2 - n) * steps + nodes[j2] - nodes[j] for n2, _, j2 in targets])
+        near = np.abs(d) < len(grid.costs)
         d, targets = d[near], np.array(targets)[near]
-        height = value[tuple(targets.T)] - board.costs[np.abs(d)]
+        height = value[tuple(targets.T)] - grid.costs[np.abs(d)]
         for h in range(newer * alike, (newer + 1) * alike):
-            if board.forces[n, h] == NOWHERE:
+            if grid.forces[n, h] == NOWHERE:
                 continue
-            energy = height - board.forces[n, h] * d
+            energy = height - grid.forces[n, h] * d
             best = int(energy.argmax())
             if energy[best] > value[n, h, j]:
                 value[n, h, j] = energy[best]
@@ -76,14 +76,14 @@ def test_a_sweep_finds_the_best_move_of_every_state(memory: int) -> None:
     rng = np.random.default_rng(memory)
     improved = 0
     for _ in range((60, 25, 8)[memory]):
-        board = _drawn(rng, memory)
-        value = _start(rng, board)
+        grid = _drawn(rng, memory)
+        value = _start(rng, grid)
         choice = np.full(value.shape, -1, np.int64)
         own_value, own_choice = value.copy(), choice.copy()
-        groups = len(value) * (board.histories // board.width if memory else 1)
-        tables = board.forces, board.costs, board.knots, board.steps
-        improved += sweep(own_value, own_choice, *tables, 0, groups, board.domain.reach)
-        _by_definition(board, value, choice)
+        groups = len(value) * (grid.histories // grid.width if memory else 1)
+        tables = grid.forces, grid.costs, grid.nodes, grid.places, grid.domain.reach, grid.steps
+        improved += sweep(own_value, own_choice, 0, groups, *tables)
+        _by_definition(grid, value, choice)
         assert (own_value == value).all()
         assert (own_choice == choice).all()
     assert improved > 1000

@@ -15,10 +15,10 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity.storage.board import Board
-from zwidth.passivity.storage.hand import game_of
-from zwidth.passivity.storage.solve import play
-from zwidth.passivity.storage.storage import Storage
+from zwidth.passivity.storage.evidence.storage_function import StorageFunction
+from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage.program import program_of
+from zwidth.passivity.storage.solve.value_iteration import value_iteration
 
 BOUNDS = {"penetration": "0.0006", "speed": "0.3"}
 
@@ -54,16 +54,16 @@ def least(name):
     """The smallest storage function there is, every value of it attained by a move; and its document."""
     loop, law = LOOPS[name]
     counted = {f"force_{key}": getattr(loop, f"force_{key}") is not None for key in ("limit", "resolution")}
-    game = game_of(loop, law, **counted, **BOUNDS)
+    game = program_of(loop, law, **counted, **BOUNDS)
 
-    class FromNothing(Board):
-        """A board whose search starts at 0."""
+    class FromNothing(Grid):
+        """A grid whose search starts at 0."""
 
-        first_guess = property(lambda b: np.zeros((b.domain.cells, b.histories, len(b.knots)), np.int64))
+        first_guess = property(lambda b: np.zeros((b.domain.cells, b.histories, len(b.nodes)), np.int64))
 
-    played = play(FromNothing(game.law, game.losses, game.domain, 8, "generous"))
+    played = value_iteration(FromNothing(game.law, game.losses, game.domain, 8, "outer"))
     assert played.value is not None
-    document = json.loads(json.dumps(Storage(played, "linear").certificate().to_dict(), default=str))
+    document = json.loads(json.dumps(StorageFunction(played, "linear").certificate().to_dict(), default=str))
     verification = checker.verify(document)
     assert verification.valid, verification.reason
     return played, document
@@ -180,7 +180,7 @@ def test_every_number_of_the_law_binds(name):
 
 @pytest.mark.parametrize("name", LOOPS)
 def test_every_number_of_the_board_binds(name):
-    """Cells, reach, steps and unit, one more or less; and sizes that no board has."""
+    """Cells, reach, steps and unit, one more or less; and sizes that no grid has."""
     _, document = least(name)
     domain = document["domain"]
     for key in domain:
@@ -212,11 +212,11 @@ def test_one_value_far_too_large(name):
     """What is said to be stored in one place must be stored in those from where one comes there."""
     played, document = least(name)
     random, cells = Random(name), len(played.value)
-    middle = played.board.histories // 2
+    middle = played.grid.histories // 2
     for _ in range(20):
         more = played.value.copy()
-        cell, knot = random.randrange(1, cells - 1), random.randrange(more.shape[2])
-        more[cell, middle, knot] += 2**40
+        cell, node = random.randrange(1, cells - 1), random.randrange(more.shape[2])
+        more[cell, middle, node] += 2**40
         assert "takes out more" in rejected(changed(document, ("storage",), packed(more)))
 
 
@@ -317,7 +317,7 @@ def test_nothing_in_a_document_raises(name):
 def active():
     """A wall that is too stiff, and the document of a motion that gains."""
     loop = device("0.2", "0.02", 0)
-    game = game_of(loop, zw.Wall(300, "0.1"), **BOUNDS)
+    game = program_of(loop, zw.Wall(300, "0.1"), **BOUNDS)
     motion = game.refute(1024)
     assert motion is not None
     document = json.loads(json.dumps(motion.to_dict(), default=str))
@@ -363,10 +363,10 @@ def test_a_motion_that_was_tampered_with(path, value, said):
 
 def test_the_energy_of_a_motion_is_that_of_the_law_written_out():
     """The checker and the definition agree to the last digit, over all rounds."""
-    from plain_game import exact_force
+    from plain_iteration import exact_force
 
     motion, document = active()
-    game = game_of(device("0.2", "0.02", 0), zw.Wall(300, "0.1"), **BOUNDS)
+    game = program_of(device("0.2", "0.02", 0), zw.Wall(300, "0.1"), **BOUNDS)
     positions = motion.motion.listed().positions
     step, out = game.losses.resolution, Fraction(0)
     counts = [x // step for x in positions]

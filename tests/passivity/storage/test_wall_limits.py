@@ -11,10 +11,9 @@ import pytest
 
 import zwidth as zw
 from zwidth.passivity.formulas import closed_forms as forms
-from zwidth.passivity.storage.board import Domain
-from zwidth.passivity.storage.domain import losses_of
-from zwidth.passivity.storage.hand import FINE, STEPS, Game
+from zwidth.passivity.storage.domain import Domain, losses_of
 from zwidth.passivity.storage.law import finite_law
+from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram
 
 BELOW, BEYOND = 1 - Fraction(1, 100), 1 + Fraction(1, 100)
 
@@ -24,11 +23,11 @@ def draw(random, low, high):
     return Fraction(f"{low * (high / low) ** random.random():.3e}")
 
 
-def game_of(device, wall, inside, reach):
-    """The game on a board of so many counts."""
+def program_of(device, wall, inside, reach):
+    """The game on a grid of so many counts."""
     law, losses = finite_law(device, wall), losses_of(device)
     outside = 1 - (law.memory + losses.delay + 1) * reach
-    return Game(law, losses, Domain(outside, inside, reach), device.motion)
+    return DynamicProgram(law, losses, Domain(outside, inside, reach), device.motion)
 
 
 def proved(game):
@@ -70,13 +69,13 @@ def test_a_spring_that_is_too_stiff_for_its_damping(seed):
     needed = (friction - above * step / 2) / (above / 2 - b / period)  # no gain below it, see quantization.md
     assert needed < 200 * step
     counts = ceil(needed / step * Fraction(3, 2)) + 3
-    motion = refuted(game_of(loop, zw.Wall(above), counts, counts))
+    motion = refuted(program_of(loop, zw.Wall(above), counts, counts))
     assert max(abs(d) for d in moves(motion)) > needed
-    assert proved(game_of(loop, zw.Wall(limit * BELOW), counts, counts))
+    assert proved(program_of(loop, zw.Wall(limit * BELOW), counts, counts))
     slow = floor(needed / step * Fraction(9, 10))  # the same wall, and a hand a tenth too slow for it
     if slow:
-        assert refuted(game_of(loop, zw.Wall(above), slow + 5, slow)) is None
-        assert proved(game_of(loop, zw.Wall(above), slow + 5, slow))
+        assert refuted(program_of(loop, zw.Wall(above), slow + 5, slow)) is None
+        assert proved(program_of(loop, zw.Wall(above), slow + 5, slow))
 
 
 @pytest.mark.parametrize("seed", range(50))
@@ -88,13 +87,13 @@ def test_a_spring_that_is_too_stiff_for_its_friction(seed):
     b = limit * period / 2 * Fraction(random.randint(103, 300), 100)
     assert forms.abbott_okamura_stiffness(b, friction, step, period).quantization.fraction == limit
     loop = device(b, friction, step, period)
-    motion = refuted(game_of(loop, zw.Wall(limit * BEYOND), 10, 5))
+    motion = refuted(program_of(loop, zw.Wall(limit * BEYOND), 10, 5))
     assert motion is not None
     part = motion.motion.repeats[0]
     cycle = motion.motion.positions[part.first : part.last + 1]
     assert max(cycle) - min(cycle) < step / 20
     assert floor(max(cycle) / step) == floor(min(cycle) / step) + 1
-    assert proved(game_of(loop, zw.Wall(limit * BELOW), 10, 5))
+    assert proved(program_of(loop, zw.Wall(limit * BELOW), 10, 5))
 
 
 @pytest.mark.parametrize("clamped", [False, True])
@@ -110,12 +109,12 @@ def test_a_damped_wall_with_too_little_friction(seed, clamped):
     inside = ceil(b / (k * period)) + 3 if clamped else 4
     inside, reach = min(max(inside, 4), 12), 4
     wall = zw.Wall(k, b, clamped=clamped)
-    motion = refuted(game_of(device(damping, friction * BELOW, step, period), wall, inside, reach))
+    motion = refuted(program_of(device(damping, friction * BELOW, step, period), wall, inside, reach))
     assert motion is not None
     assert motion.law.clamped is clamped
     assert max(abs(d) for d in moves(motion)) < step
-    assert refuted(game_of(device(damping, friction * BEYOND, step, period), wall, inside, reach)) is None
-    assert proved(game_of(device(damping, friction * BEYOND, step, period), wall, inside, reach))
+    assert refuted(program_of(device(damping, friction * BEYOND, step, period), wall, inside, reach)) is None
+    assert proved(program_of(device(damping, friction * BEYOND, step, period), wall, inside, reach))
 
 
 @pytest.mark.parametrize("clamped", [False, True])
@@ -130,26 +129,26 @@ def test_a_damped_wall_with_hardly_enough_damping(seed, clamped):
     wall = zw.Wall(k, b, clamped=clamped)
     for counts in (4, 8):
         loop = device(damping * Fraction(1001, 1000), friction, step, period)
-        assert proved(game_of(loop, wall, counts, counts))
-        assert refuted(game_of(loop, wall, counts, counts)) is None
+        assert proved(program_of(loop, wall, counts, counts))
+        assert refuted(program_of(loop, wall, counts, counts)) is None
     # in and out by n counts every sample gains [K T/2 + B − b] 2 n²Δ²/T less friction, f_c less its share
     short = device(damping * Fraction(8, 10), friction, step, period)
     spare = friction - (k / 2 + b / period) * step
     needed = spare / (damping / 5 / period) / step
     assert needed < 4
-    motion = refuted(game_of(short, wall, 16 if clamped else 8, 8))
+    motion = refuted(program_of(short, wall, 16 if clamped else 8, 8))
     assert motion is not None
     assert max(abs(d) for d in moves(motion)) > step / 2
 
 
 def test_deeper_than_the_board_a_clamped_wall_is_not_seen():
-    """Where B v is larger than K x at every depth of the board, the friction limit does not show."""
+    """Where B v is larger than K x at every depth of the grid, the friction limit does not show."""
     k, period, step = Fraction(100), Fraction(1, 1000), Fraction(1, 10**4)
     b = Fraction(1)  # B/(K T) = 10 counts
     damping = forms.damped_wall_damping(k, b, period).fraction * 3
     friction = forms.damped_wall_friction(k, b, step, period).fraction * Fraction(9, 10)
     shallow, deep = (
-        refuted(game_of(device(damping, friction, step, period), zw.Wall(k, b, clamped=True), n, 2))
+        refuted(program_of(device(damping, friction, step, period), zw.Wall(k, b, clamped=True), n, 2))
         for n in (3, 14)
     )
     assert shallow is None

@@ -11,21 +11,21 @@ derivatives by lengths, |∂²p/∂q_i∂q_j| ≤ what lies beyond both joints, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from math import isqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..document.fields import Field, List, Number, OneOf, Read, Record, numbers
 from ..document.refusal import Invalid
 from ..document.unit import always
-from ..exact.enclosed import Enclosed, dot, known
+from ..exact.enclosed import Enclosed, dot, known, mapped
 from ..exact.functions import sine_cosine
 from .cells import BITS
 from .damping import constant, damping_matrix, damping_of
 
 MOST_JOINTS = 16
-_METRES, _RADIANS = always("m"), always("rad")
+METRES = always("m")
 
 
 def vector(size: int, unit: str = "") -> List:
@@ -56,7 +56,7 @@ _JOINT = OneOf(
             "N_m",
             "N_m_s_per_rad",
             largest_column=Number(always("m_per_rad"), least=0, default=None),
-            rest=Number(_RADIANS, default=None),
+            rest=Number(always("rad"), default=None),
         ),
         "prismatic": _joint("m", "N", "N_s_per_m"),
     },
@@ -96,14 +96,18 @@ def chain_of(told: Read) -> Chain:
 
 
 def _joint_of(told: Read) -> Joint:
-    rotation = told.rotation
-    for i, a in enumerate(rotation):
-        for j, b in enumerate(rotation):
-            if abs(sum((x * y for x, y in zip(a, b, strict=True)), Fraction(-(i == j)))) > NEARLY:
-                raise Invalid("a rotation is not one")
+    require_square(told.rotation, "a rotation is not one")
     if told.low > told.high:
         raise Invalid("a joint needs low ≤ high")
-    return Joint(told.kind == "prismatic", rotation, told.translation, told.low, told.high)
+    return Joint(told.kind == "prismatic", told.rotation, told.translation, told.low, told.high)
+
+
+def require_square(axes: Sequence[Sequence[Fraction]], message: str) -> None:
+    """Refuse axes that are not of length 1 or not at right angles, or not nearly."""
+    for i, a in enumerate(axes):
+        for j, b in enumerate(axes):
+            if abs(sum((x * y for x, y in zip(a, b, strict=True)), Fraction(-(i == j)))) > NEARLY:
+                raise Invalid(message)
 
 
 NOTHING = Enclosed(BITS, 0)
@@ -127,23 +131,26 @@ def chain_surplus(
 
     def surplus(joints: Sequence[Enclosed]) -> list[list[Enclosed]]:
         point, columns = end, list[list[Enclosed]]()
-        for joint, q, (rotation, translation) in reversed(
-            list(zip(chain.joints, joints, fixed, strict=True))
-        ):
+        for joint, q, (rotation, translation) in from_end(chain.joints, joints, fixed):
             vectors = _moved(joint.slides, q, point, columns)
-            point, *columns = [[dot(v, row) for row in rotation] for v in vectors]
+            point, *columns = [mapped(rotation, v) for v in vectors]
             point = [x + t for x, t in zip(point, translation, strict=True)]
         turned = turning(joints) if turning else [[] for _ in joints]
         columns = [
             [*column[: len(need) - len(more)], *more] for column, more in zip(columns, turned, strict=True)
         ]
-        loads = [[dot(v, row) for row in need] for v in columns]
+        loads = [mapped(need, v) for v in columns]
         return [
             [damping - dot(v, load) for damping, load in zip(own[i], loads[i:], strict=True)]
             for i, v in enumerate(columns)
         ]
 
     return surplus
+
+
+def from_end(*listed: Sequence[Any]) -> Iterable[tuple[Any, ...]]:
+    """What belongs to each joint, from the end to the base."""
+    return reversed(list(zip(*listed, strict=True)))
 
 
 def _placements(chain: Chain) -> list[tuple[list[list[Enclosed]], list[Enclosed]]]:
@@ -179,12 +186,10 @@ def levers(chain: Chain) -> Callable[[Sequence[Enclosed]], list[Enclosed]]:
 
     def squares(joints: Sequence[Enclosed]) -> list[Enclosed]:
         point, found = end, list[Enclosed]()
-        for joint, q, (rotation, translation) in reversed(
-            list(zip(chain.joints, joints, fixed, strict=True))
-        ):
+        for joint, q, (rotation, translation) in from_end(chain.joints, joints, fixed):
             found.insert(0, dot(point[:2], point[:2]))
-            moved = _moved(joint.slides, q, point, [])[0]
-            point = [dot(moved, row) + t for row, t in zip(rotation, translation, strict=True)]
+            moved = mapped(rotation, _moved(joint.slides, q, point, [])[0])
+            point = [x + t for x, t in zip(moved, translation, strict=True)]
         return found
 
     return squares

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
 from ..document.fields import List, Number, Read, only_if
 from ..document.refusal import Invalid
@@ -20,9 +21,14 @@ Matrix = list[list[Fraction]]
 LARGEST = 1 << 64
 
 
+def matrix_entry(unit: str, most: int, **more: Any) -> List:
+    """Rows of a square matrix."""
+    return List(List(Number(), least=1, most=most), unit=always(unit), least=1, most=most, **more)
+
+
 def damping_matrix(unit: str, most: int) -> List:
     """The entry of an arm whose joints damp each other."""
-    return List(List(Number(), least=1, most=most), unit=always(unit), least=1, most=most, default=None)
+    return matrix_entry(unit, most, default=None)
 
 
 def constant(x: Fraction) -> Enclosed:

@@ -20,10 +20,8 @@ from ..document.number import up
 from ..document.refusal import Invalid
 from ..exact.enclosed import Enclosed
 from .chain import LONGER, NOTHING, UNIT, Chain, levers, root_above
-from .damping import constant
+from .damping import Matrix, constant
 from .pose import Pose
-
-Matrix = list[list[Fraction]]
 
 
 class Encoders(NamedTuple):

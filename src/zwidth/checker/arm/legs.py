@@ -27,14 +27,12 @@ from ..document.refusal import Invalid
 from ..document.unit import always
 from ..exact.enclosed import Enclosed, dot
 from ..exact.functions import inverse, root
-from .chain import NEARLY, NOTHING
+from .chain import METRES, NOTHING, require_square
 from .damping import constant, damping_matrix, damping_of
-
-_METRES = always("m")
 
 
 def _place() -> List:
-    return numbers(_METRES, least=2, most=3)
+    return numbers(METRES, least=2, most=3)
 
 
 _LEG = Record(
@@ -42,9 +40,9 @@ _LEG = Record(
         "base": _place(),
         "out": numbers(least=2, most=3),
         "up": numbers(least=2, most=3),
-        "link": Number(_METRES, above=0),
-        "rod": Number(_METRES, above=0),
-        "offset": Number(_METRES, least=0),
+        "link": Number(METRES, above=0),
+        "rod": Number(METRES, above=0),
+        "offset": Number(METRES, least=0),
         "bend": Choice(-1, 1),
         "damping": Number(always("N_m_s_per_rad"), least=0, default=None),
     }
@@ -93,10 +91,7 @@ def _leg(told: Read, size: int) -> Leg:
     out, up = told.out, told.up
     across = [up[i - 2] * out[i - 1] - up[i - 1] * out[i - 2] for i in range(3)] if size == 3 else []
     axes = [out, up, across] if size == 3 else [out, up]
-    for i, a in enumerate((out, up)):
-        for j, b in enumerate((out, up)):
-            if abs(sum((x * y for x, y in zip(a, b, strict=True)), Fraction(-(i == j)))) > NEARLY:
-                raise Invalid("out and up must be of length 1, at right angles")
+    require_square((out, up), "out and up must be of length 1, at right angles")
     return Leg(told.base, axes, told.link, told.rod, told.offset, told.bend)
 
 

@@ -21,12 +21,11 @@ from typing import NamedTuple
 from ..document.fields import Read, only_if
 from ..document.number import about
 from ..document.refusal import Invalid
-from ..exact.enclosed import Enclosed, dot
+from ..exact.enclosed import Enclosed, dot, mapped
 from ..exact.functions import inverse, root, sine_cosine
-from .chain import NOTHING, UNIT, Chain, about_z
-from .damping import constant
+from .chain import NOTHING, UNIT, Chain, about_z, from_end
+from .damping import Matrix, constant
 
-Matrix = list[list[Fraction]]
 Columns = Callable[[Sequence[Enclosed]], list[list[Enclosed]]]
 
 
@@ -98,12 +97,12 @@ def _axes(chain: Chain, placed: Sequence[list[Fraction]]) -> Columns:
 
     def columns(joints: Sequence[Enclosed]) -> list[list[Enclosed]]:
         found: list[list[Enclosed]] = []
-        for joint, q, rotation in reversed(list(zip(chain.joints, joints, rotations, strict=True))):
+        for joint, q, rotation in from_end(chain.joints, joints, rotations):
             if joint.slides:
                 own = NOTHING
             else:
                 own, found = UNIT, about_z(q, found)
-            found = [_mapped(rotation, v) for v in ([NOTHING, NOTHING, own], *found)]
+            found = [mapped(rotation, v) for v in ([NOTHING, NOTHING, own], *found)]
         return found
 
     return columns
@@ -116,7 +115,7 @@ def _from_rest(chain: Chain, placed: Sequence[list[Fraction]], rest: Sequence[Fr
     def turned(joints: Sequence[Enclosed], end: list[Enclosed]) -> list[list[Enclosed]]:
         """Q ⊗ end, and twice its derivatives."""
         found = [end]
-        for joint, q, matrix in reversed(list(zip(chain.joints, joints, matrices, strict=True))):
+        for joint, q, matrix in from_end(chain.joints, joints, matrices):
             if joint.slides:
                 own = [NOTHING] * 4
             else:
@@ -124,7 +123,7 @@ def _from_rest(chain: Chain, placed: Sequence[list[Fraction]], rest: Sequence[Fr
                 found = [_about_third(v, s, c) for v in found]
                 w, x, y, z = found[0]
                 own = [-z, -y, x, w]
-            found = [_mapped(matrix, v) for v in (found[0], own, *found[1:])]
+            found = [mapped(matrix, v) for v in (found[0], own, *found[1:])]
         return found
 
     w, *v = turned([constant(q) for q in rest], [UNIT, NOTHING, NOTHING, NOTHING])[0]
@@ -136,10 +135,6 @@ def _about_third(v: Sequence[Enclosed], s: Enclosed, c: Enclosed) -> list[Enclos
     """(c + ẑ s) ⊗ v."""
     back, on = (c, -s), (c, s)
     return [dot((v[0], v[3]), back), dot((v[1], v[2]), back), dot((v[2], v[1]), on), dot((v[3], v[0]), on)]
-
-
-def _mapped(matrix: Sequence[Sequence[Enclosed]], vector: Sequence[Enclosed]) -> list[Enclosed]:
-    return [dot(vector, row) for row in matrix]
 
 
 def _quaternion(r: Matrix) -> list[Fraction]:

@@ -18,33 +18,27 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import NamedTuple
 
-from ..document.fields import Choice, Either, List, Number, OneOf, Read, Record, Whole, document, only_if
+from ..document.fields import Choice, Either, Number, OneOf, Read, Record, Whole, document, only_if
 from ..document.number import down
 from ..document.refusal import Invalid
 from ..document.unit import SECONDS, always
 from ..exact.enclosed import Enclosed
 from .cells import BITS, Function, Range, positive_in
 from .chain import CHAIN, Chain, bends, chain_of, chain_surplus
-from .damping import LARGEST, constant
+from .damping import LARGEST, Matrix, constant, matrix_entry
 from .encoders import columns_below, encoders_of, require_friction, require_no_encoders, with_steps
 from .legs import LEGS, legs_of, legs_surplus
 from .pose import Pose, for_every_rest, in_words, pose_of, turning, turning_bend
 
 MOST_DELAY = 10**6
 
-Matrix = list[list[Fraction]]
-
-
-def _matrix(unit: str, most: int) -> List:
-    return List(List(Number(), least=1, most=most), unit=always(unit), least=1, most=most)
-
 
 def _wall(stiffness: str, damping: str, most: int) -> Record:
     return Record(
         {
-            "stiffness": _matrix(stiffness, most),
-            "virtual_damping": _matrix(damping, most),
-            "damping_bound": _matrix(damping, most),
+            "stiffness": matrix_entry(stiffness, most),
+            "virtual_damping": matrix_entry(damping, most),
+            "damping_bound": matrix_entry(damping, most),
         }
     )
 

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 from ..document.fields import Either, Number, Read, Record, document, numbers
 from ..document.refusal import Invalid
 from ..document.unit import DAMPING, STIFFNESS
-from ..exact.polynomial import add, multiply, same
-from ..loop.loop import LOOP, Loop, loop_of, require_surface, require_whole_delay
+from ..exact.polynomial import add, multiply
+from ..loop.loop import LOOP, Loop, loop_of, require_law, require_surface, require_whole_delay
 
 _POLE = Record({"pole": Number(least=0, below=1)})
 WALL = Record(
@@ -65,5 +65,5 @@ def _require_same_law(p: Loop, k: Fraction, b: Fraction, estimate: _Estimate) ->
     """K + B W(ζ) (1 − ζ)/T is N/D."""
     moved = multiply(estimate.top, [b / p.period, -b / p.period])
     top = add(moved, [k * c for c in estimate.bottom])
-    if not same(multiply(top, p.denominator), multiply(p.numerator, estimate.bottom)):
-        raise Invalid("H(z) is not the wall of the stiffness, virtual damping and weights given")
+    message = "H(z) is not the wall of the stiffness, virtual damping and weights given"
+    require_law(p, top, estimate.bottom, message)

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..document.fields import Choice, Flag, Number, Read, Record, numbers, only_if, pairs
+from ..document.fields import Choice, Flag, Number, Read, Record, increasing, numbers, only_if, pairs
 from ..document.refusal import Invalid
 from ..document.unit import (
     DAMPING,
@@ -164,9 +164,7 @@ def losses_of(loop: Read) -> Losses:
 
 
 def _curve(told: Sequence[Sequence[Fraction]]) -> list[tuple[Fraction, Fraction]]:
-    curve = [(v, f) for v, f in told]
-    if any(a[0] >= b[0] for a, b in zip(curve, curve[1:], strict=False)):
-        raise Invalid("the speeds of a friction curve must increase")
+    curve = increasing(told, "the speeds of a friction curve")
     if any(v < 0 or f < 0 for v, f in curve):
         raise Invalid("speeds and forces of a friction curve are ≥ 0")
     return curve
@@ -189,9 +187,7 @@ def _models_below(
 
 def law_of(told: Read) -> Law:
     """The law of a document."""
-    points = [(x, f) for x, f in told.points or []]
-    if any(a[0] >= b[0] for a, b in zip(points, points[1:], strict=False)):
-        raise Invalid("the positions of the points must increase")
+    points = increasing(told.points or [], "the positions of the points")
     if bool(told.taps) == bool(points):
         raise Invalid("a law has either taps or points")
     if told.rate_per and not points:

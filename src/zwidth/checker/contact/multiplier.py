@@ -10,7 +10,7 @@ from ..document.number import common_scale
 from ..document.refusal import Invalid
 from ..exact.polynomial import square_modulus
 from ..exact.positivity import POSITIVITY, require_nonnegative
-from ..exact.roots import inside_unit_circle
+from ..loop.criterion import require_stable_by_itself
 from ..loop.loop import LOOP, Loop, loop_of, require_surface, require_whole_delay
 from ..loop.one_norm import NORM, one_norm_bound
 
@@ -32,11 +32,8 @@ def multiplier_contact(told: Read) -> str:
     p, proof = loop_of(told.loop), told.proof
     require_surface(p)
     require_whole_delay(p)
-    if not inside_unit_circle(p.denominator):
-        raise Invalid("H(z) has a pole outside or on the unit circle")
+    require_stable_by_itself(p)
     stiffness = sum(p.numerator, Fraction(0)) / sum(p.denominator, Fraction(0))
-    if stiffness < 0:
-        raise Invalid("the static stiffness H(1) is negative")
     rest = [n - stiffness * d for n, d in zip(p.numerator, p.denominator, strict=True)]
     left = p.damping / p.period - (2 * p.whole + 1) * stiffness / 2
     if left < 0:

@@ -7,8 +7,8 @@ from fractions import Fraction
 from ..document.fields import Choice, Flag, List, Number, Read, Record, document
 from ..document.refusal import Invalid
 from ..document.unit import STIFFNESS
-from ..exact.polynomial import add, multiply, same
-from ..loop.loop import LOOP, Loop, loop_of, require_surface, require_whole_delay
+from ..exact.polynomial import add, multiply
+from ..loop.loop import LOOP, Loop, loop_of, require_law, require_surface, require_whole_delay
 
 MOST_PARTS = 60
 
@@ -66,5 +66,4 @@ def _require_same_law(p: Loop, law: Read) -> None:
         line = [Fraction(1), -part.pole]
         moved = multiply(bottom, [part.stiffness, -part.stiffness])
         top, bottom = add(multiply(top, line), moved), multiply(bottom, line)
-    if not same(multiply(top, p.denominator), multiply(p.numerator, bottom)):
-        raise Invalid("H(z) is not the law of the stiffness and parts given")
+    require_law(p, top, bottom, "H(z) is not the law of the stiffness and parts given")

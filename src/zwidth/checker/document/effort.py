@@ -31,13 +31,7 @@ def one_document() -> Iterator[None]:
 
 
 def spend(steps: float, bits: float = 0, by: float | None = None) -> None:
-    """Before so many products of numbers of `bits` and of `by` bits, the same if not given.
-
-    Raises
-    ------
-    Invalid
-        If that is more than one document may cost.
-    """
+    """Before so many products of `bits` and `by` bits, the same if not given: too many are refused."""
     cost = steps * (0.1 + bits / 1000 * ((bits if by is None else by) / 1000) ** 0.8)
     spent = _spent.get()
     if spent is not None:
@@ -48,13 +42,7 @@ def spend(steps: float, bits: float = 0, by: float | None = None) -> None:
 
 
 def reserve(room: float) -> None:
-    """Before so many bytes are needed at a time.
-
-    Raises
-    ------
-    Invalid
-        If that is more than one document may have.
-    """
+    """Before so many bytes are needed at a time: too many are refused."""
     if room > MOST_ROOM:
         size = f"{room / 1e9:.3g} GB"
         raise Invalid(f"the document is too large to be checked: too many numbers, {size} of them")

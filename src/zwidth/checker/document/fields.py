@@ -10,6 +10,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
+from itertools import pairwise
 from operator import ge, gt, le, lt
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -280,6 +282,14 @@ def pairs(unit: Unit, *, least: int, most: int, default: Any = _REQUIRED) -> Lis
     return List(numbers(least=2, most=2), unit=unit, least=least, most=most, default=default)
 
 
+def increasing(told: Sequence[Sequence[Fraction]], what: str) -> list[tuple[Fraction, Fraction]]:
+    """Pairs whose first numbers increase."""
+    found = [(a, b) for a, b in told]
+    if any(before[0] >= after[0] for before, after in pairwise(found)):
+        raise Invalid(f"{what} must increase")
+    return found
+
+
 class Between(Field):
     """A number, or the smaller and the larger end of an interval; read as both ends."""
 
@@ -466,12 +476,19 @@ def read_document(fields: Record, document: Mapping[str, Any]) -> tuple[Read, st
 
 
 def _motion(fields: Record, document: Mapping[str, Any]) -> str:
-    linear, rotary = set(fields.keys(LINEAR)), set(fields.keys(ROTARY))
+    linear, rotary = _keys_of_one_motion(fields)
     told = set(_told(document))
-    slides, turns = sorted(told & (linear - rotary)), sorted(told & (rotary - linear))
+    slides, turns = sorted(told & linear), sorted(told & rotary)
     if slides and turns:
         raise Invalid(f"a device slides or turns, and one document is of one: {slides[0]} and {turns[0]}")
     return ROTARY if turns else LINEAR
+
+
+@cache
+def _keys_of_one_motion(fields: Record) -> tuple[set[str], set[str]]:
+    """The keys that only a linear device has, and those that only a rotary one has."""
+    linear, rotary = set(fields.keys(LINEAR)), set(fields.keys(ROTARY))
+    return linear - rotary, rotary - linear
 
 
 def _told(value: Any, depth: int = 12) -> Iterator[str]:

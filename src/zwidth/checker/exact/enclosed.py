@@ -8,7 +8,7 @@ rounding is added to r.  A 0 stays exact.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
 Slopes = tuple[int, ...]
@@ -121,6 +121,11 @@ def dot(a: Iterable[Enclosed], b: Iterable[Enclosed]) -> Enclosed:
                 moved = [factor * s for s in part]
                 slopes = [s + t for s, t in zip(slopes, moved, strict=True)] if slopes else moved
     return _rounded(bits, middle, tuple(slopes), rest, bits)
+
+
+def mapped(matrix: Iterable[Iterable[Enclosed]], vector: Sequence[Enclosed]) -> list[Enclosed]:
+    """A matrix times a vector."""
+    return [dot(vector, row) for row in matrix]
 
 
 def _merged(a: Slopes, b: Slopes, sign: int) -> Slopes:

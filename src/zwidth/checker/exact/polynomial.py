@@ -10,9 +10,9 @@ from typing import Any, TypeVar
 Exact = TypeVar("Exact", int, Fraction)
 
 
-def multiply(a: Sequence[Exact], b: Sequence[Exact]) -> list[Exact]:
-    """a b."""
-    out: list[Any] = [0] * (len(a) + len(b) - 1) if a and b else []
+def multiply(a: Sequence[Exact], b: Sequence[Exact], zero: Any = 0) -> list[Exact]:
+    """a b; the zero is that of other numbers."""
+    out: list[Any] = [zero] * (len(a) + len(b) - 1) if a and b else []
     for i, x in enumerate(a):
         if x:
             for j, y in enumerate(b):
@@ -49,6 +49,15 @@ def cleared(a: Sequence[Fraction]) -> list[int]:
 def bits(a: Sequence[int]) -> int:
     """Of the largest coefficient."""
     return max((c.bit_length() for c in a), default=0)
+
+
+def in_zeta(descending: Sequence[int]) -> list[int]:
+    """A polynomial in z in powers of ζ = z − 1, descending."""
+    out: list[int] = []
+    for c in descending:  # Horner
+        out = [x + y for x, y in zip([*out, 0], [0, *out], strict=True)]
+        out[-1] += c
+    return out
 
 
 def in_powers(sums: Sequence[Exact], kind: int) -> list[Exact]:

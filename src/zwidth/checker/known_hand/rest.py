@@ -8,7 +8,6 @@ every other value no root meets the unit circle; a box that does not show it is 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 from math import ceil, lcm
 from typing import Any, NamedTuple
@@ -19,6 +18,7 @@ from ..document.refusal import Invalid
 from ..document.unit import DAMPING, MASS, SECONDS, STIFFNESS
 from ..exact.crossing import never_crosses
 from ..exact.enclosed import Enclosed, quotient
+from ..exact.polynomial import in_zeta, multiply
 from ..exact.schur_cohn import decays
 from .held_motion import Motion, Sampled, motion_of, sampled, sampled_free
 
@@ -88,16 +88,7 @@ def _read(loop: Read) -> _Loop:
     if below[0] == 0 or len(above) > len(below):
         raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
     scale = common_scale((*above, *below))
-    return _Loop(motion, *(_in_zeta([int(c * scale) for c in part]) for part in (above, below)))
-
-
-def _in_zeta(descending: Sequence[int]) -> list[int]:
-    """A polynomial in z, in powers of ζ = z − 1."""
-    out: list[int] = []
-    for c in descending:
-        out = [x + y for x, y in zip([*out, 0], [0, *out], strict=True)]
-        out[-1] += c
-    return out
+    return _Loop(motion, *(in_zeta([int(c * scale) for c in part]) for part in (above, below)))
 
 
 def _decays(loop: _Loop) -> bool | None:
@@ -127,20 +118,12 @@ def _exactly(loop: _Loop) -> list[Enclosed]:
 
 
 def _closed(plant: Sampled, above: _Numbers, below: _Numbers, zero: Any) -> _Numbers:
-    free = _product(plant.denominator, below, zero)
+    free = multiply(plant.denominator, below, zero)
     for _ in range(plant.late):  # times z = ζ + 1
         free = [x + y for x, y in zip([*free, zero], [zero, *free], strict=True)]
-    force = _product(plant.numerator, above, zero)
+    force = multiply(plant.numerator, above, zero)
     ahead = len(free) - len(force)
     return [*free[:ahead], *(x + y for x, y in zip(free[ahead:], force, strict=True))]
-
-
-def _product(a: _Numbers, b: _Numbers, zero: Any) -> _Numbers:
-    out = [zero] * (len(a) + len(b) - 1)
-    for i, x in enumerate(a):
-        for j, y in enumerate(b):
-            out[i + j] = out[i + j] + x * y
-    return out
 
 
 def _covered(loop: _Loop) -> int:

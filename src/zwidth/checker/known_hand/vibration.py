@@ -10,12 +10,12 @@ x(j) > g exactly where s(j) = 1.  A pattern with samples on both sides is not at
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import NamedTuple
 
 from ..document.fields import Flag, List, Number, Read, document
 from ..document.number import about
 from ..document.refusal import Invalid
 from ..exact.enclosed import Enclosed, known, quotient
+from ..exact.functions import NotPositive, inverse
 from .plant import PLANT, plant_of
 
 MOST_ORDER = 60
@@ -37,26 +37,19 @@ VIBRATION = document(
 )
 
 
-class _Wall(NamedTuple):
-    slope: Fraction
-    gap: Fraction
-    inside: list[bool]
-
-
 def vibration(told: Read) -> str:
     """Say what was proved."""
-    wall = _Wall(told.slope, told.gap, told.inside)
-    if len(set(wall.inside)) < 2:
+    if len(set(told.inside)) < 2:
         raise Invalid("some samples must find the wall and some not")
     order = len(_plant(told, PRECISIONS[0])[1])
-    if order > MOST_ORDER or order**2 * len(wall.inside) > MOST_EFFORT:
+    if order > MOST_ORDER or order**2 * len(told.inside) > MOST_EFFORT:
         raise Invalid("the order of G(z) is too high, or the motion too long for it")
-    answers = (_repeats(*_plant(told, bits), wall, bits) for bits in PRECISIONS)
+    answers = (_repeats(*_plant(told, bits), told, bits) for bits in PRECISIONS)
     if not next((answer for answer in answers if answer is not None), False):
         raise Invalid("the motion with this pattern is not one of the wall")
     return (
-        f"a one-sided wall of slope {about(wall.slope)}, {about(wall.gap)} off the hand's rest, "
-        f"vibrates for ever: rounds of {len(wall.inside)} samples, {sum(wall.inside)} inside"
+        f"a one-sided wall of slope {about(told.slope)}, {about(told.gap)} off the hand's rest, "
+        f"vibrates for ever: rounds of {len(told.inside)} samples, {sum(told.inside)} inside"
     )
 
 
@@ -71,7 +64,7 @@ def _plant(told: Read, bits: int) -> tuple[list[Enclosed], list[Enclosed]]:
     return padded[::-1], below[:0:-1]
 
 
-def _repeats(above: list[Enclosed], below: list[Enclosed], wall: _Wall, bits: int) -> bool | None:
+def _repeats(above: list[Enclosed], below: list[Enclosed], wall: Read, bits: int) -> bool | None:
     """True where every sample is certainly on its side, False where one is not, None where it is open."""
     rows = _positions(above, below, wall, bits)
     start = _solved(rows, len(below), len(wall.inside))
@@ -86,7 +79,7 @@ def _repeats(above: list[Enclosed], below: list[Enclosed], wall: _Wall, bits: in
     return False if False in sides else None if None in sides else True
 
 
-def _positions(above: list[Enclosed], below: list[Enclosed], wall: _Wall, bits: int) -> list[_Row]:
+def _positions(above: list[Enclosed], below: list[Enclosed], wall: Read, bits: int) -> list[_Row]:
     """x(0) … x(n + p − 1), made of the first p of them."""
     order, n = len(below), len(wall.inside)
     zero, one = Enclosed(bits, 0), known(Fraction(1), bits)
@@ -111,22 +104,13 @@ def _solved(rows: list[_Row], order: int, n: int) -> list[Enclosed] | None:
     for k in range(order):
         best = max(range(k, order), key=lambda i: abs(work[i][k].middle))
         work[k], work[best] = work[best], work[k]
-        inverse = _inverse(work[k][k])
-        if inverse is None:
+        try:
+            over = inverse(work[k][k])
+        except NotPositive:
             return None
-        work[k] = [x * inverse for x in work[k]]
+        work[k] = [x * over for x in work[k]]
         for i in range(order):
             if i != k:
                 factor = work[i][k]
                 work[i] = [x - factor * y for x, y in zip(work[i], work[k], strict=True)]
     return [row[-1].times(-1) for row in work]
-
-
-def _inverse(x: Enclosed) -> Enclosed | None:
-    """1/x, where x is certainly not 0."""
-    least = abs(x.middle) - x.radius
-    if least <= 0:
-        return None
-    one = 1 << 2 * x.bits
-    off = one * x.radius // (abs(x.middle) * least) + 2
-    return Enclosed(x.bits, one // x.middle, (), off)

@@ -74,16 +74,21 @@ def _cosine_sums(p: Loop) -> tuple[list[int], list[Fraction], list[int]]:
 def require_stable(proof: Read, p: Loop) -> None:
     """Refuse a law that may be unstable, or pushes the hand on at rest."""
     if proof.kind == "open loop":
-        if not inside_unit_circle(p.denominator):
-            raise Invalid("H(z) has a pole outside or on the unit circle")
-        if sum(p.numerator) * sum(p.denominator) < 0:
-            raise Invalid("the static stiffness H(1) is negative")
+        require_stable_by_itself(p)
         return
     if p.part:
         raise Invalid("a closed-loop proof does not cover a delay of part of a sample")
     require_coprime(p)
     if not inside_unit_circle(positive_real_denominator(p, proof.offset)):
         raise Invalid("b + T z⁻ᵈ H/(z − 1) is not positive real")
+
+
+def require_stable_by_itself(p: Loop) -> None:
+    """Refuse H(z) with a pole that does not decay, or H(1) < 0."""
+    if not inside_unit_circle(p.denominator):
+        raise Invalid("H(z) has a pole outside or on the unit circle")
+    if sum(p.numerator) * sum(p.denominator) < 0:
+        raise Invalid("the static stiffness H(1) is negative")
 
 
 def positive_real_denominator(p: Loop, offset: Fraction) -> list[Fraction]:

@@ -32,12 +32,12 @@ FORCE_BOUNDING = document(
         "loop": Record({**DEVICE, "force_resolution": Number(FORCE, least=0)}),
         "law": Record(
             {
-                "credit": Number(STIFFNESS, above=0),
-                "friction": Number(FORCE, least=0),
-                "count": Number(LENGTH, least=0),
-                "half_step": Number(FORCE, least=0),
-                "hair": Number(least=0, below=1),
-                "roundoff": Number(least=0, below=1),
+                "credit": Number(STIFFNESS, above=0),  # β
+                "friction": Number(FORCE, least=0),  # φ
+                "count": Number(LENGTH, least=0),  # δ
+                "half_step": Number(FORCE, least=0),  # h
+                "hair": Number(least=0, below=1),  # ε
+                "roundoff": Number(least=0, below=1),  # u
             }
         ),
     }
@@ -51,18 +51,9 @@ class _Device(NamedTuple):
     step: Fraction  # ΔF
 
 
-class _Law(NamedTuple):
-    credit: Fraction  # β
-    friction: Fraction  # φ
-    size: Fraction  # δ
-    half_step: Fraction  # h
-    hair: Fraction  # ε
-    roundoff: Fraction  # u
-
-
 def force_bounding(told: Read) -> str:
     """Say what was proved."""
-    device, law = _device(told.loop), _law(told.law)
+    device, law = _device(told.loop), told.law
     _moves_are_paid(device, law)
     _counts_are_covered(device, law)
     _bound_is_paid(device, law)
@@ -74,10 +65,6 @@ def force_bounding(told: Read) -> str:
     )
 
 
-def _law(law: Read) -> _Law:
-    return _Law(law.credit, law.friction, law.count, law.half_step, law.hair, law.roundoff)
-
-
 def _device(loop: Read) -> _Device:
     if loop.delay != 0:
         raise Invalid("the force is applied late: the credit of a move would come before its cost")
@@ -85,7 +72,7 @@ def _device(loop: Read) -> _Device:
     return _Device(rate, loop.coulomb_friction, loop.resolution, loop.force_resolution)
 
 
-def _moves_are_paid(device: _Device, law: _Law) -> None:
+def _moves_are_paid(device: _Device, law: Read) -> None:
     """w(d) − ψ d + κ (|ψ| − φ)₊² ≥ 0 for all d and ψ.
 
     Both signs alike, so ψ ≥ 0, and d ≥ 0 is the worse.  Up to ψ = φ (1 + u), which rounding may take for φ,
@@ -99,15 +86,15 @@ def _moves_are_paid(device: _Device, law: _Law) -> None:
         raise Invalid("the law credits more than b/T for a move")
 
 
-def _counts_are_covered(device: _Device, law: _Law) -> None:
+def _counts_are_covered(device: _Device, law: Read) -> None:
     """(g − g') (x − c) + |g' − g| δ/2 ≥ 0: a line in x, so at both ends of the count; of either sign."""
     for end in (-device.resolution / 2, device.resolution / 2):
         for turned in (-1, 1):
-            if turned * end + law.size / 2 < 0:
+            if turned * end + law.count / 2 < 0:
                 raise Invalid("the count that the law reckons with is smaller than the encoder's")
 
 
-def _bound_is_paid(device: _Device, law: _Law) -> None:
+def _bound_is_paid(device: _Device, law: Read) -> None:
     """f d + w(d) + S ≥ 0 for |f| ≤ φ + y, y² = 4 β S: S = κ y², and so the first inequality with ψ = −f.
 
     What is left is the converter: a command of 0 stays 0, and any other is rounded by ΔF/2 at most.
@@ -116,7 +103,7 @@ def _bound_is_paid(device: _Device, law: _Law) -> None:
         raise Invalid("the converter adds half a step, and the bound leaves less")
 
 
-def _lines_are_rounded_down(law: _Law) -> None:
+def _lines_are_rounded_down(law: Read) -> None:
     """The line that is kept is not above the one that was proved.
 
     Relative errors of the terms, (1 + u)ⁿ − 1: E, added to three times: n = 3.  g' D, of two readings that
@@ -130,7 +117,7 @@ def _lines_are_rounded_down(law: _Law) -> None:
         raise Invalid("what is taken off the energy does not pay for its rounding")
 
 
-def _bounds_are_rounded_down(law: _Law) -> None:
+def _bounds_are_rounded_down(law: Read) -> None:
     """(1 − ε) E − (1 + ε) |g| δ/2 and (1 − ε) (φ + 2 √(β S)) − h, computed, are not above the same without ε.
 
     E is rounded twice, |g| δ/2 at least twice.  In the bound the product below the root, the root, the sum,

@@ -11,6 +11,7 @@ from ..document.fields import Flag, Number, Read, Record, numbers
 from ..document.number import common_scale
 from ..document.refusal import Invalid
 from ..document.unit import DAMPING, FORCE, LENGTH, SECONDS
+from ..exact.polynomial import multiply, same
 
 MOST_DELAY = 2000
 """In samples."""
@@ -82,6 +83,12 @@ def require_surface(p: Loop) -> None:
     """Refuse a law that acts on both sides."""
     if not p.unilateral:
         raise Invalid("contact is made and broken with a law that acts inside only")
+
+
+def require_law(p: Loop, top: Sequence[Fraction], bottom: Sequence[Fraction], message: str) -> None:
+    """Refuse H(z) that is not top/bottom."""
+    if not same(multiply(top, p.denominator), multiply(p.numerator, bottom)):
+        raise Invalid(message)
 
 
 def in_whole_numbers(coefficients: Sequence[Fraction], p: Loop) -> list[int]:

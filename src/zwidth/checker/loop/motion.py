@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from math import gcd
-from typing import NamedTuple
 
 from ..document.effort import spend
 from ..document.fields import List, Number, Read, Record, Whole, document, numbers, only_if
@@ -44,8 +44,8 @@ def motion_energy(told: Read) -> Fraction:
     if not p.unilateral and start != 0:
         raise Invalid("the motion must start at rest at x = 0")
     switches = switch_positions(told, bool(p.part))
-    repeats = _repeats(told.repeats, len(positions))
-    return _energy_of(p, positions, switches, repeats)
+    _require_apart(told.repeats, len(positions))
+    return _energy_of(p, positions, switches, told.repeats)
 
 
 def stored_at_start(told: Read) -> Fraction:
@@ -71,28 +71,20 @@ def switch_positions(told: Read, inside_sample: bool) -> list[Fraction]:
     return found
 
 
-class _Repeat(NamedTuple):
-    first: int
-    last: int
-    times: int
-
-
-def _repeats(told: list[Read], size: int) -> list[_Repeat]:
-    """Parts of the motion that are done more than once.
+def _require_apart(repeats: Sequence[Read], size: int) -> None:
+    """Refuse repeated parts that do not lie in the motion, one after the other.
 
     The positions list each of them once; where one ends ahead of its start,
     every round and all that follows is that much further on.
     """
-    parts = [_Repeat(**vars(part)) for part in told]
     before = 0
-    for part in parts:
+    for part in repeats:
         if not before <= part.first < part.last < size:
             raise Invalid("repeated parts must lie in the motion, one after the other")
         before = part.last
-    return parts
 
 
-def _energy_of(p: Loop, x: list[Fraction], y: list[Fraction], repeats: list[_Repeat]) -> Fraction:
+def _energy_of(p: Loop, x: list[Fraction], y: list[Fraction], repeats: Sequence[Read]) -> Fraction:
     """Energy the hand takes out over the whole motion [J]."""
     per_unit = common_scale((p.resolution, *x, *y), MOST_BITS)
     scale = common_scale((*p.numerator, *p.denominator))
@@ -196,7 +188,7 @@ class _Run:
         self.forces = [factor * f for f in self.forces]
         self.sums[_WORK] *= factor
 
-    def rounds(self, part: _Repeat) -> None:
+    def rounds(self, part: Read) -> None:
         """All rounds of a repeated part: one by one until the loop has settled, then in closed form.
 
         A law linear in x that has gone a constant distance on, all of it, does

@@ -14,13 +14,14 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import pairwise
 
-from ..document.fields import Read, Record, document, pairs
+from ..document.fields import Read, Record, document, increasing, pairs
 from ..document.number import about
 from ..document.refusal import Invalid
 from ..document.unit import FORCE_AT
 from .loop import DEVICE, MOST_DELAY
 
 MOST_POINTS = 10_000
+_POSITIONS = "the positions of a nonlinear spring"
 
 NONLINEAR_SPRING = document(
     {"loop": Record(DEVICE), "law": Record({"points": pairs(FORCE_AT, least=2, most=MOST_POINTS)})}
@@ -29,7 +30,7 @@ NONLINEAR_SPRING = document(
 
 def nonlinear_spring(told: Read) -> str:
     """Say what was proved."""
-    loop, points = told.loop, _points(told)
+    loop, points = told.loop, increasing(told.law.points, _POSITIONS)
     period, delay = loop.sample_period, loop.delay
     if delay % period or delay // period > MOST_DELAY:
         raise Invalid("a nonlinear spring is proved for delays of whole samples, not too many")
@@ -49,15 +50,8 @@ def endless_pull(told: Read) -> str:
 
     At a speed v the gain on a way s is (|f| − f_c − b v) s, > 0 for a small v, whatever b, T and the delay.
     """
-    points = _points(told)
+    points = increasing(told.law.points, _POSITIONS)
     pull = max(points[0][1], -points[-1][1])
     if pull <= told.loop.coulomb_friction:
         raise Invalid("Coulomb friction holds the spring beyond its ends")
     return f"beyond an end the spring pulls away with {about(pull)} for ever, and friction holds less"
-
-
-def _points(told: Read) -> list[tuple[Fraction, Fraction]]:
-    points = [(x, f) for x, f in told.law.points]
-    if any(before[0] >= after[0] for before, after in pairwise(points)):
-        raise Invalid("the positions of a nonlinear spring must increase")
-    return points

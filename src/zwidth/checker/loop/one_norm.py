@@ -10,8 +10,8 @@ from fractions import Fraction
 from ..document.effort import spend
 from ..document.fields import List, Number, Read, Record, numbers
 from ..document.refusal import Invalid
-from ..exact.polynomial import add, bits, cleared, multiply, same
-from .loop import Loop
+from ..exact.polynomial import add, bits, cleared, multiply
+from .loop import Loop, require_law
 
 MOST_MODES = 60
 
@@ -41,8 +41,7 @@ def one_norm_bound(p: Loop, norm: Read) -> Fraction:
         bound += abs(mode.residue) / (1 - abs(mode.pole))
         line = [Fraction(1), -mode.pole]
         top, bottom = add(multiply(top, line), [mode.residue * c for c in bottom]), multiply(bottom, line)
-    if not same(multiply(top, p.denominator), multiply(p.numerator, bottom)):
-        raise Invalid("the modes and the rest do not sum to H(z)")
+    require_law(p, top, bottom, "the modes and the rest do not sum to H(z)")
     return bound
 
 

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from itertools import count
 from math import lcm
 from typing import NamedTuple
 
@@ -22,16 +21,11 @@ from ..document.number import common_scale, down
 from ..document.refusal import Invalid
 from ..exact.polynomial import add, multiply, value
 from ..exact.positivity import POSITIVITY, product, require_positive
-from .index import CLAIM, TIME, require_inside, trimmed
+from .index import require_inside
+from .system import CLAIM, MATRIX_SYSTEM, MOST_AXES, ROWS, Polynomial, Port, port_of, square, trimmed
 
-MOST_AXES = 12
-MOST_ORDER = 200
 MOST_POINTS = 4000
 MOST_WORK = 40_000_000
-
-_ROWS = List(List(numbers(), least=1, most=MOST_AXES), least=1, most=MOST_AXES)
-MATRIX_SYSTEM = Record({"time": TIME, "numerators": _ROWS, "denominator": numbers(least=1)})
-"""G = N/d, its rows; every polynomial in descending powers of s or z."""
 
 _MINOR = Record({"power": Whole(least=0, most=MOST_POINTS), "positivity": POSITIVITY})
 POSITIVE_REAL_MATRIX = document(
@@ -42,60 +36,25 @@ POSITIVE_REAL_MATRIX = document(
             {
                 "offset": Number(above=0),
                 "minors": List(_MINOR, most=MOST_AXES),
-                "resolvent": Record({"numerators": _ROWS, "denominator": numbers(least=1)}),
+                "resolvent": Record({"numerators": ROWS, "denominator": numbers(least=1)}),
             },
             shown=False,
         ),
     }
 )
 
-Polynomial = list[Fraction]
 Gaussian = tuple[int, int]
-
-
-class Ports(NamedTuple):
-    outputs: list[list[Polynomial]]  # N, ascending in s or z
-    inputs: list[list[Polynomial]]  # D
-    denominator: Polynomial
-    continuous: bool
-    level: Fraction
-    order: int
-    axes: int
-
-
-def ports_of(told: Read) -> Ports:
-    """D = d and N = G d for the input index; exchanged for the output index."""
-    system = told.system
-    d, n = trimmed(system.denominator), _square(system.numerators)
-    if not d:
-        raise Invalid("the denominator is zero")
-    longest = max(len(p) for row in n for p in row)
-    if system.time == "discrete" and longest > len(d):
-        raise Invalid("G(z) has more zeros than poles")
-    order = max(longest, len(d)) - 1
-    if order > MOST_ORDER:
-        raise Invalid(f"the order is {order}, more than {MOST_ORDER}")
-    common_scale((*d, *(c for row in n for p in row for c in p)))
-    diagonal: list[list[Polynomial]] = [[d if i == j else [] for j in range(len(n))] for i in range(len(n))]
-    sides = (n, diagonal) if told.index == "input" else (diagonal, n)
-    return Ports(*sides, d, system.time == "continuous", told.level, order, len(n))
-
-
-def _square(rows: Sequence[Sequence[Polynomial]]) -> list[list[Polynomial]]:
-    if any(len(row) != len(rows) for row in rows):
-        raise Invalid("a matrix must have as many columns as rows")
-    return [[trimmed(entry) for entry in row] for row in rows]
 
 
 def positive_real_matrix(told: Read) -> str:
     """Every e_k(Π) is nonnegative on the boundary, and the resolvent is stable."""
-    p, proof = ports_of(told), told.proof
+    p, proof = port_of(told), told.proof
     _require_nonnegative(p, proof.minors)
     _require_stable(p, proof.offset, proof.resolvent)
     return f"the {told.index} index is at least {down(p.level)}"
 
 
-def _require_nonnegative(p: Ports, minors: Sequence[Read]) -> None:
+def _require_nonnegative(p: Port, minors: Sequence[Read]) -> None:
     """e_k = κ |d|^{2·power} (1 − c)ⁱ (1 + c)ʲ s² g with κ > 0, and g > 0 on [−1, 1]."""
     if len(minors) != p.axes:
         raise Invalid("every size of principal minors needs its proof")
@@ -141,14 +100,14 @@ class _Whole(NamedTuple):
         return max(c.bit_length() for side in sides for row in side for q in row for c in q)
 
 
-def _whole(p: Ports) -> _Whole:
+def _whole(p: Port) -> _Whole:
     sides = (p.inputs, p.outputs)
     scale = lcm(*(x.denominator for side in sides for row in side for q in row for x in q))
     inputs, outputs = ([[[int(c * scale) for c in q] for q in row] for row in side] for side in sides)
     return _Whole(scale, inputs, outputs, [int(c * scale) for c in p.denominator])
 
 
-def _minors_at(p: Ports, whole: _Whole, tangent: Fraction) -> tuple[Fraction, Fraction, list[Fraction]]:
+def _minors_at(p: Port, whole: _Whole, tangent: Fraction) -> tuple[Fraction, Fraction, list[Fraction]]:
     """(c, |d|², e_1 … e_m) at tan θ/2 = tangent: s = j tan θ/2, all times (1 + c)^order; or z = e^{jθ}."""
     t, b = tangent.numerator, tangent.denominator
     c = Fraction(b * b - t * t, b * b + t * t)
@@ -214,9 +173,12 @@ def _negative(x: Gaussian) -> Gaussian:
     return -x[0], -x[1]
 
 
-def _require_stable(p: Ports, offset: Fraction, resolvent: Read) -> None:
-    """R M = π D with M = N + (g − σ) D invertible, R/π proper, and every root of π inside."""
-    pi, rows = trimmed(resolvent.denominator), _square(resolvent.numerators)
+def _require_stable(p: Port, offset: Fraction, resolvent: Read) -> None:
+    """R M = π D with M = N + (g − σ) D, R/π proper, and every root of π inside.
+
+    M is invertible then: where M v = 0 it makes D v = 0 and so N v = 0, and one of both is d times 1.
+    """
+    pi, rows = trimmed(resolvent.denominator), square(resolvent.numerators)
     if not pi or len(rows) != p.axes or max(len(q) for row in rows for q in row) > len(pi):
         raise Invalid("the resolvent must be a proper matrix of the port's size")
     common_scale((*pi, *(c for row in rows for q in row for c in q)))
@@ -226,7 +188,6 @@ def _require_stable(p: Ports, offset: Fraction, resolvent: Read) -> None:
         for pair in zip(p.outputs, p.inputs, strict=True)
     ]
     _require_same_products(rows, m, pi, p.inputs)
-    _require_invertible(m, p)
     require_inside(pi[::-1], p.continuous)
 
 
@@ -242,25 +203,3 @@ def _require_same_products(
                     total = add(total, multiply(rows[i][k], m[k][j]))
             if any(total):
                 raise Invalid("the resolvent is not that of the port")
-
-
-def _require_invertible(m: list[list[Polynomial]], p: Ports) -> None:
-    """det M is not zero at some whole number; a polynomial of its degree has no more zeros than that."""
-    for at in count():
-        if at > p.axes * p.order:
-            raise Invalid("the port has no resolvent")
-        if _has_full_rank([[value(q, Fraction(at)) for q in row] for row in m]):
-            return
-
-
-def _has_full_rank(a: list[list[Fraction]]) -> bool:
-    rows = [list(row) for row in a]
-    for i in range(len(rows)):
-        pivot = next((k for k in range(i, len(rows)) if rows[k][i]), None)
-        if pivot is None:
-            return False
-        rows[i], rows[pivot] = rows[pivot], rows[i]
-        for k in range(i + 1, len(rows)):
-            ratio = rows[k][i] / rows[i][i]
-            rows[k] = [x - ratio * y for x, y in zip(rows[k], rows[i], strict=True)]
-    return True

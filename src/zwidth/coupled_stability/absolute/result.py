@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from pathlib import Path
 from typing import Any
 
 from zwidth.coupled_stability.absolute.linear_limit import LinearLimit, linear_limit
@@ -19,9 +18,10 @@ from zwidth.environment import PulseTransferFunction
 from zwidth.errors import InputError
 from zwidth.operator.operator import LinearHand, Operator
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.document import save_json
+from zwidth.passivity.result import Result, evidence_of
 from zwidth.passivity.scope import Hands, Scope
 from zwidth.quantity.exact import Exact
+from zwidth.showing import Table
 
 _MOST = 1e9
 """Over |G(1)|: slopes are sought up to here where a linear spring never makes the loop unstable."""
@@ -36,8 +36,8 @@ class Proved:
     certificate: Certificate | None
 
 
-@dataclass(frozen=True)
-class AbsoluteStability:
+@dataclass(frozen=True, repr=False)
+class AbsoluteStability(Result):
     """What `absolute_stability` found.
 
     Attributes
@@ -53,15 +53,13 @@ class AbsoluteStability:
         G, rounded.
     """
 
+    FORMAT = "zwidth absolute stability 1"
+
     proved: tuple[Proved, ...]
     linear_limit: LinearLimit
     pressing: PeriodicMotion | None
     resting: PeriodicMotion | None
     plant: Plant
-
-    def __repr__(self) -> str:
-        slopes = "; ".join(f"{row.criterion} {float(row.slope):.6g}" for row in self.proved)
-        return f"<AbsoluteStability proved: {slopes}; refuted: {self.refuted:.6g}>"
 
     @property
     def scope(self) -> Scope:
@@ -80,43 +78,56 @@ class AbsoluteStability:
     @property
     def refuted(self) -> float:
         """The smallest slope refuted: the linear limit, or a periodic motion below it."""
-        motions = [m.slope for m in (self.pressing, self.resting) if m is not None]
-        return min([self.linear_limit.slope, *motions])
+        return min(self.linear_limit.slope, *(motion.slope for motion in self._motions), inf)
 
     @property
     def gap(self) -> float:
         """What lies open between proof and refutation, (K_refuted − K_proved)/K_proved."""
         return self.refuted / self.largest - 1 if self.largest else inf
 
+    @property
+    def certificate(self) -> Certificate | None:
+        """The proofs, one for each wall."""
+        proofs = [d for row in self.proved if row.certificate for d in row.certificate.documents]
+        return Certificate(_of_different_walls(proofs)) if proofs else None
+
+    @property
+    def witness(self) -> Certificate | None:
+        """The periodic motions that refute."""
+        against = [d for motion in self._motions for d in motion.certificate.documents]
+        return Certificate(tuple(against)) if against else None
+
+    @property
+    def _motions(self) -> list[PeriodicMotion]:
+        return [motion for motion in (self.pressing, self.resting) if motion is not None]
+
+    def describe(self) -> str:
+        """What is proved by which criterion, and what is refuted."""
+        slopes = "; ".join(f"{row.criterion} {float(row.slope):.6g}" for row in self.proved)
+        return f"proved: {slopes}; refuted: {self.refuted:.6g}"
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The slopes of criteria, linear limit and motions."""
+        rows = [(str(row.criterion), f"{float(row.slope):.7g}") for row in self.proved]
+        rows.append(("linear limit", f"{self.linear_limit.slope:.7g}"))
+        for name, motion in (("pressing", self.pressing), ("resting", self.resting)):
+            found = "none found" if motion is None else f"{motion.slope:.7g}, {motion.period} samples"
+            rows.append((f"motion, {name}", found))
+        return rows
+
     def to_dict(self) -> dict[str, Any]:
         """Slopes, motions and certificates of both as plain data."""
-        corners = [d for row in self.proved if row.certificate for d in row.certificate.documents]
-        motions = [motion for motion in (self.pressing, self.resting) if motion is not None]
-        against = [d for motion in motions for d in motion.certificate.documents]
-        document = {
-            "format": "zwidth absolute stability 1",
+        return {
+            "format": self.FORMAT,
             "scope": self.scope.to_dict(),
             "slopes": {row.criterion: float(row.slope) for row in self.proved},
             "linear_limit": self.linear_limit.slope,
-            "motions": [{k: v for k, v in m._asdict().items() if k != "source"} for m in motions],
+            "motions": [{k: v for k, v in m._asdict().items() if k != "source"} for m in self._motions],
+            **evidence_of(self),
         }
-        if corners:
-            document["certificate"] = Certificate(_of_different_walls(corners)).to_dict()
-        if against:
-            document["witness"] = Certificate(tuple(against)).to_dict()
-        return document
-
-    def save(self, path: str | Path) -> None:
-        """Write it as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
 
     def __str__(self) -> str:
-        lines = [f"{row.criterion:16} {float(row.slope):.7g}" for row in self.proved]
-        lines.append(f"{'linear limit':16} {self.linear_limit.slope:.7g}")
-        for name, motion in (("pressing", self.pressing), ("resting", self.resting)):
-            found = "none found" if motion is None else f"{motion.slope:.7g}, {motion.period} samples"
-            lines.append(f"{'motion, ' + name:16} {found}")
-        return "\n".join(lines)
+        return str(Table(rows=self.rows()))
 
 
 def absolute_stability(

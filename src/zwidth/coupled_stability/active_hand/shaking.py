@@ -21,10 +21,10 @@ import numpy as np
 from zwidth.coupled_stability.active_hand.band import PI, Band
 from zwidth.coupled_stability.known_hand.characteristic import as_floats, decays
 from zwidth.coupled_stability.known_hand.plant import ball
-from zwidth.passivity.document import unit_key, unit_suffix
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.quantity.balls import precision
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
 
 EXCESS = 1e-3
 """By how much more than its limit the hand is active."""
@@ -74,7 +74,7 @@ class ShakingHand:
         return {
             unit_key("mass", self.motion): self.mass,
             unit_key("stiffness", self.motion): self.stiffness,
-            f"activity_{unit_suffix(self._unit('damping'))}": self.activity,
+            unit_key("damping", self.motion).replace("damping", "activity"): self.activity,
             unit_key("damping", self.motion): self.damping,
             "frequency_Hz": self.frequency,
             "sharpness": self.sharpness,
@@ -90,7 +90,7 @@ class ShakingHand:
         )
 
     def _unit(self, name: str) -> str:
-        return GLOSSARY[name].unit_for(self.motion)
+        return quantity_unit(name, self.motion)
 
 
 def _spoken(seconds: float) -> str:

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,22 +31,23 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate, certify, linear_proof, positivity_document
 from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.document import loop_document, save_json, unit_suffix
+from zwidth.passivity.document import loop_document, unit_suffix
 from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.linear.loop import LinearLoop
+from zwidth.passivity.result import Result
 from zwidth.passivity.scope import Contact, Hands, Scope, scope_of
 from zwidth.passivity.wording import if_friction_goes_on, lines
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import exact_text
+from zwidth.quantity.text import exact_text, unit_text
 from zwidth.quantity.units import parse_number
 
 Array = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, kw_only=True)
-class ToleratedActivity:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ToleratedActivity(Result):
     """How much negative damping a hand may show below a frequency, proved and refuted.
 
     Parameters
@@ -72,6 +72,8 @@ class ToleratedActivity:
     loop
         Device and H(z), exact.
     """
+
+    FORMAT = "zwidth activity 1"
 
     claim: str
     scope: Scope
@@ -114,7 +116,7 @@ class ToleratedActivity:
         """The numbers as (name, text) for a report."""
 
         def said(value: float | None, otherwise: str) -> str:
-            return otherwise if value is None else f"up to {value:.6g} {self.unit}"
+            return otherwise if value is None else f"up to {value:.6g} {unit_text(self.unit)}"
 
         rows = [
             (f"below {self.below:g} Hz", said(self.activity, "none is proved") + ", contact kept"),
@@ -133,7 +135,7 @@ class ToleratedActivity:
             return {f"activity_{unit}": activity, "scope": scope.to_dict(), **proof}
 
         document: dict[str, Any] = {
-            "format": "zwidth activity 1",
+            "format": self.FORMAT,
             "claim": self.claim,
             "assumptions": list(self.assumptions),
             "below_Hz": self.below,
@@ -146,9 +148,9 @@ class ToleratedActivity:
             document["shaking_hand"] = self.hand.to_dict()
         return document
 
-    def save(self, path: str | Path) -> None:
-        """Write it as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
+    def describe(self) -> str:
+        """The claim."""
+        return self.claim
 
     def __str__(self) -> str:
         return self.claim
@@ -281,8 +283,8 @@ def _claim(kept: _Proved | None, scope: Scope, unit: str) -> str:
     if kept is None:
         return "Not even every passive hand is proved not to drive this loop; zwidth.check says why."
     return (
-        f"A hand that is passive above {scope.hands.below:g} Hz and gives back at most {kept[0]:.6g} {unit} "
-        "below cannot go on gaining energy from this loop while it keeps contact"
+        f"A hand that is passive above {scope.hands.below:g} Hz and gives back at most {kept[0]:.6g} "
+        f"{unit_text(unit)} below cannot go on gaining energy from this loop while it keeps contact"
         f"{if_friction_goes_on(scope)}."
     )
 

@@ -26,18 +26,22 @@ from zwidth.environment.environment import Environment, RationalFunction, certai
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.boundary import largest_holding
+from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Hands, Scope, scope_of
 from zwidth.passivity.wording import lines
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, ends
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import in_unit
 
 _HALVINGS = 8
 """Of the stiffness, in that search."""
 
 
-@dataclass(frozen=True)
-class Stability:
+@dataclass(frozen=True, repr=False)
+class Stability(Answer):
     """Whether the loop with a known hand decays, and how far it is from not doing so.
 
     Parameters
@@ -66,6 +70,9 @@ class Stability:
         "instability" for the culprit; None where it is undecided.
     """
 
+    FORMAT = "zwidth stability 1"
+    YES = "stable"
+
     outcome: Outcome
     claim: str
     spectral_radius: float
@@ -75,6 +82,11 @@ class Stability:
     scope: Scope
     culprit: tuple[float, float, float] | None = None
     certificate: Certificate | None = None
+
+    @property
+    def stable(self) -> bool:
+        """True where the outcome is "stable": proved for the hand and the wall that were given."""
+        return self.outcome == "stable"
 
     @property
     def assumptions(self) -> tuple[str, ...]:
@@ -94,8 +106,29 @@ class Stability:
         """True when there is a certificate and the independent checker accepts it."""
         return self.certificate is not None and self.certificate.verify()
 
+    def numbers(self) -> dict[str, Any]:
+        """Spectral radius and limit as plain data, units in the keys."""
+        stiffness = unit_key("stiffness", self.scope.motion)
+        return {
+            "spectral_radius": self.spectral_radius,
+            "frequency_Hz": self.frequency,
+            f"max_{stiffness}": self.max_stiffness,
+            "limit_frequency_Hz": self.limit_frequency,
+        }
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The main numbers as (name, text) for a report."""
+        rows = [
+            ("spectral radius", f"{self.spectral_radius:.6g}"),
+            ("frequency", in_unit(self.frequency, "Hz")),
+        ]
+        if self.max_stiffness is not None:
+            unit = GLOSSARY["stiffness"].unit_for(self.scope.motion)
+            rows.append(("largest stable stiffness", in_unit(self.max_stiffness, unit)))
+        return rows
+
     def __str__(self) -> str:
-        return f"{self.outcome}: {self.claim}"
+        return self.describe()
 
 
 def stability(device: Device, wall: Environment | Any, hand: Any = None) -> Stability:

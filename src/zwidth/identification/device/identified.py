@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.identification.device.numbers import IdentifiedNumbers
-from zwidth.identification.device.table import as_html, as_text, source_name
-from zwidth.showing import Html
+from zwidth.identification.device.table import report, source_name
+from zwidth.showing import Part, Shown
 from zwidth.writing import check_target, writing_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True, kw_only=True)
-class Identified(IdentifiedNumbers):
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Identified(Shown, IdentifiedNumbers):
     __doc__ = IdentifiedNumbers.__doc__  # its arguments are the numbers
 
     def to_toml(self, confidence: float | None = 0.99, **others: Any) -> str:
@@ -84,8 +85,6 @@ class Identified(IdentifiedNumbers):
 
         return to_dict(self, confidence)
 
-    def __repr__(self) -> str:
-        return as_text(self)
-
-    def _repr_html_(self) -> Html:
-        return as_html(self)
+    def report(self) -> Iterable[Part]:
+        """The table, what it rests on, and what was found besides."""
+        return report(self)

@@ -16,8 +16,7 @@ from zwidth.device.device import Device
 from zwidth.identification.device.limits import percent
 from zwidth.identification.device.table import source_name
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.text import as_decimal
+from zwidth.quantity.text import as_decimal, quantity_unit
 from zwidth.specification.write import toml
 
 if TYPE_CHECKING:
@@ -60,7 +59,7 @@ def _story(identified: IdentifiedNumbers, confidence: float | None) -> list[str]
 
 
 def _origin(identified: IdentifiedNumbers, key: str, motion: str, confidence: float | None) -> str:
-    unit = GLOSSARY[key].unit_for(motion).replace("*", "·").replace("^2", "²")
+    unit = quantity_unit(key, motion)
     if key in identified.estimates:
         best = f"{unit}: {identified.estimates[key].value:.4g} identified"
         return best if confidence is None else f"{best}, {percent(confidence)} interval"

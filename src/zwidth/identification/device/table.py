@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.identification.device.limits import limits, percent
-from zwidth.showing import Html, bullets, element, printable, row
+from zwidth.quantity.text import in_a_table, quantity_unit, unit_text
+from zwidth.showing import Lines, Part, Table
 
 if TYPE_CHECKING:
     from zwidth.identification.device.numbers import IdentifiedNumbers
@@ -47,8 +49,8 @@ def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
     """The parameters, and what they allow."""
     table = []
     if identified.mass is not None:
-        unit = "kg m²" if identified.motion == "rotary" else "kg"
-        table.append(Row("m", NAMES["mass"], f"{identified.mass:.4g}", "as given", _pretty(unit)))
+        unit = quantity_unit("mass", identified.motion)
+        table.append(Row("m", NAMES["mass"], f"{identified.mass:.4g}", "as given", unit))
     for key, symbol in SYMBOLS.items():
         if key in identified.estimates:
             estimate = identified.estimates[key]
@@ -59,7 +61,7 @@ def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
                 estimate = getattr(identified.directions, name)
                 low, high = estimate.interval(confidence)
                 table.append(_row("b", f"  {name}", estimate.value, low, high, estimate.unit))
-    stiffness = "N·m/rad" if identified.motion == "rotary" else "N/m"
+    stiffness = quantity_unit("stiffness", identified.motion)
     for limit in limits(identified):
         low, high = limit.interval(confidence)
         table.append(_row(limit.symbol, NAMES[limit.symbol], limit.value, low, high, stiffness))
@@ -68,8 +70,7 @@ def rows(identified: IdentifiedNumbers, confidence: float = 0.95) -> list[Row]:
 
 def facts(identified: IdentifiedNumbers) -> str:
     """What the numbers rest on, in a line."""
-    turn = identified.motion == "rotary"
-    force, length = ("N·m", "rad") if turn else ("N", "m")
+    force, length = (quantity_unit(name, identified.motion) for name in ("force", "position"))
     return (
         f"r² = {identified.explained:.4f}, noise {identified.force_noise:.3g} {force} per sample, offset "
         f"{identified.offset:.3g} {force}; {identified.strokes} strokes, {identified.pulses} means over "
@@ -91,31 +92,16 @@ def source_name(identified: IdentifiedNumbers) -> str:
     return "".join(c if c.isprintable() else "?" for c in name)
 
 
-def as_text(identified: IdentifiedNumbers, confidence: float = 0.95) -> str:
-    """The table in columns."""
-    table = [("", "", "best guess", percent(confidence), ""), *rows(identified, confidence)]
-    widths = [max(len(row[i]) for row in table) for i in range(5)]
-    lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip() for row in table]
-    findings = [f"· {finding}" for finding in identified.findings]
-    return printable("\n".join([title(identified), "", *lines, "", facts(identified), *findings]))
-
-
-def as_html(identified: IdentifiedNumbers, confidence: float = 0.95) -> Html:
-    """The same for a notebook."""
-    head = row(("", "", "best guess", percent(confidence), ""), "th")
-    numbers = (row(cells) for cells in rows(identified, confidence))
-    table = element("table", element("caption", title(identified)), head, *numbers)
-    return element("div", table, element("p", facts(identified)), bullets(identified.findings))
+def report(identified: IdentifiedNumbers, confidence: float = 0.95) -> Iterable[Part]:
+    """The table, what it rests on, and what was found besides."""
+    heads = [("", "", "best guess", percent(confidence), "")]
+    yield Table(caption=title(identified), heads=heads, rows=rows(identified, confidence))
+    yield ""
+    yield facts(identified)
+    if identified.findings:
+        yield Lines(identified.findings)
 
 
 def _row(symbol: str, name: str, value: float, low: float, high: float, unit: str) -> Row:
-    return Row(symbol, name, _number(value), f"{_number(low)} … {_number(high)}", _pretty(unit))
-
-
-def _number(value: float) -> str:
-    """Four digits; whole numbers where there are more before the point."""
-    return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.4g}"
-
-
-def _pretty(unit: str) -> str:
-    return unit.replace(" ", "·")
+    interval = f"{in_a_table(low)} … {in_a_table(high)}"
+    return Row(symbol, name, in_a_table(value), interval, unit_text(unit.replace(" ", "*")))

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from zwidth.identification.tissue.result import TissueFit
-from zwidth.identification.tissue.table import html_of, lines_of
-from zwidth.showing import Html
+from zwidth.showing import Part, Shown, Table
 
 
-@dataclass(frozen=True, eq=False)
-class TissueComparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class TissueComparison(Shown):
     """Several models fitted to one record, that of the smallest BIC first.
 
     Parameters
@@ -39,8 +39,7 @@ class TissueComparison:
             lines.append([fit.model.name, str(fit.estimates.size), *numbers, known])
         return lines
 
-    def __repr__(self) -> str:
-        return "\n".join(lines_of(self.table()))
-
-    def _repr_html_(self) -> Html:
-        return html_of(self.table())
+    def report(self) -> Iterable[Part]:
+        """The table."""
+        head, *rows = self.table()
+        yield Table(heads=[head], rows=rows)

@@ -21,9 +21,9 @@ from zwidth.environment.creeping import position_response
 from zwidth.environment.discretization import Discretization
 from zwidth.environment.environment import Environment
 from zwidth.environment.relaxing import Elements, force_response
-from zwidth.environment.wall import Parameter
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Interval
+from zwidth.quantity.parameter import Given
 
 Response = Literal["force", "position"]
 
@@ -122,7 +122,7 @@ class Model:
         return found
 
     def environment(
-        self, values: Sequence[Parameter], discretization: Discretization, clamped: bool
+        self, values: Sequence[Given], discretization: Discretization, clamped: bool
     ) -> Environment:
         """What a controller renders."""
         if self.name == "kelvin-voigt":

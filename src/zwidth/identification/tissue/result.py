@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import exp, inf, log, sqrt
@@ -17,9 +17,9 @@ from zwidth.errors import InputError
 from zwidth.identification.logs import Finding
 from zwidth.identification.tissue.findings import coarse, unlikely_units
 from zwidth.identification.tissue.model import Model, unit_of
-from zwidth.identification.tissue.table import html_of, lines_of
+from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Interval
-from zwidth.showing import Html, element
+from zwidth.showing import Lines, Part, Table
 
 if TYPE_CHECKING:
     from zwidth.device import Device
@@ -36,8 +36,8 @@ LARGEST_SPREAD = 0.5
 _LARGEST_LOG = 700.0
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class TissueFit:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class TissueFit(Documented):
     """A model fitted to a record, with the uncertainty of its parameters.
 
     Attributes
@@ -293,16 +293,15 @@ class TissueFit:
             f"residuals {self.rms:.3g} {self._unit('offset')} RMS, {noise}, condition {self.condition:.3g}"
         )
 
-    def __repr__(self) -> str:
-        return "\n".join([self._summary(), *lines_of(self.table()), *self._notes()])
-
-    def _notes(self) -> list[str]:
-        return [*(f"! {r}" for r in self.remarks), *(f"· {f}" for f in self.findings)]
-
-    def _repr_html_(self) -> Html:
-        remarks = (element("p", element("b", remark)) for remark in self.remarks)
-        findings = (element("p", finding.text) for finding in self.findings)
-        return element("div", element("p", self._summary()), html_of(self.table()), *remarks, *findings)
+    def report(self) -> Iterable[Part]:
+        """The fit in a line, the parameters, and what is to be said of them."""
+        yield self._summary()
+        head, *rows = self.table()
+        yield Table(heads=[head], rows=rows)
+        if self.remarks:
+            yield Lines(self.remarks, mark="!")
+        if self.findings:
+            yield Lines(self.findings)
 
 
 def _exp(value: float) -> float:

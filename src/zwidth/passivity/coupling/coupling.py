@@ -32,17 +32,24 @@ from zwidth.device import Device
 from zwidth.environment import PulseTransferFunction, Wall
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
+from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, number
 from zwidth.passivity.linear.linear import LinearRefutation
 from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import Answer
+from zwidth.passivity.scope import Scope
+from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
 from zwidth.rendering import VirtualCoupling
 
 
-@dataclass(frozen=True)
-class CouplingCondition:
+@dataclass(frozen=True, repr=False)
+class CouplingCondition(Answer):
     """Whether a coupling on a device is passive before every passive environment.
 
     Attributes
@@ -56,6 +63,9 @@ class CouplingCondition:
         None where no damping would do, K_c T + 2 B_c ≤ 0.
     """
 
+    FORMAT = "zwidth coupling condition 1"
+    YES = "holds"
+
     device: Device
     stiffness: Exact
     damping: Exact
@@ -65,6 +75,44 @@ class CouplingCondition:
     def holds(self) -> bool:
         """True when it is proved: the certificate is that of `verdict`."""
         return self.verdict is not None and self.verdict.outcome == "passive"
+
+    @property
+    def outcome(self) -> Outcome:
+        """ "passive" where it holds; else what is known before the worst environment that was found."""
+        worst = self.counterexample
+        return "passive" if worst is None else worst.outcome
+
+    @property
+    def claim(self) -> str:
+        """The outcome in a sentence."""
+        negated = "" if self.holds else "not "
+        return f"On this device the coupling is {negated}passive before every passive environment."
+
+    @property
+    def scope(self) -> Scope:
+        """Environments that are touched and left, on an exact position."""
+        return Scope(
+            contact="made and broken",
+            encoder="not counted" if self.device.exact("resolution") else "ideal",
+            damping=float(self.device.exact("damping")),
+            motion=self.device.motion,
+        )
+
+    @property
+    def margin(self) -> float | None:
+        """Device damping less what is required [N·s/m; N·m·s/rad]; None if none is enough."""
+        need = self.required_damping
+        return None if need is None else float(self.device.exact("damping") - Fraction(repr(need)))
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The proof of the law that needs as much as the worst environment."""
+        return None if self.verdict is None else self.verdict.certificate
+
+    @property
+    def witness(self) -> Witness | Gain | None:
+        """A motion that takes energy out before the counterexample."""
+        return None if self.counterexample is None else self.counterexample.witness
 
     @property
     def required_damping(self) -> float | None:
@@ -93,9 +141,18 @@ class CouplingCondition:
         """This coupling with an environment behind it."""
         return VirtualCoupling(self.stiffness, self.damping, environment)
 
+    def numbers(self) -> dict[str, Any]:
+        """The coupling, and what it needs, as plain data."""
+        motion = self.device.motion
+        return {
+            unit_key("stiffness", motion): float(self.stiffness),
+            unit_key("damping", motion): float(self.damping),
+            f"required_{unit_key('damping', motion)}": self.required_damping,
+        }
+
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = {key: GLOSSARY[key].unit_for(self.device.motion) for key in ("stiffness", "damping")}
+        unit = {key: quantity_unit(key, self.device.motion) for key in ("stiffness", "damping")}
         need = self.required_damping
         return [
             ("coupling stiffness K_c", f"{float(self.stiffness):.6g} {unit['stiffness']}"),

@@ -18,7 +18,7 @@ Other delays are optimised numerically over κ/s.  Derived for this project.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -34,11 +34,15 @@ from zwidth.environment.environment import Environment, certain
 from zwidth.errors import InputError
 from zwidth.passivity.check import check
 from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition, needed_damping
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.formulas.hypotheses import number
+from zwidth.passivity.result import Result
+from zwidth.passivity.scope import Scope
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
 from zwidth.rendering import VirtualCoupling
+from zwidth.showing import Part, Table
 
 Goal = Literal["stiffest"] | Wall
 
@@ -49,8 +53,8 @@ _RATIOS = 400
 """Values of κ/s among which the nearest coupling is looked for, before it is refined."""
 
 
-@dataclass(frozen=True)
-class CouplingDesign:
+@dataclass(frozen=True, repr=False)
+class CouplingDesign(Result):
     """A virtual coupling made for a device.
 
     Attributes
@@ -62,6 +66,8 @@ class CouplingDesign:
     condition
         That it is passive before every passive environment, on an ideal encoder, with the certificate.
     """
+
+    FORMAT = "zwidth coupling design 1"
 
     device: Device
     stiffness: Exact
@@ -105,7 +111,7 @@ class CouplingDesign:
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = GLOSSARY["stiffness"].unit_for(self.device.motion)
+        unit = quantity_unit("stiffness", self.device.motion)
         rigid = self.verdict
         return [
             *self.condition.rows(),
@@ -116,8 +122,29 @@ class CouplingDesign:
             ("before a rigid one, encoder and friction counted", rigid.outcome),
         ]
 
-    def __repr__(self) -> str:
-        return f"<CouplingDesign {'; '.join(f'{k}: {v}' for k, v in self.rows())}>"
+    @property
+    def scope(self) -> Scope:
+        """That of the condition."""
+        return self.condition.scope
+
+    def describe(self) -> str:
+        """The numbers in a line."""
+        return "; ".join(f"{name}: {text}" for name, text in self.rows())
+
+    def to_dict(self) -> dict[str, Any]:
+        """The condition on the coupling with its certificate, and what is felt, as plain data."""
+        motion = self.device.motion
+        return {
+            **self.condition.to_dict(),
+            "format": self.FORMAT,
+            "margin": self.margin,
+            f"felt_slowly_{unit_key('stiffness', motion)}": self.felt_slowly,
+            f"felt_quickly_{unit_key('stiffness', motion)}": self.felt_quickly,
+        }
+
+    def report(self) -> Iterable[Part]:
+        """The numbers."""
+        yield Table(rows=self.rows())
 
 
 def design_coupling(device: Device, goal: Goal = "stiffest", margin: RealLike = 0.1) -> CouplingDesign:

@@ -14,13 +14,13 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from zwidth.checker import verify
 from zwidth.device import Device
 from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import unit_key
+from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact
-from zwidth.quantity.text import exact_text
+from zwidth.quantity.text import exact_text, quantity_unit
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,8 @@ def spring_need(device: Device, spring: NonlinearSpring) -> SpringNeed:
     )
 
 
-@dataclass(frozen=True)
-class EndlessPull:
+@dataclass(frozen=True, repr=False)
+class EndlessPull(Evidence):
     """A proof that a spring gives out energy without end: it pulls away, and friction holds less.
 
     Parameters
@@ -101,10 +101,6 @@ class EndlessPull:
         """The spring has no surface."""
         return "both sides"
 
-    def verify(self) -> bool:
-        """True when the independent checker accepts it."""
-        return verify(self.document).valid
-
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data."""
         return self.document
@@ -117,7 +113,7 @@ class EndlessPull:
 def refute_spring(device: Device, spring: NonlinearSpring) -> EndlessPull | None:
     """The proof that a spring pulls away for ever, if it does and the checker accepts it."""
     pull = max(spring.forces[0].fraction, -spring.forces[-1].fraction)
-    unit = "N·m" if device.motion == "rotary" else "N"
+    unit = quantity_unit("force", device.motion)
     found = EndlessPull(_document(device, spring, "endless pull"), float(pull), unit)
     return found if found.verify() else None
 

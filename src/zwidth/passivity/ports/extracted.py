@@ -6,13 +6,10 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from fractions import Fraction
 from math import pi
-from pathlib import Path
 from typing import Any, Literal, Protocol
 
-from zwidth.checker import verify
-from zwidth.passivity.document import save_json
 from zwidth.passivity.ports.port import Time
-from zwidth.showing import Html, element
+from zwidth.passivity.result import Evidence
 
 
 class AnyPort(Protocol):
@@ -46,8 +43,8 @@ class AnyMotion(Protocol):
         """burst: Ω [rad/s], m, k.  polynomial: τ [s] …"""
 
 
-@dataclass(frozen=True)
-class Extraction(ABC):
+@dataclass(frozen=True, repr=False)
+class Extraction(Evidence, ABC):
     """An input from rest by which a port gives out more than a level of its index allows.
 
     Attributes
@@ -85,17 +82,9 @@ class Extraction(ABC):
         With several axes u and y are lists of one signal for each.
         """
 
-    def verify(self) -> bool:
-        """True when the independent checker sums the same sign."""
-        return verify(self.document).valid
-
     def to_dict(self) -> dict[str, Any]:
         """The motion as plain data."""
         return self.document
-
-    def save(self, path: str | Path) -> None:
-        """Write it as JSON for `zwidth verify`."""
-        save_json(path, self.document)
 
     def describe(self) -> str:
         """The motion in a sentence."""
@@ -117,6 +106,3 @@ class Extraction(ABC):
 
     def __repr__(self) -> str:
         return f"<Extraction {self.describe()}>"
-
-    def _repr_html_(self) -> Html:
-        return element("p", self.describe())

@@ -10,7 +10,7 @@ question, of F = G and of F = 1/G: see `positive_real`, and for several axes `mu
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -22,13 +22,13 @@ from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.ports.extracted import AnyPort, Extraction
 from zwidth.passivity.ports.positive_real import Largest, NoLevel
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.showing import Html, element
+from zwidth.showing import Part, Shown
 
 Which = Literal["input", "output"]
 
 
-@dataclass(frozen=True)
-class PassivityIndex(ABC):
+@dataclass(frozen=True, repr=False)
+class PassivityIndex(Shown, ABC):
     """The largest level σ of one index, with where it is reached.
 
     Attributes
@@ -138,8 +138,9 @@ class PassivityIndex(ABC):
     def __repr__(self) -> str:
         return f"<PassivityIndex {self.name} {self.describe()}>"
 
-    def _repr_html_(self) -> Html:
-        return element("p", f"{self.name} index {self.describe()}")
+    def report(self) -> Iterable[Part]:
+        """Which index, and what it is."""
+        yield f"{self.name} index {self.describe()}"
 
     @abstractmethod
     def _proof(self, level: Fraction) -> dict[str, Any] | None:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from zwidth.device import Device
@@ -24,7 +25,9 @@ from zwidth.errors import InputError
 from zwidth.passivity import limits
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.decision import decide
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.supremum import frequency, tightest
+from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.ports.extracted import Extraction
 from zwidth.passivity.ports.index import PassivityIndex
 from zwidth.passivity.ports.multiport.index import MatrixIndex
@@ -34,9 +37,9 @@ from zwidth.passivity.ports.multiport.sampled import sampled_damping
 from zwidth.passivity.ports.port import read_port
 from zwidth.passivity.ports.port_index import PortIndex
 from zwidth.passivity.ports.positive_real import largest_level
+from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
-from zwidth.quantity.glossary import GLOSSARY
-from zwidth.showing import Html, element, named
+from zwidth.quantity.text import quantity_unit
 
 
 @dataclass(frozen=True)
@@ -71,15 +74,15 @@ class SampledDamping:
         """The need in a line."""
         if self.required is None:
             return "no damping is enough"
-        unit = GLOSSARY["damping"].unit_for(self.device.motion)
+        unit = quantity_unit("damping", self.device.motion)
         return f"b ≥ {self.required:.9g} {unit}, tightest at {self.frequency:.6g} Hz"
 
     def __repr__(self) -> str:
         return f"<SampledDamping {self.describe()}>"
 
 
-@dataclass(frozen=True)
-class PassivityIndices:
+@dataclass(frozen=True, repr=False)
+class PassivityIndices(PassivityAnswer):
     """What `passivity_indices` found.
 
     Attributes
@@ -90,14 +93,32 @@ class PassivityIndices:
         What H(z) needs of a device; None where no sample period is known.
     """
 
+    FORMAT = "zwidth indices 1"
+    PICTURE = "indices"
+
     input: PassivityIndex
     output: PassivityIndex
     sampled_damping: SampledDamping | None
 
+    @cached_property
+    def outcome(self) -> Outcome:
+        """ "passive" for ν ≥ 0 with a proof that the checker accepts; "active" for ν < 0; equality counts."""
+        if not self.input.at_least(0):
+            return "active"
+        return "passive" if self.input.certificate(0).verify() else "undecided"
+
     @property
-    def passive(self) -> bool:
-        """Whether ν ≥ 0, which is passive, and the checker accepts the proof; equality counts."""
-        return self.input.at_least(0) and bool(self.input.certificate(0).verify())
+    def claim(self) -> str:
+        """The outcome in a sentence."""
+        if self.outcome == "undecided":
+            return "No input takes energy out of this port; the checker did not confirm it."
+        some = {"passive": "No", "active": "An"}[self.outcome]
+        return f"{some} input, from rest, takes energy out of this port."
+
+    @property
+    def margin(self) -> float:
+        """ν, in the unit of output over input."""
+        return self.input.value
 
     @property
     def hidden_modes_decay(self) -> bool:
@@ -128,19 +149,15 @@ class PassivityIndices:
             rows.append(("hidden", "a cancelled mode does not decay"))
         return rows
 
-    def _said(self) -> str:
-        if self.passive:
-            return "passive"
-        return "undecided" if self.input.at_least(0) else "not passive"
+    def numbers(self) -> dict[str, Any]:
+        """The indices, and the damping needed by the sampled loop, as plain data."""
+        damping = self.sampled_damping
+        need = {} if damping is None else {unit_key("damping", damping.device.motion): damping.required}
+        return {"input_index": self.input.value, "output_index": self.output.value, **need}
 
     def __repr__(self) -> str:
         rows = "; ".join(f"{name} {text}" for name, text in self.rows())
-        return f"<PassivityIndices {self._said()}: {rows}>"
-
-    def _repr_html_(self) -> Html:
-        word = self._said()
-        colour = {"passive": "#2a7d4f", "undecided": "#8a6d00", "not passive": "#b3261e"}[word]
-        return element("div", element("b", word, style=f"color:{colour}"), named(self.rows()))
+        return f"<PassivityIndices {self.outcome}: {rows}>"
 
 
 def passivity_indices(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
 
 from zwidth.device.device import Device
 from zwidth.device.friction import FrictionCurve
 from zwidth.errors import InputError
-from zwidth.passivity.storage.board import Domain
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.losses import Losses
 from zwidth.quantity.exact import Exact, RealLike
@@ -23,7 +23,64 @@ MOST_DEPTHS = 9000
 """Readings inside at which the force of a contact is written down."""
 
 MOST_STATES = 40_000_000
-"""States of the largest board."""
+"""States of the largest grid."""
+
+
+@dataclass(frozen=True)
+class Domain:
+    """Where the hand may be and how far it may go in one sample, in counts.
+
+    Parameters
+    ----------
+    lowest, highest
+        The first and the last cell.
+    reach
+        The largest difference of two successive readings.
+    max_depth, max_speed
+        The bounds themselves, which need not be whole counts: no motion goes beyond
+        them.  None: the upper edge of the last cell, and the reach.
+    """
+
+    lowest: int
+    highest: int
+    reach: int
+    max_depth: Fraction | None = None
+    max_speed: Fraction | None = None
+
+    @property
+    def cells(self) -> int:
+        """How many there are."""
+        return self.highest - self.lowest + 1
+
+    @property
+    def speed(self) -> Fraction:
+        """The longest way in one sample, in counts."""
+        return Fraction(self.reach) if self.max_speed is None else self.max_speed
+
+    def every(self, counts: int, remembered: int, sides: bool) -> Domain | None:
+        """Cells of so many counts within the bounds, the hand in the first count of each; None without any.
+
+        `remembered` readings before the last one; `sides`: the grid ends outside as it does inside.
+        """
+        within = self.within
+        highest, reach = within.highest // counts, floor((self.speed + 1) / counts)
+        if highest < 1 or reach < 1:
+            return None
+        lowest = 1 - (remembered + 1) * reach
+        if sides:
+            lowest = -(-within.lowest // counts)
+        max_depth = self.highest + 1 if self.max_depth is None else self.max_depth
+        return Domain(lowest, highest, reach, Fraction(max_depth) / counts, self.speed / counts)
+
+    @property
+    def within(self) -> Domain:
+        """Only the cells that lie within the bounds."""
+        if self.max_depth is None:
+            return self
+        highest = floor(self.max_depth) - 1
+        beyond = self.lowest < -self.highest - 1  # farther out than deep: no depth counts there
+        lowest = self.lowest if beyond else max(self.lowest, -floor(self.max_depth))
+        return Domain(lowest, highest, self.reach, self.max_depth, self.max_speed)
 
 
 def losses_of(device: Device, friction: FrictionCurve | None = None) -> Losses:
@@ -83,22 +140,22 @@ def domain_for(
         )
     memory = law.memory + losses.delay
     usual = (COUNTS if law.relaxing is None else RELAXING_COUNTS).get(memory, 1)
-    deepest = (
+    max_depth = (
         counts_of("penetration", penetration, losses.resolution) or _extent(law, losses) or Fraction(usual)
     )
-    fastest = counts_of("speed", speed, losses.resolution / losses.period)
-    highest = max(1, ceil(deepest) - 1)
-    reach = ceil(fastest) if fastest else min(usual, 2 * highest + 1)
+    max_speed = counts_of("speed", speed, losses.resolution / losses.period)
+    highest = max(1, ceil(max_depth) - 1)
+    reach = ceil(max_speed) if max_speed else min(usual, 2 * highest + 1)
     lowest = 1 - (memory + 1) * reach  # beyond it, a hand has been forgotten
     if law.surface == "none":
         lowest = -highest - 1
     elif law.relaxing is not None and law.surface == "position":  # which never is
         lowest = min(lowest, -highest - 1)
-    return Domain(lowest, highest, reach, deepest, fastest or None)
+    return Domain(lowest, highest, reach, max_depth, max_speed or None)
 
 
 def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
-    """Why a board has more states than are played, in words; None if it has not."""
+    """Why a grid has more states than are played, in words; None if it has not."""
     if law.power is not None and domain.highest > MOST_DEPTHS:
         return (
             f"a contact is played up to {MOST_DEPTHS} counts deep, and penetration is {domain.highest + 1} "
@@ -114,7 +171,7 @@ def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
 
 
 def states_of(law: FiniteLaw, losses: Losses, domain: Domain) -> int:
-    """Cells, readings before and averages of a board together."""
+    """Cells, readings before and averages of a grid together."""
     states = int(domain.cells * (2 * domain.reach + 1) ** (law.memory + losses.delay))
     return states * domain.cells if law.relaxing is not None else states
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.scope import Hands
-from zwidth.passivity.storage.board import Domain
+from zwidth.passivity.storage.domain import Domain
 from zwidth.passivity.storage.law import FiniteLaw
 from zwidth.passivity.storage.losses import Losses
 from zwidth.passivity.witness.motion import Motion
@@ -25,7 +25,7 @@ class HandBounds:
         Largest mean speed over a sample, or over each part of it with one force [m/s; rad/s].
     penetration
         Deepest position that a proof covers, a whole number of counts [m; rad].
-    deepest
+    max_depth
         Deepest position of a motion that refutes, at most `penetration` [m; rad].
     outside
         How far outside the hand may go [m; rad]; None: any distance.
@@ -35,7 +35,7 @@ class HandBounds:
 
     speed: Fraction
     penetration: Fraction
-    deepest: Fraction
+    max_depth: Fraction
     outside: Fraction | None
     resolution: Fraction
     period: Fraction
@@ -66,10 +66,10 @@ class HandBounds:
         length = unit_key("position", motion).removeprefix("position_")
         document = {
             f"speed_{length}_per_s": exact_text(self.speed),
-            f"depth_{length}": exact_text(self.deepest),
+            f"depth_{length}": exact_text(self.max_depth),
         }
         if self.outside is not None:
-            far = self.deepest if self.outside == self.penetration else self.outside
+            far = self.max_depth if self.outside == self.penetration else self.outside
             document[f"outside_{length}"] = exact_text(far)
         return document
 
@@ -80,18 +80,18 @@ def hand_bounds(law: FiniteLaw, losses: Losses, domain: Domain) -> HandBounds:
     outside: Fraction | None = None
     if law.surface == "none" or (law.relaxing is not None and law.surface == "position"):
         outside = -domain.lowest * step
-    deepest = domain.highest + 1 if domain.deepest is None else domain.deepest
+    max_depth = domain.highest + 1 if domain.max_depth is None else domain.max_depth
     return HandBounds(
         domain.speed * step / losses.period,
         (domain.highest + 1) * step,
-        deepest * step,
+        max_depth * step,
         outside,
         step,
         losses.period,
     )
 
 
-def fastest(motion: Motion, period: Fraction, part: Fraction) -> Fraction:
+def max_mean_speed(motion: Motion, period: Fraction, part: Fraction) -> Fraction:
     """Largest mean speed over each time in which one force is held [m/s; rad/s]."""
     x, switches = motion.positions, motion.switch_positions
     if not switches:

@@ -64,7 +64,7 @@ class Losses:
         return tuple((m.coulomb_friction.fraction, m.damping.fraction) for m in self.curve.minorants())
 
     @property
-    def largest(self) -> tuple[Fraction, Fraction]:
+    def max_friction(self) -> tuple[Fraction, Fraction]:
         """(f_c, b) of which neither is ever exceeded."""
         if self.curve is None:
             return self.coulomb_friction, self.damping
@@ -93,7 +93,7 @@ def _on_chord(points: list[tuple[Fraction, Fraction]], speed: Fraction) -> Fract
     return f1 + (slope if speed <= v1 else max(slope, Fraction(0))) * (speed - v1)
 
 
-def generous(
+def outer_costs(
     losses: Losses, far: Integers, span: Fraction, step: Fraction, unit: Fraction, off: int
 ) -> Integers:
     """At most what a move over 0, 1, … steps in a time costs, also on the chord between two of them.
@@ -115,7 +115,7 @@ def generous(
     return out
 
 
-def strict(
+def inner_costs(
     losses: Losses, far: Integers, span: Fraction, step: Fraction, unit: Fraction, off: int
 ) -> Integers:
     """At least what it costs, likewise."""

@@ -11,24 +11,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
-from zwidth.checker import verify
-from zwidth.passivity.document import loop_document, save_json
+from zwidth.passivity.document import loop_document
 from zwidth.passivity.linear.linear import LinearRefutation, offset_of
 from zwidth.passivity.linear.supremum import frequency
+from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.witness.refutation import refute_linear
 from zwidth.passivity.witness.witness import Setting, Witness
-from zwidth.quantity.text import exact_text
-from zwidth.showing import Html, element
+from zwidth.quantity.text import exact_text, quantity_unit
 
 FORMAT = "zwidth violation 1"
 
 
-@dataclass(frozen=True)
-class Violation:
+@dataclass(frozen=True, repr=False)
+class Violation(Evidence):
     """A proof that a hand can take any amount of energy out of a loop.
 
     Parameters
@@ -58,10 +56,6 @@ class Violation:
         """A hand that stays inside finds it; or there is no surface."""
         return "kept" if self.setting.unilateral else "both sides"
 
-    def verify(self) -> bool:
-        """True when the independent checker accepts it."""
-        return verify(self.to_dict()).valid
-
     def to_dict(self) -> dict[str, Any]:
         """The violation as plain data."""
         s = self.setting
@@ -76,10 +70,6 @@ class Violation:
             return {"kind": reason, "offset": exact_text(offset_of(self.setting.loop))}
         return {"kind": reason}
 
-    def save(self, path: str | Path) -> None:
-        """Write the violation as JSON for `zwidth verify`."""
-        save_json(path, self.to_dict())
-
     def describe(self) -> str:
         """What is violated, in words."""
         if self.frequency is not None:
@@ -89,10 +79,6 @@ class Violation:
         return "the law is unstable by itself"
 
     def _static(self) -> str:
-        unit = "N·m/rad" if self.setting.motion == "rotary" else "N/m"
+        unit = quantity_unit("stiffness", self.setting.motion)
         stiffness = self.setting.loop.static_stiffness or Fraction(0)
         return f"static stiffness {float(stiffness):.6g} {unit}"
-
-    def _repr_html_(self) -> Html:
-        state = "accepted" if self.verify() else "rejected"
-        return element("p", f"{self.describe()}: {state} by the checker")

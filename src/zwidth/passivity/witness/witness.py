@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from zwidth.checker import verify
-from zwidth.passivity.document import loop_document, save_json, unit_key
+from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.linear.loop import LinearLoop
+from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact
 from zwidth.passivity.witness.motion import Motion
-from zwidth.showing import Html, element
+from zwidth.quantity.text import quantity_unit
 
 FORMAT = "zwidth witness 1"
 
@@ -85,8 +85,8 @@ class Setting:
         return document
 
 
-@dataclass(frozen=True)
-class Witness:
+@dataclass(frozen=True, repr=False)
+class Witness(Evidence):
     """A motion from rest at the surface that takes energy out of the device.
 
     Energy out, in rational arithmetic: −Σ f Δx − f_c Σ|Δx| − (b/T) Σ Δx², the
@@ -119,6 +119,11 @@ class Witness:
     def _told(self) -> Motion:
         """The motion as it is written down: every round, unless there are very many."""
         return self.motion.listed() if self.motion.samples <= MOST_LISTED else self.motion
+
+    @property
+    def unit(self) -> str:
+        """Of positions."""
+        return quantity_unit("position", self.setting.motion)
 
     @property
     def sample_period(self) -> float:
@@ -156,29 +161,21 @@ class Witness:
         static = abs(float(self.setting.loop.static_stiffness or 0)) * self.depth
         return max(self.setting.peak_force(self._told.positions), static)
 
-    def verify(self) -> bool:
-        """True when the independent checker finds the same energy, > 0."""
-        return verify(self.to_dict()).valid
-
     def to_dict(self) -> dict[str, Any]:
         """The witness as plain data; positions are exact rationals."""
         return self.setting.document(self._told, self.exact_energy)
 
-    def save(self, path: str | Path) -> None:
-        """Write the witness as JSON for `zwidth verify`."""
-        save_json(path, rounded_energy(self.to_dict()))
-
-    def _repr_html_(self) -> Html:
-        return element("p", self.describe())
+    def saved(self) -> dict[str, Any]:
+        """The energy rounded: the checker recomputes it anyway."""
+        return rounded_energy(self.to_dict())
 
     def describe(self) -> str:
         """The motion in a sentence."""
-        unit = "rad" if self.setting.motion == "rotary" else "m"
         times = self.motion.rounds
         rounds = f", its cycle {times:.6g} times" if times > 1 and len(self.motion.repeats) == 1 else ""
         return (
-            f"{self.motion.samples:.6g} samples{rounds}, to {self.depth:.4g} {unit} at up to "
-            f"{self.peak_speed:.4g} {unit}/s, extracts {self.energy:.4g} J"
+            f"{self.motion.samples:.6g} samples{rounds}, to {self.depth:.4g} {self.unit} at up to "
+            f"{self.peak_speed:.4g} {self.unit}/s, extracts {self.energy:.4g} J"
         )
 
 

@@ -78,7 +78,7 @@ def test_what_binds():
     assert lacking.margin is None
     assert zw.transformed_condition(device(1), zw.Indices()).binding == "coupling and environment"
     assert "none is enough" in repr(lacking)
-    assert "0.25 N*s/m" in repr(short)
+    assert "0.25 N·s/m" in repr(short)
 
 
 def test_shortage_costs_and_excess_saves_under_delay():

@@ -20,7 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite, sqrt
-from typing import Literal
+from typing import Any, Literal
 
 from zwidth.device import Device
 from zwidth.errors import InputError
@@ -28,16 +28,19 @@ from zwidth.passivity.coupling.loop_transformation.environment_class import Indi
 from zwidth.passivity.coupling.loop_transformation.forms import DIRECT, Connection, coupled, indices_form
 from zwidth.passivity.coupling.loop_transformation.least_damping import best_form, largest_need
 from zwidth.passivity.coupling.loop_transformation.slopes import exact_need, whole_delay
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, nonnegative, number
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Scope
 from zwidth.quantity.exact import RealLike
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import quantity_unit
 
 Binding = Literal["device damping", "coupling and environment"]
 
 
-@dataclass(frozen=True)
-class TransformedCondition:
+@dataclass(frozen=True, repr=False)
+class TransformedCondition(Answer):
     """Whether the theorem promises passivity for a device, a coupling and a class of environments.
 
     Attributes
@@ -57,12 +60,20 @@ class TransformedCondition:
         Where it is tightest [Hz]; None where a closed form decides.
     """
 
+    FORMAT = "zwidth transformed condition 1"
+    YES = "holds"
+
     device: Device
     environment: Slopes | Indices
     holds: bool
     required_damping: float | None
     binding: Binding
     critical_frequency: float | None
+
+    @property
+    def outcome(self) -> Outcome:
+        """ "theorem": a proof on paper, without a certificate; else "undecided"."""
+        return "theorem" if self.holds else "undecided"
 
     @property
     def margin(self) -> float | None:
@@ -96,9 +107,14 @@ class TransformedCondition:
         counts = "; the counts of the encoder are not in it" if self.scope.encoder == "not counted" else ""
         return f"Passive before {of}, contact made and broken{counts}."
 
+    def numbers(self) -> dict[str, Any]:
+        """What is needed, and what binds, as plain data."""
+        required = f"required_{unit_key('damping', self.device.motion)}"
+        return {required: self.required_damping, "binding": self.binding}
+
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text) for a report."""
-        unit = GLOSSARY["damping"].unit_for(self.device.motion)
+        unit = quantity_unit("damping", self.device.motion)
         need = self.required_damping
         return [
             (

@@ -1,0 +1,146 @@
+"""Reading robot descriptions: URDF and MJCF, by pinocchio.
+
+Viscous and Coulomb friction and the limits of motion and effort are those of the
+description where they are not given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from zwidth.arms.kinematics.described import DescribedArm, slides, unit_of
+from zwidth.arms.kinematics.description_file import read_model
+from zwidth.arms.kinematics.joint_damping import Damping
+from zwidth.arms.kinematics.posed import PosedArm
+from zwidth.errors import InputError
+
+
+def read_arm(
+    path: str | Path,
+    *,
+    frame: str | None = None,
+    hold: dict[str, float] | None = None,
+    damping: Damping | None = None,
+    coulomb_friction: Sequence[float] | None = None,
+    resolution: Sequence[float] = (),
+    torque_limit: Sequence[float] | None = None,
+    pose: bool = False,
+    rest: dict[str, float] | None = None,
+) -> DescribedArm:
+    """Read an arm from a URDF or MJCF file; needs the extra `arms`, which is pinocchio.
+
+    Parameters
+    ----------
+    path
+        The file, .urdf, .xml or .mjcf. Meshes are not read.
+    frame
+        The frame at whose origin the hand is; None: the last one.
+    hold
+        Joints that stay at a value [rad; m], by name; the map moves two joints at most.
+        None: of more than two joints, all but the first two are held in the middle of their ranges.
+    damping, coulomb_friction, torque_limit
+        Of each joint [N·m·s/rad], [N·m], [N·m]; None: those of the description. Damping may be a
+        matrix, as of `Arm`, in the order of the description's joints.
+    resolution
+        Encoder step of each joint [rad; m]; descriptions have none.
+    pose
+        The hand holds the frame and turns with it: six coordinates, `PosedArm`. Default: it holds a point.
+    rest
+        In pose, by name: joints at which the wall's rotation is at rest [rad; m]; those that are not named,
+        in the middle of their ranges. None: in every orientation, for walls as stiff about every axis.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a name is not in it, or its joints have no damping at all.
+    """
+    path = Path(path)
+    model = read_model(path)
+    m, m_names = int(model.nv), [str(n) for n in model.names][1:]
+    if len(m_names) != m:
+        raise InputError(f"{path.name}: every joint must turn or slide about one axis")
+    frames = [str(f.name) for f in model.frames]
+    if frame is not None and frame not in frames:
+        raise InputError(f"{path.name} has no frame {frame!r}; it has {', '.join(frames[1:21])}")
+    b: Damping = tuple(model.damping) if damping is None else damping
+    if not np.any(b):
+        raise InputError(
+            f"{path.name} gives no joint any damping, and without damping no wall is passive; "
+            "measure it and give damping, or write <dynamics damping=…/> in the description"
+        )
+    limits = tuple(model.effortLimit) if torque_limit is None else tuple(torque_limit)
+    given: dict[str, Any] = {
+        "model": model,
+        "frame": frame or frames[-1],
+        "joint_range": _ranges(model, m_names, hold),
+        "damping": b,
+        "coulomb_friction": tuple(model.friction) if coulomb_friction is None else coulomb_friction,
+        "resolution": resolution,
+        "torque_limit": limits if all(0 < v < np.inf for v in limits) else (),
+        "name": str(model.name) or path.stem,
+    }
+    if pose:
+        resting = None if rest is None else _rest(given["joint_range"], m_names, rest)
+        return PosedArm(rest=resting, **given)
+    if rest is not None:
+        raise InputError("rest is where the rotation of a wall in pose rests; a point does not turn")
+    return DescribedArm(**given)
+
+
+def _ranges(model: Any, names: list[str], hold: dict[str, float] | None) -> tuple[tuple[float, float], ...]:
+    _named(hold or {}, names, "hold")
+    ranges = []
+    for i, name in enumerate(names):
+        if hold is not None and name in hold:
+            low = high = _held(model, i, name, float(hold[name]))
+        else:
+            low, high = _limits(model, i)
+            if hold is None and i >= 2:
+                low = high = (low + high) / 2
+        ranges.append((low, high))
+    moving = [name for name, (low, high) in zip(names, ranges, strict=True) if high > low]
+    if not 1 <= len(moving) <= 2:
+        raise InputError(f"the map moves one or two joints, here {len(moving)} would move; hold the others")
+    return tuple(ranges)
+
+
+def _rest(
+    ranges: tuple[tuple[float, float], ...], names: list[str], rest: dict[str, float]
+) -> tuple[float, ...]:
+    _named(rest, names, "rest")
+    return tuple(
+        float(rest.get(name, (low + high) / 2)) for name, (low, high) in zip(names, ranges, strict=True)
+    )
+
+
+def _named(given: dict[str, float], names: list[str], what: str) -> None:
+    unknown = sorted(set(given) - set(names))
+    if unknown:
+        raise InputError(f"{what}: there is no joint {unknown[0]!r}; there are {', '.join(names)}")
+
+
+def _held(model: Any, i: int, name: str, value: float) -> float:
+    low, high = _written_limits(model, i) or (-np.inf, np.inf)
+    if not (np.isfinite(value) and low <= value <= high):
+        bounds = f"from {low:g} to {high:g} {unit_of(model, i)}" if np.isfinite(low) else "finite"
+        raise InputError(f"hold: {name} can be {bounds}, got {value:g}")
+    return value
+
+
+def _limits(model: Any, i: int) -> tuple[float, float]:
+    written = _written_limits(model, i)
+    if written is None and slides(model, i):
+        raise InputError(f"joint {i + 1} slides without limits; write them into the description, or hold it")
+    return written or (-float(np.pi), float(np.pi))
+
+
+def _written_limits(model: Any, i: int) -> tuple[float, float] | None:
+    joint = next(j for j in model.joints if j.idx_v == i)
+    if joint.nq != 1:
+        return None
+    low, high = (float(limit[joint.idx_q]) for limit in (model.lowerPositionLimit, model.upperPositionLimit))
+    return (low, high) if -1e3 < low < high < 1e3 else None

@@ -1,0 +1,94 @@
+"""What every report in the terminal is made of: a headline, names with their texts, sections.
+
+Everything a person typed is printed as text, never read as markup.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from io import StringIO
+
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.padding import Padding
+from rich.segment import Segment
+from rich.table import Table
+from rich.text import Text
+
+from zwidth.cli.description import GLUE
+from zwidth.cli.output import quiet_pipe
+from zwidth.showing import printable
+
+_WIDEST = 100
+
+
+class _Shown(Console):
+    """A console of which only its own colours are obeyed, never what stands in a text."""
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+        for part in super().render(renderable, options):
+            yield part if part.control else Segment(printable(part.text), part.style)
+
+
+@contextmanager
+def page() -> Iterator[Console]:
+    """A console that prints text as it is, at a width that reads well, without blanks at line ends."""
+    terminal = sys.stdout is not None and sys.stdout.isatty()
+    console = _Shown(
+        file=StringIO(), force_terminal=terminal or None, markup=False, highlight=False, emoji=False
+    )
+    console.width = min(console.width, _WIDEST)
+    yield console
+    text = console.file.getvalue()  # type: ignore[attr-defined]  # it is the StringIO above
+    with quiet_pipe():
+        print("\n".join(line.rstrip() for line in text.replace(GLUE, " ").rstrip().split("\n")))
+
+
+def headline(word: str, colour: str, claim: str) -> Padding:
+    """The outcome as a badge, and the claim beside it."""
+    line = Table.grid(padding=(0, 1))
+    line.add_row(Text(f" {word.upper()} ", style=f"bold white on {colour}"), Text(claim, style="bold"))
+    return below(line)
+
+
+def grid(rows: Iterable[tuple[str, str | Text]]) -> Table:
+    """Names, and beside each its text."""
+    table = Table.grid(padding=(0, 2))
+    for name, text in rows:
+        table.add_row(Text(name, style="dim"), text if isinstance(text, Text) else Text(text))
+    return table
+
+
+def below(table: Table) -> Padding:
+    """A table with a blank line after it."""
+    return Padding(table, (0, 0, 1, 0))
+
+
+def section(out: Console, title: str, parts: Iterable[Text | Table]) -> None:
+    """A title and what belongs to it, set in; nothing where there is nothing."""
+    lines = list(parts)
+    if not lines:
+        return
+    out.print(Text(title, style="bold"))
+    for part in lines:
+        out.print(_hanging(part) if isinstance(part, Text) else Padding(part, (0, 0, 0, 2)))
+    out.print()
+
+
+def items(texts: Iterable[object], style: str = "") -> Iterator[Text]:
+    """A list, line by line."""
+    for text in texts:
+        yield Text(f"· {text}", style=style)
+
+
+def _hanging(text: Text) -> Table:
+    """A line that, where it breaks, goes on under its own beginning."""
+    line = Table.grid()
+    mark, _, rest = text.plain.partition(" ")
+    if len(mark) == 1:
+        style = text.spans[0].style if text.spans else text.style
+        line.add_row("  ", Text(f"{mark} ", style), Text(rest, text.style))
+    else:
+        line.add_row("  ", text)
+    return line

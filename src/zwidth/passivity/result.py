@@ -1,0 +1,215 @@
+"""What every result is: a sentence, its numbers, what it rests on, and evidence that anyone can check."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from zwidth.checker import verify
+from zwidth.errors import InputError
+from zwidth.passivity.document import save_json, to_json
+from zwidth.passivity.outcome import COLOUR
+from zwidth.passivity.scope import Scope
+from zwidth.showing import Headline, Lines, Part, Shown, Table
+
+EVIDENCE = ("certificate", "violation", "witness")
+"""Where a result, and a document, holds what the checker can check."""
+
+
+def evidence_of(result: object) -> dict[str, Any]:
+    """The proofs and motions that a result holds, as plain data."""
+    found = {name: getattr(result, name, None) for name in EVIDENCE}
+    return {name: part.saved() for name, part in found.items() if part is not None}
+
+
+class Documented(Shown):
+    """Something that is plain data too: it can be saved, and drawn where there is a picture of it."""
+
+    FORMAT: ClassVar[str]
+    """Under which its document is known."""
+
+    PICTURE: ClassVar[str] = ""
+    """What draws it, in `zwidth.plots`: that lies above, so it is known by its name alone."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """It as plain data, a unit in every key of a physical quantity."""
+        raise NotImplementedError
+
+    def to_json(self) -> str:
+        """`to_dict` as JSON text, every exact number digit for digit."""
+        return to_json(self.to_dict())
+
+    def saved(self) -> dict[str, Any]:
+        """What `save` writes."""
+        return self.to_dict()
+
+    def save(self, path: str | Path) -> None:
+        """Write it as JSON, with its evidence for `zwidth verify`.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        save_json(path, self.saved())
+
+    def plot(self, path: str | Path | None = None) -> Any:
+        """Its picture, a matplotlib figure that belongs to no window; saved where a path is given.
+
+        Parameters
+        ----------
+        path
+            Ends in .png, .svg or .pdf.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to draw, or the file cannot be written.
+        """
+        figure = self.figure()
+        if path is not None:
+            import_module("zwidth.plots.files").save_figure(lambda: figure, path, overwrite=True)
+        return figure
+
+    def figure(self) -> Any:
+        """What `plot` returns."""
+        if not self.PICTURE:
+            raise InputError(f"there is no picture of this {type(self).__name__}")
+        return getattr(import_module("zwidth.plots"), self.PICTURE)(self)
+
+
+class Result(Documented):
+    """Something found.  It describes itself once: a terminal, a notebook and a file are made of that."""
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What it covers and takes for granted, line by line."""
+        return ()
+
+    def describe(self) -> str:
+        """It in a sentence."""
+        raise NotImplementedError
+
+    def rows(self) -> Iterable[tuple[str, str]]:
+        """The main numbers as (name, text) for a report."""
+        return ()
+
+    def report(self) -> Iterable[Part]:
+        """The sentence, the numbers, and what is taken for granted."""
+        yield self._headline()
+        rows = list(self.rows())
+        if rows:
+            yield Table(rows=rows)
+        assumed = self.small_print()
+        if assumed:
+            yield Lines(assumed, "assumptions")
+
+    def small_print(self) -> tuple[str, ...]:
+        """What a report says last."""
+        return self.assumptions
+
+    def _headline(self) -> Part:
+        return self.describe()
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.describe()}>"
+
+
+class Evidence(Result):
+    """A proof or a motion, which the independent checker accepts or rejects by itself."""
+
+    def verify(self) -> bool:
+        """True when the independent checker accepts it."""
+        return verify(self.to_dict()).valid
+
+    def _headline(self) -> Part:
+        return f"{self.describe()}: {'accepted' if self.verify() else 'rejected'} by the checker"
+
+
+class Answer(Result):
+    """The answer to a question: there are more than yes and no, so none of them is true or false.
+
+    Attributes
+    ----------
+    outcome
+        What came of the question, in a word.
+    claim
+        The same in a sentence.
+    scope
+        What it is about.
+    certificate, violation, witness
+        The evidence; None where there is none of its kind.
+    """
+
+    YES: ClassVar[str]
+    """The property that is True where the answer is yes."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def outcome(self) -> str: ...
+        @property
+        def claim(self) -> str: ...
+        @property
+        def scope(self) -> Scope: ...
+
+    @property
+    def margin(self) -> float | None:
+        """How far the answer is from another one, > 0 on the side of yes; None where no number says it."""
+        return None
+
+    def __bool__(self) -> bool:
+        """Refuse to be true or false.
+
+        Raises
+        ------
+        InputError
+            Always: every object is true, and "if verdict:" would read as a proof.
+        """
+        raise InputError(
+            f"this answer is {self.outcome!r}, and an answer is neither true nor false: "
+            f"ask .{self.YES}, which is True for a proof alone, or compare .outcome"
+        )
+
+    def describe(self) -> str:
+        """Outcome and claim."""
+        return f"{self.outcome}: {self.claim}"
+
+    def numbers(self) -> dict[str, Any]:
+        """The main numbers as plain data, a unit in every key of a physical quantity."""
+        return {}
+
+    def evidence(self) -> dict[str, Any]:
+        """Proofs and motions as plain data."""
+        return evidence_of(self)
+
+    def stated(self) -> dict[str, Any]:
+        """Outcome, scope, assumptions and numbers as plain data, units in the keys; the evidence left out."""
+        return {
+            "format": self.FORMAT,
+            "outcome": self.outcome,
+            "claim": self.claim,
+            "scope": self.scope.to_dict(),
+            "assumptions": list(self.small_print()),
+            **self.numbers(),
+        }
+
+    def to_dict(self) -> dict[str, Any]:
+        """What is stated, and the evidence, as plain data, units in the keys."""
+        return {**self.stated(), **self.evidence()}
+
+    def _headline(self) -> Part:
+        return Headline(self.outcome, COLOUR[self.outcome], self.claim)
+
+
+class PassivityAnswer(Answer):
+    """Whether a hand can take energy out of a loop."""
+
+    YES = "passive"
+
+    @property
+    def passive(self) -> bool:
+        """True where the outcome is "passive": a proof, with contact made and broken, or as was asked."""
+        return self.outcome == "passive"

@@ -1,0 +1,1 @@
+"""What a value iteration leaves: a storage function as a certificate, a cycle as a motion that gains."""

@@ -1,0 +1,284 @@
+"""Grids for laws that relax: one continuous memory.
+
+A Maxwell branch or a one-pole filter gives
+
+    y = g (u_k − a_k),      a_{k+1} = p a_k + (1 − p) u_k
+
+a the average of all readings before, with weights that die out.  V is linear
+between levels of a as well.  A move from a leads to an a' that moves by p times as
+much, so that between two neighbouring levels V(s', a') has one kink at most: a
+move that is harmless at both levels and at that kink is harmless between them.
+
+The best moves on the levels make no cycle by themselves, as a lies between them.  So a hand that
+follows them is watched, with the average as it really becomes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, partial
+from itertools import product
+from math import ceil, floor
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.errors import InputError
+from zwidth.passivity.storage.grid.grid import Grid
+from zwidth.passivity.storage.losses import Integers
+from zwidth.passivity.storage.solve.hull import NOWHERE
+from zwidth.passivity.storage.solve.relaxing import sweep_relaxing
+from zwidth.passivity.storage.solve.value_iteration import THREADS, Move, Sweep, slices
+
+ONE = 1 << 16
+"""Weights of interpolation are whole multiples of 1/ONE, taken from both sides."""
+
+_STARTS = 12
+"""States from which the best moves are followed in one search."""
+
+_LONGEST = 160
+"""Moves that are followed."""
+
+_BLOCKS = 8
+"""Blocks of cells, each improved by one thread from what the others were before the round: as many on every
+machine, so that it ends the same way on each.  (What is raised between levels depends on the order.)"""
+
+_MAX_ROUNDS = {"outer": 300, "inner": 60}
+"""Rounds after which the search is given up: energy that only trickles in from level to level."""
+
+
+@dataclass(frozen=True)
+class RelaxingGrid(Grid):
+    """A grid with levels of the average reading as a further dimension of its states.
+
+    Parameters
+    ----------
+    levels
+        Levels of a per count.
+    """
+
+    levels: int = 1
+
+    @property
+    def _max_energy(self) -> int:
+        """Smaller, because energies are multiplied with weights."""
+        return 2**44
+
+    @property
+    def pole(self) -> Fraction:
+        """p of the relaxing memory."""
+        assert self.law.relaxing is not None
+        return self.law.relaxing[0]
+
+    @cached_property
+    def readings(self) -> tuple[int, int]:
+        """The least and the largest u that is averaged, in counts."""
+        low = 0 if self.law.surface == "penetration" else self.domain.lowest
+        return low, max(self.domain.highest, low + 1)
+
+    @property
+    def averages(self) -> int:
+        """How many levels of a there are."""
+        low, high = self.readings
+        return (high - low) * self.levels + 1
+
+    @cached_property
+    def branch_unit(self) -> int:
+        """g times one level of a, in force units."""
+        assert self.law.relaxing is not None
+        return floor(self.law.relaxing[1] * self.losses.resolution / self.levels / self.force_unit)
+
+    @property
+    def rounding(self) -> int:
+        """Units by which a force may be off."""
+        return super().rounding + 2 * self.averages + 2
+
+    @cached_property
+    def rows(self) -> Integers:
+        """Which cell the hand was in when the force was computed, as a row; −1 off the grid."""
+        cells = np.arange(self.domain.cells, dtype=np.int64)[:, None]
+        differences = np.arange(-self.domain.reach, self.domain.reach + 1, dtype=np.int64)
+        columns = np.array(list(product(differences, repeat=self.memory)), dtype=np.int64)
+        columns = columns.reshape(self.histories, self.memory)
+        out: Integers = np.where(self.forces == NOWHERE, -1, cells + columns.sum(axis=1)[None, :])
+        return out
+
+    @cached_property
+    def all_forces(self) -> tuple[Integers, Integers]:
+        """The force of each cell (rows) at each level of a, for a move inwards and for one outwards.
+
+        They differ where a law that never pulls begins to push between two levels:
+        there a move inwards is given the cheaper force of the two.
+        """
+        low, _ = self.readings
+        cells = np.arange(self.domain.lowest, self.domain.highest + 1, dtype=np.int64)[:, None]
+        u = np.maximum(cells, 0) if self.law.surface == "penetration" else cells
+        levels = np.arange(self.averages, dtype=np.int64)[None, :]
+        spring = floor(self.law.taps[0] * self.losses.resolution / self.force_unit)
+        force = spring * u + self.branch_unit * ((u - low) * self.levels - levels)
+        inwards = force
+        if self.law.clamped:
+            pushes = force > 0
+            lonely = np.zeros_like(pushes)  # pushes, and a neighbouring level does not
+            lonely[:, 1:] |= pushes[:, 1:] & ~pushes[:, :-1]
+            lonely[:, :-1] |= pushes[:, :-1] & ~pushes[:, 1:]
+            force = np.where(pushes, force, 0)
+            inwards = np.where(lonely, 0, force) if self.approximation == "outer" else force
+        if self.law.surface != "none":
+            force, inwards = (np.where(cells > 0, f, 0) for f in (force, inwards))
+        return inwards, force
+
+    @cached_property
+    def images(self) -> tuple[Integers, Integers, Integers]:
+        """Where a goes from each level (columns) under each reading (rows): level, and weight of the next.
+
+        The third is the weight rounded up: the truth lies between the two.
+        """
+        low, _ = self.readings
+        shape = (self.domain.cells, self.averages)
+        at, below, above = (np.zeros(shape, np.int64) for _ in range(3))
+        for row, n in enumerate(range(self.domain.lowest, self.domain.highest + 1)):
+            u = max(n, 0) if self.law.surface == "penetration" else n
+            forgotten = self.law.resets and u <= 0
+            for i in range(self.averages):
+                image = self.pole * i + (1 - self.pole) * (u - low) * self.levels
+                image = Fraction(-low * self.levels) if forgotten else image
+                whole = min(floor(image), self.averages - 2)
+                weight = (image - whole) * ONE
+                at[row, i], below[row, i], above[row, i] = whole, floor(weight), ceil(weight)
+        return at, below, above
+
+    def domain_document(self) -> dict[str, Any]:
+        """The same with the levels."""
+        return {**super().domain_document(), "levels_per_count": self.levels}
+
+    def remembered(self, value: Integers) -> tuple[str, Any, NDArray[np.float64]]:
+        """The level of the average reading [counts], the hand at rest before."""
+        levels = self.readings[0] + np.arange(self.averages) / self.levels
+        return "average_reading", levels, value[:, self.histories // 2].transpose(1, 0, 2).astype(float)
+
+    def sweep(self, backend: str = "cpu") -> Sweep:
+        """What value iteration begins with, and the kernel that improves it; InputError but on the "cpu"."""
+        if backend != "cpu":
+            raise InputError("laws that relax are for the processor: leave out backend='gpu'")
+        return RelaxingSweep(self)
+
+    @property
+    def first_guess(self) -> Integers:  # made anew each time: with the levels it is large
+        """A start of the search: the energy of the spring."""
+        guess = np.ceil(self._spring_energy() * self.steps).astype(np.int64)
+        shape = (self.domain.cells, self.histories, self.averages, len(self.nodes))
+        return np.broadcast_to(guess[:, None, None, :], shape).copy()
+
+
+class RelaxingSweep(Sweep):
+    """V on the levels while it is improved; cycles that gain are met by following the best moves."""
+
+    def __init__(self, grid: RelaxingGrid) -> None:
+        super().__init__(grid.first_guess, THREADS, _MAX_ROUNDS[grid.approximation])
+        self.grid = grid
+        self._blocks = slices(grid.domain.cells, _BLOCKS)
+        self._tables = (
+            *(grid.rows, *grid.all_forces, *grid.images, grid.costs, grid.nodes),
+            *(grid.steps, grid.domain.reach, grid.approximation == "outer"),
+        )
+
+    def jobs(self) -> Iterable[Callable[[], int]]:
+        """A job for each block of cells."""
+        before = self.value.copy()
+        return [partial(sweep_relaxing, self.value, before, *block, *self._tables) for block in self._blocks]
+
+    def gaining_cycle(self) -> tuple[Move, ...]:
+        """The nodes of a cycle that gains, each with its cell; empty if none was met.
+
+        The hand follows the best moves from a few states, with the average as it really
+        becomes; wherever it comes back to a node, what it did since may be a cycle.
+        """
+        best: tuple[Move, ...] = ()
+        most = 0.0
+        random = np.random.default_rng(1)
+        for _ in range(_STARTS):
+            path = _followed(self.grid, self.value, random)
+            seen: dict[Move, list[int]] = {}
+            for k, place in enumerate(path):
+                for before in seen.get(place, ())[-3:]:
+                    moves = path[before:k]
+                    gain = _settled_gain(self.grid, moves) if len(moves) > 1 else 0.0
+                    if gain > most:
+                        best, most = tuple(moves), gain
+                seen.setdefault(place, []).append(k)
+        return best
+
+
+def _followed(grid: RelaxingGrid, value: Integers, random: np.random.Generator) -> list[Move]:
+    """Nodes and cells along the best moves from a state drawn at random."""
+    cells, _, levels, edges = value.shape
+    low, reach = grid.readings[0], grid.domain.reach
+    law, delay, pole = grid.law, grid.losses.delay, float(grid.pole)
+    spring = float(law.taps[0] * grid.losses.resolution / grid.force_unit)
+    branch = float(grid.branch_unit * grid.levels)
+    readings = [int(random.integers(max(0, -grid.domain.lowest), cells))] * (delay + 1)
+    node = int(random.integers(edges))
+    average = float(low + random.integers(levels) / grid.levels)
+    path: list[Move] = []
+    for _ in range(_LONGEST):
+        n, felt = readings[0], readings[-1] + grid.domain.lowest
+        count = n + grid.domain.lowest
+        path.append((count * grid.steps + int(grid.nodes[node]), count))
+        u = max(felt, 0) if law.surface == "penetration" else felt
+        force = spring * u + branch * (u - average)
+        force = max(force, 0.0) if law.clamped else force
+        force = force if law.surface == "none" or felt > 0 else 0.0
+        average = 0.0 if law.resets and u <= 0 else pole * average + (1 - pole) * u
+        level = min((average - low) * grid.levels, levels - 1.0)
+        below = min(int(level), levels - 2)
+        first, last = max(0, n - reach), min(cells - 1, n + reach)
+        goals = np.arange(first, last + 1)
+        columns = _columns(grid, goals, readings)
+        lower, upper = value[goals, columns, below], value[goals, columns, below + 1]
+        there = lower + (upper - lower) * (level - below)
+        d = (goals - n)[:, None] * grid.steps + grid.nodes[None, :] - grid.nodes[node]
+        far = np.minimum(np.abs(d), len(grid.costs) - 1)
+        worth = there - grid.costs[far] - force * d
+        worth[np.abs(d) >= len(grid.costs)] = -np.inf
+        row, node = (int(v) for v in np.unravel_index(int(worth.argmax()), worth.shape))
+        readings = [int(goals[row]), *readings[:-1]] if delay else [int(goals[row])]
+    return path
+
+
+def _columns(grid: RelaxingGrid, goals: Integers, readings: list[int]) -> Integers:
+    """The history of each goal: differences of the readings before it."""
+    column = np.zeros_like(goals)
+    newer = goals
+    for reading in readings[: grid.losses.delay]:
+        column = column * grid.width + (reading - newer + grid.domain.reach)
+        newer = np.full_like(goals, reading)
+    return column
+
+
+def _settled_gain(grid: RelaxingGrid, moves: list[Move]) -> float:
+    """What a cycle gains in each round when the law has settled to it, in energy units."""
+    law, size = grid.law, len(moves)
+    pole = float(grid.pole)
+    u = np.array([max(cell, 0) if law.surface == "penetration" else cell for _, cell in moves], dtype=float)
+    keeps = np.array([0.0 if law.resets and v <= 0 else 1.0 for v in u])
+    scale, shift = 1.0, 0.0  # of one round: a → scale a + shift
+    for v, keep in zip(u, keeps, strict=True):
+        scale, shift = scale * pole * keep, (shift * pole + (1 - pole) * v) * keep
+    a = shift / (1 - scale)
+    unit = float(grid.losses.resolution / grid.force_unit)
+    spring, branch = float(law.taps[0]) * unit, float(grid.branch_unit * grid.levels)
+    forces = np.zeros(size)
+    for k in range(size):
+        f = spring * u[k] + branch * (u[k] - a)
+        f = max(f, 0.0) if law.clamped else f
+        forces[k] = f if law.surface == "none" or moves[k][1] > 0 else 0.0
+        a = (pole * a + (1 - pole) * u[k]) * keeps[k]
+    forces = np.roll(forces, grid.losses.delay)
+    x = np.array([node for node, _ in moves])
+    d = np.roll(x, -1) - x
+    far = np.abs(d)
+    return float(-(forces * d).sum() - grid.costs[far].sum()) if far.max() < len(grid.costs) else 0.0

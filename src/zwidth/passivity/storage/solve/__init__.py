@@ -1,0 +1,1 @@
+"""Value iteration, and the kernels that improve V on each kind of grid."""

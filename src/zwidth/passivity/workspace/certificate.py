@@ -1,0 +1,292 @@
+"""The proof document of an arm before a wall: its exact numbers, for the checker to prove δ_m ⪰ JᵀRJ.
+
+The document lists what the arm is made of, as decimals: for a chain the fixed placement of
+each joint, which turns or slides along the z axis of its own frame, for a parallel arm its legs; the
+wall, T, d, and the region; in pose the joints at which the wall's rotation rests, or that it may
+anywhere.  A stands for |B|: any A with A ± B ⪰ 0 does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import combinations
+from typing import Any
+
+import flint
+import numpy as np
+import numpy.typing as npt
+
+from zwidth.arms import Arm, DescribedArm, LeggedArm, PlanarChain, PosedArm
+from zwidth.arms.encoders import Chain, EncoderSteps, moving_steps
+from zwidth.arms.joints import as_matrix, surplus
+from zwidth.arms.matrix_wall import MatrixWall
+from zwidth.arms.need import wall_matrices, wall_need
+from zwidth.checker import verify
+from zwidth.environment.environment import certain
+from zwidth.environment.wall import Wall
+from zwidth.passivity.certificate import FORMAT, Certificate
+from zwidth.passivity.workspace.counting import Counting
+from zwidth.quantity.text import exact_text
+
+Array = npt.NDArray[np.float64]
+Written = LeggedArm | PlanarChain | DescribedArm
+
+_KEYS = ("stiffness_N_per_m", "virtual_damping_N_s_per_m", "damping_bound_N_s_per_m")
+_POSE_KEYS = ("stiffness_N_m_rad", "virtual_damping_N_m_s_rad", "damping_bound_N_m_s_rad")
+_MARGIN = 1e-12
+"""Of the largest entry of its unit: what is added so that rounded matrices are ⪰ 0 to the last digit."""
+_POINTS = 8
+"""Of the arm, at which the document's matrix is compared with the arm's own."""
+_SAME = 1e-9
+"""Of the largest entry: how far the document's matrix may be from the arm's, in doubles."""
+_CURVED = 2e-6
+"""Of the curvature: the checker's lengths are longer by a millionth, and an eigenvalue is rounded."""
+
+
+def arm_certificate(
+    arm: Arm,
+    wall: Wall | MatrixWall,
+    rate: float,
+    delay_samples: int,
+    held: tuple[float, ...],
+    count: Counting | None = None,
+) -> tuple[Certificate | None, str]:
+    """A certificate that the checker accepts, and its words; or None, and why there is none.
+
+    With `count` it is of the encoder steps, for forces up to its limits.
+    """
+    if not isinstance(arm, (LeggedArm, PlanarChain, DescribedArm)):
+        return None, "arms of this kind have no certificate"
+    if _beside(arm):
+        return None, "joints on the way to the hand are damped together with joints beside it"
+    document: dict[str, Any] = {
+        "format": FORMAT,
+        "kind": "arm",
+        "arm": _legs_document(arm) if isinstance(arm, LeggedArm) else _chain_document(arm),
+        "wall": _wall_document(wall, arm.sites(2).jacobians.shape[-2]) | _pose_of(arm),
+        "loop": _loop_document(arm, rate, delay_samples, held),
+    }
+    free = {**document, "loop": _loop_document(arm, rate, delay_samples, ())}
+    if not _is_of(free, arm, wall, 1 / rate, delay_samples):
+        return None, "this arm moves in another way than its document can say"
+    if count is not None and count.steps is not None and not isinstance(arm, LeggedArm):
+        _add_steps(document, arm, count.steps, count.limits)
+    found = verify(document)
+    return Certificate((document,)) if found.valid else None, found.reason
+
+
+def _is_of(
+    document: dict[str, Any], arm: Written, wall: Wall | MatrixWall, period: float, delay_samples: int
+) -> bool:
+    """At a few points the matrix that the checker reads out of the document is the one of the arm's own J.
+
+    Where it is not ≻ 0 the checker has none; nor is the document a proof then.
+    """
+    sites = arm.sites(2)
+    size, count = sites.jacobians.shape[-2:]
+    need = wall_need(wall, period, delay_samples, size)
+    taken = need.stiffness_share + need.bound
+    damping, jacobians = as_matrix(arm.damping), sites.jacobians.reshape(-1, size, count)
+    if isinstance(arm, LeggedArm):
+        places, inverses = sites.positions.reshape(-1, size), np.linalg.inv(jacobians)
+        given = np.swapaxes(inverses, -1, -2) @ damping @ inverses
+        found = given - taken
+    else:
+        own = [at.joint for at in arm.placements()[0]]
+        places = sites.joints.reshape(-1, count)[:, own]
+        found, given = surplus(jacobians, damping, taken)[:, own][:, :, own], damping
+    for place, expected in zip(places[:_POINTS], found[:_POINTS], strict=True):
+        rows = verify({**document, "arm": _resting(document["arm"], place)}).surplus
+        if not rows:
+            continue
+        read = np.concatenate(rows)
+        upper = np.concatenate([row[i:] for i, row in enumerate(expected)])
+        if np.abs(read - upper).max() > _SAME * (np.abs(given).max() + np.abs(expected).max()):
+            return False
+    return True
+
+
+def _resting(machine: dict[str, Any], place: Array) -> dict[str, Any]:
+    """The arm of a document, its region one place."""
+    told = _texts(place)
+    if machine["geometry"] == "legs":
+        return {**machine, "low_m": told, "high_m": told}
+    joints = [
+        {**joint, **{key: at for key in joint if key.startswith(("low_", "high_"))}}
+        for joint, at in zip(machine["joints"], told, strict=True)
+    ]
+    return {**machine, "joints": joints}
+
+
+def _legs_document(arm: LeggedArm) -> dict[str, Any]:
+    low, high = arm.box()
+    legs = [
+        {
+            "base_m": _texts(leg.base),
+            "out": _texts(leg.out),
+            "up": _texts(leg.up),
+            "link_m": _text(leg.link),
+            "rod_m": _text(leg.rod),
+            "offset_m": _text(leg.offset),
+            "bend": leg.bend,
+            **_own_damping(arm, i, "N_m_s_per_rad"),
+        }
+        for i, leg in enumerate(arm.legs)
+    ]
+    corners = {"low_m": _texts(low), "high_m": _texts(high)}
+    return {"geometry": "legs", "legs": legs, **corners, **_shared_damping(arm, "N_m_s_per_rad")}
+
+
+def _chain_document(arm: PlanarChain | DescribedArm) -> dict[str, Any]:
+    placements, end = arm.placements()
+    joints = []
+    for at in placements:
+        low, high = arm.joint_range[at.joint]
+        unit, per = ("m", "N_s_per_m") if at.slides else ("rad", "N_m_s_per_rad")
+        joint = {
+            "kind": "prismatic" if at.slides else "revolute",
+            "rotation": [_texts(row) for row in at.rotation],
+            "translation_m": _texts(at.translation),
+            f"low_{unit}": _text(low),
+            f"high_{unit}": _text(high),
+            **_own_damping(arm, at.joint, per),
+        }
+        rest = arm.rest if isinstance(arm, PosedArm) else None
+        joints.append(joint if rest is None or at.slides else {**joint, "rest_rad": _text(rest[at.joint])})
+    own = [at.joint for at in placements]
+    return {
+        "geometry": "chain",
+        "joints": joints,
+        "end_m": _texts(end),
+        **_shared_damping(arm, "N_m_s_rad", own),
+    }
+
+
+def _own_damping(arm: Arm, joint: int, unit: str) -> dict[str, str]:
+    """Of one joint; nothing where joints damp each other."""
+    b = np.asarray(arm.damping)
+    return {f"damping_{unit}": _text(b[joint])} if b.ndim == 1 else {}
+
+
+def _shared_damping(arm: Arm, unit: str, own: Sequence[int] | None = None) -> dict[str, list[list[str]]]:
+    """The matrix of joints that damp each other, of those that move the hand; nothing of others."""
+    b = np.asarray(arm.damping)
+    rows = b if own is None or b.ndim == 1 else b[np.ix_(own, own)]
+    return {f"damping_{unit}": _matrix(rows)} if b.ndim == 2 else {}
+
+
+def _beside(arm: Written) -> bool:
+    """Whether a joint that moves the hand is damped together with one that does not.
+
+    Then the part of the matrix that a document has is more than is lost: the other joint may go along.
+    """
+    if isinstance(arm, LeggedArm):
+        return False
+    own = [at.joint for at in arm.placements()[0]]
+    others = [i for i in range(arm.joint_count) if i not in own]
+    return bool(as_matrix(arm.damping)[np.ix_(own, others)].any())
+
+
+def _add_steps(document: dict[str, Any], arm: Chain, steps: EncoderSteps, limits: tuple[float, ...]) -> None:
+    """Encoders and Coulomb friction of the joints, bounds on the columns of J, and the forces covered."""
+    friction = arm.coulomb_friction
+    for joint, at in zip(document["arm"]["joints"], arm.placements()[0], strict=True):
+        unit, per = ("m", "N") if at.slides else ("rad", "N_m")
+        joint[f"resolution_{unit}"] = _text(moving_steps(arm)[at.joint])
+        joint[f"coulomb_friction_{per}"] = _text(friction[at.joint])
+        if not at.slides:
+            joint["largest_column_m_per_rad"] = _text(steps.columns[at.joint])
+    loop = document["loop"]
+    loop["encoder"] = "counted"
+    loop["torque"] = {"follows the arm": "follows the readings"}.get(loop["torque"], loop["torque"])
+    for key, limit in zip(("largest_force_N", "largest_moment_N_m"), limits, strict=False):
+        loop[key] = _text(limit)
+
+
+def _pose_of(arm: Arm) -> dict[str, Any]:
+    """How many coordinates of the wall are rotations, and where it rests: nothing of a point."""
+    if not arm.turns:
+        return {}
+    given = isinstance(arm, PosedArm) and arm.rest is not None
+    return {"turns": arm.turns, "rest": "given" if given else "every orientation"}
+
+
+def _wall_document(wall: Wall | MatrixWall, size: int) -> dict[str, Any]:
+    if isinstance(wall, Wall):
+        spring, damper = certain(wall.stiffness, "stiffness"), certain(wall.damping, "damping")
+        matrices = [_scalar(x, size) for x in (spring, damper, abs(damper))]
+    else:
+        k, b = wall_matrices(wall, size)
+        stiffness = k if _is_semidefinite(k) else _raised(k, wall.turns)
+        bound = _raised(_absolute(b, wall.turns), wall.turns)
+        matrices = [_matrix(m) for m in (stiffness, b, bound)]
+    keys = _POSE_KEYS if isinstance(wall, MatrixWall) and wall.turns else _KEYS
+    return dict(zip(keys, matrices, strict=True))
+
+
+def _absolute(matrix: Array, turns: int) -> Array:
+    """|B|, of forces and turns each by itself where B does not couple them: nor does rounding then."""
+    point, bound = len(matrix) - turns, np.zeros_like(matrix)
+    coupled = turns == 0 or matrix[:point, point:].any()
+    for part in (slice(None),) if coupled else (slice(point), slice(point, None)):
+        values, vectors = np.linalg.eigh(matrix[part, part])
+        bound[part, part] = (vectors * np.abs(values)) @ vectors.T
+    return bound
+
+
+def _is_semidefinite(matrix: Array) -> bool:
+    """True when no principal minor of the decimals is negative."""
+    exact = [[flint.fmpq(*_exact(x).as_integer_ratio()) for x in row] for row in matrix]
+    places = range(len(matrix))
+    return all(
+        flint.fmpq_mat([[exact[i][k] for k in chosen] for i in chosen]).det() >= 0
+        for size in places
+        for chosen in combinations(places, size + 1)
+    )
+
+
+def _raised(matrix: Array, turns: int) -> Array:
+    """With a little more on the diagonal; forces and turns, in units of their own, each by their own size."""
+    more, point = np.empty(len(matrix)), len(matrix) - turns
+    for part in (slice(point), slice(point, None)):
+        more[part] = _MARGIN * np.abs(matrix[part, part]).max(initial=0.0)
+    return np.asarray(matrix + np.diag(more))
+
+
+def _loop_document(arm: Arm, rate: float, delay_samples: int, held: tuple[float, ...]) -> dict[str, Any]:
+    loop: dict[str, Any] = {
+        "sample_period_s": exact_text(1 / _exact(rate)),
+        "delay_samples": delay_samples,
+        "encoder": "ideal",
+        "torque": "held" if held else "follows the arm",
+    }
+    if held:
+        assert arm.curvature is not None
+        force, *moment = held
+        loop["largest_force_N"] = _text(force)
+        loop["curvature_m_per_rad2"] = _text(arm.curvature * (1 + _CURVED))
+        if moment:
+            loop["largest_moment_N_m"] = _text(moment[0])
+    return loop
+
+
+def _scalar(value: Fraction, size: int) -> list[list[str]]:
+    return [[exact_text(value if i == k else Fraction(0)) for k in range(size)] for i in range(size)]
+
+
+def _matrix(rows: Array) -> list[list[str]]:
+    return [_texts(row) for row in (rows + rows.T) / 2]
+
+
+def _texts(values: npt.ArrayLike) -> list[str]:
+    return [_text(v) for v in np.asarray(values, dtype=np.float64)]
+
+
+def _text(value: float) -> str:
+    return exact_text(_exact(value))
+
+
+def _exact(value: float) -> Fraction:
+    """The decimal that a double is written as."""
+    return Fraction(repr(float(value)))

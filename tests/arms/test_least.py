@@ -1,0 +1,89 @@
+"""The least damping in all: feasible, and no more than the programme asks for."""
+
+from __future__ import annotations
+
+import cvxopt
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import zwidth as zw
+from zwidth.arms import built_in, least_additions
+from zwidth.arms.joints import single_additions
+
+Array = npt.NDArray[np.float64]
+
+
+def _matrices(seed: int, cells: int, joints: int) -> Array:
+    """What damped joints lack before random walls."""
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(cells, joints, joints))
+    return np.diag(rng.uniform(0.5, 1.5, joints)) - 0.4 * root @ np.swapaxes(root, -1, -2)
+
+
+@pytest.mark.parametrize(("cells", "joints"), [(80, 1), (30, 2), (1, 4), (3000, 3), (1, 6), (200, 7)])
+def test_it_is_enough_and_the_least(cells: int, joints: int) -> None:
+    """Every matrix is ⪰ 0 with it, and its sum is the lower bound to 1e-6; less of it fails."""
+    for seed in range(3):
+        matrices = _matrices(seed, cells, joints)
+        added, bound = least_additions(1e-3 * matrices)
+        assert (added >= 0).all()
+        assert np.linalg.eigvalsh(1e-3 * matrices + np.diag(added)).min() >= 0
+        assert bound <= added.sum() <= bound * (1 + 1e-6)
+        assert bound > 0
+        assert np.linalg.eigvalsh(1e-3 * matrices + np.diag(0.999 * added)).min() < 0
+
+
+def test_it_is_that_of_a_semidefinite_solver() -> None:
+    """cvxopt on the same programme."""
+    cvxopt.solvers.options["show_progress"] = False
+    for seed, joints in ((1, 2), (2, 3), (3, 6)):
+        matrices = _matrices(seed, 8, joints)
+        columns = cvxopt.matrix(-np.stack([np.outer(e, e).ravel() for e in np.eye(joints)], axis=-1))
+        solved = cvxopt.solvers.sdp(
+            cvxopt.matrix(1.0, (joints, 1)),
+            Gl=cvxopt.matrix(-np.eye(joints)),
+            hl=cvxopt.matrix(0.0, (joints, 1)),
+            Gs=[columns] * len(matrices),
+            hs=[cvxopt.matrix(m) for m in matrices],
+        )
+        assert least_additions(matrices)[0].sum() == pytest.approx(solved["primal objective"], rel=1e-5)
+
+
+def test_nothing_is_added_where_nothing_lacks() -> None:
+    """Zero, and zero as the bound; what lacks by rounding alone gets no more than rounding."""
+    good = np.eye(3)[None] + np.zeros((5, 3, 3))
+    assert (least_additions(good)[0] == 0).all()
+    added, _ = least_additions(np.diag([1.0, 0.5, -1e-17])[None])
+    assert added.max() < 1e-13
+
+
+def test_one_matrix_of_one_joint_and_one_joint_that_is_enough() -> None:
+    """−M of a number; and never more than one joint alone, or all alike."""
+    assert least_additions(np.array([[[-0.3]], [[-0.7]]]))[0] == pytest.approx([0.7])
+    for seed in range(20):
+        matrices = _matrices(seed, 5, 3)
+        added = least_additions(matrices)[0].sum()
+        alone = single_additions(matrices).max(axis=0).min()
+        alike = -3 * np.linalg.eigvalsh(matrices).min()
+        assert added <= min(alone, alike) * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("name", ["two-link", "haply-2diy", "falcon"])
+def test_the_least_damping_proves_the_region(name: str) -> None:
+    """With it the region is proved; half of it is refuted, and so is the same sum shared out alike."""
+    arm = built_in(name, damping=(0.004, 0.002, 0.003)[: 3 if name == "falcon" else 2], resolution=0)
+    space = zw.workspace(arm, zw.Wall(900), rate=1000, points=20)
+    added, before = np.array(space.least_additions), np.array(arm.damping)
+    assert 0 < added.sum() < len(before) * space.addition_to_all
+    assert added.sum() <= min(space.additions) * (1 + 1e-6)
+
+    def outcome(more: Array) -> str:
+        return zw.workspace(
+            arm.replace(damping=tuple(before + more)), space.wall, rate=1000, points=20
+        ).outcome
+
+    assert outcome(added) in ("theorem", "passive")
+    if name != "haply-2diy":  # the bounds of its legs leave much to the checker
+        assert outcome(0.5 * added) == "active"
+        assert outcome(np.full(len(added), added.sum() / len(added))) == "active"
