@@ -119,7 +119,7 @@ def proved(loop, steps, rounds=300):
     return shown(search, steps, rounds)
 
 
-def refuted(loop, steps=(64,), rounds=40):
+def refuted(loop, steps=(64,), rounds=60):
     """True with a motion that is accepted."""
     return shown(loop.refute, steps, rounds)
 
@@ -128,7 +128,7 @@ def decided(environment, damping, friction, **implementation):
     """ "proved", "refuted" or "undecided"; what is tried first is what is sooner found."""
     loop = program(environment, damping, friction, **implementation)
     enough, outside = min(damping, friction) > 1, implementation["surface"] == "position"
-    steps = (16, 4) if enough else (32,) if implementation["clamped"] else (4,)
+    steps = (32, 4) if enough else (32,) if implementation["clamped"] else (4,)
     rounds = 40 if steps == (32,) else 90
     steps, rounds = ((8, 16), 300) if loop.law.relaxing is None else (steps, rounds)
     attempts = {
