@@ -16,7 +16,7 @@ DAMPING = {"hapkit": 0.001, "two-link": (0.02, 0.012), "haply-2diy": (0.003, 0.0
 
 def _space(name: str, stiffness: float, **options: Any) -> zw.Workspace:
     arm = built_in(name, damping=DAMPING[name], resolution=0)
-    return zw.workspace(arm, zw.Wall(stiffness), rate=1000, points=20, **options)
+    return zw.workspace(arm, zw.Wall(stiffness), rate=1000, points=30, **options)
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
@@ -55,19 +55,19 @@ def test_the_advice_is_enough(name: str) -> None:
     changed += [b + t * np.eye(len(b))[i] for i, t in enumerate(space.additions) if np.isfinite(t)]
     for damping in changed:
         arm = built_in(name, damping=tuple(damping), resolution=0)
-        assert zw.workspace(arm, space.wall, rate=1000, points=20).outcome == "passive"
+        assert zw.workspace(arm, space.wall, rate=1000, points=30).outcome == "passive"
     short = built_in(name, damping=tuple(b + 0.4 * space.addition_to_all), resolution=0)
-    assert zw.workspace(short, space.wall, rate=1000, points=20).outcome != "passive"
+    assert zw.workspace(short, space.wall, rate=1000, points=30).outcome != "passive"
 
 
 def test_one_joint_can_be_enough() -> None:
     """A pantograph with one weak joint: damping that joint alone proves the region, and the map says so."""
     arm = built_in("haply-2diy", damping=(0.0015, 0.008), resolution=0)
-    space = zw.workspace(arm, zw.Wall(400), rate=1000, points=20)
+    space = zw.workspace(arm, zw.Wall(400), rate=1000, points=30)
     assert np.isfinite(space.additions[0])
     assert set(np.unique(space.data["joint_to_damp"])) <= {0.0, 1.0}
     better = arm.replace(damping=(0.0015 + space.additions[0], 0.008))
-    assert zw.workspace(better, zw.Wall(400), rate=1000, points=20).outcome == "passive"
+    assert zw.workspace(better, zw.Wall(400), rate=1000, points=30).outcome == "passive"
 
 
 @pytest.mark.parametrize("name", ["two-link", "haply-2diy", "falcon"])
@@ -188,11 +188,11 @@ def test_the_reported_energy_is_that_of_the_reported_motion() -> None:
 def test_a_wall_with_one_normal_asks_for_less() -> None:
     """A plane wall k n nᵀ allows more than the wall that is stiff in every direction, and is refuted too."""
     arm = built_in("haply-2diy", damping=0.003)
-    every = zw.workspace(arm, zw.Wall(500), rate=1000, points=20)
-    one = zw.workspace(arm, zw.MatrixWall([[500, 0], [0, 0]]), rate=1000, points=20)
+    every = zw.workspace(arm, zw.Wall(500), rate=1000, points=30)
+    one = zw.workspace(arm, zw.MatrixWall([[500, 0], [0, 0]]), rate=1000, points=30)
     assert one.largest_stiffness > 1.02 * every.largest_stiffness
     over = zw.MatrixWall([[1.01 * one.largest_stiffness, 0], [0, 0]])
-    assert zw.workspace(arm, over, rate=1000, points=20).outcome == "active"
+    assert zw.workspace(arm, over, rate=1000, points=30).outcome == "active"
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2])
@@ -275,11 +275,11 @@ def test_an_arm_that_cannot_leave_its_plane_has_the_margins_in_it() -> None:
 def test_an_undamped_joint_is_refuted_and_told_what_it_lacks() -> None:
     """No stiffness holds; damping in that joint alone would do."""
     arm = PlanarChain(links=(0.1, 0.1), damping=(0.02, 0.0), joint_range=((0, 1), (1, 2)))
-    space = zw.workspace(arm, zw.Wall(500), rate=1000, points=20)
+    space = zw.workspace(arm, zw.Wall(500), rate=1000, points=30)
     assert (space.outcome, space.largest_stiffness) == ("active", 0)
     assert space.additions[0] == np.inf
     better = arm.replace(damping=(0.02, space.additions[1]))
-    assert zw.workspace(better, zw.Wall(500), rate=1000, points=20).outcome in ("passive", "theorem")
+    assert zw.workspace(better, zw.Wall(500), rate=1000, points=30).outcome in ("passive", "theorem")
 
 
 def test_a_motion_is_counted_exactly() -> None:
