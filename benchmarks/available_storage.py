@@ -1,4 +1,4 @@
-"""How long the worst hand takes: a bracket, one sweep beside brute force, its limits, its growth.
+"""How long available storage takes: a bracket, one sweep beside brute force, its limits, its growth.
 
     python benchmarks/available_storage.py [--json FILE] [--plot]
 
@@ -52,7 +52,7 @@ def bounds(counts: int) -> tuple[Exact, Exact]:
     return Exact(counts * COUNT), Exact(counts * COUNT / SAMPLE)
 
 
-def game(counts: int, remembered: int = 1) -> DynamicProgram:
+def program(counts: int, remembered: int = 1) -> DynamicProgram:
     return program_of(PADDLE, WALLS[remembered], *bounds(counts))
 
 
@@ -280,14 +280,14 @@ def growth() -> list[dict]:
     cases += [("steps", n, 50, 1, n) for n in (4, 8, 16, 32, 64)]
     usual, rows = solve.THREADS, []
     for varied, at, counts, remembered, steps in cases:
-        played = game(counts, remembered)
-        grid = Grid(played.law, played.losses, played.domain, steps, "outer")
+        loop = program(counts, remembered)
+        grid = Grid(loop.law, loop.losses, loop.domain, steps, "outer")
         row = {"varied": varied, "at": at, "states": counted_states(grid)}
         for threads in (1, 2):
             solve.THREADS = threads
-            row[f"s_{threads}"] = least_time(lambda p=played, s=steps: p.prove(s), 9)
+            row[f"s_{threads}"] = least_time(lambda p=loop, s=steps: p.prove(s), 9)
         solve.THREADS = usual
-        proof = played.prove(steps)
+        proof = loop.prove(steps)
         row["proved"] = proof is not None
         row["check_s"] = least_time(lambda p=proof: p.certificate().verify(), 2) if proof else None
         rows.append(row)
@@ -343,7 +343,7 @@ def plot(rows: list[dict]) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    matplotlib.rcParams["svg.hashsalt"] = "worst hand"
+    matplotlib.rcParams["svg.hashsalt"] = "available storage"
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(1, 3, figsize=(9, 3), sharey=True, layout="constrained")
@@ -376,8 +376,8 @@ def main() -> None:
     parser.add_argument("--json", type=Path, help="save the numbers there")
     parser.add_argument("--plot", action="store_true", help=f"draw {FIGURE.name}")
     arguments = parser.parse_args()
-    played = game(100)
-    grid = Grid(played.law, played.losses, played.domain, 8, "outer")
+    loop = program(100)
+    grid = Grid(loop.law, loop.losses, loop.domain, 8, "outer")
     results = {
         "bracket": bracket(),
         "sweep": side_by_side(grid),

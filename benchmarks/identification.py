@@ -28,7 +28,7 @@ from scipy import stats
 import zwidth as zw
 from zwidth.identification.device.identify import identify
 from zwidth.identification.device.published import identify_published
-from zwidth.identification.logs import log_of, read_log
+from zwidth.identification.logs import Log, read_log
 
 TRUE = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12}
 NOISE, DRIFT = 0.1, 0.05
@@ -68,7 +68,9 @@ def record(seed, samples, seconds=None, **others):
     knots = np.arange(0.0, at[-1] + 20.0, 20.0)
     zero = np.interp(at, knots, DRIFT * np.cumsum(rng.normal(size=knots.size)))
     measured = force + zero + NOISE * rng.normal(size=samples)
-    log = log_of(time=at, position=read, hand_force=measured, resolution=float(device.exact("resolution")))
+    log = Log.from_arrays(
+        time=at, position=read, hand_force=measured, resolution=float(device.exact("resolution"))
+    )
     return log, best_possible(at, v)
 
 

@@ -164,7 +164,9 @@ def record(cause: str, seed: int) -> Recording:
         stamps = at + late if rng.random() < 0.5 else at
     step = 10 ** rng.uniform(-5.3, -4.3)
     read = step * np.floor(position / step)
-    return Recording(zw.log_of(time=stamps, position=read, hand_force=force, resolution=step), friction)
+    return Recording(
+        zw.Log.from_arrays(time=stamps, position=read, hand_force=force, resolution=step), friction
+    )
 
 
 def wandering(rng: np.random.Generator, count: int) -> Array:

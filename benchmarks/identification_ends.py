@@ -255,7 +255,7 @@ def of_finger(name: str, way: str, seed: int) -> Outcome:
     kept = {("hand_force" if k == "force" else k): v for k, v in r.items() if k not in without}
     try:
         resolution = None if name.startswith("position") else 22.4e-6
-        log = zw.log_of(resolution=resolution, **kept)
+        log = zw.Log.from_arrays(resolution=resolution, **kept)
         found = zw.identify_finger(log, paddle() if known else None)
     except zw.InputError as error:
         return Outcome(str(error))

@@ -9,7 +9,7 @@ of speed v at most, on average over each sample, wins nothing as long as::
     K ≤ (2f_c + 2b v)/(Δ + v T)        that is, v ≤ (2f_c − K Δ)/(K T − 2b)
 
 This is proved, whatever the depth.  What a bounded depth adds has no formula: the
-worst hand is played out count by count, and each point is a bracket, proved passive
+available storage is computed count by count, and each point is a bracket, proved passive
 below by a storage function and active above by a motion.
 """
 
@@ -34,7 +34,7 @@ def formula(speed):
     return float(min((2 * friction + 2 * b * speed) / (count + speed * period), 2 * friction / count))
 
 
-def played(depth, counts):
+def bracket(depth, counts):
     """The bracket for hands of so much depth [m] that move so many counts in a sample."""
     start = zw.Wall(stiffness=formula(counts * count / period))
     return zw.passive_limit(paddle, start, penetration=depth, speed=counts * count / period)
@@ -61,11 +61,18 @@ for depth, marker, colour in (
     ("0.01", "+", "#222222"),
 ):
     for n in counts:
-        found = brackets[depth, n] = played(depth, n)
+        found = brackets[depth, n] = bracket(depth, n)
         speed = float(n * count / period)
         left.plot([speed, speed], [found.passive, found.active], color=colour, lw=1.2)
         left.plot(speed, (found.passive + found.active) / 2, marker, color=colour, mfc="white", ms=5.5)
-    left.plot([], [], marker, color=colour, mfc="white", label=f"game: up to {1000 * float(depth):g} mm deep")
+    left.plot(
+        [],
+        [],
+        marker,
+        color=colour,
+        mfc="white",
+        label=f"value iteration: up to {1000 * float(depth):g} mm deep",
+    )
 speeds = [Fraction(2 * 10 ** (k / 40)).limit_denominator(10**6) / 100 for k in range(89)]
 left.plot(speeds, [formula(v) for v in speeds], color="#777777", lw=1.2, zorder=1, label="formula: any depth")
 for limit, text in ((sampling, "2b/T: every hand"), (encoder, "2f$_c$/Δ: hands that creep")):
@@ -98,8 +105,10 @@ print(f"every hand: {sampling:g} N/m; hands that creep: {encoder:.0f} N/m")
 for n in counts:
     v = n * count / period
     found = [brackets[depth, n] for depth in ("0.0005", "0.01")]
-    game = "; ".join(f"{bracket.passive:.0f} to {bracket.active:.0f} N/m" for bracket in found)
-    print(f"hands up to {float(v):.3f} m/s: {formula(v):.0f} N/m by the formula; 0.5 mm, 10 mm deep: {game}")
+    values = "; ".join(f"{bracket.passive:.0f} to {bracket.active:.0f} N/m" for bracket in found)
+    print(
+        f"hands up to {float(v):.3f} m/s: {formula(v):.0f} N/m by the formula; 0.5 mm, 10 mm deep: {values}"
+    )
 deep = [(formula(n * count / period), bracket) for (depth, n), bracket in brackets.items() if depth == "0.01"]
 hold = sum(bracket.passive <= limit <= bracket.active for limit, bracket in deep)
 print(f"10 mm deep: {hold} of {len(deep)} brackets hold the formula")

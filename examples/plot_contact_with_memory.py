@@ -12,7 +12,7 @@ program at the surface, and there the same H(z) can be written in several ways: 
 the position x, outside too, or with the penetration max(x, 0); its memory goes on
 outside or starts anew; the force may pull or not.
 
-The worst hand is played out against each of them, up to 12 counts deep and up to 8
+The available storage of each of them is computed, up to 12 counts deep and up to 8
 counts per sample.  Every proof and every motion is saved, and counts only if
 ``zwidth verify`` accepts it.
 """
@@ -32,7 +32,7 @@ import zwidth as zw
 from zwidth import plots
 from zwidth.cli.main import main as command_line
 from zwidth.passivity.decision import decide
-from zwidth.passivity.limits import required_damping
+from zwidth.passivity.parameter_limits import required_damping
 from zwidth.passivity.storage.domain import Domain, domain_for, losses_of
 from zwidth.passivity.storage.evidence.gain import gain
 from zwidth.passivity.storage.grid.grid import Grid

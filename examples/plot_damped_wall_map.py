@@ -12,8 +12,8 @@ or, with β = b/(KT), σ = f_c/(KΔ) and β_v = B/(KT), β ≥ ½ + β_v and σ 
 Where both hold, no hand takes energy out, contact made and broken at will; where
 one fails, some hand does.  Both are proved, for every hand.
 
-The points on this page are proved in another way, count by count: the worst hand
-is played out against the loop.  They are for hands of so many counts of depth and
+The points on this page are proved in another way, count by count, by value iteration.
+They are for hands of so many counts of depth and
 so many counts per sample, and each is a bracket: passive below, by a storage
 function, and active above, by a motion.
 """
@@ -76,14 +76,14 @@ for rho, colour in ((Fraction(1, 2), RED), (Fraction(2), BLUE)):
             plane_brackets.append((rho, clamped, float(limit - x), bracket))
 bounded = (2 + REACH) / (1 + REACH)
 plane.plot([0, bounded], [bounded, 0], ":", color=BLUE, lw=1.2, label=f"ρ = 2, {REACH} counts per sample")
-plane.plot([], [], "o", color=GREY, mfc="white", label="game: the wall may pull")
-plane.plot([], [], "+", color=GREY, label="game: never pulls")
+plane.plot([], [], "o", color=GREY, mfc="white", label="value iteration: the wall may pull")
+plane.plot([], [], "+", color=GREY, label="value iteration: never pulls")
 plane.set(xlim=(0, 1.05), ylim=(0, 1.05), xlabel="virtual damping B/b", ylabel="stiffness KT/(2b)")
 plane.set_title("(a) passive: x + y ≤ min(1, ρ)")
 plane.legend()
 
 # %%
-# **(b) Friction.**  The smallest σ that the game proves, with b just large enough.  Moves
+# **(b) Friction.**  The smallest σ that value iteration proves, with b just large enough.  Moves
 # of at most two counts are enough to meet the line: the hand that wins goes to and fro over one
 # edge of the encoder.
 
@@ -98,7 +98,7 @@ for beta_v in (Fraction(k, 4) for k in (0, 1, 2, 4, 6, 8, 12, 16)):
     draw_bracket(friction, float(beta_v), friction_brackets[-1][1], "o", RED)
 friction.fill_between([0, 4.2], [0.5, 4.7], 5, color=GREEN, alpha=0.15, lw=0)
 friction.plot([0, 4.2], [0.5, 4.7], color=RED, label="every hand: σ = ½ + β$_v$")
-friction.plot([], [], "o", color=RED, mfc="white", label="game: 24 counts deep, 2 per sample")
+friction.plot([], [], "o", color=RED, mfc="white", label="value iteration: 24 counts deep, 2 per sample")
 friction.text(0.5, 3.2, "passive", color="#00664A")
 friction.set(
     xlim=(0, 4.2), ylim=(0, 5), xlabel="virtual damping β$_v$ = B/(KT)", ylabel="friction σ = f$_c$/(KΔ)"
@@ -110,7 +110,7 @@ friction.legend(loc="lower right")
 # **(c) Many counts per sample.**  A device with friction to spare, ρ = 2.  The more counts the
 # hand may cross in a sample, the less friction and encoder matter, and the limit falls to the
 # linear criterion b = KT/2 + B.  The curves are the (ρ + R)/(1 + R) of (a), which is enough for
-# any depth; with virtual damping and moves of a few counts the game finds that more is allowed.
+# any depth; with virtual damping and moves of a few counts value iteration finds that more is allowed.
 
 reach_brackets = []
 for x, marker, colour in ((Fraction(0), "s", GREEN), (Fraction(1, 4), "o", BLUE), (Fraction(1, 2), "D", RED)):
@@ -151,7 +151,9 @@ for reach, marker, colour in ((2, "D", RED), (8, "o", BLUE)):
         bracket = largest_stiffness(1, x, linear, 16, reach, velocity_filter=law)
         window_brackets.append((reach, float(linear), bracket))
         draw_bracket(windows, float(x), bracket, marker, colour)
-    windows.plot([], [], marker, color=colour, mfc="white", label=f"game: {reach} counts per sample")
+    windows.plot(
+        [], [], marker, color=colour, mfc="white", label=f"value iteration: {reach} counts per sample"
+    )
 windows.set(xlim=(0, 1), ylim=(0, 1.05), xlabel="virtual damping B/b", ylabel="stiffness KT/(2b)")
 windows.set_title("(d) window of 2 samples, ρ = 1, 16 counts deep")
 windows.legend(loc="lower left")
@@ -165,7 +167,7 @@ def off(line, bracket):
     return max(abs(end / line - 1) for end in bracket)
 
 
-print("bounded hands, proved and refuted by the game:")
+print("bounded hands, proved and refuted by value iteration:")
 for rho in (Fraction(1, 2), Fraction(2)):
     for clamped in (False, True):
         rows = [(y, bracket) for r, c, y, bracket in plane_brackets if (r, c) == (rho, clamped)]

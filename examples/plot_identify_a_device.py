@@ -34,7 +34,7 @@ path = 0.02 * path / path.std() - 1
 hand = zw.operators.Tracking(path, stiffness=40, damping=0)
 trace = zw.simulate(paddle, zw.Wall(1), hand, 60, initial_position=path[0])  # the wall is a metre away
 force = trace["hand_force"].values + rng.normal(0, 0.1, time.size) + 0.1 * np.sin(time / 20)
-log = zw.log_of(
+log = zw.Log.from_arrays(
     time=time,
     position=trace["measured_position"].values,
     hand_force=force,

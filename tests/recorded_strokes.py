@@ -44,7 +44,7 @@ def recorded(
     x, v, a = (np.concatenate(column) for column in zip(*parts, strict=True))
     force = mass * a + damping * v + coulomb_friction * np.sign(v)
     zero = 0.05 * np.interp(np.arange(x.size) * period, [0, 20, 40, 60, 80], rng.normal(size=5))
-    return zw.log_of(
+    return zw.Log.from_arrays(
         time=np.arange(x.size) * period,
         position=np.floor(x / resolution) * resolution,
         hand_force=force + zero + noise * rng.normal(size=x.size),

@@ -309,8 +309,8 @@ def _help(*command: str) -> str:
 
 def test_every_parameter_is_on_the_command_line_page() -> None:
     """Every parameter that `zwidth check` takes stands on its page, and every type of environment."""
+    from zwidth.rendering import LAWS
     from zwidth.specification.environments import TYPES, option_keys
-    from zwidth.specification.laws import LAWS
     from zwidth.specification.read import DEVICE_KEYS
 
     page = _command_line_page()

@@ -134,7 +134,7 @@ def test_names_are_drawn_as_they_are(draw: str, trace: Any, tmp_path: Path) -> N
     elif draw == "traces":
         zw.compare_traces({HOSTILE: trace}).plot(path)
     elif draw == "verdict":
-        zw.plots.save_check(zw.check(DEVICE, zw.Wall(200)), path)
+        zw.check(DEVICE, zw.Wall(200)).plot(path)
     else:
         _with_law(trace).plot(path)
     tree = ElementTree.parse(path)

@@ -10,8 +10,9 @@ import trust
 from zwidth import catalogue
 from zwidth.cli.options import Parameter, device_parameters, environment_parameters
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.kind import Kind
+from zwidth.rendering import ESTIMATORS, LAWS
 from zwidth.specification.environments import TYPES, all_keys
-from zwidth.specification.laws import ESTIMATORS, LAWS, LawType
 
 GENERATED = Path(__file__).parent.parent / "_generated"
 
@@ -99,12 +100,12 @@ def velocity_keys() -> str:
     return _law_keys("velocity", ESTIMATORS)
 
 
-def _law_keys(what: str, laws: Mapping[str, LawType]) -> str:
+def _law_keys(what: str, laws: Mapping[str, Kind]) -> str:
     rows = []
     for name, law in laws.items():
         for key, kind in law.keys.items():
             needed = "; needed" if kind.required else ""
-            rows.append((f"`{name}`", f"`{key}`", _unit(kind.unit), kind.meaning + needed))
+            rows.append((f"`{name}`", f"`{key}`", _unit(kind.unit_for("linear")), kind.meaning + needed))
         if not law.keys:
             rows.append((f"`{name}`", "", "", "no keys"))
     return markdown((what, "key", "unit", "meaning"), rows)

@@ -37,21 +37,22 @@ if TYPE_CHECKING:
     from zwidth.environment import HuntCrossley, NonlinearSpring, VirtualBody
     from zwidth.identification import tissue
     from zwidth.identification.device.identified import Identified
-    from zwidth.identification.device.plan import Plan, plan_identification
-    from zwidth.identification.device.published import Published, identify_published
+    from zwidth.identification.device.plan import MeasurementPlan, plan_identification
+    from zwidth.identification.device.published import PublishedFit, identify_published
     from zwidth.identification.finger import IdentifiedFinger, identify_finger
-    from zwidth.identification.logs import Log, join_logs, log_of, read_log
+    from zwidth.identification.logs import Log, read_log
     from zwidth.identification.tissue import TissueFit, compare_tissues, fit_tissue
     from zwidth.loop.admittance import simulate_admittance
     from zwidth.loop.timing import Timing
     from zwidth.maps import robust_boundary, stability_boundary, z_width, z_width_certificate, z_width_factors
     from zwidth.passivity.bounding import Bounding, check_bounding
+    from zwidth.passivity.bracket import Bracket
     from zwidth.passivity.coupling import two_port
     from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition
     from zwidth.passivity.coupling.coupling_design import CouplingDesign, design_coupling
     from zwidth.passivity.coupling.loop_transformation import (
-        Indices,
-        Slopes,
+        PassivityExcess,
+        SlopeBounds,
         TransformedCondition,
         delay_sum,
         loop_storage,
@@ -59,8 +60,7 @@ if TYPE_CHECKING:
         transformed_blocks,
         transformed_condition,
     )
-    from zwidth.passivity.passive_limit import Bracket
-    from zwidth.passivity.ports.extracted import Extraction
+    from zwidth.passivity.ports.extracting_input import ExtractingInput
     from zwidth.passivity.ports.index import PassivityIndex
     from zwidth.passivity.ports.indices import PassivityIndices, passivity_indices
     from zwidth.passivity.real_hand import RealHand, replay
@@ -88,30 +88,30 @@ __all__ = [
     "CouplingDesign",
     "Device",
     "Exact",
-    "Extraction",
+    "ExtractingInput",
     "FrictionCurve",
     "FrictionModel",
     "GeneralizedMaxwell",
     "HuntCrossley",
     "Identified",
     "IdentifiedFinger",
-    "Indices",
     "InputError",
     "Interval",
     "LawComparison",
     "Log",
     "MatrixWall",
     "Maxwell",
+    "MeasurementPlan",
     "NonlinearSpring",
     "OnePole",
     "PassiveHand",
+    "PassivityExcess",
     "PassivityIndex",
     "PassivityIndices",
-    "Plan",
-    "Published",
+    "PublishedFit",
     "PulseTransferFunction",
     "RealHand",
-    "Slopes",
+    "SlopeBounds",
     "Stability",
     "StandardLinearSolid",
     "Timing",
@@ -146,9 +146,7 @@ __all__ = [
     "identify",
     "identify_finger",
     "identify_published",
-    "join_logs",
     "load_trace",
-    "log_of",
     "loop_storage",
     "operators",
     "passive_limit",
@@ -186,7 +184,7 @@ _LATER = {
     "absolute_stability": "zwidth.coupled_stability.absolute",
     "Bounding": "zwidth.passivity.bounding",
     "check_bounding": "zwidth.passivity.bounding",
-    "Bracket": "zwidth.passivity.passive_limit",
+    "Bracket": "zwidth.passivity.bracket",
     "CouplingCondition": "zwidth.passivity.coupling.coupling",
     "CouplingDesign": "zwidth.passivity.coupling.coupling_design",
     "LawComparison": "zwidth.bench",
@@ -195,23 +193,23 @@ _LATER = {
     "HuntCrossley": "zwidth.environment",
     "IdentifiedFinger": "zwidth.identification.finger",
     "NonlinearSpring": "zwidth.environment",
-    "Plan": "zwidth.identification.device.plan",
-    "Published": "zwidth.identification.device.published",
+    "MeasurementPlan": "zwidth.identification.device.plan",
+    "PublishedFit": "zwidth.identification.device.published",
     "Timing": "zwidth.loop.timing",
     "VirtualBody": "zwidth.environment",
     "TissueFit": "zwidth.identification.tissue",
     "MatrixWall": "zwidth.arms.matrix_wall",
     "Workspace": "zwidth.passivity.workspace",
     "amplifiers": "zwidth.device.amplifier",
-    "Indices": "zwidth.passivity.coupling.loop_transformation",
-    "Slopes": "zwidth.passivity.coupling.loop_transformation",
+    "PassivityExcess": "zwidth.passivity.coupling.loop_transformation",
+    "SlopeBounds": "zwidth.passivity.coupling.loop_transformation",
     "TransformedCondition": "zwidth.passivity.coupling.loop_transformation",
     "delay_sum": "zwidth.passivity.coupling.loop_transformation",
     "loop_storage": "zwidth.passivity.coupling.loop_transformation",
     "required_damping_by_slopes": "zwidth.passivity.coupling.loop_transformation",
     "transformed_blocks": "zwidth.passivity.coupling.loop_transformation",
     "transformed_condition": "zwidth.passivity.coupling.loop_transformation",
-    "Extraction": "zwidth.passivity.ports.extracted",
+    "ExtractingInput": "zwidth.passivity.ports.extracting_input",
     "PassivityIndex": "zwidth.passivity.ports.index",
     "PassivityIndices": "zwidth.passivity.ports.indices",
     "passivity_indices": "zwidth.passivity.ports.indices",
@@ -238,11 +236,9 @@ _LATER = {
     "fit_tissue": "zwidth.identification.tissue",
     "identify_finger": "zwidth.identification.finger",
     "identify_published": "zwidth.identification.device.published",
-    "join_logs": "zwidth.identification.logs",
     "Identified": "zwidth.identification.device.identified",
     "identify": "zwidth.traces",
     "load_trace": "zwidth.traces",
-    "log_of": "zwidth.identification.logs",
     "passive_limit": "zwidth.traces",
     "plan_identification": "zwidth.identification.device.plan",
     "simulate": "zwidth.traces",

@@ -28,7 +28,7 @@ _PACKAGE = Path(__file__).parent
 
 _TOGETHER = (
     ("rendering", "loop"),
-    ("passivity/storage",),
+    ("passivity/storage/solve",),
     ("checker/storage",),
     ("identification/tissue",),
     ("maps",),

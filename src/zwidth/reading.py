@@ -33,13 +33,7 @@ _STEP = 2**20
 
 
 def check_expansion(path: Path, expanded: int) -> None:
-    """Refuse a file that is expanded to so many bytes.
-
-    Raises
-    ------
-    InputError
-        If that is more than `FREE` and more than `RATIO` times its own size.
-    """
+    """Refuse a file that is expanded to so many bytes."""
     size = path.stat().st_size
     if expanded > max(FREE, RATIO * size):
         raise InputError(
@@ -49,13 +43,7 @@ def check_expansion(path: Path, expanded: int) -> None:
 
 
 def check_chunk(path: Path, size: int) -> None:
-    """Refuse a piece that is compressed by itself and has so many bytes.
-
-    Raises
-    ------
-    InputError
-        If that is more than `LARGEST_CHUNK`.
-    """
+    """Refuse a piece that is compressed by itself and has so many bytes."""
     if size > LARGEST_CHUNK:
         raise InputError(
             f"{path} is not read: a piece of it would become {size} bytes, and at most {LARGEST_CHUNK} are "
@@ -64,13 +52,7 @@ def check_chunk(path: Path, size: int) -> None:
 
 
 def check_dataset(path: Path, data: h5py.Dataset) -> None:
-    """Refuse a dataset of HDF5 whose numbers are in another place, or too many for this file.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
+    """Refuse a dataset of HDF5 whose numbers are in another place, or too many for this file."""
     if data.external or data.is_virtual:
         raise InputError(f"{path} is not read: the numbers of {data.name} are elsewhere; copy them into it")
     check_expansion(path, data.size * data.dtype.itemsize if data.shape else 0)
@@ -80,13 +62,7 @@ def check_dataset(path: Path, data: h5py.Dataset) -> None:
 
 
 def check_hdf5(path: Path) -> None:
-    """Refuse a file of HDF5 that leads to other files, or declares more numbers than it can hold.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
+    """Refuse a file of HDF5 that leads to other files, or declares more numbers than it can hold."""
     import h5py  # takes its time
 
     datasets: list[h5py.Dataset] = []
@@ -138,13 +114,7 @@ def inflated(pieces: Iterable[bytes], most: int) -> int:
 
 
 def check_parquet(path: Path, columns: set[str] | None = None) -> None:
-    """Refuse a file of Parquet that declares more than it can hold, in these columns or in all.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
+    """Refuse a file of Parquet that declares more than it can hold, in these columns or in all."""
     import pyarrow.parquet as pq  # takes its time
 
     about = pq.read_metadata(path)
@@ -165,13 +135,7 @@ class Bounded:
         self._path, self._stream, self._expanded = path, stream, 0
 
     def read(self, size: int) -> bytes:
-        """At most so many bytes.
-
-        Raises
-        ------
-        InputError
-            If the file has become too large, see `check_expansion`.
-        """
+        """At most so many bytes."""
         piece: bytes = self._stream.read(size)
         self._expanded += len(piece)
         check_expansion(self._path, self._expanded)

@@ -27,13 +27,7 @@ _ANYBODY = 0o666
 
 
 def check_target(path: Path, force: bool) -> None:
-    """Refuse a place where nothing can be written, or a file would be lost.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
+    """Refuse a place where nothing can be written, or a file would be lost."""
     if path.is_dir():
         raise InputError(f"{path} is a directory; name a file")
     if os.path.lexists(path) and not force:  # a link that leads nowhere is there too

@@ -130,8 +130,8 @@ def fast_enough(name: str, told: Any) -> bool:
     return name not in ROUNDED or fast(better(told)).valid
 
 
-def test_a_board_must_hold_the_average_that_begins_anew() -> None:
-    """On a board outside alone it would be 0, at no level of the board."""
+def test_a_grid_must_hold_the_average_that_begins_anew() -> None:
+    """On a grid outside alone it would be 0, at no level of the grid."""
     law = {"surface": "none", "clamped": False, "taps_N_per_m": [0], "resets": True}
     outside = put(
         stored("solid"),
@@ -144,10 +144,10 @@ def test_a_board_must_hold_the_average_that_begins_anew() -> None:
         },
     )
     assert "begins anew" in fast(outside).words
-    assert "leaves the board" in plainly(outside).words
+    assert "leaves the grid" in plainly(outside).words
 
 
-def test_a_board_that_is_too_large_is_refused_before_any_work() -> None:
+def test_a_grid_that_is_too_large_is_refused_before_any_work() -> None:
     """In a sentence that names the bound and what would do."""
     large = put(stored("spring"), {"domain.steps_per_count": 1000})
     words = plainly(large).words

@@ -15,7 +15,8 @@ from strategies import toml_values
 import zwidth as zw
 from zwidth import rendering
 from zwidth.cli.main import main
-from zwidth.specification.laws import ESTIMATORS, LAWS, build_law, with_laws
+from zwidth.rendering import ESTIMATORS, LAWS
+from zwidth.specification.laws import build_law, with_laws
 from zwidth.specification.read import TABLES, read_tables
 from zwidth.specification.table import Table
 

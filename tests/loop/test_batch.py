@@ -169,7 +169,7 @@ def test_without_a_card_the_message_says_so() -> None:
         pytest.skip("there is a card")
     with pytest.raises(zw.InputError, match="graphics card"):
         zw.simulate_batch(
-            PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.1, vary={"stiffness": [100.0]}, on="gpu"
+            PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.1, vary={"stiffness": [100.0]}, backend="gpu"
         )
 
 
@@ -178,7 +178,7 @@ import numpy as np, zwidth as zw
 device = zw.catalogue.device("haptic-paddle").replace(delay="1.3 ms")
 wall, hand = zw.Wall(300, damping=0.1), zw.operators.Finger(start=-0.002)
 vary = {"environment.stiffness": [100.0, 700.0], "operator.stiffness": [100.0, 500.0]}
-card = zw.simulate_batch(device, wall, hand, 0.05, vary=vary, on="gpu")
+card = zw.simulate_batch(device, wall, hand, 0.05, vary=vary, backend="gpu")
 own = zw.simulate_batch(device, wall, hand, 0.05, vary=vary)
 assert np.isfinite(card.position.values).all() and (card.deepest_position > 0).all()
 for name in own.data_vars:

@@ -120,7 +120,7 @@ _ON_CARD = """
 import zwidth as zw
 device, contact = zw.catalogue.device("haptic-paddle"), zw.HuntCrossley(2e4, 1.5, 2)
 hand, vary = zw.operators.Dowel(), {"device.damping": [0.1, 0.4]}
-card = zw.simulate_batch(device, contact, hand, 0.05, vary=vary, on="gpu")
+card = zw.simulate_batch(device, contact, hand, 0.05, vary=vary, backend="gpu")
 own = zw.simulate_batch(device, contact, hand, 0.05, vary=vary)
 for name in own.data_vars:
     assert (card[name] == own[name]).all(), name

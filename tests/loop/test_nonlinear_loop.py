@@ -98,7 +98,7 @@ import zwidth as zw
 device = zw.catalogue.device("haptic-paddle")
 hand, vary = zw.operators.Dowel(), {"device.damping": [0.1, 0.4]}
 for law in (zw.NonlinearSpring([-0.01, 0, 0.001, 0.02], [-3, 0, 0.2, 7]), zw.Wall(300, 0.5, clamped=True)):
-    card = zw.simulate_batch(device, law, hand, 0.05, vary=vary, on="gpu")
+    card = zw.simulate_batch(device, law, hand, 0.05, vary=vary, backend="gpu")
     own = zw.simulate_batch(device, law, hand, 0.05, vary=vary)
     for name in own.data_vars:
         assert (card[name] == own[name]).all(), name

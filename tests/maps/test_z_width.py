@@ -45,6 +45,15 @@ def same(a: xr.Dataset, b: xr.Dataset) -> bool:
     return all(a[name].values.tobytes() == b[name].values.tobytes() for name in LAYERS)
 
 
+def test_every_number_has_its_unit() -> None:
+    """In the attribute `units`, coordinates too; of the limits that of stiffness."""
+    found = zw.z_width(PADDLE, *WIDE, cells=(3, 3))
+    numbers = {name: one for name, one in found.variables.items() if one.dtype.kind == "f"}
+    assert {"limit_passive", "limit_dowel", "admissible_speed", "stiffness"} <= set(numbers)
+    assert not [name for name, one in numbers.items() if "units" not in one.attrs]
+    assert {found[name].attrs["units"] for name in ("limit_passive", "limit_none", "stiffness")} == {"N/m"}
+
+
 def test_stable_cells_are_those_that_stability_proves() -> None:
     """On a coarse grid every cell of every hand is as `zw.stability` says, one by one."""
     found = zw.z_width(PADDLE, *WIDE, cells=(9, 11))

@@ -485,7 +485,7 @@ def test_assumptions_name_what_was_not_given():
     loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.44", zw.Window(2))
     bare = zw.check(*loop, contact="kept")
     text = "\n".join(bare.assumptions)
-    for line in ("coulomb friction was not given", "resolution was not given", "delay was not given"):
+    for line in ("Coulomb friction was not given", "resolution was not given", "delay was not given"):
         assert line in text
     assert "ideal position sensor" in text
     assert "contact is kept" in text

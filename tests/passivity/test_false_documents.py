@@ -150,4 +150,4 @@ def test_lists_in_lists() -> None:
     for _ in range(5000):
         deep = [deep]
     told = {**loop(K, unilateral=True), "numerator": deep}
-    assert "not so deep" in checker.verify({"kind": "spring", "loop": told}).reason
+    assert "at most 12 levels" in checker.verify({"kind": "spring", "loop": told}).reason

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 import zwidth as zw
 import zwidth.plots as plots
 from zwidth.plots.criterion import refined_curve
+from zwidth.plots.files import save_figure
 from zwidth.plots.replay import ROUNDS, replay
 
 PADDLE = zw.catalogue.device("haptic-paddle")
@@ -182,28 +183,28 @@ def test_worst_case_touches_its_lines_at_rest():
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
-def test_save_check_writes_by_ending(tmp_path, ending):
+def test_a_picture_is_written_by_ending(tmp_path, ending):
     """The same verdict gives the same bytes."""
     verdict = zw.check(PADDLE, zw.Wall(stiffness=770))
     first, second = tmp_path / f"first.{ending}", tmp_path / f"second.{ending.upper()}"
-    plots.save_check(verdict, first)
-    plots.save_check(verdict, str(second))
+    verdict.plot(first)
+    verdict.plot(str(second))
     assert first.read_bytes() == second.read_bytes() != b""
 
 
-def test_save_check_refuses(tmp_path):
+def test_a_picture_that_cannot_be_written_is_refused(tmp_path):
     """Another ending, a file that exists, a folder that does not."""
     verdict = zw.check(WHEEL, zw.Wall(stiffness=10))
     with pytest.raises(zw.InputError, match=r"\.png, \.svg or \.pdf, got 'check\.jpg'"):
-        plots.save_check(verdict, tmp_path / "check.jpg")
+        verdict.plot(tmp_path / "check.jpg")
     kept = tmp_path / "kept.png"
     kept.write_bytes(b"mine")
     with pytest.raises(zw.InputError, match="exists already"):
-        plots.save_check(verdict, kept)
+        save_figure(verdict.plot, kept)
     assert kept.read_bytes() == b"mine"
     with pytest.raises(zw.InputError, match="cannot be written"):
-        plots.save_check(verdict, tmp_path / "nowhere" / "check.png")
-    plots.save_check(verdict, kept, overwrite=True)
+        verdict.plot(tmp_path / "nowhere" / "check.png")
+    verdict.plot(kept)
     assert kept.read_bytes() != b"mine"
 
 

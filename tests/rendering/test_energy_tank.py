@@ -108,7 +108,7 @@ def test_units_do_not_matter():
 
 def test_messages():
     """What is wrong is said."""
-    with pytest.raises(zw.InputError, match="level must be > 0, got -1: it is the energy that the tank"):
+    with pytest.raises(zw.InputError, match="level must be > 0 J, got -1: it is the energy that the tank"):
         EnergyTank(level=-1)
     with pytest.raises(zw.InputError, match="refill must be > 0, got 0: without it the tank never fills"):
         EnergyTank(refill=0)

@@ -141,7 +141,7 @@ def test_by_default_they_take_the_momentum(stage):
             lambda: touched([0, 0], BrakingPulse(), environment=zw.PulseTransferFunction([1], [1])),
             "no surface",
         ),
-        (lambda: EventTransient("square"), "kind is one of 'fixed'"),
+        (lambda: EventTransient("square"), "kind is one of 'decaying', 'fixed'"),
         (lambda: EventTransient("fixed", frequency=100), "frequency is not of the fixed transient"),
         (lambda: EventTransient("acceleration", amplitude=1), "amplitude is not of the acceleration"),
         (lambda: EventTransient("acceleration", record=[1], duration=1), "either record or duration"),

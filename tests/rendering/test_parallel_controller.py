@@ -226,9 +226,9 @@ def test_the_cap_has_its_price():
     [
         ({"observer": "other"}, "observer is one of 'sampled', 'published'"),
         ({"largest_mobility": 0}, "largest_mobility must be > 0"),
-        ({"largest_mobility": "none"}, "largest_mobility: expected a number"),
+        ({"largest_mobility": "none"}, "largest_mobility is in m/N/s; got .none.: expected"),
         ({"largest_velocity": -1}, "largest_velocity must be > 0"),
-        ({"weakest": "x"}, "weakest: expected a number"),
+        ({"weakest": "x"}, "weakest is in N; got .x.: expected a number"),
         ({"resets": 1}, "resets is True to count anew in each touch"),
         ({"ceiling": -1}, "ceiling must be ≥ 0"),
     ],

@@ -193,8 +193,14 @@ def undamped(stage):
         (lambda: PassivityController(observer="other"), "observer is one of"),
         (lambda: PassivityController(reference=1), "reference is one of"),
         (lambda: PassivityController(largest_damping=0), "largest_damping must be > 0"),
-        (lambda: PassivityController(largest_damping="none"), "largest_damping: expected a number"),
-        (lambda: PassivityController(largest_force="unlimited"), "largest_force: expected a number"),
+        (
+            lambda: PassivityController(largest_damping="none"),
+            "largest_damping is in .*; got .none.",
+        ),
+        (
+            lambda: PassivityController(largest_force="unlimited"),
+            "largest_force is in N; got .unlim",
+        ),
         (lambda: undamped(PassivityController()), 'has none: nothing would pay .* or largest_damping="unl'),
         (lambda: PassivityController(largest_force=-1), "largest_force must be > 0"),
         (lambda: PassivityController(slowest=float("nan")), "slowest"),

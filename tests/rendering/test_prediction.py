@@ -285,7 +285,7 @@ def numbers(law, environment, **device):
         (lambda: Extrapolation(samples=-1), "samples must be ≥ 0, got -1"),
         (lambda: HalfSamplePrediction(mass=0), "mass must be > 0, got 0"),
         (lambda: HalfSamplePrediction(finger_mass=-1), "finger_mass must be ≥ 0"),
-        (lambda: HalfSamplePrediction(finger_position="deep"), "finger_position: expected a number"),
+        (lambda: HalfSamplePrediction(finger_position="deep"), "finger_position is in m; got .deep.: exp"),
         (lambda: numbers(HalfSamplePrediction(), zw.Wall(9), mass=None), "the device has none: give mass"),
         (lambda: numbers(HalfSamplePrediction(finger_stiffness=1e6), zw.Wall(9)), "do not tell a velocity"),
         (lambda: numbers(HalfSamplePrediction(finger_damping=1e9), zw.Wall(9)), "do not tell a velocity"),

@@ -85,7 +85,7 @@ import zwidth as zw
 from prescribed import DEVICE
 from test_row import HAND, LAW
 vary = {"device.damping": [0.1, 0.4]}
-card = zw.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary, on="gpu")
+card = zw.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary, backend="gpu")
 own = zw.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary)
 for name in own.data_vars:
     assert (card[name] == own[name]).all(), name

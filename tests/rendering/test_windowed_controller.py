@@ -130,7 +130,7 @@ def test_other_units_change_nothing():
         ({"share": "1.01"}, "share must be ≤ 1, got 1.01"),
         ({"share": 0}, "share must be > 0"),
         ({"largest_damping": -1}, "largest_damping must be > 0"),
-        ({"largest_damping": "unlimited"}, "largest_damping: expected a number"),
+        ({"largest_damping": "unlimited"}, r"largest_damping is in N\*s/m; got .unlimited."),
     ],
 )
 def test_what_it_refuses(options, said):

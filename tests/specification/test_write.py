@@ -5,11 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
+from needed import needed
 
 import zwidth as zw
 from zwidth import rendering
+from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES
-from zwidth.specification.laws import LAWS
 from zwidth.specification.read import load
 from zwidth.specification.write import parsed, written
 
@@ -63,24 +64,19 @@ def same(device: zw.Device, environment: object) -> None:
     assert found.environment == environment
 
 
-@pytest.mark.parametrize("name", ENVIRONMENTS)
+@pytest.mark.parametrize("name", sorted({*TYPES, *ENVIRONMENTS}))
 def test_every_environment_is_read_as_it_was(name: str) -> None:
-    """Also numbers that are no decimals, intervals, and a name with quotation marks."""
-    same(DEVICE, ENVIRONMENTS[name])
-    assert parsed(written(DEVICE, ENVIRONMENTS[name])).device.name == DEVICE.name
-
-
-def test_every_type_is_written() -> None:
-    """A new one comes with its example here."""
-    assert set(TYPES) <= set(ENVIRONMENTS)
+    """Every type; also numbers that are no decimals, intervals, and a name with quotation marks."""
+    environment = ENVIRONMENTS.get(name) or TYPES[name].made(**needed(TYPES[name]))
+    same(DEVICE, environment)
+    assert parsed(written(DEVICE, environment)).device.name == DEVICE.name
 
 
 @pytest.mark.parametrize("name", LAWS)
 def test_every_law_is_read_as_it_was(name: str) -> None:
     """With what was chosen; what was left to the device is left to it again."""
-    kind = getattr(rendering, LAWS[name].class_name)
-    chosen = CHOSEN.get(name, {})
-    same(DEVICE, zw.render(zw.Wall(300), kind(**chosen)))
+    chosen = CHOSEN.get(name) or needed(LAWS[name])
+    same(DEVICE, zw.render(zw.Wall(300), LAWS[name].made(**chosen)))
 
 
 def test_no_limit_is_a_word() -> None:

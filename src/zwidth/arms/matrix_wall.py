@@ -103,6 +103,11 @@ class MatrixWall:
         """n."""
         return len(self.stiffness)
 
+    @property
+    def clamped(self) -> bool:
+        """False: it acts on both sides of its rest."""
+        return False
+
     def describe(self) -> str:
         """In words."""
         point = self.coordinates - self.turns

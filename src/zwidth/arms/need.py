@@ -112,7 +112,7 @@ def wall_matrices(wall: Wall | MatrixWall, size: int) -> tuple[Array, Array]:
         return np.array(wall.stiffness), np.array(wall.damping)
     if not isinstance(wall, Wall):
         raise InputError(f"the wall of an arm is a Wall or a MatrixWall, got {type(wall).__name__}")
-    if not isinstance(wall.velocity_filter, BackwardDifference):
+    if wall.velocity_filter != BackwardDifference():
         raise InputError("for arms the velocity is a backward difference; leave out the velocity filter")
     k, b = float(certain(wall.stiffness, "stiffness")), float(certain(wall.damping, "damping"))
     if wall.clamped and b:

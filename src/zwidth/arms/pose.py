@@ -22,7 +22,7 @@ Array = npt.NDArray[np.float64]
 
 def fits(arm: Arm, wall: Wall | MatrixWall) -> None:
     """Refuse a wall in pose before a point, and a wall of a point before a hand in pose."""
-    turns = wall.turns if isinstance(wall, MatrixWall) else 0
+    turns = wall.turns
     if turns == arm.turns:
         if arm.rests_anywhere and not _alike(wall, turns):
             raise InputError(

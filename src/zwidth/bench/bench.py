@@ -13,7 +13,7 @@ import numpy as np
 from zwidth.bench import scores
 from zwidth.bench.adversary import FASTEST, Attack, attack
 from zwidth.bench.advice import advice
-from zwidth.bench.laws import standard_laws
+from zwidth.bench.laws import standard_laws, wall_to_render
 from zwidth.bench.motions import found_motions
 from zwidth.bench.perceived import SOURCE, WEBER, noticeable_differences
 from zwidth.bench.standing import Standing, standing
@@ -26,9 +26,9 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
-from zwidth.passivity.document import unit_suffix
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.glossary import unit_suffix
 from zwidth.showing import Part
 
 if TYPE_CHECKING:
@@ -181,9 +181,7 @@ def compare(
         If the device is rotary or has no mass, the environment is no wall with a stiffness, or the speed is
         not > 0.
     """
-    wall = as_environment(environment)
-    if not isinstance(wall, Wall):
-        raise InputError(f"the bench compares how a wall is rendered, got {wall.describe()}")
+    wall = wall_to_render(as_environment(environment))
     if device.motion != "linear":
         raise InputError(
             "the touches of the bench are a finger's, in metres: give the device at its handle, by "

@@ -1,4 +1,4 @@
-"""How long a game is played: in moves that are looked at, not in seconds, so that it ends alike anywhere."""
+"""How long values are iterated: in moves looked at, not in seconds, so that it ends alike anywhere."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from dataclasses import dataclass
 from zwidth.errors import InputError
 from zwidth.passivity.storage.program import DynamicProgram
 
-KNOTS = 9
+NODES = 9
 """Places in a cell, about."""
 
 
 class Spent(Exception):
-    """The budget is used up: the game was not finished."""
+    """The budget is used up: the iteration was not finished."""
 
 
 @dataclass
 class Budget:
-    """What is told of each round of a game, and stops it.
+    """What is told of each round of an iteration, and stops it.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Budget:
 
 
 def budget_of(game: DynamicProgram, moves: float) -> Budget:
-    """For so many moves in a game against one law.
+    """For so many moves against one law.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def budget_of(game: DynamicProgram, moves: float) -> Budget:
     states = game.domain.cells * width ** (game.law.memory + game.losses.delay)
     if game.law.relaxing is not None:
         states *= game.domain.cells
-    rounds = moves // (states * width * KNOTS)
+    rounds = moves // (states * width * NODES)
     if rounds < 1:
-        raise InputError(f"the board of {states:,} states is too large to be played here")
+        raise InputError(f"the grid of {states:,} states is too large to be iterated on here")
     return Budget(rounds)

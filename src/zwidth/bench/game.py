@@ -1,4 +1,4 @@
-"""What the game of the worst hand adds to the bench, played with the actuator that the device states.
+"""What value iteration adds to the bench, with the actuator that the device states.
 
 It ends after so many states and so many moves, not after some time: the same loop gets the same answer.
 """
@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from zwidth.bench.adversary import Attack
-from zwidth.bench.budget import KNOTS, Budget, Spent, budget_of
+from zwidth.bench.budget import NODES, Budget, Spent, budget_of
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
@@ -19,52 +19,52 @@ from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, progra
 from zwidth.passivity.storage.row.program import COUNTS, RowProgram, row_program
 from zwidth.passivity.storage.row.table import DoesNotClose
 from zwidth.passivity.wording import describe_hands
-from zwidth.rendering.rendered import Rendered
+from zwidth.rendering.rendered import stages_of
 
 MOVES = 4e9
-"""Moves that are looked at in a game."""
+"""Moves that are looked at."""
 
 STATES = 20_000
-"""States that a law in a row may have on its board."""
+"""States that a law in a row may have on its grid."""
 
 
 def by_the_game(device: Device, law: Environment, found: Attack) -> tuple[bool, str]:
-    """Whether a motion refutes the law, and what is known; a proof is one of hands on a small board."""
+    """Whether a motion refutes the law, and what is known; a proof is one of hands on a small grid."""
     no_proof = f"{found}; no criterion covers this law"
     try:
-        refuted, said = _of_a_row(device, law) if isinstance(law, Rendered) else _of_a_law(device, law)
+        refuted, said = _of_a_row(device, law) if stages_of(law) else _of_a_law(device, law)
     except InputError as error:
-        return False, f"{no_proof}; the game of the worst hand was not played: {_cause(error)}"
+        return False, f"{no_proof}; values were not iterated: {_cause(error)}"
     except Spent:
-        return False, f"{no_proof}; nor does the game of the worst hand decide it"
+        return False, f"{no_proof}; nor does value iteration decide it"
     if refuted:
-        return True, f"{found}; but the game of the worst hand finds more. {said}"
+        return True, f"{found}; but value iteration finds more. {said}"
     return False, f"{no_proof}; {said}"
 
 
 def _of_a_law(device: Device, law: Environment) -> tuple[bool, str]:
-    """Played by `available_storage`."""
+    """By `available_storage`."""
     actuator = _actuator(device)
     game = program_of(device, law, **actuator)
     assert isinstance(game, DynamicProgram)  # it is no row
     told = budget_of(game, MOVES)
     played = available_storage(device, law, **actuator, seconds=float("inf"), progress=told)
     if played.outcome == "undecided":
-        return False, "nor does the game of the worst hand decide it"
+        return False, "nor does value iteration decide it"
     return played.outcome == "active", played.claim if played.outcome == "active" else _proved(game)
 
 
-def _of_a_row(device: Device, law: Rendered) -> tuple[bool, str]:
-    """Played on the largest board on which the law closes."""
+def _of_a_row(device: Device, law: Environment) -> tuple[bool, str]:
+    """On the largest domain on which the law closes."""
     game = _largest(device, law)
     width = game.table.successors.shape[1]
-    told = Budget(MOVES // (game.table.states * width * KNOTS**2))
+    told = Budget(MOVES // (game.table.states * width * NODES**2))
     for outcome in _rounds(game, told):
         if isinstance(outcome, Gain):
             return True, f"A motion of the hand takes energy out of this loop: {outcome.describe()}."
         if outcome:
             return False, _proved(game)
-    return False, "nor does the game of the worst hand decide it"
+    return False, "nor does value iteration decide it"
 
 
 def _rounds(game: RowProgram, told: Budget) -> Iterator[bool | Gain | None]:
@@ -75,8 +75,8 @@ def _rounds(game: RowProgram, told: Budget) -> Iterator[bool | Gain | None]:
         yield None if fine is None else game.refute(fine, progress=told)
 
 
-def _largest(device: Device, law: Rendered) -> RowProgram:
-    """The game on the largest board with no more than `STATES`; a larger board has no fewer.
+def _largest(device: Device, law: Environment) -> RowProgram:
+    """The dynamic program on the largest domain with no more than `STATES`; a larger one has no fewer.
 
     Raises
     ------
@@ -84,9 +84,9 @@ def _largest(device: Device, law: Rendered) -> RowProgram:
         If there are more on the smallest one.
     """
     game = None
-    for board in reversed(COUNTS):
+    for counts in reversed(COUNTS):
         try:
-            game = row_program(device, law, domains=(board,), most=STATES, **_actuator(device))
+            game = row_program(device, law, domains=(counts,), most=STATES, **_actuator(device))
         except DoesNotClose:
             if game is None:
                 raise

@@ -9,7 +9,7 @@ from typing import Any
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.velocity import OnePole, Window
-from zwidth.environment.wall import Wall
+from zwidth.environment.wall import Wall, wall_of
 from zwidth.errors import InputError
 from zwidth.operator import TypicalTouch
 from zwidth.quantity.exact import Exact
@@ -32,13 +32,13 @@ from zwidth.rendering import (
     PassivityController,
     PoleMatched,
     RateTerm,
-    Rendered,
     Stage,
     TickTime,
     VirtualCoupling,
     WindowedController,
     render,
 )
+from zwidth.rendering.rendered import stages_of
 from zwidth.rendering.stage import Surroundings
 
 Law = Callable[[Device, Wall], Environment]
@@ -120,6 +120,20 @@ LAWS: Mapping[str, Law] = {
 """By name, in the order in which they are shown."""
 
 
+def wall_to_render(environment: Environment) -> Wall:
+    """What the laws of the bench render.
+
+    Raises
+    ------
+    InputError
+        If it is no wall.
+    """
+    wall = wall_of(environment)
+    if wall is None:
+        raise InputError(f"the bench compares how a wall is rendered, got {environment.describe()}")
+    return wall
+
+
 def standard_laws(device: Device, wall: Environment) -> dict[str, Environment]:
     """Every law of the bench for a wall on a device; without those that need a number it does not have.
 
@@ -135,20 +149,18 @@ def standard_laws(device: Device, wall: Environment) -> dict[str, Environment]:
     InputError
         If it is no wall, or a number is an interval.
     """
-    if not isinstance(wall, Wall):
-        raise InputError(f"the bench compares how a wall is rendered, got {wall.describe()}")
-    if not wall.is_certain or any(not isinstance(v, Exact) for v in (device.damping, device.sample_period)):
+    met = wall_to_render(wall)
+    if not met.is_certain or any(not isinstance(v, Exact) for v in (device.damping, device.sample_period)):
         raise InputError("the bench simulates one loop: give numbers, no intervals")
-    made = {name: law(device, wall) for name, law in LAWS.items()}
+    made = {name: law(device, met) for name, law in LAWS.items()}
     return {name: law for name, law in made.items() if _suits(law, device)}
 
 
 def _suits(law: Environment, device: Device) -> bool:
     """Whether the device has all the numbers that a law is computed from."""
-    if isinstance(law, Rendered):
-        try:
-            for stage in law.stages:
-                stage.numbers(Surroundings(device, law.environment))
-        except InputError:
-            return False
+    try:
+        for stage in stages_of(law):
+            stage.numbers(Surroundings(device, law.met))
+    except InputError:
+        return False
     return True

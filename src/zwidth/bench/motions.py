@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from zwidth.bench.budget import Spent, budget_of
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
-from zwidth.environment.wall import Wall
+from zwidth.environment.wall import Wall, wall_of
 from zwidth.errors import InputError
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.storage import available_storage
@@ -33,7 +33,7 @@ from zwidth.passivity.storage.program import DynamicProgram, program_of
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.rendered import Rendered
+from zwidth.rendering.rendered import stages_of
 
 USUAL = Fraction(1, 10)
 """Part of the fastest speed below which a hand is tried first: about what a hand reaches, of 10 m/s."""
@@ -132,12 +132,12 @@ def _scaled(motions: Iterable[tuple[str, Floats]] | Mapping[str, Floats], length
 
 def _stiffnesses(device: Device, environment: Environment) -> tuple[Fraction, ...]:
     """K of a wall, and for laws that soften it the most that the device's damping pays for, 2b/T."""
-    inner = environment.environment if isinstance(environment, Rendered) else environment
-    own = inner.stiffness if isinstance(inner, Wall) else None
+    wall = wall_of(environment.met)
+    own = None if wall is None else wall.stiffness
     if not isinstance(own, Exact) or own <= 0:
         return ()
     paid = 2 * device.exact("damping") / device.exact("sample_period")
-    softer = (paid,) if isinstance(environment, Rendered) and 0 < paid < own.fraction else ()
+    softer = (paid,) if stages_of(environment) and 0 < paid < own.fraction else ()
     return (own.fraction, *softer)
 
 

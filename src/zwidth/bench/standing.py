@@ -28,7 +28,7 @@ from zwidth.passivity.other_laws import covering_wall
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
-from zwidth.rendering.rendered import Rendered
+from zwidth.rendering.rendered import stages_of
 from zwidth.rendering.stage import Surroundings
 from zwidth.rendering.theorem import half_a_step
 
@@ -98,7 +98,7 @@ def _scope(device: Device, law: Environment) -> Scope:
 
 def _by_check(device: Device, law: Environment) -> Standing | list[str]:
     """The verdict on a law without a row, with steps and limit of the actuator counted."""
-    if isinstance(law, Rendered):
+    if stages_of(law):
         return []
     verdict, why_not = _with_the_actuator(device, law)
     if verdict is not None:
@@ -144,10 +144,11 @@ def _by_bounding(device: Device, law: Environment) -> Standing | list[str]:
 
 def _by_a_theorem(device: Device, law: Environment) -> Standing | list[str]:
     """A proof on paper, where the device has nothing that it does not count."""
-    if not isinstance(law, Rendered):
+    stages = stages_of(law)
+    if not stages:
         return []
-    last = law.stages[-1]
-    theorem = last.theorem(Surroundings(device, law.environment))
+    last = stages[-1]
+    theorem = last.theorem(Surroundings(device, law.met))
     if theorem is None:
         return []
     if not theorem.holds_on(device):

@@ -75,7 +75,7 @@ def verify(document: Mapping[str, Any]) -> Verified:
 
 def _verified(document: Mapping[str, Any]) -> Verified:
     if not isinstance(document, Mapping):
-        raise Invalid("a document is an object with a kind")
+        raise Invalid("a document must be an object with a kind")
     if document.get("kind") == "corners":
         found, covered, (told, motion) = corners(document)
     else:

@@ -26,7 +26,7 @@ def corners(document: Mapping[str, Any]) -> tuple[Found, Scope | None, tuple[Rea
     if set(document) - {"format", "kind", "corners"}:
         raise Invalid("entries that no proof of this kind has beside corners")
     if not isinstance(listed, list) or not 1 <= len(listed) <= MOST_CORNERS:
-        raise Invalid("corners must be a list of certificates")
+        raise Invalid(f"corners must be a list of 1 to {MOST_CORNERS} certificates")
     reasons, scopes, told, claimed = [], [], [], []
     for corner in listed:
         if not isinstance(corner, Mapping):

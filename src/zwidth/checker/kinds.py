@@ -33,9 +33,9 @@ from .port.index import POSITIVE_REAL, positive_real
 from .port.matrix import POSITIVE_REAL_MATRIX, positive_real_matrix
 from .port.motion import EXTRACTION, MATRIX_EXTRACTION, extraction
 from .scope import ACTIVE, BROKEN, INDEX, KEPT, NO_INDEX, PASSIVE, STABLE, UNSTABLE, Scope
-from .storage.board import STORAGE
 from .storage.choice import checked
 from .storage.coarse import COARSE_STORAGE
+from .storage.grid import STORAGE
 from .storage.row import ROW_STORAGE
 
 
@@ -124,7 +124,7 @@ def _activity(told: Read) -> Scope:
     return inner._replace(hands="activity")
 
 
-_of_every_hand, _on_a_board, _of_a_row = scope.of_every_hand, scope.on_a_board, scope.of_a_row
+_of_every_hand, _on_a_grid, _of_a_row = scope.of_every_hand, scope.on_a_grid, scope.of_a_row
 
 KINDS: dict[str, Kind] = {
     "spring": Kind(SPRING, _proof(spring), _of_every_hand(BROKEN)),
@@ -139,8 +139,8 @@ KINDS: dict[str, Kind] = {
     "force bounding": Kind(FORCE_BOUNDING, _proof(force_bounding), scope.of_force_bounding),
     "slow hands": Kind(SLOW_HANDS, _proof(slow_hands), scope.of_slow_hands),
     "active hand": Kind(ACTIVE_HAND, _proof(active_hand), _activity),
-    "storage": Kind(STORAGE, _proof(checked), _on_a_board(PASSIVE)),
-    "coarse storage": Kind(COARSE_STORAGE, _proof(checked), _on_a_board(PASSIVE)),
+    "storage": Kind(STORAGE, _proof(checked), _on_a_grid(PASSIVE)),
+    "coarse storage": Kind(COARSE_STORAGE, _proof(checked), _on_a_grid(PASSIVE)),
     "row storage": Kind(ROW_STORAGE, _proof(checked), _of_a_row(PASSIVE)),
     "arm": Kind(ARM, _arm, scope.of_an_arm),
     "violation": Kind(VIOLATION, _proof(violation), _of_every_hand(KEPT, ACTIVE)),
@@ -148,7 +148,7 @@ KINDS: dict[str, Kind] = {
     "touching motion": Kind(
         TOUCHING_MOTION, _motion(touching_motion_energy, _nothing), _of_every_hand(BROKEN, ACTIVE)
     ),
-    "contact motion": Kind(CONTACT_MOTION, _round_again(contact_motion_energy), _on_a_board(ACTIVE)),
+    "contact motion": Kind(CONTACT_MOTION, _round_again(contact_motion_energy), _on_a_grid(ACTIVE)),
     "row motion": Kind(ROW_MOTION, _round_again(row_motion_energy), _of_a_row(ACTIVE)),
     "stability": Kind(KNOWN_HAND, _proof(stability), scope.of_a_known_hand(STABLE)),
     "instability": Kind(KNOWN_HAND, _proof(instability), scope.of_a_known_hand(UNSTABLE)),

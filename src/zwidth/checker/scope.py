@@ -107,8 +107,8 @@ def of_force_bounding(told: Read) -> Scope:
     return Scope(PASSIVE, "every", BROKEN, _encoder(told), True, stepped)
 
 
-def on_a_board(shows: str) -> Callable[[Read], Scope]:
-    """Hands within the board; a motion is one whatever they are."""
+def on_a_grid(shows: str) -> Callable[[Read], Scope]:
+    """Hands within the grid; a motion is one whatever they are."""
 
     def scope(told: Read) -> Scope:
         law = told.law

@@ -8,7 +8,15 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from zwidth.cli.decision import decided, exit_status
-from zwidth.cli.options import Once, add_contact_option, add_law_option, add_parameters, contact, overrides
+from zwidth.cli.options import (
+    Once,
+    add_contact_option,
+    add_law_option,
+    add_output,
+    add_parameters,
+    contact,
+    overrides,
+)
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 
@@ -42,9 +50,7 @@ def _configure_check(parser: argparse.ArgumentParser) -> None:
     )
     add_law_option(parser)
     add_contact_option(parser)
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help="print the verdict as JSON, units in the keys")
-    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
+    output = add_output(parser, "the verdict", "the plots", "verdict and evidence as JSON, for zwidth verify")
     output.add_argument(
         "--replay", action="store_true", help="replay the motion by hands of finite stiffness; needs a mass"
     )
@@ -54,14 +60,6 @@ def _configure_check(parser: argparse.ArgumentParser) -> None:
         action=Once,
         help="how active a hand may be below this frequency that is passive above it, such as 10 Hz",
     )
-    output.add_argument(
-        "-o",
-        "--save",
-        metavar="FILE",
-        action=Once,
-        help="save verdict and evidence as JSON, for zwidth verify",
-    )
-    output.add_argument("--force", action="store_true", help="replace files that exist")
     add_parameters(parser)
 
 
@@ -74,9 +72,7 @@ def _check(arguments: argparse.Namespace) -> int:
         with writing(save):
             verdict.save(save, {} if active is None else {"active_hand": active.to_dict()})
     if plot is not None:
-        from zwidth.plots import save_check  # matplotlib takes its time
-
-        save_check(verdict, plot, overwrite=True)  # what is there was asked about before
+        verdict.plot(plot)
     real_hand = _replayed(verdict) if arguments.replay else None
     if arguments.json:
         print_json(_in_full(verdict, real_hand=real_hand, active_hand=active))

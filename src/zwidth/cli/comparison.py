@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
+from zwidth.cli.options import Once, add_law_option, add_output, add_parameters, overrides
 from zwidth.cli.output import print_json, print_text, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
@@ -45,11 +45,7 @@ def configure_compare(parser: argparse.ArgumentParser) -> None:
         action=Once,
         help="of the fastest hand that tries to take energy out [m/s] (default: 10)",
     )
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help="print the scores as JSON, units in the keys")
-    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plot: .png, .svg or .pdf")
-    output.add_argument("-o", "--save", metavar="FILE", action=Once, help="save the scores as JSON")
-    output.add_argument("--force", action="store_true", help="replace files that exist")
+    add_output(parser, "the scores", "the plot", "the scores as JSON")
     add_parameters(parser)
 
 

@@ -26,11 +26,11 @@ def decided(loop: Specification, contact: str = "made and broken") -> Verdict:
         closed = check_by_closed_forms(device, law, contact=contact)
         if contact == "kept" or not has_gap(device, law, closed):
             return closed
-    from zwidth.cli.patience import warn_of_compiling_the_game
+    from zwidth.cli.patience import warn_of_compiling_the_iteration
     from zwidth.traces.progress import progress_bar
     from zwidth.traces.run import falling
 
-    warn_of_compiling_the_game()
+    warn_of_compiling_the_iteration()
     with progress_bar("states") as progress:
         if closed is not None:
             return with_game(device, law, closed, falling(progress))

@@ -7,10 +7,10 @@ from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.kind import name_of
 from zwidth.quantity.parameter import Parameter
 from zwidth.quantity.text import shown
 from zwidth.specification.environments import TYPES
-from zwidth.specification.kinds import name_of
 from zwidth.specification.table import plain
 
 _OF_A_DEVICE = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from zwidth.cli.page import page
 from zwidth.device.catalogue import Datum, Entry
-from zwidth.passivity.document import unit_suffix
+from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import in_words, shown
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from zwidth.cli.decision import decided, exit_status
 from zwidth.cli.identification_result import Result
-from zwidth.cli.options import BEHIND, Once, add_all, environment_parameters, given
+from zwidth.cli.options import BEHIND, Once, add_all, add_output, environment_parameters, given
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 from zwidth.specification.table import quoted, suggestion
@@ -72,13 +72,7 @@ def configure_identify(parser: argparse.ArgumentParser) -> None:
         ("--confidence", "RATIO", "of the intervals that are checked and saved (default: 99%)"),
     ):
         device.add_argument(option, metavar=metavar, action=Once, help=meaning.replace("%", "%%"))
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help="print the numbers as JSON, units in the keys")
-    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plot: .png, .svg or .pdf")
-    output.add_argument(
-        "-o", "--save", metavar="FILE", action=Once, help="save the device as TOML, for zwidth check"
-    )
-    output.add_argument("--force", action="store_true", help="replace files that exist")
+    add_output(parser, "the numbers", "the plot", "the device as TOML, for zwidth check")
     environment = parser.add_argument_group("environment", "what to check the device with, at once")
     for parameter in environment_parameters():
         add_all(environment, (parameter, _behind(parameter)))
@@ -116,7 +110,7 @@ def run_identify(arguments: argparse.Namespace) -> int:
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     from zwidth.cli.patience import warn_of_compiling_the_estimates
-    from zwidth.identification.logs import join_logs
+    from zwidth.identification.logs import Log
     from zwidth.identification.recording import identify, log_from
     from zwidth.traces.progress import progress_bar
 
@@ -126,7 +120,7 @@ def _found(arguments: argparse.Namespace, confidence: float) -> Result:
     with _as_options():
         reading = _reading(arguments)
         logs = [log_from(Path(name), **reading) for name in (arguments.log, *_further_logs(arguments))]
-        log = logs[0] if len(logs) == 1 else join_logs(logs)
+        log = logs[0] if len(logs) == 1 else Log.concatenate(logs)
         environment = environment_of(log.motion)
         with progress_bar("samples") as progress:
             identified = identify(log, **options, progress=progress)

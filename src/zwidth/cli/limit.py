@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import Once, add_law_option, add_parameters, overrides
+from zwidth.cli.options import Once, add_law_option, add_output, add_parameters, overrides
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.device.catalogue import PROPERTIES
 from zwidth.errors import InputError
@@ -16,7 +16,7 @@ from zwidth.specification.laws import with_laws
 from zwidth.specification.table import quoted, suggestion
 
 if TYPE_CHECKING:
-    from zwidth.passivity.passive_limit import Bracket
+    from zwidth.passivity.bracket import Bracket
 
 BOTH, ONE_OR_NONE = 0, 3
 """Exit status by the sides that were found; 2 is bad input."""
@@ -50,13 +50,7 @@ def configure_limit(parser: argparse.ArgumentParser) -> None:
         ("--count-force-resolution", "count in the steps of its D/A converter"),
     ):
         search.add_argument(option, action="store_true", help=meaning)
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help="print the bracket as JSON, units in the keys")
-    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plots: .png, .svg or .pdf")
-    output.add_argument(
-        "-o", "--save", metavar="FILE", action=Once, help="save bracket and evidence, for zwidth verify"
-    )
-    output.add_argument("--force", action="store_true", help="replace files that exist")
+    add_output(parser, "the bracket", "the plots", "bracket and evidence, for zwidth verify")
     add_parameters(parser)
 
 
@@ -71,18 +65,16 @@ def run_limit(arguments: argparse.Namespace) -> int:
     loop = Specification(given.device, rendered)
     parameter = _parameter(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
-    from zwidth.cli.patience import warn_of_compiling_the_game
+    from zwidth.cli.patience import warn_of_compiling_the_iteration
     from zwidth.traces import passive_limit
 
-    warn_of_compiling_the_game()
+    warn_of_compiling_the_iteration()
     bracket = passive_limit(loop.device, loop.environment, parameter, **options)
     if save is not None:
         with writing(save):
             bracket.save(save)
     if plot is not None:
-        from zwidth.plots import save_limit  # matplotlib takes its time
-
-        save_limit(bracket, plot, overwrite=True)
+        bracket.plot(plot)
     if arguments.json:
         print_json(_json(bracket))
     else:
@@ -107,8 +99,8 @@ def _parameter(typed: str) -> str:
 
 def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
     """The search as `passive_limit` takes it."""
-    length = "rad" if motion == "rotary" else "m"
-    units = {"penetration": length, "speed": f"{length}/s", "tolerance": "1", "seconds": "s"}
+    length, speed = (GLOSSARY[name].unit_for(motion) for name in ("position", "velocity"))
+    units = {"penetration": length, "speed": speed, "tolerance": "1", "seconds": "s"}
     options: dict[str, Any] = {
         "force_limit": arguments.count_force_limit,
         "force_resolution": arguments.count_force_resolution,
@@ -123,7 +115,7 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
 
 
 def _json(bracket: Bracket) -> str:
-    """The bracket without the storage function, which is as large as the board; --save writes it."""
+    """The bracket without the storage function, which is as large as the grid; --save writes it."""
     from zwidth.passivity.document import to_json
 
     document = bracket.to_dict()

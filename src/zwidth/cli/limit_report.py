@@ -10,7 +10,7 @@ from zwidth.cli.description import device_line, environment_line
 from zwidth.cli.motion import motion_lines
 from zwidth.cli.output import encodes
 from zwidth.cli.page import below, grid, headline, items, page, section
-from zwidth.passivity.passive_limit import Bracket
+from zwidth.passivity.bracket import Bracket
 from zwidth.quantity.text import in_words, shown
 from zwidth.specification.read import Specification
 

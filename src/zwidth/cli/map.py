@@ -144,7 +144,7 @@ def _options(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
         options["hands"] = {name: known[name] for name in names}
     if arguments.speed is not None:
         options["speed"] = float(
-            parse_number(arguments.speed, "rad/s" if motion == "rotary" else "m/s", "speed")
+            parse_number(arguments.speed, GLOSSARY["velocity"].unit_for(motion), "speed")
         )
     if arguments.workers is not None:
         options["workers"] = _whole(arguments.workers, "--workers")
@@ -218,7 +218,8 @@ def _region(name: str, found: xr.Dataset) -> str:
 
 def _json(found: xr.Dataset) -> str:
     """The regions and the free device, units in the keys."""
-    from zwidth.passivity.document import to_json, unit_suffix
+    from zwidth.passivity.document import to_json
+    from zwidth.quantity.glossary import unit_suffix
 
     unit = unit_suffix(found["largest_stiffness"].attrs["units"])
     regions: dict[str, dict[str, Any]] = {}

@@ -11,25 +11,23 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
+from zwidth.device.rotary import ROTARY
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY, Quantity
+from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES, option_keys
-from zwidth.specification.laws import LAWS
-from zwidth.specification.read import DEVICE_KEYS, ROTARY_KEYS
+from zwidth.specification.read import DEVICE_KEYS
 from zwidth.specification.table import quoted
 
 BEHIND = "environment."
 """What stands before a key of the environment behind a coupling."""
 
 _MEANINGS = {
-    "inertia": "moment of inertia of a rotary device",
-    "counts_per_turn": "encoder counts in one turn",
-    "handle_radius": "from the axis to the handle; turns a rotary device into its equivalent there",
     "motion": "linear or rotary",
     "name": "name of the device in the report",
     "catalogue": "device of the catalogue that fills in what is not given",
 }
-"""Keys of a device that are no quantities of the glossary."""
+"""Keys of a device that are no quantities."""
 
 _NEGATIVE = re.compile(r"-\s*(\d|\.\d|inf|nan|∞)", re.IGNORECASE)
 
@@ -69,8 +67,9 @@ def device_parameters() -> Iterator[Parameter]:
         if key in GLOSSARY:
             yield _quantity(key)
         else:
-            unit = ROTARY_KEYS.get(key, "")
-            yield Parameter(key, _word(key), _MEANINGS[key] + _bracket(unit))
+            own = ROTARY.get(key)
+            text = own.meaning + _bracket(own.unit) if own else _MEANINGS[key]
+            yield Parameter(key, _word(key), text)
 
 
 def environment_parameters() -> Iterator[Parameter]:
@@ -79,6 +78,18 @@ def environment_parameters() -> Iterator[Parameter]:
     for key, kind in option_keys().items():
         symbol = kind.quantity.symbol if kind.is_number else _word(key)
         yield Parameter(key, symbol, kind.meaning + _bracket(_units(kind.quantity)))
+
+
+def add_output(
+    parser: argparse.ArgumentParser, printed: str, drawn: str, saved: str
+) -> argparse._ArgumentGroup:
+    """The options of what comes out: as JSON, as a picture, in a file."""
+    output = parser.add_argument_group("output")
+    output.add_argument("--json", action="store_true", help=f"print {printed} as JSON, units in the keys")
+    output.add_argument("--plot", metavar="FILE", action=Once, help=f"save {drawn}: .png, .svg or .pdf")
+    output.add_argument("-o", "--save", metavar="FILE", action=Once, help=f"save {saved}")
+    output.add_argument("--force", action="store_true", help="replace files that exist")
+    return output
 
 
 def add_parameters(parser: argparse.ArgumentParser) -> None:

@@ -13,12 +13,12 @@ def warn_of_compiling() -> None:
         _say("compiling the simulator")
 
 
-def warn_of_compiling_the_game() -> None:
-    """Say that the game of the worst hand is being compiled, where it has not been yet."""
+def warn_of_compiling_the_iteration() -> None:
+    """Say that value iteration is being compiled, where it has not been yet."""
     from zwidth.compiled import is_compiled
 
     if not is_compiled("passivity/storage"):
-        _say("compiling the game of the worst hand")
+        _say("compiling the value iteration")
 
 
 def warn_of_compiling_the_map() -> None:

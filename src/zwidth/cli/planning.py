@@ -8,6 +8,7 @@ from typing import Any
 from zwidth.cli.options import Once, add_all, device_parameters, given
 from zwidth.cli.output import print_text
 from zwidth.errors import InputError
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
 from zwidth.specification.read import load_device
 
@@ -51,23 +52,16 @@ def run_plan(arguments: argparse.Namespace) -> int:
 
 
 def _numbers(arguments: argparse.Namespace, motion: str) -> dict[str, Any]:
-    turn = motion == "rotary"
-    units = {
-        "force_noise": "N*m" if turn else "N",
-        "length": "rad" if turn else "m",
-        "slow": "s",
-        "fast": "s",
-        "speed": "rad/s" if turn else "m/s",
-        "precision": "1",
-        "confidence": "1",
-    }
+    quantities = {"force_noise": "force", "length": "position", "speed": "friction_speed"}
+    units = {name: GLOSSARY[quantity].unit_for(motion) for name, quantity in quantities.items()}
+    units |= {"slow": "s", "fast": "s", "precision": "1", "confidence": "1"}
     typed = {name: getattr(arguments, name) for name in units}
     if typed["force_noise"] is None:
         raise InputError(
             "the noise of the force is needed: --force-noise '0.1 N', the standard deviation of the load "
             "cell at rest"
         )
-    if turn and typed["length"] is None:
+    if motion == "rotary" and typed["length"] is None:
         raise InputError("the length of a stroke is needed: --length '90 deg', as far as the device turns")
     return {
         name: float(parse_number(text, units[name], name)) for name, text in typed.items() if text is not None

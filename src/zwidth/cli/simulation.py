@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zwidth.cli.options import Once, add_all, add_law_option, add_parameters, given, overrides
+from zwidth.cli.options import Once, add_all, add_law_option, add_output, add_parameters, given, overrides
 from zwidth.cli.output import check_new, print_json, say_written, writing
 from zwidth.errors import InputError
 from zwidth.specification.laws import with_laws
@@ -39,14 +39,8 @@ def configure_simulate(parser: argparse.ArgumentParser) -> None:
         "[operator], [simulation]",
     )
     add_law_option(parser)
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help="print the summary as JSON, units in the keys")
-    output.add_argument("--plot", metavar="FILE", action=Once, help="save the plot: .png, .svg or .pdf")
+    output = add_output(parser, "the summary", "the plot", "the trace: .nc, .parquet, .csv")
     output.add_argument("--sound", metavar="FILE", action=Once, help="save the actuator force as sound: .wav")
-    output.add_argument(
-        "-o", "--save", metavar="FILE", action=Once, help="save the trace: .nc, .parquet, .csv"
-    )
-    output.add_argument("--force", action="store_true", help="replace files that exist")
     hand = parser.add_argument_group("hand", "a key of the hand is written --operator.force, …")
     add_all(hand, operator_parameters())
     add_all(parser.add_argument_group("simulation"), simulation_parameters())

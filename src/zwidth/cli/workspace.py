@@ -5,15 +5,19 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
-from zwidth.cli.options import Once
+from zwidth.cli.options import Once, add_output
 from zwidth.cli.output import print_json, targets, writing
-from zwidth.cli.workspace_joints import add_joint_options, joints_of
+from zwidth.cli.workspace_arm import arm_of
+from zwidth.cli.workspace_joints import add_joint_options
 from zwidth.cli.workspace_report import print_workspace
 from zwidth.cli.workspace_wall import WALL_OPTIONS, wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
+
+if TYPE_CHECKING:
+    from zwidth.passivity.workspace import Workspace
 
 _RATE = "1 kHz"
 _SAVED = (".json", ".nc")
@@ -61,17 +65,8 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the hand turns with the end, and the wall resists that too",
     )
-    output = parser.add_argument_group("output")
-    output.add_argument("--json", action="store_true", help="print the verdict as JSON, units in the keys")
-    output.add_argument("--plot", metavar="FILE", action=Once, help="save the map: .png, .svg or .pdf")
-    output.add_argument(
-        "-o",
-        "--save",
-        metavar="FILE",
-        action=Once,
-        help="save the verdict with its certificate, for zwidth verify (.json), or the map as NetCDF (.nc)",
-    )
-    output.add_argument("--force", action="store_true", help="replace files that exist")
+    saved = "the verdict with its certificate, for zwidth verify (.json), or the map as NetCDF (.nc)"
+    add_output(parser, "the verdict", "the map", saved)
 
 
 def run_workspace(arguments: argparse.Namespace) -> int:
@@ -83,10 +78,25 @@ def run_workspace(arguments: argparse.Namespace) -> int:
             f"got {save.name!r}"
         )
     from zwidth.passivity.outcome import TOLD
+
+    space = _verdict(arguments)
+    if save is not None:
+        _save(space, save)
+    if plot is not None:
+        space.plot(plot)
+    if arguments.json:
+        print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
+    else:
+        print_workspace(space)
+    return TOLD[space.outcome].status
+
+
+def _verdict(arguments: argparse.Namespace) -> Workspace:
+    """The verdict that is asked for."""
     from zwidth.passivity.workspace import workspace
 
-    arm = _arm(arguments)
-    space = workspace(
+    arm = arm_of(arguments)
+    return workspace(
         arm,
         wall_of(arguments, arm.turns),
         rate=float(parse_number(arguments.rate or _RATE, "Hz", "rate")),
@@ -95,64 +105,17 @@ def run_workspace(arguments: argparse.Namespace) -> int:
         torque_held_up_to=_largest(arguments.torque_held_up_to, "torque-held-up-to"),
         largest_force=_largest(arguments.largest_force, "largest-force"),
     )
-    if save is not None:
-        with writing(save):
-            if save.suffix.lower() == ".json":
-                space.save(save)
-            else:
-                from zwidth.traces.files import save_netcdf  # xarray takes its time
-
-                save_netcdf(space.data, save)
-    if plot is not None:
-        from zwidth.plots.workspace import save_workspace  # matplotlib takes its time
-
-        save_workspace(space, plot, overwrite=True)
-    if arguments.json:
-        print_json(json.dumps(space.to_dict(), indent=2, ensure_ascii=False))
-    else:
-        print_workspace(space)
-    return TOLD[space.outcome].status
 
 
-def _arm(arguments: argparse.Namespace) -> Any:
-    from zwidth.arms import BUILT_IN, built_in, read_arm
+def _save(space: Workspace, path: Path) -> None:
+    """The verdict with its certificate, or the map."""
+    with writing(path):
+        if path.suffix.lower() == ".json":
+            space.save(path)
+        else:
+            from zwidth.traces.files import save_netcdf  # xarray takes its time
 
-    given = joints_of(arguments)
-    if arguments.rest is not None and not arguments.pose:
-        raise InputError("--rest is where the rotation of a wall in pose rests; add --pose")
-    single = {key: v[0] if len(v) == 1 else v for key, v in given.items()}
-    if arguments.arm in BUILT_IN:
-        if any(option is not None for option in (arguments.frame, arguments.hold, arguments.rest)):
-            raise InputError("--frame, --hold and --rest are for descriptions; the built-in arms have none")
-        if "damping" not in given:
-            raise InputError(
-                f"no source gives the joint damping of {arguments.arm}, and no verdict exists without it; "
-                "measure and give it [N*m*s/rad], for example --joint-damping 0.003"
-            )
-        return built_in(arguments.arm, **single, **({"pose": True} if arguments.pose else {}))
-    path = Path(arguments.arm)
-    if not path.suffix:
-        raise InputError(
-            f"there is no arm {arguments.arm[:40]!r}; built in are {', '.join(BUILT_IN)}; "
-            "or name a .urdf file"
-        )
-    return read_arm(
-        path,
-        frame=arguments.frame,
-        hold=_by_name(arguments.hold, "hold"),
-        pose=arguments.pose,
-        rest={} if arguments.rest == "middle" else _by_name(arguments.rest, "rest"),
-        **given,
-    )
-
-
-def _by_name(text: str | None, option: str) -> dict[str, float] | None:
-    if text is None:
-        return None
-    pairs = [part.partition("=") for part in text.split(",")]
-    if not all(name.strip() and equals for name, equals, _ in pairs):
-        raise InputError(f"--{option}: joints and values, as in wrist=0.2,grip=0; got {text[:60]!r}")
-    return {name.strip(): float(parse_number(value.strip(), "1", option)) for name, _, value in pairs}
+            save_netcdf(space.data, path)
 
 
 def _largest(text: str | None, option: str) -> list[float] | None:

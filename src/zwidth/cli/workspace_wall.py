@@ -20,6 +20,7 @@ from zwidth.specification.table import located
 if TYPE_CHECKING:
     from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.environment.wall import Wall
+    from zwidth.quantity.exact import Exact
 
 WALL_OPTIONS = (
     ("--stiffness", "VALUE", "of the wall, in every direction [N/m]"),
@@ -35,7 +36,7 @@ _UNITS = {
 """Of translations, between the two, of rotations."""
 
 
-def wall_of(arguments: argparse.Namespace, turns: int) -> Any:
+def wall_of(arguments: argparse.Namespace, turns: int) -> Wall | MatrixWall:
     """The wall for a hand with so many rotations, 0: a point."""
     from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.environment.wall import Wall
@@ -55,7 +56,7 @@ def wall_of(arguments: argparse.Namespace, turns: int) -> Any:
     if not {"stiffness", "rotational_stiffness"} & given.keys():
         raise InputError("which wall? Give its stiffness [N/m], for example --stiffness 500")
 
-    def value(key: str, unit: str) -> Any:
+    def value(key: str, unit: str) -> Exact:
         return parse_number(given.get(key, "0"), unit, key)
 
     k, b = value("stiffness", "N/m"), value("virtual_damping", "N*s/m")
@@ -66,7 +67,7 @@ def wall_of(arguments: argparse.Namespace, turns: int) -> Any:
     return MatrixWall.in_pose(float(k), float(k_turn), float(b), float(b_turn), planar=turns == 1)
 
 
-def read_wall(path: Path, turns: int) -> Any:
+def read_wall(path: Path, turns: int) -> MatrixWall:
     """A `MatrixWall` from the table [wall] of a TOML file.
 
     Raises

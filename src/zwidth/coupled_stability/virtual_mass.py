@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 from zwidth.environment.virtual_body import INTEGRATIONS, Integration
 from zwidth.passivity.formulas.hypotheses import NEGATIVE_SPRING, NO_CLOCK, nonnegative, positive
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.reading import one_of
+from zwidth.quantity.parameter import one_of
 
 if TYPE_CHECKING:
     from zwidth.loop.admittance import Sensor

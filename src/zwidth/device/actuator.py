@@ -12,9 +12,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from zwidth.device.device import Device, Parameter
+from zwidth.device.device import Device
 from zwidth.quantity.exact import Exact, as_parameter, ends
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import Given
 
 FINE = Fraction(10)
 """K Δ/ΔF that counts as fine: the order of magnitude that the paper is content with."""
@@ -40,10 +40,10 @@ class ActuatorCheck:
     text: str
 
 
-def actuator_checks(device: Device, stiffness: Parameter | None = None) -> tuple[ActuatorCheck, ...]:
+def actuator_checks(device: Device, stiffness: Given | None = None) -> tuple[ActuatorCheck, ...]:
     """Compare the converter with the encoder, and the current's rise with T.
 
-    Parameters
+    Givens
     ----------
     device
         Where a number is an interval, its worst end is taken.
@@ -53,8 +53,8 @@ def actuator_checks(device: Device, stiffness: Parameter | None = None) -> tuple
     return _force_resolution(device, stiffness), current_rise(device)
 
 
-def _force_resolution(device: Device, stiffness: Parameter | None) -> ActuatorCheck:
-    name, unit = "force resolution", GLOSSARY["force_resolution"].unit_for(device.motion)
+def _force_resolution(device: Device, stiffness: Given | None) -> ActuatorCheck:
+    name, unit = "force resolution", device.unit("force_resolution")
     slope = Fraction(0) if stiffness is None else ends(as_parameter(stiffness))[0]
     count = slope * ends(device.resolution)[0]
     missing = [] if slope > 0 else ["a stiffness"]

@@ -20,7 +20,8 @@ from typing import NamedTuple
 
 from zwidth.device.device import Device
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import Certain, Parametric, parameter
 
 
 class Actuation(NamedTuple):
@@ -106,8 +107,8 @@ class VoltageLimited(Amplifier):
         return "voltage-limited current amplifier"
 
 
-@dataclass(frozen=True, init=False)
-class FirstOrderLag(Amplifier):
+@dataclass(frozen=True)
+class FirstOrderLag(Parametric, Amplifier):
     """A force that follows its command with a time constant: ``τ df_a/dt = f − f_a``.
 
     Parameters
@@ -116,13 +117,7 @@ class FirstOrderLag(Amplifier):
         τ > 0 [s].
     """
 
-    time_constant: Exact
-
-    def __init__(self, time_constant: RealLike) -> None:
-        value = as_parameter(time_constant)
-        if isinstance(value, Interval) or not value > 0:
-            raise InputError(f"time_constant must be one number > 0 s, got {value}; for none take Ideal()")
-        object.__setattr__(self, "time_constant", value)
+    time_constant: Certain = parameter("time_constant", kept=Exact, bound="> 0", why="for none take Ideal()")
 
     def actuation(self, device: Device) -> Actuation:
         return CurrentAmplifier().actuation(device)._replace(lag=float(self.time_constant))

@@ -21,23 +21,11 @@ from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import parameters_of
 from zwidth.quantity.units import parse
 
-PROPERTIES = (
-    "mass",
-    "damping",
-    "coulomb_friction",
-    "stiction",
-    "friction_speed",
-    "resolution",
-    "sample_period",
-    "rate",
-    "delay",
-    "force_limit",
-    "force_resolution",
-    "motor_inductance",
-    "supply_voltage",
-    "current_limit",
+PROPERTIES = tuple(
+    name for key in parameters_of(Device) for name in ((key, "rate") if key == "sample_period" else (key,))
 )
 """The quantities of a `Device`, in the order of a report."""
 

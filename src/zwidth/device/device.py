@@ -17,18 +17,29 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
+from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import (
+    Given,
+    Parametric,
+    Reads,
+    Uncertain,
+    UncertainOrNone,
+    parameter,
+    parameters_of,
+    read_number,
+)
 from zwidth.quantity.text import quantity_unit
-from zwidth.quantity.units import parse
 from zwidth.showing import Html, Table
 
-Parameter = RealLike | Interval | tuple[RealLike, RealLike]
 Motion = Literal["linear", "rotary"]
 
+_ZERO_IF_UNKNOWN = ("coulomb_friction", "resolution", "delay")
+_ZeroIfUnknown = Reads[Exact | Interval, Given | None]
 
-@dataclass(frozen=True, init=False, eq=True)
-class Device:
+
+@dataclass(frozen=True, init=False)
+class Device(Parametric):
     """A haptic device as its sampled loop sees it.
 
     ``m ẍ = f_h − f_a − f_c sgn ẋ − b ẋ``, sampled every T through an encoder of
@@ -75,46 +86,93 @@ class Device:
         If a number is missing, not finite, or outside its bound.
     """
 
-    mass: Exact | Interval | None
-    damping: Exact | Interval
-    coulomb_friction: Exact | Interval
-    stiction: Exact | Interval | None
-    friction_speed: Exact | Interval | None
-    resolution: Exact | Interval
-    sample_period: Exact | Interval
-    delay: Exact | Interval
-    force_limit: Exact | Interval | None
-    force_resolution: Exact | Interval | None
-    motor_inductance: Exact | Interval | None
-    supply_voltage: Exact | Interval | None
-    current_limit: Exact | Interval | None
-    motion: Motion
-    name: str
+    mass: UncertainOrNone = parameter(
+        "mass",
+        None,
+        bound="> 0",
+        why="a device has inertia; the criteria do not depend on it, the motions do",
+    )
+    damping: Uncertain = parameter(
+        "damping", bound="≥ 0", why="negative friction would itself generate energy"
+    )
+    coulomb_friction: _ZeroIfUnknown = parameter(
+        "coulomb_friction", None, bound="≥ 0", why="negative friction would itself generate energy"
+    )
+    stiction: UncertainOrNone = parameter(
+        "stiction",
+        None,
+        bound="≥ 0",
+        why="it is the friction that holds the device at rest; leave it out if unknown",
+    )
+    friction_speed: UncertainOrNone = parameter(
+        "friction_speed",
+        None,
+        bound="> 0",
+        why="it is the largest speed at which friction was seen; leave it out otherwise",
+    )
+    resolution: _ZeroIfUnknown = parameter(
+        "resolution",
+        None,
+        bound="≥ 0",
+        why="it is the size of one encoder count; use 0 for an ideal sensor",
+    )
+    sample_period: _ZeroIfUnknown = parameter(
+        "sample_period",
+        None,
+        bound="> 0",
+        why="the force is held for T; a continuous loop has no hold to certify",
+    )
+    delay: _ZeroIfUnknown = parameter(
+        "delay", None, bound="≥ 0", why="a force cannot be applied before its sample is taken"
+    )
+    force_limit: UncertainOrNone = parameter(
+        "force_limit",
+        None,
+        bound="> 0",
+        why="it is the largest magnitude the actuator gives; leave it out if unknown",
+    )
+    force_resolution: UncertainOrNone = parameter(
+        "force_resolution",
+        None,
+        bound="> 0",
+        why="it is one step of the converter; leave it out if unknown",
+    )
+    motor_inductance: UncertainOrNone = parameter(
+        "motor_inductance", None, bound="> 0", why="leave it out if unknown"
+    )
+    supply_voltage: UncertainOrNone = parameter(
+        "supply_voltage", None, bound="> 0", why="leave it out if unknown"
+    )
+    current_limit: UncertainOrNone = parameter(
+        "current_limit", None, bound="> 0", why="leave it out if unknown"
+    )
+    motion: Motion = "linear"
+    name: str = "device"
 
     def __init__(
         self,
         *,
-        mass: Parameter | None = None,
-        damping: Parameter,
-        coulomb_friction: Parameter | None = None,
-        stiction: Parameter | None = None,
-        friction_speed: Parameter | None = None,
-        resolution: Parameter | None = None,
-        sample_period: Parameter | None = None,
-        rate: Parameter | None = None,
-        delay: Parameter | None = None,
-        force_limit: Parameter | None = None,
-        force_resolution: Parameter | None = None,
-        motor_inductance: Parameter | None = None,
-        supply_voltage: Parameter | None = None,
-        current_limit: Parameter | None = None,
+        mass: Given | None = None,
+        damping: Given,
+        coulomb_friction: Given | None = None,
+        stiction: Given | None = None,
+        friction_speed: Given | None = None,
+        resolution: Given | None = None,
+        sample_period: Given | None = None,
+        rate: Given | None = None,
+        delay: Given | None = None,
+        force_limit: Given | None = None,
+        force_resolution: Given | None = None,
+        motor_inductance: Given | None = None,
+        supply_voltage: Given | None = None,
+        current_limit: Given | None = None,
         motion: Motion = "linear",
         name: str = "device",
     ) -> None:
         if motion not in ("linear", "rotary"):
             raise InputError(f'motion is "linear" or "rotary", got {motion!r}')
         period = _period(sample_period, rate)
-        given: dict[str, Parameter | None] = {
+        given: dict[str, Given | None] = {
             "mass": mass,
             "damping": damping,
             "coulomb_friction": coulomb_friction,
@@ -131,12 +189,9 @@ class Device:
         }
         assumed = tuple(key for key in _ZERO_IF_UNKNOWN if given[key] is None)
         given.update(dict.fromkeys(assumed, 0))
-        for key, value in given.items():
-            object.__setattr__(self, key, _validated(key, value, motion))
+        read = {key: _read(key, value, motion) for key, value in given.items()}
+        self._keep(**read, _assumed=assumed, motion=motion, name=str(name))
         _check_stiction(self)
-        object.__setattr__(self, "_assumed", assumed)
-        object.__setattr__(self, "motion", motion)
-        object.__setattr__(self, "name", str(name))
 
     @property
     def assumed(self) -> tuple[str, ...]:
@@ -184,6 +239,14 @@ class Device:
         known = {f.name: getattr(self, f.name) for f in fields(self)}
         return {k: v for k, v in known.items() if isinstance(v, (Exact, Interval))}
 
+    def unit(self, quantity: str) -> str:
+        """The SI unit that a quantity of the glossary has here: of "force" "N", of a rotary device "N*m"."""
+        return GLOSSARY[quantity].unit_for(self.motion)
+
+    def key(self, quantity: str) -> str:
+        """The key of a quantity in a file, unit included: "force_N", of a rotary device "force_N_m"."""
+        return GLOSSARY[quantity].key_for(self.motion)
+
     def __repr__(self) -> str:
         inside = ", ".join(f"{k}={_shown(v)}" for k, v in self.parameters().items())
         extra = f", motion={self.motion!r}" if self.motion != "linear" else ""
@@ -204,7 +267,7 @@ def _reciprocal(value: Exact | Interval) -> Exact | Interval:
     return Exact(1 / low) if low == high else Interval(1 / high, 1 / low)
 
 
-def _period(sample_period: Parameter | None, rate: Parameter | None) -> Parameter:
+def _period(sample_period: Given | None, rate: Given | None) -> Given:
     if (sample_period is None) == (rate is None):
         given = "neither" if rate is None else "both"
         raise InputError(
@@ -214,10 +277,8 @@ def _period(sample_period: Parameter | None, rate: Parameter | None) -> Paramete
     if sample_period is not None:
         return sample_period
     assert rate is not None
-    parameter = _read(rate, "Hz", "rate")
-    if ends(parameter)[0] <= 0:
-        raise InputError(f"rate must be > 0 Hz, got {parameter}; a loop that never samples renders nothing")
-    return _reciprocal(parameter)
+    why = "a loop that never samples renders nothing"
+    return _reciprocal(read_number(rate, GLOSSARY["rate"], "rate", uncertain=True, bound="> 0", why=why))
 
 
 def _check_stiction(device: Device) -> None:
@@ -228,48 +289,14 @@ def _check_stiction(device: Device) -> None:
         )
 
 
-_ZERO_IF_UNKNOWN = ("coulomb_friction", "resolution", "delay")
-
-_WHY = {
-    "mass": (True, "a device has inertia; the criteria do not depend on it, the motions do"),
-    "damping": (False, "negative friction would itself generate energy"),
-    "coulomb_friction": (False, "negative friction would itself generate energy"),
-    "stiction": (False, "it is the friction that holds the device at rest; leave it out if unknown"),
-    "friction_speed": (
-        True,
-        "it is the largest speed at which friction was seen; leave it out otherwise",
-    ),
-    "resolution": (False, "it is the size of one encoder count; use 0 for an ideal sensor"),
-    "sample_period": (True, "the force is held for T; a continuous loop has no hold to certify"),
-    "delay": (False, "a force cannot be applied before its sample is taken"),
-    "force_limit": (True, "it is the largest magnitude the actuator gives; leave it out if unknown"),
-    "force_resolution": (True, "it is one step of the converter; leave it out if unknown"),
-    "motor_inductance": (True, "leave it out if unknown"),
-    "supply_voltage": (True, "leave it out if unknown"),
-    "current_limit": (True, "leave it out if unknown"),
-}
-
-
-def _validated(key: str, value: Parameter | None, motion: str) -> Exact | Interval | None:
-    strict, why = _WHY[key]
-    unit = GLOSSARY[key].unit_for(motion)
+def _read(key: str, value: Given | None, motion: str) -> Exact | Interval | None:
+    """A number in SI, or a text with a unit of this motion, such as "22.4 um" or "0.1 .. 0.2 N"."""
+    own = parameters_of(Device)[key]
     if value is None:
-        if key == "damping":
-            raise InputError(f"{key} [{unit}] is needed and was not given")
+        if own.required:
+            raise InputError(f"{key} [{own.unit_for(motion)}] is needed and was not given")
         return None
-    parameter = _read(value, unit, key)
-    low = ends(parameter)[0]
-    if low < 0 or (strict and low == 0):
-        bound = ">" if strict else "≥"
-        raise InputError(f"{key} must be {bound} 0 {unit}, got {parameter}: {why}")
-    return parameter
-
-
-def _read(value: Parameter, unit: str, key: str) -> Exact | Interval:
-    """A number in SI, or a text with its unit, such as "22.4 um" or "0.1 .. 0.2 N"."""
-    if isinstance(value, (str, tuple, list)):
-        return parse(value, unit, key)
-    try:
-        return as_parameter(value)
-    except InputError as error:
-        raise InputError(f"{key} [{unit}]: {error}") from None
+    number: Exact | Interval = read_number(
+        value, own.quantity, key, uncertain=True, bound=own.bound, why=own.why, motion=motion
+    )
+    return number

@@ -19,7 +19,6 @@ faster than any measurement, so this assumption belongs into the claim.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -27,6 +26,7 @@ from typing import NamedTuple
 
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import Numbers, Parametric, listed
 
 ASSUMPTION = (
     "friction is not below the chords between the measured points, nor below the first force at lower "
@@ -41,8 +41,8 @@ class FrictionModel(NamedTuple):
     damping: Exact
 
 
-@dataclass(frozen=True, init=False)
-class FrictionCurve:
+@dataclass(frozen=True)
+class FrictionCurve(Parametric):
     """Measured friction: the force f_i at each speed v_i.
 
     Parameters
@@ -59,11 +59,18 @@ class FrictionCurve:
         If the points are fewer than two, not ordered, negative or not finite.
     """
 
-    speeds: tuple[Exact, ...]
-    forces: tuple[Exact, ...]
+    speeds: Numbers = listed("speed", meaning="of the points, increasing")
+    forces: Numbers = listed("force", meaning="of friction at the points")
 
-    def __init__(self, speeds: Sequence[RealLike], forces: Sequence[RealLike]) -> None:
-        v, f = _numbers(speeds, "speeds"), _numbers(forces, "forces")
+    def __post_init__(self) -> None:
+        try:
+            super().__post_init__()
+        except InputError as error:
+            raise InputError(f"a friction curve: {error}") from None
+        v, f = self.speeds, self.forces
+        for name, numbers in (("speeds", v), ("forces", f)):
+            if any(n < 0 for n in numbers):
+                raise InputError(f"the {name} of a friction curve must be ≥ 0, got {min(numbers):g}")
         if len(v) != len(f) or len(v) < 2:
             raise InputError(
                 f"a friction curve needs two points or more, one force for each speed; "
@@ -71,8 +78,6 @@ class FrictionCurve:
             )
         if any(a.fraction >= b.fraction for a, b in pairwise(v)):
             raise InputError("the speeds of a friction curve must increase from point to point")
-        object.__setattr__(self, "speeds", v)
-        object.__setattr__(self, "forces", f)
 
     @property
     def assumption(self) -> str:
@@ -158,13 +163,3 @@ class FrictionCurve:
         if not corners or last > b:
             corners.append((force - last * speed, last))
         return corners
-
-
-def _numbers(values: Sequence[RealLike], what: str) -> tuple[Exact, ...]:
-    try:
-        numbers = tuple(Exact(v) for v in values)
-    except (InputError, TypeError) as error:
-        raise InputError(f"the {what} of a friction curve: {error}") from None
-    if any(n < 0 for n in numbers):
-        raise InputError(f"the {what} of a friction curve must be ≥ 0, got {float(min(numbers)):g}")
-    return numbers

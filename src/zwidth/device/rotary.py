@@ -13,25 +13,29 @@ Seen at a handle of radius r, with x = r θ and f = τ/r, it is the linear devic
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
-from zwidth.device.device import Device, Parameter
+from zwidth.device.device import Device
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, as_parameter, ends
+from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import Given, plain, read_number
 
 
 def rotary(
     *,
-    inertia: Parameter | None = None,
-    damping: Parameter,
-    coulomb_friction: Parameter | None = None,
-    stiction: Parameter | None = None,
-    friction_speed: Parameter | None = None,
-    resolution: Parameter | None = None,
-    counts_per_turn: Parameter | None = None,
-    handle_radius: Parameter | None = None,
-    force_limit: Parameter | None = None,
-    force_resolution: Parameter | None = None,
+    inertia: Given | None = None,
+    damping: Given,
+    coulomb_friction: Given | None = None,
+    stiction: Given | None = None,
+    friction_speed: Given | None = None,
+    resolution: Given | None = None,
+    counts_per_turn: Given | None = None,
+    handle_radius: Given | None = None,
+    force_limit: Given | None = None,
+    force_resolution: Given | None = None,
     **rest: Any,
 ) -> Device:
     """A rotary device; with `handle_radius`, its linear equivalent at the handle.
@@ -73,7 +77,7 @@ def rotary(
             )
         resolution = _count_angle(counts_per_turn)
     given: dict[str, Any] = {
-        "mass": _inertia(inertia),
+        "mass": None if inertia is None else _positive(inertia, "inertia", "a body has inertia"),
         "damping": damping,
         "coulomb_friction": coulomb_friction,
         "stiction": stiction,
@@ -85,14 +89,26 @@ def rotary(
     device = Device(**given, motion="rotary", **rest)
     if handle_radius is None:
         return device
-    return _at_handle(
-        device, _positive(handle_radius, "handle_radius", "m", "the handle turns about the axis")
-    )
+    return _at_handle(device, _positive(handle_radius, "handle_radius", "the handle turns about the axis"))
 
 
-def _inertia(value: Parameter | None) -> Exact | Interval | None:
-    return None if value is None else _positive(value, "inertia", "kg*m^2", "a body has inertia")
-
+ROTARY: Mapping[str, Quantity] = MappingProxyType(
+    {
+        q.name: q
+        for q in (
+            Quantity("inertia", "J", "kg*m^2", "kg*m^2", "moment of inertia of a rotary device"),
+            plain("counts_per_turn", "encoder counts in one turn", "N"),
+            Quantity(
+                "handle_radius",
+                "r",
+                "m",
+                "m",
+                "from the axis to the handle; turns a rotary device into its equivalent there",
+            ),
+        )
+    }
+)
+"""What makes a device rotary."""
 
 _POWER = {
     "mass": -2,
@@ -126,18 +142,15 @@ def _scaled(value: Exact | Interval, radius: Exact | Interval, power: int) -> Ex
     return Exact(low * near**power)
 
 
-def _count_angle(counts_per_turn: Parameter) -> Exact | Interval:
-    low, high = ends(_positive(counts_per_turn, "counts_per_turn", "counts", "leave it out if unknown"))
+def _count_angle(counts_per_turn: Given) -> Exact | Interval:
+    low, high = ends(_positive(counts_per_turn, "counts_per_turn", "leave it out if unknown"))
     if low == high:
         return Exact(2 * math.pi / float(low))
     return Interval(2 * math.pi / float(high), 2 * math.pi / float(low))
 
 
-def _positive(value: Parameter, key: str, unit: str, why: str) -> Exact | Interval:
-    try:
-        parameter = as_parameter(value)
-    except InputError as error:
-        raise InputError(f"{key} [{unit}]: {error}") from None
-    if ends(parameter)[0] <= 0:
-        raise InputError(f"{key} must be > 0 {unit}, got {parameter}: {why}")
-    return parameter
+def _positive(value: Given, key: str, why: str) -> Exact | Interval:
+    number: Exact | Interval = read_number(
+        value, ROTARY[key], key, uncertain=True, bound="> 0", why=why, motion="rotary"
+    )
+    return number

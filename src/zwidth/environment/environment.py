@@ -11,10 +11,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
-from typing import Any, NamedTuple, Self
+from typing import Any, Literal, NamedTuple, Self
 
+from zwidth.environment.velocity_weights import Average, Decay
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Parametric, flag
 
 
@@ -25,12 +27,46 @@ class RationalFunction(NamedTuple):
     denominator: tuple[Fraction, ...]
 
 
+class DampedSpring(NamedTuple):
+    """K x + B v, the velocity estimated as V(z) x, or with weights w_j where the estimate has such."""
+
+    stiffness: Fraction
+    damping: Fraction
+    velocity: RationalFunction
+    weights: Average | Decay | None
+
+
+class PowerLaw(NamedTuple):
+    """f = K uⁿ (1 + λ v), u = max(x, 0), v the backward difference of x."""
+
+    stiffness: Exact
+    exponent: Exact
+    dissipation: Exact
+
+
+class Box(NamedTuple):
+    """Which numbers of a loop are intervals."""
+
+    of_law: frozenset[str]
+    """Fields of the law."""
+
+    of_timing: frozenset[str]
+    """Of "sample_period" and "delay"."""
+
+    is_undelayed: bool
+    """True where the delay is 0 for certain."""
+
+    covers_contact: bool
+    """True where contact made and broken is covered at every corner."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Environment(Parametric, ABC):
     """What renders a force from sampled positions.
 
     A subclass is a frozen data class whose fields are made by `parameter`, `flag`
     or `part` of `zwidth.quantity.parameter`, and implements `pulse_transfer_function` and `describe`.
+    Whatever else is asked of a law has a default that claims nothing.
     """
 
     @property
@@ -85,6 +121,79 @@ class Environment(Parametric, ABC):
     @abstractmethod
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, on one line, in linear or rotary units."""
+
+    @property
+    def fed_with(self) -> Literal["position", "penetration"]:
+        """What a law with a surface is computed from: the position x, or the penetration max(x, 0)."""
+        return "penetration"
+
+    @property
+    def surface(self) -> Literal["none", "position", "penetration"]:
+        """Where the law acts: everywhere, "none"; or for x > 0 only, computed from what is named."""
+        return self.fed_with if self.unilateral else "none"
+
+    @property
+    def rests_on_spring(self) -> bool:
+        """True where all of the force at rest is that of the parameter `stiffness`, f = K x inside."""
+        return False
+
+    @property
+    def points(self) -> tuple[tuple[Exact, Exact], ...]:
+        """(xᵢ, fᵢ) of a spring that points give [m; rad], [N; N·m]; none of any other law."""
+        return ()
+
+    @property
+    def power_law(self) -> PowerLaw | None:
+        """The numbers of a law K uⁿ (1 + λ v); None of any other."""
+        return None
+
+    def damped_spring(self, sample_period: Fraction) -> DampedSpring | None:
+        """The numbers of a law K x + B v at the sample period T [s]; None of any other.
+
+        Raises
+        ------
+        InputError
+            If one of them is an interval.
+        """
+        return None
+
+    def side_by_side(self) -> tuple[Environment, ...]:
+        """Laws with an H(z) whose forces add up to this one's: the terms of a sum, or the law itself."""
+        return (self,)
+
+    def scaled(self, factor: Fraction) -> Environment | None:
+        """The law with its force times a factor, exactly; None where it is not given by its force."""
+        return None
+
+    def unit_of(self, key: str, motion: str = "linear") -> str:
+        """The SI unit of a parameter."""
+        return GLOSSARY[key].unit_for(motion)
+
+    def decided_by_corners(self, box: Box) -> bool:
+        """True where passivity at every corner of a box of parameters proves it for all values within.
+
+        So it is where what the law asks of the device is convex, or monotone, in each of them.
+        """
+        return False
+
+    def least_demanding(self, is_ideal: bool) -> Self | None:
+        """The law within its intervals that is active only if all of them are; None where none is known.
+
+        Parameters
+        ----------
+        is_ideal
+            True on a device without delay and encoder counts.
+        """
+        return None
+
+    @property
+    def met(self) -> Environment:
+        """What the hand meets, without the laws that render it."""
+        return self
+
+    def around(self, environment: Environment) -> Environment:
+        """Another environment, rendered by the laws that render this one, if any do."""
+        return environment
 
 
 def _uncertain(value: object) -> bool:

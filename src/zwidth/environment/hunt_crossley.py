@@ -16,9 +16,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from fractions import Fraction
-from typing import NoReturn
+from typing import Literal, NoReturn
 
-from zwidth.environment.environment import Environment, clamping
+from zwidth.environment.environment import Environment, PowerLaw, clamping
 from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
@@ -103,7 +103,7 @@ class HuntCrossley(Environment):
             If one of them is no finite number.
         """
         x = read_number(position, GLOSSARY["position"], "position").fraction
-        v = read_number(velocity, GLOSSARY["friction_speed"], "velocity").fraction
+        v = read_number(velocity, GLOSSARY["speed"], "velocity").fraction
         f = resting_force(self.stiffness.fraction, self.exponent.fraction, x)
         f *= 1 + self.dissipation.fraction * v
         return Exact(max(f, Fraction(0)) if self.clamped else f)
@@ -128,6 +128,16 @@ class HuntCrossley(Environment):
         if self.dissipation:
             parts.append(with_unit("dissipation", self.dissipation, motion))
         return f"Hunt–Crossley contact, {', '.join(parts)}{never_pulls(self.clamped)}"
+
+    @property
+    def fed_with(self) -> Literal["position", "penetration"]:
+        """The position: v is the difference of readings inside and outside."""
+        return "position"
+
+    @property
+    def power_law(self) -> PowerLaw:
+        """K, n and λ."""
+        return PowerLaw(self.stiffness, self.exponent, self.dissipation)
 
 
 def resting_force(stiffness: Fraction, exponent: Fraction, position: Fraction) -> Fraction:

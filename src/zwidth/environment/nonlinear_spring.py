@@ -22,7 +22,7 @@ from zwidth.environment.wording import with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import GLOSSARY, Quantity
-from zwidth.quantity.parameter import Numbers, check_bound, listed, read_number
+from zwidth.quantity.parameter import Numbers, listed, read_number
 
 MOST_POINTS = 10_000
 """More points than any force profile is measured with."""
@@ -130,8 +130,10 @@ class NonlinearSpring(Environment):
         _check_count(points, "points", 2)
         x0 = read_number(start, GLOSSARY["position"], "start").fraction
         d = _positive(depth, "depth", "position")
-        k = _bounded(stiffness, "stiffness", GLOSSARY["stiffness"], "≥ 0", NEGATIVE_SPRING)
-        h = _bounded(hardening, "hardening", _HARDENING, "≥ 0", NEGATIVE_SPRING)
+        k, h = (
+            read_number(value, quantity, quantity.name, bound="≥ 0", why=NEGATIVE_SPRING).fraction
+            for value, quantity in ((stiffness, GLOSSARY["stiffness"]), (hardening, _HARDENING))
+        )
         depths = [d * i / (points - 1) for i in range(points)]
         return cls([x0 + u for u in depths], [k * u + h * u**3 for u in depths])
 
@@ -188,6 +190,15 @@ class NonlinearSpring(Environment):
             f"force {low} to {high}, slope up to {slope}"
         )
 
+    @property
+    def points(self) -> tuple[tuple[Exact, Exact], ...]:
+        """(xᵢ, fᵢ) [m; rad], [N; N·m]."""
+        return tuple(zip(self.positions, self.forces, strict=True))
+
+    def scaled(self, factor: Fraction) -> Self:
+        """The spring with forces factor · fᵢ."""
+        return self.replace(forces=[f.fraction * factor for f in self.forces])
+
     def _steepest(self) -> Fraction:
         points = list(zip(self.positions, self.forces, strict=True))
         slopes = [
@@ -203,10 +214,7 @@ def _check_count(value: object, key: str, least: int) -> None:
 
 
 def _positive(value: RealLike, key: str, quantity: str) -> Fraction:
-    return _bounded(value, key, GLOSSARY[quantity], "> 0", "without it there are no points")
-
-
-def _bounded(value: RealLike, key: str, quantity: Quantity, bound: str, why: str) -> Fraction:
-    number: Exact = read_number(value, quantity, key)
-    check_bound(number, key, bound, why)
+    number: Exact = read_number(
+        value, GLOSSARY[quantity], key, bound="> 0", why="without it there are no points"
+    )
     return number.fraction

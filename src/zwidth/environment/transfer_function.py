@@ -20,7 +20,7 @@ from zwidth.environment.discretization import (
     discretized_by,
     trimmed,
 )
-from zwidth.environment.environment import Environment, RationalFunction
+from zwidth.environment.environment import Box, Environment, RationalFunction
 from zwidth.environment.system import LinearSystem, is_system, read_system
 from zwidth.environment.wording import polynomial_text
 from zwidth.errors import InputError
@@ -101,6 +101,10 @@ class PulseTransferFunction(Environment):
         """The law with its numbers, on one line; coefficients carry no unit of their own."""
         period = "" if self.sample_period is None else f", T = {float(self.sample_period):.6g} s"
         return f"H(z) = {_ratio(self.numerator, self.denominator, 'z')}{period}"
+
+    def decided_by_corners(self, box: Box) -> bool:
+        """For T without delay: the requirement is proportional to it."""
+        return box.is_undelayed
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from zwidth.environment.environment import RationalFunction, certain, multiply
+from zwidth.environment.velocity_weights import Average, Decay, finite_response
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike, ends
 from zwidth.quantity.parameter import Parametric, Reads, Uncertain, parameter, part
@@ -36,6 +37,14 @@ class BackwardDifference:
     def transfer(self, period: Fraction) -> RationalFunction:
         """(z − 1)/(T z) [1/s]."""
         return RationalFunction((_ONE, -_ONE), (period, Fraction(0)))
+
+    @property
+    def time_constant(self) -> None:
+        """It has none."""
+
+    def weights(self, period: Fraction) -> Average:
+        """The last move alone."""
+        return Average((_ONE,))
 
 
 @dataclass(frozen=True)
@@ -67,6 +76,14 @@ class Window:
         """(zᴺ − 1)/(N T zᴺ) [1/s]."""
         zeros = (Fraction(0),) * (self.samples - 1)
         return RationalFunction((_ONE, *zeros, -_ONE), (self.samples * period, *zeros, Fraction(0)))
+
+    @property
+    def time_constant(self) -> None:
+        """It has none."""
+
+    def weights(self, period: Fraction) -> Average:
+        """1/N each."""
+        return Average((Fraction(1, self.samples),) * self.samples)
 
 
 @dataclass(frozen=True)
@@ -100,6 +117,11 @@ class OnePole(Parametric):
         """(z − 1)/((T + τ) z − τ) [1/s]."""
         tau = certain(self.time_constant, "time_constant")
         return RationalFunction((_ONE, -_ONE), (period + tau, -tau))
+
+    def weights(self, period: Fraction) -> Decay:
+        """p = τ/(T + τ)."""
+        tau = certain(self.time_constant, "time_constant")
+        return Decay(tau / (period + tau))
 
 
 def _coefficients(given: Sequence[RealLike], name: str) -> tuple[Exact, ...]:
@@ -148,6 +170,14 @@ class VelocityFilter(Parametric):
         num = tuple(c.fraction for c in self.numerator)
         den = tuple(c.fraction for c in self.denominator)
         return RationalFunction(multiply(num, (_ONE, -_ONE)), multiply(den, (period, Fraction(0))))
+
+    @property
+    def time_constant(self) -> None:
+        """It has none."""
+
+    def weights(self, period: Fraction) -> Average | None:
+        """F(z) = Σ w_j z⁻ʲ; None where it does not end."""
+        return finite_response(*(tuple(c.fraction for c in p) for p in (self.numerator, self.denominator)))
 
 
 VelocityEstimator = BackwardDifference | Window | OnePole | VelocityFilter

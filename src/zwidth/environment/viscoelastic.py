@@ -29,13 +29,21 @@ from zwidth.environment.discretization import (
     discretize,
     discretized_by,
 )
-from zwidth.environment.environment import Environment, RationalFunction, add, certain, clamping, multiply
-from zwidth.environment.wall import NEGATIVE_SPRING
+from zwidth.environment.environment import (
+    Box,
+    Environment,
+    RationalFunction,
+    add,
+    certain,
+    clamping,
+    multiply,
+)
+from zwidth.environment.wall import NEGATIVE_SPRING, Wall
 from zwidth.environment.wording import never_pulls, with_unit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
-from zwidth.quantity.parameter import Given, Reads, Uncertain, check_bound, parameter, part, read_number
+from zwidth.quantity.parameter import Given, Reads, Uncertain, parameter, part, read_number
 
 Branch = tuple[Exact | Interval, Exact | Interval]
 """Spring μ and dashpot η in series."""
@@ -56,9 +64,10 @@ def _branches(given: Iterable[Sequence[Given]], name: str) -> tuple[Branch, ...]
 def _pair(pair: Sequence[Given], name: str) -> Branch:
     if isinstance(pair, str) or not hasattr(pair, "__len__") or len(pair) != 2:
         raise InputError(f"{name} is a pair (stiffness, damping), got {pair!r}")
-    mu = read_number(pair[0], GLOSSARY["branch_stiffness"], f"{name} stiffness", uncertain=True)
-    check_bound(mu, f"{name} stiffness", "≥ 0", NEGATIVE_SPRING)
-    return mu, read_number(pair[1], GLOSSARY["branch_damping"], f"{name} damping", uncertain=True)
+    spring, dashpot = GLOSSARY["branch_stiffness"], GLOSSARY["branch_damping"]
+    bounded = {"bound": "≥ 0", "why": NEGATIVE_SPRING}
+    mu = read_number(pair[0], spring, f"{name} stiffness", uncertain=True, **bounded)
+    return mu, read_number(pair[1], dashpot, f"{name} damping", uncertain=True)
 
 
 @dataclass(frozen=True)
@@ -125,6 +134,22 @@ class StandardLinearSolid(Environment):
         branch = _branch_text((self.branch_stiffness, self.branch_damping), motion)
         return f"standard linear solid, {k} beside {branch}, {_ending(self)}"
 
+    @property
+    def rests_on_spring(self) -> bool:
+        """True: the branch relaxes to nothing."""
+        return True
+
+    def decided_by_corners(self, box: Box) -> bool:
+        """For the spring μ0, which enters H linearly; without delay for a branch ≥ 0, backward or Tustin.
+
+        The required damping is then μ0T/2 + μ1η1T/(2η1+μ1T), or (T/2)(μ0+μ1); ‖h‖₁ is
+        μ0 + 2μ1η1/(μ1T+η1), or μ0 + μ1 max(1, 4η1/(μ1T+2η1)).
+        """
+        if box.of_law <= {"stiffness"} and not box.of_timing:
+            return True
+        is_positive = min(ends(self.branch_stiffness)[0], ends(self.branch_damping)[0]) >= 0
+        return box.is_undelayed and is_positive and self.discretization in ("backward", "tustin")
+
 
 @dataclass(frozen=True)
 class GeneralizedMaxwell(Environment):
@@ -185,6 +210,28 @@ class GeneralizedMaxwell(Environment):
         parts = [with_unit("stiffness", self.stiffness, motion)]
         parts += [_branch_text(branch, motion) for branch in self.branches]
         return f"generalized Maxwell, {' beside '.join(parts)}, {_ending(self)}"
+
+    @property
+    def rests_on_spring(self) -> bool:
+        """True: the branches relax to nothing."""
+        return True
+
+    def decided_by_corners(self, box: Box) -> bool:
+        """For the spring μ0, which enters H linearly."""
+        return box.of_law <= {"stiffness"} and not box.of_timing
+
+    def side_by_side(self) -> tuple[Environment, ...]:
+        """Spring and branches, but for the matched rule, which matches their sum.
+
+        Multiplied out, slow branches would lose each other's digits.
+        """
+        if self.discretization == "matched":
+            return (self,)
+        branches = (
+            Maxwell(stiffness=mu, damping=eta, discretization=self.discretization)
+            for mu, eta in self.branches
+        )
+        return (Wall(stiffness=self.stiffness), *branches)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ from zwidth.errors import InputError
 from zwidth.identification.device import identify as device
 from zwidth.identification.device.choice import Zero
 from zwidth.identification.device.identified import Identified
-from zwidth.identification.logs import Log, log_of, read_log
+from zwidth.identification.logs import Log, read_log
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -47,7 +48,8 @@ def identify(
     progress
         Told (samples done, samples in all).
     reading
-        Further arguments of `read_log` or `log_of`, such as columns={…}, units={…}, resolution="22.4 um".
+        Further arguments of `read_log` or `Log.from_arrays`, such as columns={…}, units={…},
+        resolution="22.4 um".
 
     Raises
     ------
@@ -55,9 +57,9 @@ def identify(
         If the recording cannot be read or shows too little: too few strokes, or no force and no mass.
     """
     log = log_from(recording, **reading)
-    known = None if mass is None else float(parse_number(mass, _inertia(log), "mass"))
+    known = None if mass is None else float(parse_number(mass, GLOSSARY["mass"].unit_for(log.motion), "mass"))
     late = float(parse_number(delay, "s", "delay"))
-    return device.identify(log, mass=known, delay=late, zero=zero, model=_model(model), progress=progress)
+    return device.identify(log, mass=known, delay=late, zero=zero, model=model, progress=progress)
 
 
 def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) -> Log:
@@ -70,14 +72,4 @@ def log_from(recording: Log | str | PathLike[str] | xr.Dataset, **reading: Any) 
         return recording
     if isinstance(recording, str | PathLike):
         return read_log(recording, **reading)
-    return log_of(recording, **reading)
-
-
-def _inertia(log: Log) -> str:
-    return "kg*m^2" if log.motion == "rotary" else "kg"
-
-
-def _model(model: Any) -> device.Model:
-    if model not in ("Coulomb and viscous", "viscous"):
-        raise InputError(f'model is "Coulomb and viscous" or "viscous", got {model!r}')
-    return model  # type: ignore[no-any-return]
+    return Log.from_arrays(recording, **reading)

@@ -26,9 +26,9 @@ from zwidth.loop.setup import check_signals, whole_samples
 from zwidth.loop.trace import LARGEST, UNITS, VARIABLES
 from zwidth.operator.operator import LinearHand, Operator
 from zwidth.quantity.exact import RealLike
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import one_of, read_number
 from zwidth.rendering.energy.parallel_controller import ENERGY, SLOTS, ParallelController, observer_only, step
-from zwidth.rendering.reading import one_of
-from zwidth.rendering.stage import positive
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -112,7 +112,13 @@ def simulate_admittance(
     InputError
         If the hand has mass or prescribes the motion, or an argument is out of its bounds.
     """
-    period = positive("sample_period", sample_period, "the display works by a clock")
+    period = read_number(
+        sample_period,
+        GLOSSARY["sample_period"],
+        "sample_period",
+        bound="> 0",
+        why="the display works by a clock",
+    )
     if not isinstance(body, VirtualBody):
         raise InputError(f"body is a zwidth.VirtualBody, got {type(body).__name__}")
     if controller is not None and not isinstance(controller, ParallelController):

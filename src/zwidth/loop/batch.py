@@ -97,7 +97,7 @@ def simulate_batch(
     vary: Mapping[str, Sequence[Any]],
     together: bool = False,
     threads: int | None = None,
-    on: str = "cpu",
+    backend: str = "cpu",
     progress: Progress | None = None,
     **options: Any,
 ) -> xr.Dataset:
@@ -116,7 +116,7 @@ def simulate_batch(
         all, then the second values, …, along one dimension `case`.
     threads
         By default as many as there are processors.
-    on
+    backend
         "cpu", or "gpu" for a graphics card with CUDA (install the extra `gpu`): the same step
         functions, one loop per thread, equal to rounding.
     progress
@@ -142,12 +142,12 @@ def simulate_batch(
     made: dict[Any, Any] = {}  # keeps every part alive, so that `known` may go by identity
     known: dict[Any, Frame] = {}
     setups = [_prepare(base, owners, choice, duration, made, known) for choice in choices]
-    if on == "gpu":
+    if backend == "gpu":
         states, summaries, finished = _run_on_card(setups)
-    elif on == "cpu":
+    elif backend == "cpu":
         states, summaries, finished = _run_all(setups, _threads(threads), progress)
     else:
-        raise InputError(f'on is "cpu" or "gpu", got {on!r}')
+        raise InputError(f'backend is "cpu" or "gpu", got {backend!r}')
     return _dataset(base, axes, owners, together, states, summaries, finished)
 
 

@@ -40,7 +40,7 @@ def run_on_gpu(setups: list[Setup], states: Array, summaries: Array) -> None:
     first = setups[0]
     for setup in setups:
         if setup.frame.arrivals.size or setup.frame.missed.size:
-            raise InputError("late and missed samples are for the processor: leave out on='gpu'")
+            raise InputError("late and missed samples are for the processor: leave out backend='gpu'")
         if setup.frame.points != 1:
             raise InputError("a batch records no points between samples: leave points_per_sample out")
         if setup.frame.samples != first.frame.samples:
@@ -82,8 +82,8 @@ def _cuda() -> Any:
         raise InputError(f"CUDA cannot be used ({error}): pip install 'zwidth[gpu]'") from None
     if not cuda.is_available():  # type: ignore[no-untyped-call]
         raise InputError(
-            "no graphics card with CUDA was found: leave out on='gpu', or pip install 'zwidth[gpu]' on a "
-            "machine that has one"
+            "no graphics card with CUDA was found: leave out backend='gpu', or pip install 'zwidth[gpu]' on "
+            "a machine that has one"
         )
     return cuda
 

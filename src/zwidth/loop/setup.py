@@ -12,11 +12,7 @@ import numpy as np
 from zwidth.device.amplifier import Actuation, Amplifier, CurrentAmplifier
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
-from zwidth.environment.hunt_crossley import HuntCrossley
-from zwidth.environment.nonlinear_spring import NonlinearSpring
 from zwidth.environment.transfer_function import as_environment
-from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell
-from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.loop import law as laws
 from zwidth.loop.kernel import RECORDED
@@ -26,7 +22,7 @@ from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
 from zwidth.operator.operator import Operator, Signals
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.rendered import Rendered
+from zwidth.rendering.rendered import stages_of
 from zwidth.rendering.stage import Stage, Surroundings
 
 if TYPE_CHECKING:
@@ -39,6 +35,9 @@ MOST_PIECES = 1000
 
 MOST_BYTES = 4 << 30
 """A longer record would not fit into the memory of many machines."""
+
+GATES = {"none": laws.BILATERAL, "penetration": laws.PENETRATION, "position": laws.SURFACE}
+"""By where a law acts and what it is computed from."""
 
 _NONE = np.empty(0)
 
@@ -127,9 +126,9 @@ def prepare(
     state[VELOCITY] = _number(initial_velocity, "initial_velocity")
     state[DIRECTION] = np.sign(state[VELOCITY])
     actuation = frame.actuation
-    met, row = (law.environment, law.stages) if isinstance(law, Rendered) else (law, ())
+    met, row = law.met, stages_of(law)
     clamped = float(met.clamped and not met.spring)  # a spring pushes wherever it acts
-    header = [_gate(met), frame.resolution, phase, actuation.step, actuation.limit, clamped]
+    header = [GATES[met.surface], frame.resolution, phase, actuation.step, actuation.limit, clamped]
     kinds, body = _body(met, frame.period)
     reading = laws.measured(state[POSITION], frame.resolution, phase)
     memory = at_rest(np.array([*header, *kinds, 0.0, 0.0, 0.0, *body]), reading)
@@ -269,12 +268,12 @@ def _plant(device: Device, operator: Operator, actuation: Actuation) -> Plant:
 
 def _body(law: Environment, period: Fraction) -> tuple[list[float], list[float]]:
     """The numbers of sections and of points and whether it is a contact; and what they are."""
-    if isinstance(law, NonlinearSpring):
-        points = [*map(float, law.positions), *map(float, law.forces)]
-        return [0.0, float(len(law.positions)), 0.0], points
-    if isinstance(law, HuntCrossley):
-        per_length = float(law.dissipation.fraction / period)
-        return [0.0, 0.0, 1.0], [float(law.stiffness), float(law.exponent), per_length]
+    if law.points:
+        places, forces = zip(*law.points, strict=True)
+        return [0.0, float(len(places)), 0.0], [*map(float, places), *map(float, forces)]
+    if law.power_law is not None:
+        k, n, dissipation = law.power_law
+        return [0.0, 0.0, 1.0], [float(k), float(n), float(dissipation.fraction / period)]
     sections = sections_of(law, period)
     return [float(len(sections)), 0.0, 0.0], [c for s in sections for c in s]
 
@@ -293,19 +292,8 @@ def _row(
 
 
 def sections_of(environment: Environment, period: Fraction) -> list[list[float]]:
-    """The law as a sum of direct forms, each n, b_0 … b_n, a_1 … a_n.
-
-    The branches of a Prony series stand side by side: multiplied out, slow ones
-    would lose each other's digits.
-    """
-    parts: list[Environment] = [environment]
-    if isinstance(environment, GeneralizedMaxwell) and environment.discretization != "matched":
-        branches = [
-            Maxwell(stiffness=mu, damping=eta, discretization=environment.discretization)
-            for mu, eta in environment.branches
-        ]
-        parts = [Wall(environment.stiffness), *branches]
-    return [_section(part, period) for part in parts]
+    """The law as a sum of direct forms, each n, b_0 … b_n, a_1 … a_n."""
+    return [_section(part, period) for part in environment.side_by_side()]
 
 
 def _section(environment: Environment, period: Fraction) -> list[float]:
@@ -319,7 +307,7 @@ def _section(environment: Environment, period: Fraction) -> list[float]:
 
 def resting_memory(setup: Setup, reading: float) -> Array:
     """What the law of a setup remembers after the hand has been at a reading for ever."""
-    row = setup.environment.stages if isinstance(setup.environment, Rendered) else ()
+    row = stages_of(setup.environment)
     slots = [number for stage in row for number in stage.rested(reading)]
     return np.array([*at_rest(setup.law, reading), *([0.0] if row else []), *slots])
 
@@ -344,12 +332,6 @@ def at_rest(law: Array, reading: float) -> Array:
         slots += reversed(own)
         at += 2 * order + 2
     return np.array(slots or [0.0])
-
-
-def _gate(environment: Environment) -> float:
-    if not environment.unilateral:
-        return laws.BILATERAL
-    return laws.SURFACE if isinstance(environment, Wall | HuntCrossley) else laws.PENETRATION
 
 
 def whole_samples(duration: RealLike, period: Fraction) -> int:

@@ -22,11 +22,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.environment.environment import Environment
-from zwidth.environment.hunt_crossley import HuntCrossley
-from zwidth.environment.nonlinear_spring import NonlinearSpring
+from zwidth.environment.environment import Environment, PowerLaw
 from zwidth.loop.law import measured
-from zwidth.rendering.rendered import Rendered
+from zwidth.quantity.exact import Exact
+from zwidth.rendering.rendered import stages_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -118,22 +117,22 @@ class Start:
 
 def rest_position(law: Environment, period: Fraction, start: float) -> float:
     """Where a touch that would start at `start` starts at rest, with nothing stored [m; rad]."""
-    inner = law.environment if isinstance(law, Rendered) else law
-    if inner.unilateral:
+    met = law.met
+    if met.unilateral:
         return start
-    if isinstance(inner, NonlinearSpring):
-        return _lowest(*_points(inner), start)
-    stiffness = _static_stiffness(inner, period)
+    if met.points:
+        return _lowest(*_columns(met.points), start)
+    stiffness = _static_stiffness(met, period)
     return start if stiffness == 0 else 0.0
 
 
 def held_at_start(at: Start, deepest: float) -> Held:
     """What the loop holds at the start; `deepest` is the largest reading of the touch."""
-    inner = at.law.environment if isinstance(at.law, Rendered) else at.law
-    if inner.unilateral and at.reading <= 0.0:
+    met = at.law.met
+    if met.unilateral and at.reading <= 0.0:
         return Held(stored=at.plant.coulomb * max(at.beyond, 0.0))
-    found = _of_law(at, inner, deepest)
-    if found.force and isinstance(at.law, Rendered):
+    found = _of_law(at, met, deepest)
+    if found.force and stages_of(at.law):
         return Held(stored=None, unknown=IN_A_ROW)
     if found.force and (at.actuation.lag or at.actuation.slew):
         return Held(stored=None, unknown=ON_THE_WAY)
@@ -141,10 +140,10 @@ def held_at_start(at: Start, deepest: float) -> Held:
 
 
 def _of_law(at: Start, law: Environment, deepest: float) -> Held:
-    if isinstance(law, NonlinearSpring):
-        return _of_points(at, law)
-    if isinstance(law, HuntCrossley):
-        return _of_contact(at, law, deepest)
+    if law.points:
+        return _of_points(at, *_columns(law.points))
+    if law.power_law is not None:
+        return _of_contact(at, law.power_law, deepest)
     return _of_linear(at, law)
 
 
@@ -183,7 +182,7 @@ def _is_memoryless(law: Environment, period: Fraction) -> bool:
     return all(n * below == d * above for n, d in zip(padded, denominator, strict=True))
 
 
-def _of_contact(at: Start, law: HuntCrossley, deepest: float) -> Held:
+def _of_contact(at: Start, law: PowerLaw, deepest: float) -> Held:
     """K uⁿ at rest, whose steps are the higher the deeper."""
     k, n, y = float(law.stiffness), float(law.exponent), max(at.middle, 0.0)
     deep = max(deepest, at.reading) + at.resolution
@@ -195,8 +194,7 @@ def _of_contact(at: Start, law: HuntCrossley, deepest: float) -> Held:
     )
 
 
-def _of_points(at: Start, law: NonlinearSpring) -> Held:
-    x, f = _points(law)
+def _of_points(at: Start, x: Array, f: Array) -> Held:
     if f[0] > 0.0 or f[-1] < 0.0:
         return Held(stored=None, unknown=DOWNHILL)
     slopes = np.diff(f) / np.diff(x)
@@ -212,8 +210,9 @@ def _of_points(at: Start, law: NonlinearSpring) -> Held:
     )
 
 
-def _points(law: NonlinearSpring) -> tuple[Array, Array]:
-    return np.array(law.positions, dtype=np.float64), np.array(law.forces, dtype=np.float64)
+def _columns(points: tuple[tuple[Exact, Exact], ...]) -> tuple[Array, Array]:
+    x, f = zip(*points, strict=True)
+    return np.array(x, dtype=np.float64), np.array(f, dtype=np.float64)
 
 
 def _lowest(x: Array, f: Array, start: float) -> float:

@@ -18,6 +18,7 @@ from zwidth.loop import kernel
 from zwidth.loop.plant import POSITION
 from zwidth.loop.setup import Setup
 from zwidth.loop.start import Start, held_at_start
+from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,7 +30,11 @@ FORMAT = "zwidth trace 1"
 LARGEST = 1e120
 """Where a motion that grows without bound is cut, in SI units: squares of it are still finite."""
 
-UNITS = {"linear": ("m", "m/s", "N"), "rotary": ("rad", "rad/s", "N*m")}
+UNITS = {
+    motion: tuple(GLOSSARY[name].unit_for(motion) for name in ("position", "velocity", "force"))
+    for motion in ("linear", "rotary")
+}
+"""Of position, velocity and force."""
 
 
 class Variable(NamedTuple):
@@ -238,8 +243,6 @@ def _version() -> str:
 
 def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
     device, plant = setup.device, setup.frame.plant
-    length = UNITS[device.motion][0]
-    turn = device.motion == "rotary"
     result: dict[str, Any] = {
         "format": FORMAT,
         "zwidth_version": _version(),
@@ -251,17 +254,17 @@ def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
         "motion": device.motion,
         "sample_period_s": float(device.exact("sample_period")),
         "delay_s": float(device.exact("delay")),
-        f"resolution_{length}": float(device.exact("resolution")),
+        device.key("resolution"): float(device.exact("resolution")),
         "encoder_phase_counts": setup.encoder_phase,
-        "mass_kg_m2" if turn else "mass_kg": plant.mass,
-        "damping_N_m_s_per_rad" if turn else "damping_N_s_per_m": plant.damping,
-        "coulomb_friction_N_m" if turn else "coulomb_friction_N": plant.coulomb,
-        "stiction_N_m" if turn else "stiction_N": plant.stiction,
-        "hand_mass_kg_m2" if turn else "hand_mass_kg": plant.hand_mass,
-        "hand_stiffness_N_m_per_rad" if turn else "hand_stiffness_N_per_m": plant.stiffness,
-        "hand_damping_N_m_s_per_rad" if turn else "hand_damping_N_s_per_m": plant.hand_damping,
+        device.key("mass"): plant.mass,
+        device.key("damping"): plant.damping,
+        device.key("coulomb_friction"): plant.coulomb,
+        device.key("stiction"): plant.stiction,
+        f"hand_{device.key('mass')}": plant.hand_mass,
+        f"hand_{device.key('stiffness')}": plant.stiffness,
+        f"hand_{device.key('damping')}": plant.hand_damping,
         "stops": stops,
     }
     if device.force_limit is not None:
-        result["force_limit_N_m" if turn else "force_limit_N"] = float(device.exact("force_limit"))
+        result[device.key("force_limit")] = float(device.exact("force_limit"))
     return result

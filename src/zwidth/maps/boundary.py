@@ -24,7 +24,6 @@ from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import RealLike
-from zwidth.quantity.glossary import GLOSSARY
 
 _SLOWEST = 1e-4
 """Smallest angle ωT on the curve, as a part of π."""
@@ -93,7 +92,7 @@ def _reach(found: Curve) -> float:
 
 def _dataset(runs: list[Curve], device: Device, period: float) -> xr.Dataset:
     angle, stiffness, damping, bounds = (np.concatenate(parts) for parts in zip(*runs, strict=True))
-    units = {name: GLOSSARY[name].unit_for(device.motion) for name in ("stiffness", "virtual_damping")}
+    units = {name: device.unit(name) for name in ("stiffness", "virtual_damping")}
     return xr.Dataset(
         {
             "frequency": ("point", angle / (2 * pi * period), {"units": "Hz"}),

@@ -69,12 +69,9 @@ def z_width_factors(
     InputError
         As `z_width`, or if the two levels of a factor are equal.
     """
-    units = {"rate": "Hz", "damping": "N*s/m", "resolution": "m"}
-    if device.motion == "rotary":
-        units |= {"damping": "N*m*s/rad", "resolution": "rad"}
+    pairs = {"rate": rate, "damping": damping, "resolution": resolution}
     levels: dict[str, tuple[Any, Any]] = {
-        name: _levels(name, pair, unit)
-        for (name, unit), pair in zip(units.items(), (rate, damping, resolution), strict=True)
+        name: _levels(name, pair, device.unit(name)) for name, pair in pairs.items()
     }
     levels["filter"] = filters
     areas: Any = None

@@ -20,7 +20,6 @@ from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.glossary import GLOSSARY
 
 
 def robust_boundary(
@@ -73,7 +72,7 @@ def robust_boundary(
     for done, b in enumerate(axis, start=1):
         rows.append(_limits(device, as_hand(hand), Wall(1, float(b), velocity)))
         progress(done, points)
-    units = {key: GLOSSARY[key].unit_for(device.motion) for key in ("stiffness", "mass", "damping")}
+    units = {key: device.unit(key) for key in ("stiffness", "mass", "damping")}
     columns = zip(*rows, strict=True)
     kinds = ("stiffness", "stiffness", "mass", "damping", "stiffness")
     names = ("guaranteed", "refuted", "mass", "damping", "hand_stiffness")
@@ -81,11 +80,11 @@ def robust_boundary(
         name: ("virtual_damping", np.array(values), {"units": units[kind]})
         for name, values, kind in zip(names, columns, kinds, strict=True)
     }
-    unit = {"units": GLOSSARY["virtual_damping"].unit_for(device.motion)}
+    unit = {"units": device.unit("virtual_damping")}
     return xr.Dataset(
         variables,
         {"virtual_damping": ("virtual_damping", axis, unit)},
-        {"device": device.name, "hand": as_hand(hand).describe(), "motion": device.motion},
+        {"device": device.name, "hand": as_hand(hand).describe(device.motion), "motion": device.motion},
     )
 
 

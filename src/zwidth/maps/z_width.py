@@ -158,18 +158,19 @@ def _dataset(asked: Request, ready: Plan, layers: Layers, speed: float) -> xr.Da
     variables: dict[str, Any] = {
         name: (dims, values, dict(_MEANINGS.get(name, {}))) for name, values in layers.items()
     }
-    variables["admissible_speed"][2]["units"] = "rad/s" if motion == "rotary" else "m/s"
+    variables["admissible_speed"][2]["units"] = GLOSSARY["velocity"].unit_for(motion)
     variables["quiet"] = (dims, layers["admissible_speed"] >= speed, {"speed": speed})
-    variables["limit_passive"] = (dims[1], ready.limit)
+    units = [GLOSSARY[name].unit_for(motion) for name in axes]
+    variables["limit_passive"] = (dims[1], ready.limit, {"units": units[0]})
     for hand in ready.hands:
-        variables[f"limit_{hand.name}"] = (dims[1], stable_limits(hand, ready.damping))
+        limits = stable_limits(hand, ready.damping)
+        variables[f"limit_{hand.name}"] = (dims[1], limits, {"units": units[0]})
     about = scopes(asked, speed)
     names = list(about)
     for name, scope in about.items():
         variables[name][2]["scope"] = to_json(scope.to_dict(), indent=None)
     cell = asked.stiffness.width * asked.virtual_damping.width
     masks = [np.asarray(variables[name][1]) for name in names]
-    units = [GLOSSARY[name].unit_for(motion) for name in axes]
     variables["area"] = (
         "region",
         [mask.sum() * cell for mask in masks],

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from zwidth.device import Device
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, Interval, ends
+from zwidth.quantity.text import quantity_unit
 
 if TYPE_CHECKING:
     from zwidth.passivity.storage.evidence.gain import Gain
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | Gain) -> str:
     """Whether the motion asks for more force than the limit of the device's actuator [N; N·m]."""
-    unit = "N·m" if device.motion == "rotary" else "N"
+    unit = quantity_unit("force", device.motion)
     most, needed = float(ends(limit)[1]), _peak_force(witness)
     if needed <= most:
         return f"the motion stays within the actuator's {most:.6g} {unit}: it asks for {needed:.4g} {unit}"
@@ -27,6 +28,6 @@ def actuator_demand(device: Device, limit: Exact | Interval, witness: Witness | 
 def _peak_force(witness: Witness | Gain) -> float:
     if isinstance(witness, Witness):
         return witness.peak_force
-    from zwidth.passivity.storage.evidence.playback import peak_force  # the game's libraries are there by now
+    from zwidth.passivity.storage.evidence.playback import peak_force  # numba is there by now
 
     return peak_force(witness)

@@ -14,7 +14,7 @@ from typing import Literal
 from zwidth.device import Device
 from zwidth.environment import OnePole, Wall, Window
 from zwidth.environment.environment import Environment
-from zwidth.passivity.limits import Change, has_stiffness, is_of_high_degree, provable, stiffness_of
+from zwidth.environment.wall import wall_of
 from zwidth.passivity.linear.boundary import (
     COARSE,
     COARSER,
@@ -23,6 +23,7 @@ from zwidth.passivity.linear.boundary import (
     largest_holding,
     smallest_holding,
 )
+from zwidth.passivity.parameter_limits import Change, has_stiffness, is_of_high_degree, provable, stiffness_of
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, unit_text
@@ -83,8 +84,9 @@ def advise(
     knobs = (replace(knob, contact=contact) for knob in _knobs(device, environment))
     grain = COARSER if is_of_high_degree(device, environment) else COARSE
     found = [_turn(knob, device.motion, kind, grain) for knob in knobs]
-    if not passive and isinstance(environment, Wall) and environment.damping != 0:
-        found.extend(_estimators(device, environment, contact))
+    wall = wall_of(environment)
+    if not passive and wall is not None and wall.damping != 0:
+        found.extend(_estimators(device, wall, contact))
     return tuple(found)
 
 
@@ -100,13 +102,13 @@ def _knobs(device: Device, environment: Environment) -> Iterator[_Knob]:
         now = float(stiffness_of(environment))
         change: Change = lambda k: (device, environment.replace(stiffness=Exact(k)))  # noqa: E731
         yield _Knob("stiffness", now, change, False, "stiffness")
-    if isinstance(environment, Wall):
-        b = environment.damping
+    if (wall := wall_of(environment)) is not None:
+        b = wall.damping
         assert isinstance(b, Exact)
         sign = -1 if b < 0 else 1
         law: Change = lambda v: (device, environment.replace(damping=Exact(sign * v)))  # noqa: E731
         yield _Knob("virtual_damping", abs(float(b)), law, False, "virtual damping")
-        yield from _time_constant(device, environment)
+        yield from _time_constant(device, wall)
 
 
 def _rate(device: Device, environment: Environment) -> Change:
@@ -117,10 +119,10 @@ def _rate(device: Device, environment: Environment) -> Change:
 
 
 def _time_constant(device: Device, wall: Wall) -> Iterator[_Knob]:
-    velocity = wall.velocity_filter
-    if isinstance(velocity, OnePole) and isinstance(velocity.time_constant, Exact) and wall.damping != 0:
+    now = wall.velocity_filter.time_constant
+    if isinstance(now, Exact) and wall.damping != 0:
         change: Change = lambda t: (device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
-        yield _Knob("time_constant", float(velocity.time_constant), change, True, "filter time constant")
+        yield _Knob("time_constant", float(now), change, True, "filter time constant")
 
 
 def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"], grain: int) -> Advice:
@@ -189,7 +191,7 @@ def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
             text = f"estimate velocity with a {to} instead of the {now}"
             yield Advice("velocity_filter", now, to, "", "change", text)
             break
-    if not isinstance(wall.velocity_filter, OnePole):
+    if wall.velocity_filter.time_constant is None:
         change: Change = lambda t: (device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
         knob = _Knob("time_constant", 0.0, change, True, "time constant", contact)
         tau = _first_scanned(knob, device)

@@ -19,12 +19,14 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.document import unit_key, unit_suffix
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope, scope_of
-from zwidth.passivity.wording import if_friction_goes_on, lines
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.passivity.wording import if_friction_goes_on
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
+from zwidth.rendering.rendered import stages_of
+from zwidth.rendering.stage import Surroundings
 
 ROUNDOFF = Fraction(1, 2**53)
 """u: relative error of one operation on doubles, at most."""
@@ -53,11 +55,6 @@ class Bounding(PassivityAnswer):
     claim: str
     scope: Scope
     certificate: Certificate | None
-
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What the claim covers and takes for granted, line by line."""
-        return lines(self.scope, self.outcome)
 
 
 def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
@@ -102,21 +99,17 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
 
 def is_bounded(environment: Environment) -> bool:
     """True for a row of laws with force bounding at its end."""
-    from zwidth.rendering import ForceBounding, Rendered  # loads numba, which takes its time
-
-    return isinstance(environment, Rendered) and isinstance(environment.stages[-1], ForceBounding)
+    stages = stages_of(environment)
+    return bool(stages) and stages[-1].bounds_the_force
 
 
 def _numbers(device: Device, law: Environment) -> dict[str, Fraction] | None:
     """What the compiled law reckons with, each double as the rational that it is."""
     if not is_bounded(law):
         return None
-    from zwidth.rendering import Rendered
-    from zwidth.rendering.energy.force_bounding import HAIR
-    from zwidth.rendering.stage import Surroundings
+    from zwidth.rendering.energy.force_bounding import HAIR  # numba takes its time
 
-    assert isinstance(law, Rendered)
-    credit, friction, count, half_step, _ = law.stages[-1].numbers(Surroundings(device, law.environment))
+    credit, friction, count, half_step, _ = stages_of(law)[-1].numbers(Surroundings(device, law.met))
     doubles = {"credit": credit, "friction": friction, "count": count, "half_step": half_step, "hair": HAIR}
     return {name: Fraction(value) for name, value in doubles.items()}
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
+from zwidth.environment.wall import wall_of
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.linear.linear import LinearRefutation
 from zwidth.passivity.linear.supremum import frequency, tightest
@@ -77,7 +77,7 @@ def binding_limit(decision: Decision, account: Budget, environment: Environment)
         return QUANTIZATION
     shares = {
         SAMPLING: account.hold,
-        VIRTUAL_DAMPING if isinstance(environment, Wall) else DYNAMICS: account.dynamics,
+        VIRTUAL_DAMPING if wall_of(environment) else DYNAMICS: account.dynamics,
         DELAY: account.delay,
     }
     return max(shares, key=lambda name: shares[name])

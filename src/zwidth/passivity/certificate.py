@@ -18,7 +18,7 @@ from zwidth.checker import Scope, Verified, verify
 from zwidth.errors import InputError
 from zwidth.passivity.decision import Decision
 from zwidth.passivity.document import loop_document, unit_key
-from zwidth.passivity.linear.contact import DampedWall, Decay
+from zwidth.passivity.linear.contact import DampedWall
 from zwidth.passivity.linear.delay_interval import Piece
 from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.linear.one_norm import NormBound
@@ -108,14 +108,10 @@ def linear_proof(decision: Decision) -> dict[str, Any]:
 
 
 def wall_document(wall: DampedWall, motion: str) -> dict[str, Any]:
-    estimate = wall.estimate
-    weights: object = (
-        {"pole": str(estimate.pole)} if isinstance(estimate, Decay) else [str(w) for w in estimate.weights]
-    )
     return {
         unit_key("stiffness", motion): exact_text(wall.stiffness),
         unit_key("virtual_damping", motion): exact_text(wall.damping),
-        "weights": weights,
+        "weights": wall.estimate.document,
     }
 
 

@@ -26,7 +26,6 @@ from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide
 from zwidth.passivity.linear.loop import HIGH_DEGREE, linear_loop
 from zwidth.passivity.linear.supremum import tightest
 from zwidth.passivity.linear_verdict import LinearVerdict
-from zwidth.passivity.other_laws import check_other
 from zwidth.passivity.scope import Also, Contact, Scope, as_contact, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.refutation import refute_friction
@@ -116,6 +115,8 @@ def check(
         )
     law = _as_law(device, environment)
     if not law.has_transfer_function:
+        from zwidth.passivity.other_laws import check_other  # few loops have such a law
+
         return check_other(device, law, check_by_closed_forms, progress)
     verdict = check_by_closed_forms(device, law, contact=contact)
     if asked == "kept" or not has_gap(device, law, verdict):

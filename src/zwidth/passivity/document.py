@@ -21,12 +21,7 @@ from zwidth.writing import writing_whole
 
 def unit_key(name: str, motion: str = "linear") -> str:
     """The JSON key of a quantity: its name and its SI unit, `damping_N_s_per_m`."""
-    return f"{name}_{unit_suffix(GLOSSARY[name].unit_for(motion))}"
-
-
-def unit_suffix(unit: str) -> str:
-    """A unit as part of a key: "N*s/m" becomes "N_s_per_m"."""
-    return unit.replace("/", "_per_").replace("*", "_").replace("^", "")
+    return GLOSSARY[name].key_for(motion)
 
 
 def loop_document(

@@ -1,7 +1,7 @@
-"""Where the closed forms end: the game of the worst hand, played by `check` itself.
+"""Where the closed forms end: `check` computes the available storage itself.
 
 The linear criterion speaks of a hand that stays inside, and between what is
-proved enough and what is refuted there is a gap.  The game covers contact made
+proved enough and what is refuted there is a gap.  Available storage covers contact made
 and broken.  A motion it finds refutes the loop; a proof it finds is of hands
 within bounds, so that it stands beside the verdict and does not change it.
 """
@@ -17,11 +17,11 @@ from zwidth.errors import InputError
 from zwidth.passivity.verdict import Verdict
 
 SECONDS = 5.0
-"""Time that a check spends on the game."""
+"""Time that a check spends on it."""
 
 
 def has_gap(device: Device, law: Environment, verdict: Verdict) -> bool:
-    """True where the closed forms leave something open that the game may settle."""
+    """True where the closed forms leave something open that available storage may settle."""
     if not (device.is_certain and law.is_certain) or device.exact("resolution") == 0:
         return False
     if (device.exact("delay") / device.exact("sample_period")).denominator != 1:
@@ -32,7 +32,7 @@ def has_gap(device: Device, law: Environment, verdict: Verdict) -> bool:
 def with_game(
     device: Device, law: Environment, verdict: Verdict, progress: Callable[[int], None] | None = None
 ) -> Verdict:
-    """The verdict with what the game adds to it; as it is, for a law that the game cannot play."""
+    """The verdict with what available storage adds to it; as it is where that cannot be computed."""
     from zwidth.passivity.storage.solution import available_storage  # numpy and numba take their time
 
     try:

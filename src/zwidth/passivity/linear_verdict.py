@@ -10,14 +10,13 @@ from math import cos, pi
 from typing import Any
 
 from zwidth.device.actuator import ActuatorCheck, actuator_checks
-from zwidth.passivity import limits
+from zwidth.passivity import parameter_limits
 from zwidth.passivity.advice import Advice, advise
 from zwidth.passivity.budget import CONTACT, QUANTIZATION, Budget, binding_limit, budget
 from zwidth.passivity.decision import Decision
-from zwidth.passivity.document import unit_suffix
 from zwidth.passivity.formulas.stability_plane import admissible_speed
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import in_unit, in_words
 
 
@@ -76,12 +75,12 @@ class LinearVerdict(Verdict):
         inf if every stiffness is passive; None if none is, or the law has none
         (see `max_gain`).
         """
-        return limits.max_stiffness(self.device, self.environment, self._with_contact_broken)
+        return parameter_limits.max_stiffness(self.device, self.environment, self._with_contact_broken)
 
     @cached_property
     def max_gain(self) -> float | None:
         """Largest passive factor on H(z), for a law without a stiffness of its own."""
-        return limits.max_gain(self.device, self.environment, self._with_contact_broken)
+        return parameter_limits.max_gain(self.device, self.environment, self._with_contact_broken)
 
     @cached_property
     def required_damping(self) -> float | None:
@@ -89,7 +88,7 @@ class LinearVerdict(Verdict):
 
         None if no damping would do.  Coulomb friction is a need of its own: see `margins`.
         """
-        return limits.required_damping(self.decision, self._with_contact_broken)
+        return parameter_limits.required_damping(self.decision, self._with_contact_broken)
 
     @property
     def critical_frequency(self) -> float:
@@ -154,13 +153,12 @@ class LinearVerdict(Verdict):
 
         document = {**super().numbers(), "limit": self.limit, "mode": self.mode}
         document[key("max_stiffness", "stiffness")] = self.max_stiffness
-        if not limits.has_stiffness(self.environment):
+        if not parameter_limits.has_stiffness(self.environment):
             document["max_gain"] = self.max_gain
         document[key("required_damping", "damping")] = self.required_damping
         document["critical_frequency_Hz"] = self.critical_frequency
         if self.admissible_speed is not None:
-            speed_unit = "rad_per_s" if motion == "rotary" else "m_per_s"
-            document[f"admissible_speed_{speed_unit}"] = self.admissible_speed
+            document[f"admissible_speed_{unit_suffix(self.device.unit('velocity'))}"] = self.admissible_speed
         document["advice"] = [advice.to_dict() for advice in self.advice]
         document["actuator"] = [{"name": c.name, "ok": c.ok, "text": c.text} for c in self.actuator]
         return document
@@ -169,7 +167,7 @@ class LinearVerdict(Verdict):
         """The main numbers as (name, text) for a report."""
         unit = {name: GLOSSARY[name].unit_for(self.device.motion) for name in ("stiffness", "damping")}
         rows = [("limit", self.limit)]
-        if limits.has_stiffness(self.environment):
+        if parameter_limits.has_stiffness(self.environment):
             rows.append(("largest passive stiffness", in_unit(self.max_stiffness, unit["stiffness"])))
         else:
             rows.append(("largest passive gain", in_unit(self.max_gain, "times this law")))
@@ -179,8 +177,8 @@ class LinearVerdict(Verdict):
             margin_unit = GLOSSARY[name].unit_for(self.device.motion)
             rows.append((f"margin of {in_words(name)}", in_unit(value, margin_unit)))
         if self.admissible_speed is not None:
-            per_second = "rad/s" if self.device.motion == "rotary" else "m/s"
-            rows.append(("slower hands are safe up to", in_unit(self.admissible_speed, per_second)))
+            speed = in_unit(self.admissible_speed, self.device.unit("velocity"))
+            rows.append(("slower hands are safe up to", speed))
         if self.outcome == "passive in contact" and self.decision.contact_damping is not None:
             enough = in_unit(float(self.decision.contact_damping), unit["damping"])
             rows.append(("damping, contact broken too", enough))

@@ -13,11 +13,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from zwidth.device import Device
-from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
+from zwidth.environment.wall import Wall, wall_of
 from zwidth.errors import InputError
 from zwidth.passivity import game
 from zwidth.passivity.certificate import Certificate
@@ -25,9 +24,8 @@ from zwidth.passivity.found import Need
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
-
-if TYPE_CHECKING:
-    from zwidth.environment.nonlinear_spring import NonlinearSpring
+from zwidth.rendering.rendered import stages_of
+from zwidth.rendering.stage import Surroundings
 
 _ACTUATOR = ("force_limit", "force_resolution", "motor_inductance", "supply_voltage", "current_limit")
 """What a device states of its actuator."""
@@ -58,17 +56,13 @@ def check_other(
     InputError
         If it is none of these, or another parameter is an interval.
     """
-    from zwidth.environment.hunt_crossley import HuntCrossley  # few loops have one of these
-    from zwidth.environment.nonlinear_spring import NonlinearSpring
-    from zwidth.rendering.rendered import Rendered
-
     worst = _at_its_worst(device)
     asked = scope_of(device, law)
-    if isinstance(law, NonlinearSpring):
+    if law.points:
         verdict = _spring(worst, law, asked, progress)
-    elif isinstance(law, HuntCrossley):
+    elif law.power_law is not None:
         verdict = _by_values(Verdict("undecided", asked, worst, law), progress)
-    elif isinstance(law, Rendered):
+    elif stages_of(law):
         verdict = _row(worst, law, asked, closed, progress)
     else:
         raise InputError(f"no road is known to a verdict on {law.describe(device.motion)}")
@@ -88,7 +82,7 @@ def _at_its_worst(device: Device) -> Device:
     return device.replace(**low, resolution=Exact(ends(device.resolution)[1]))
 
 
-def _spring(device: Device, law: NonlinearSpring, asked: Scope, progress: Progress | None) -> Verdict:
+def _spring(device: Device, law: Environment, asked: Scope, progress: Progress | None) -> Verdict:
     from zwidth.passivity.formulas.nonlinear_spring import certify_spring, refute_spring, spring_need
 
     need = spring_need(device, law)
@@ -135,14 +129,10 @@ def _row(
 
 def covering_wall(device: Device, law: Environment) -> Wall | None:
     """A wall whose proof, for |f − K u| ≤ B |v|, is one of a wall with laws that add no more than that."""
-    from zwidth.rendering.rendered import Rendered
-
-    if not isinstance(law, Rendered) or not isinstance(law.environment, Wall):
+    stages, wall, total = stages_of(law), wall_of(law.met), Fraction(0)
+    if not stages or wall is None or wall.damping or wall.clamped:
         return None
-    if law.environment.damping or law.environment.clamped:
-        return None
-    wall, total = law.environment, Fraction(0)
-    for n, stage in enumerate(law.stages):
+    for n, stage in enumerate(stages):
         alone = n == 0 and isinstance(wall.stiffness, Exact)
         bound = stage.most_damping(device, wall.stiffness if alone else None)  # type: ignore[arg-type]
         if bound is None:
@@ -153,12 +143,8 @@ def covering_wall(device: Device, law: Environment) -> Wall | None:
 
 def _on_paper(verdict: Verdict) -> Verdict | None:
     """The theorem of the last law in the row, if it has one for this device."""
-    from zwidth.rendering.rendered import Rendered
-    from zwidth.rendering.stage import Surroundings
-
     law = verdict.environment
-    assert isinstance(law, Rendered)
-    theorem = law.stages[-1].theorem(Surroundings(verdict.device, law.environment))
+    theorem = stages_of(law)[-1].theorem(Surroundings(verdict.device, law.met))
     ideal = verdict.device.replace(**dict.fromkeys(_ACTUATOR))  # the scope says that the actuator is
     if theorem is None or not theorem.holds_on(ideal):
         return None

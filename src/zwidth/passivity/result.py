@@ -12,6 +12,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.document import save_json, to_json
 from zwidth.passivity.outcome import COLOUR
 from zwidth.passivity.scope import Scope
+from zwidth.passivity.wording import lines
 from zwidth.showing import Headline, Lines, Part, Shown, Table
 
 EVIDENCE = ("certificate", "violation", "witness")
@@ -139,8 +140,8 @@ class Answer(Result):
         The same in a sentence.
     scope
         What it is about.
-    certificate, violation, witness
-        The evidence; None where there is none of its kind.
+    certificate, witness
+        The proof, or the motion against it; None where there is none.  Of a loop `violation` too.
     """
 
     YES: ClassVar[str]
@@ -154,6 +155,11 @@ class Answer(Result):
         def claim(self) -> str: ...
         @property
         def scope(self) -> Scope: ...
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted, line by line."""
+        return lines(self.scope, self.outcome)
 
     @property
     def margin(self) -> float | None:

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from zwidth.errors import InputError
-from zwidth.passivity.document import unit_key, unit_suffix
+from zwidth.passivity.document import unit_key
 from zwidth.quantity.exact import Interval, ends
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 
 if TYPE_CHECKING:
     from zwidth.device import Device, FrictionCurve

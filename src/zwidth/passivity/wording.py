@@ -91,7 +91,7 @@ def if_friction_goes_on(scope: Scope) -> str:
     return f", if friction beyond {speed}, where it was not measured, is no less than f_c + b |v|"
 
 
-def lines(scope: Scope, outcome: Outcome | None = None) -> tuple[str, ...]:
+def lines(scope: Scope, outcome: str | None = None) -> tuple[str, ...]:
     """What a result covers and takes for granted, a line for each thing; of a motion what it does."""
     return tuple(_lines(scope, active=outcome == "active"))
 

@@ -12,13 +12,13 @@ from zwidth.plots.budget import budget, draw_damping, draw_friction
 from zwidth.plots.criterion import criterion, draw_criterion
 from zwidth.plots.cycle import cycle, draw_cycle
 from zwidth.plots.indices import draw_index, indices
-from zwidth.plots.limit import limit_figure, save_limit
+from zwidth.plots.limit import limit_figure
 from zwidth.plots.plane import draw_plane, plane
-from zwidth.plots.report import check_figure, save_check
+from zwidth.plots.report import check_figure
 from zwidth.plots.storage import draw_storage, storage
 from zwidth.plots.style import LOOK
 from zwidth.plots.witness import draw_witness, witness
-from zwidth.plots.workspace import draw_workspace, save_workspace, workspace_figure
+from zwidth.plots.workspace import draw_workspace, workspace_figure
 from zwidth.plots.worst_case import draw_worst_case, worst_case
 from zwidth.plots.z_width import draw_z_width, save_z_width, z_width_figure
 
@@ -42,9 +42,6 @@ __all__ = [
     "indices",
     "limit_figure",
     "plane",
-    "save_check",
-    "save_limit",
-    "save_workspace",
     "save_z_width",
     "storage",
     "witness",

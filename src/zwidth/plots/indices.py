@@ -16,7 +16,6 @@ from matplotlib.figure import Figure
 
 from zwidth.passivity.ports.index import PassivityIndex
 from zwidth.passivity.ports.indices import PassivityIndices
-from zwidth.passivity.ports.multiport.index import MatrixIndex
 from zwidth.plots.style import BLUE, GREY, LOOK, RED, label, new_figure, number
 
 _POINTS = 800
@@ -44,7 +43,7 @@ def indices(found: PassivityIndices) -> Figure:
 
 def draw_index(axes: Axes, index: PassivityIndex) -> None:
     """One of them on given axes."""
-    several = isinstance(index, MatrixIndex)
+    several = index.port.axes > 1
     symbol, name = _NAMES[index.name][0], _NAMES[index.name][1 + several]
     axes.set_title(f"{index.name} index: {_title(index, symbol)}")
     axes.set_xlabel(label("frequency"))
@@ -52,10 +51,9 @@ def draw_index(axes: Axes, index: PassivityIndex) -> None:
     if index.found is None:
         return
     frequencies = _frequencies(index)
-    values = index.curve(list(frequencies))
-    if isinstance(index, MatrixIndex):
-        for other in index.curves(list(frequencies))[1:]:
-            axes.plot(frequencies, other, color=GREY, lw=0.9)
+    values, *others = index.curves(list(frequencies))
+    for other in others:
+        axes.plot(frequencies, other, color=GREY, lw=0.9)
     axes.plot(frequencies, values, color=BLUE)
     axes.axhline(0, color=GREY, lw=0.6)
     axes.set_xscale("log" if index.port.time == "continuous" else "linear")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
 
@@ -11,37 +10,16 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
 from zwidth.errors import InputError
-from zwidth.plots.files import save_figure
 from zwidth.plots.storage import draw_storage
 from zwidth.plots.style import LOOK, OUTCOME, new_figure, number
 from zwidth.plots.witness import draw_motion
 from zwidth.quantity.text import unit_text
 
 if TYPE_CHECKING:
-    from zwidth.passivity.passive_limit import Bracket
+    from zwidth.passivity.bracket import Bracket
 
 _WIDTH = 120
 """Characters of the heading on one line."""
-
-
-def save_limit(bracket: Bracket, path: str | Path, overwrite: bool = False) -> None:
-    """Write `limit_figure` to a file; its ending, png, svg or pdf, says how.
-
-    Parameters
-    ----------
-    bracket
-        What `zwidth.passive_limit` returned.
-    path
-        The file to write.
-    overwrite
-        Replace a file that is already there.
-
-    Raises
-    ------
-    InputError
-        If there is nothing to draw, or as `save_check`.
-    """
-    save_figure(lambda: limit_figure(bracket), path, overwrite)
 
 
 @rc_context(LOOK)

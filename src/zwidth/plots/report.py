@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import ceil
-from pathlib import Path
 from textwrap import fill
 from typing import Any
 
@@ -17,7 +16,6 @@ from zwidth.passivity.linear_verdict import LinearVerdict
 from zwidth.passivity.verdict import Verdict
 from zwidth.plots.budget import draw_damping, draw_friction, has_friction
 from zwidth.plots.criterion import draw_criterion
-from zwidth.plots.files import save_figure
 from zwidth.plots.plane import draw_plane, has_plane
 from zwidth.plots.storage import draw_storage
 from zwidth.plots.style import LOOK, OUTCOME, new_figure, shown_name
@@ -27,26 +25,6 @@ _WIDTH = 125
 """Characters of the heading on one line."""
 
 _Draw = Callable[[Figure, SubplotSpec, Any], None]
-
-
-def save_check(verdict: Verdict, path: str | Path, overwrite: bool = False) -> None:
-    """Write `check_figure` to a file; its ending, png, svg or pdf, says how.
-
-    Parameters
-    ----------
-    verdict
-        What `zwidth.check` returned.
-    path
-        The file to write.
-    overwrite
-        Replace a file that is already there.
-
-    Raises
-    ------
-    InputError
-        If the ending is another one, the file exists, or it cannot be written.
-    """
-    save_figure(lambda: check_figure(verdict), path, overwrite)
 
 
 @rc_context(LOOK)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from textwrap import shorten
 from typing import Any
 
@@ -16,7 +15,6 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from zwidth.arms.held import in_words
 from zwidth.errors import InputError
 from zwidth.passivity.workspace import Workspace
-from zwidth.plots.files import save_figure
 from zwidth.plots.style import BLACK, GREY, LOOK, OUTCOME, RED, new_figure, note, verbatim
 from zwidth.quantity.text import unit_text
 
@@ -26,21 +24,6 @@ _LONGEST = 110
 """Characters of the line below the map."""
 _LEAST_SPREAD = 1e-3
 """Of the largest value: what varies less is drawn as one colour."""
-
-
-def save_workspace(space: Workspace, path: str | Path, overwrite: bool = False) -> None:
-    """Write `workspace_figure` to a file; its ending, png, svg or pdf, says how.
-
-    Parameters
-    ----------
-    space
-        What `zwidth.workspace` returned.
-    path
-        The file to write.
-    overwrite
-        Replace a file that is already there.
-    """
-    save_figure(lambda: workspace_figure(space), path, overwrite)
 
 
 @rc_context(LOOK)

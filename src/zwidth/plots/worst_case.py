@@ -31,7 +31,6 @@ from zwidth.plots.style import (
     shown_name,
 )
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import quantity_unit
 
 _POINTS = 100
@@ -71,7 +70,7 @@ def draw_worst_case(axes: Axes, device: Device, stiffness: RealLike, span: RealL
     curve = [float(worst_case_at(device, stiffness, Exact(s))) for s in steps]
     line = [float(linear_worst_case(device, stiffness, Exact(s))) for s in steps]
     energy, joules = scale([*curve, *line], "J")
-    length, metres = scale([float(reach)], GLOSSARY["position"].unit_for(device.motion))
+    length, metres = scale([float(reach)], device.unit("position"))
     x = [length * float(s) for s in steps]
     axes.plot(x, [energy * j for j in curve], color=BLUE, label="worst case J*")
     axes.plot(x, [energy * j for j in line], color=ORANGE, ls="--", label="linear worst case")

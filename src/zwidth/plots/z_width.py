@@ -70,7 +70,7 @@ def save_z_width(found: xr.Dataset, path: str | Path, overwrite: bool = False) -
     Raises
     ------
     InputError
-        As `save_check`, or if `found` is no map.
+        If the ending is another one, the file exists or cannot be written, or `found` is no map.
     """
     save_figure(lambda: z_width_figure(found), path, overwrite)
 

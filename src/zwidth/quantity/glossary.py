@@ -23,6 +23,15 @@ class Quantity(NamedTuple):
         """The SI unit for a "linear" or a "rotary" device."""
         return self.rotary_unit if motion == "rotary" else self.unit
 
+    def key_for(self, motion: str) -> str:
+        """Its key in a file, unit included: "damping_N_s_per_m"."""
+        return f"{self.name}_{unit_suffix(self.unit_for(motion))}"
+
+
+def unit_suffix(unit: str) -> str:
+    """A unit as part of a key: "N*s/m" becomes "N_s_per_m"."""
+    return unit.replace("/", "_per_").replace("*", "_").replace("^", "")
+
 
 def _q(name: str, symbol: str, unit: str, rotary_unit: str, meaning: str) -> tuple[str, Quantity]:
     return name, Quantity(name, symbol, unit, rotary_unit, meaning)
@@ -51,7 +60,9 @@ GLOSSARY: dict[str, Quantity] = dict(
         _q("branch_stiffness", "μ1", "N/m", "N*m/rad", "spring in series with a dashpot"),
         _q("branch_damping", "η1", "N*s/m", "N*m*s/rad", "dashpot in series with a spring"),
         _q("time_constant", "τ_v", "s", "s", "time constant of a velocity filter"),
+        _q("speed", "v", "m/s", "rad/s", "of the handle"),
         _q("position", "x", "m", "rad", "positive into the wall"),
+        _q("velocity", "v", "m/s", "rad/s", "positive into the wall"),
         _q("force", "f", "N", "N*m", "actuator force, positive out of the wall"),
         _q("energy", "W", "J", "J", "energy through the port"),
         _q("frequency", "ω/2π", "Hz", "Hz", "frequency of the hand's motion"),

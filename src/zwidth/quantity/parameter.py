@@ -21,7 +21,10 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike
 from zwidth.quantity.glossary import GLOSSARY, Quantity
+from zwidth.quantity.text import unit_text
 from zwidth.quantity.units import parse, parse_number
+
+T = TypeVar("T")
 
 Given = RealLike | Interval | tuple[RealLike, RealLike]
 """What a person may give for a number that may be uncertain."""
@@ -54,6 +57,11 @@ Count = Reads[int, RealLike]
 
 NOTHING = Quantity("", "", "", "", "")
 """Of a field that is no number."""
+
+PLAIN = Quantity("", "", "1", "1", "")
+"""Of a count."""
+
+Reader = Callable[[Any, str, str], Exact | Interval]
 
 Reading = Callable[[Any, str], Any]
 """From a value as given, and the name of its field, to what is kept."""
@@ -107,6 +115,16 @@ class Parametric:
     def __post_init__(self) -> None:
         for name, read in _fields(type(self))[1]:  # type: ignore[arg-type]  # a class has a hash
             object.__setattr__(self, name, read(getattr(self, name), name))
+
+    def with_unit(self, name: str, motion: str = "linear") -> str:
+        """A number with its unit as a line shows it, "0.3 N·s/m"; "" where it was not given."""
+        value = getattr(self, name)
+        if value is None:
+            return ""
+        return f"{float(value):g} {self._unit(name, motion)}".rstrip()
+
+    def _unit(self, name: str, motion: str) -> str:
+        return unit_text(parameters_of(type(self))[name].unit_for(motion))
 
     def _keep(self, **values: Any) -> None:
         """Put what was read in the place of what was given."""
@@ -162,8 +180,7 @@ def parameter(
             return None
         if isinstance(value, str) and value in words:
             return value
-        number = read_number(value, what, name, form == "uncertain")
-        check_bound(number, name, bound, why)
+        number = read_number(value, what, name, uncertain=form == "uncertain", bound=bound, why=why)
         return number if kept is None or kept is Exact else kept(number)
 
     own = Parameter(what, form, read, default is MISSING, bound, why, words)
@@ -185,9 +202,7 @@ def word(*words: str) -> Any:
     """One of some words as a field of a data class; the first is the default."""
 
     def read(value: Any, name: str) -> str:
-        if value not in words:
-            raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
-        return str(value)
+        return str(one_of(name, value, *words))
 
     choice = f"{', '.join([f'{words[0]} (default)', *words[1:-1]])} or {words[-1]}"
     return part("word", read, words[0], meaning=choice, words=words)
@@ -246,14 +261,77 @@ def plain(name: str, meaning: str, symbol: str = "") -> Quantity:
     return Quantity(name, symbol, "1", "1", meaning)
 
 
-def check_bound(number: Exact | Interval, name: str, bound: str, why: str, unit: str = "") -> None:
-    """Refuse what is outside "> 0", "≥ 0" or "≤ 0"; the unit stands in the message where it is known."""
-    if not bound:
-        return
+def one_of(name: str, value: T, *words: T) -> T:
+    """The value, if it is one of these words.
+
+    Raises
+    ------
+    InputError
+        If it is none of them.
+    """
+    if value not in words:
+        raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
+    return value
+
+
+def read_number(
+    value: Any,
+    quantity: Quantity,
+    name: str,
+    *,
+    uncertain: bool = False,
+    bound: str = "",
+    why: str = "",
+    motion: str = "",
+) -> Any:
+    """A number in SI, exact; where it may be uncertain also an interval.
+
+    Parameters
+    ----------
+    value
+        As given: a number, or a text with a unit.
+    quantity
+        What it is of.
+    name
+        Of the argument, for the messages.
+    uncertain
+        True where an interval, or a pair of ends, may be given.
+    bound, why
+        As in `Parameter`.
+    motion
+        "linear" or "rotary", whose unit a text then has; "" where nobody knows: it may have either.
+
+    Raises
+    ------
+    InputError
+        If it is no finite number, of another dimension, or outside the bound.
+    """
+    number = _read(value, quantity, name, parse if uncertain else parse_number, motion)
     low, high = (number.low, number.high) if isinstance(number, Interval) else (number, number)
-    if not _BOUNDS[bound](low, high):
+    if bound and not _BOUNDS[bound](low, high):
+        known = motion or quantity.unit == quantity.rotary_unit != "1"
+        unit = f" {quantity.unit_for(motion)}" if known else ""
         given = number if isinstance(number, Interval) else f"{number:g}"
-        raise InputError(f"{name} must be {bound}{unit and f' {unit}'}, got {given}: {why}")
+        raise InputError(f"{name} must be {bound}{unit}, got {given}: {why}")
+    return number
+
+
+def _read(value: Any, quantity: Quantity, name: str, read: Reader, motion: str) -> Exact | Interval:
+    if type(value) in _AS_IT_IS:
+        try:
+            return Exact(value)
+        except InputError:
+            pass  # the reader says what it is that is no such number
+    try:
+        return read(value, quantity.unit_for(motion), name)
+    except InputError:
+        if motion or quantity.unit == quantity.rotary_unit or not isinstance(value, (str, list, tuple)):
+            raise
+        try:
+            return read(value, quantity.rotary_unit, name)
+        except InputError:
+            pass
+        raise
 
 
 _BOUNDS: Mapping[str, Callable[[Any, Any], bool]] = MappingProxyType(
@@ -264,36 +342,8 @@ _BOUNDS: Mapping[str, Callable[[Any, Any], bool]] = MappingProxyType(
     }
 )
 
-
-def read_number(value: Any, quantity: Quantity, name: str, uncertain: bool = False) -> Any:
-    """A number, or where it may be uncertain an interval, in the linear or the rotary unit of a quantity.
-
-    A class does not know of which device it will be, so a text may carry either unit.
-
-    Raises
-    ------
-    InputError
-        If it is no finite number, or of another dimension.
-    """
-    if type(value) is Exact or (type(value) is Interval and uncertain):
-        return value
-    read = parse if uncertain else parse_number
-    try:
-        return Exact(value) if type(value) in _PLAIN else read(value, quantity.unit, name)
-    except InputError:
-        if type(value) in _PLAIN:
-            return read(value, quantity.unit, name)  # which says what it is that is no such number
-        if not isinstance(value, (str, list, tuple)) or quantity.unit == quantity.rotary_unit:
-            raise
-        try:
-            return read(value, quantity.rotary_unit, name)
-        except InputError:
-            pass
-        raise
-
-
-_PLAIN = (int, float, Fraction)
-"""What needs no reading."""
+_AS_IT_IS = (Exact, int, float, Fraction)
+"""Types of numbers that need no reading: the most usual ones."""
 
 
 def read_numbers(value: Any, quantity: Quantity, name: str) -> tuple[Exact, ...]:

@@ -17,8 +17,10 @@ _PREFIXED = ("m", "s", "J", "N", "Hz", "m/s")
 
 
 def unit_text(unit: str) -> str:
-    """A unit as people write it: "N*s/m" as "N·s/m", "1" as nothing."""
-    return "" if unit == "1" else unit.replace("*", "·").replace("^2", "²")
+    """A unit as people write it: "N*s/m" as "N·s/m", "m/N/s" as "m/(N·s)", "1" as nothing."""
+    above, *below = unit.replace("^2", "²").split("/")
+    under = f"({'*'.join(below)})" if len(below) > 1 else "".join(below)
+    return "" if unit == "1" else (f"{above}/{under}" if below else above).replace("*", "·")
 
 
 def quantity_unit(name: str, motion: str = "linear") -> str:

@@ -1,105 +1,159 @@
-"""The laws between the hand and what it meets: virtual coupling, and laws in a row behind an environment."""
+"""The laws between the hand and what it meets: virtual coupling, and laws in a row behind an environment.
 
+`LAWS` is the registry: a new law is one line, its name that of the class in small letters.  It feeds the
+names of this package, the reader of specifications, the options of the command line, and the docs.
+"""
+
+from collections.abc import Mapping
 from importlib import import_module
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from zwidth.rendering.virtual_coupling import VirtualCoupling
+from zwidth.quantity.kind import Kind
+from zwidth.rendering.virtual_coupling import VirtualCoupling as VirtualCoupling
 
 if TYPE_CHECKING:
-    from zwidth.rendering.energy.dual_rate import DualRate
-    from zwidth.rendering.energy.energy_bounding import EnergyBounding
-    from zwidth.rendering.energy.energy_tank import EnergyTank
-    from zwidth.rendering.energy.force_bounding import ForceBounding
-    from zwidth.rendering.energy.held import Held
-    from zwidth.rendering.energy.parallel_controller import ParallelController
-    from zwidth.rendering.energy.passive_leap import PassiveLeap
-    from zwidth.rendering.energy.passivity_controller import PassivityController
-    from zwidth.rendering.energy.windowed_controller import WindowedController
-    from zwidth.rendering.force.braking_pulse import BrakingPulse
-    from zwidth.rendering.force.damper import Damper
-    from zwidth.rendering.force.dither import Dither
-    from zwidth.rendering.force.event_transient import EventTransient
-    from zwidth.rendering.force.hysteresis import Hysteresis
-    from zwidth.rendering.force.rate_term import RateTerm
-    from zwidth.rendering.force.saturation import Saturation
-    from zwidth.rendering.force.slew_limit import SlewLimit
-    from zwidth.rendering.prediction.crossing import CrossingCorrection
-    from zwidth.rendering.prediction.extrapolation import Extrapolation
-    from zwidth.rendering.prediction.half_sample import HalfSamplePrediction
-    from zwidth.rendering.prediction.pole_matched import PoleMatched
-    from zwidth.rendering.rendered import Rendered, render
-    from zwidth.rendering.stage import Stage
-    from zwidth.rendering.velocity.adaptive_window import AdaptiveWindow
-    from zwidth.rendering.velocity.estimator import Estimator
-    from zwidth.rendering.velocity.kalman import Kalman
-    from zwidth.rendering.velocity.tick_time import TickTime
+    from zwidth.rendering.energy.dual_rate import DualRate as DualRate
+    from zwidth.rendering.energy.energy_bounding import EnergyBounding as EnergyBounding
+    from zwidth.rendering.energy.energy_tank import EnergyTank as EnergyTank
+    from zwidth.rendering.energy.force_bounding import ForceBounding as ForceBounding
+    from zwidth.rendering.energy.held import Held as Held
+    from zwidth.rendering.energy.parallel_controller import ParallelController as ParallelController
+    from zwidth.rendering.energy.passive_leap import PassiveLeap as PassiveLeap
+    from zwidth.rendering.energy.passivity_controller import PassivityController as PassivityController
+    from zwidth.rendering.energy.windowed_controller import WindowedController as WindowedController
+    from zwidth.rendering.force.braking_pulse import BrakingPulse as BrakingPulse
+    from zwidth.rendering.force.damper import Damper as Damper
+    from zwidth.rendering.force.dither import Dither as Dither
+    from zwidth.rendering.force.event_transient import EventTransient as EventTransient
+    from zwidth.rendering.force.hysteresis import Hysteresis as Hysteresis
+    from zwidth.rendering.force.rate_term import RateTerm as RateTerm
+    from zwidth.rendering.force.saturation import Saturation as Saturation
+    from zwidth.rendering.force.slew_limit import SlewLimit as SlewLimit
+    from zwidth.rendering.prediction.crossing import CrossingCorrection as CrossingCorrection
+    from zwidth.rendering.prediction.extrapolation import Extrapolation as Extrapolation
+    from zwidth.rendering.prediction.half_sample import HalfSamplePrediction as HalfSamplePrediction
+    from zwidth.rendering.prediction.pole_matched import PoleMatched as PoleMatched
+    from zwidth.rendering.rendered import Rendered as Rendered
+    from zwidth.rendering.rendered import render as render
+    from zwidth.rendering.stage import Stage as Stage
+    from zwidth.rendering.velocity.adaptive_window import AdaptiveWindow as AdaptiveWindow
+    from zwidth.rendering.velocity.estimator import Estimator as Estimator
+    from zwidth.rendering.velocity.kalman import Kalman as Kalman
+    from zwidth.rendering.velocity.tick_time import TickTime as TickTime
 
-__all__ = [
-    "AdaptiveWindow",
-    "BrakingPulse",
-    "CrossingCorrection",
-    "Damper",
-    "Dither",
-    "DualRate",
-    "EnergyBounding",
-    "EnergyTank",
-    "Estimator",
-    "EventTransient",
-    "Extrapolation",
-    "ForceBounding",
-    "HalfSamplePrediction",
-    "Held",
-    "Hysteresis",
-    "Kalman",
-    "ParallelController",
-    "PassiveLeap",
-    "PassivityController",
-    "PoleMatched",
-    "RateTerm",
-    "Rendered",
-    "Saturation",
-    "SlewLimit",
-    "Stage",
-    "TickTime",
-    "VirtualCoupling",
-    "WindowedController",
-    "render",
-]
+LAWS: Mapping[str, Kind] = MappingProxyType(
+    {
+        "extrapolation": Kind(
+            "rendering.prediction.extrapolation",
+            "Extrapolation",
+            "the environment meets the hand n samples ahead",
+        ),
+        "half-sample-prediction": Kind(
+            "rendering.prediction.half_sample",
+            "HalfSamplePrediction",
+            "half a sample ahead, by a model of device and finger",
+        ),
+        "crossing-correction": Kind(
+            "rendering.prediction.crossing",
+            "CrossingCorrection",
+            "two forces that repair what sampling did where the surface is crossed",
+        ),
+        "pole-matched": Kind(
+            "rendering.prediction.pole_matched",
+            "PoleMatched",
+            "gains that give the held loop the poles of the continuous one",
+        ),
+        "damper": Kind("rendering.force.damper", "Damper", "a damper on an estimated velocity"),
+        "hysteresis": Kind(
+            "rendering.force.hysteresis", "Hysteresis", "a spring that slips: friction inside the wall"
+        ),
+        "passivity-controller": Kind(
+            "rendering.energy.passivity_controller",
+            "PassivityController",
+            "damping where the energy that was counted is lacking",
+        ),
+        "windowed-controller": Kind(
+            "rendering.energy.windowed_controller",
+            "WindowedController",
+            "the same with a window that forgets, a floor under the speed and a clamp",
+        ),
+        "rate-term": Kind("rendering.force.rate_term", "RateTerm", "a force that leads by τ: f + τ df/dt"),
+        "force-bounding": Kind(
+            "rendering.energy.force_bounding",
+            "ForceBounding",
+            "no more force than what the hand has put in can pay for",
+        ),
+        "energy-bounding": Kind(
+            "rendering.energy.energy_bounding",
+            "EnergyBounding",
+            "a force that changes with no more than 2b/T per move",
+        ),
+        "energy-tank": Kind(
+            "rendering.energy.energy_tank",
+            "EnergyTank",
+            "the wall pushes with what is in a tank, which a damper fills",
+        ),
+        "passive-leap": Kind(
+            "rendering.energy.passive_leap",
+            "PassiveLeap",
+            "the wall's spring holds just the energy that came in",
+        ),
+        "dual-rate": Kind("rendering.energy.dual_rate", "DualRate", "a local spring between slow updates"),
+        "held": Kind("rendering.energy.held", "Held", "the force of every N-th sample, held"),
+        "braking-pulse": Kind(
+            "rendering.force.braking_pulse",
+            "BrakingPulse",
+            "one sample of force that stops the mass at entry",
+        ),
+        "event-transient": Kind(
+            "rendering.force.event_transient",
+            "EventTransient",
+            "what a tap on something hard adds, in open loop",
+        ),
+        "slew-limit": Kind(
+            "rendering.force.slew_limit",
+            "SlewLimit",
+            "a force that changes no faster than a motor's current can",
+        ),
+        "dither": Kind(
+            "rendering.force.dither",
+            "Dither",
+            "a small force that carries the command over the converter's steps",
+        ),
+        "saturation": Kind("rendering.force.saturation", "Saturation", "a force no larger than a limit"),
+    }
+)
+"""Every law in a row, by name."""
 
-_LATER = {
-    "AdaptiveWindow": "velocity.adaptive_window",
-    "BrakingPulse": "force.braking_pulse",
-    "CrossingCorrection": "prediction.crossing",
-    "Damper": "force.damper",
-    "Dither": "force.dither",
-    "DualRate": "energy.dual_rate",
-    "EnergyBounding": "energy.energy_bounding",
-    "EnergyTank": "energy.energy_tank",
-    "Estimator": "velocity.estimator",
-    "EventTransient": "force.event_transient",
-    "Extrapolation": "prediction.extrapolation",
-    "ForceBounding": "energy.force_bounding",
-    "HalfSamplePrediction": "prediction.half_sample",
-    "Held": "energy.held",
-    "Hysteresis": "force.hysteresis",
-    "Kalman": "velocity.kalman",
-    "ParallelController": "energy.parallel_controller",
-    "PassiveLeap": "energy.passive_leap",
-    "PassivityController": "energy.passivity_controller",
-    "PoleMatched": "prediction.pole_matched",
-    "RateTerm": "force.rate_term",
-    "Rendered": "rendered",
-    "Saturation": "force.saturation",
-    "SlewLimit": "force.slew_limit",
-    "Stage": "stage",
-    "TickTime": "velocity.tick_time",
-    "WindowedController": "energy.windowed_controller",
-    "render": "rendered",
+ESTIMATORS: Mapping[str, Kind] = MappingProxyType(
+    {
+        "adaptive-window": Kind(
+            "rendering.velocity.adaptive_window",
+            "AdaptiveWindow",
+            "slope of the longest line that fits the readings",
+        ),
+        "tick-time": Kind(
+            "rendering.velocity.tick_time", "TickTime", "counts over the time between two of them"
+        ),
+        "kalman": Kind("rendering.velocity.kalman", "Kalman", "the settled filter of position and velocity"),
+    }
+)
+"""The velocities of laws, by name."""
+
+_LATER = {kind.class_name: kind.module for kind in (*LAWS.values(), *ESTIMATORS.values())} | {
+    "Estimator": "rendering.velocity.estimator",
+    "ParallelController": "rendering.energy.parallel_controller",
+    "Rendered": "rendering.rendered",
+    "Stage": "rendering.stage",
+    "render": "rendering.rendered",
 }
 """Where they are, until they are first used: the compiler of their steps takes its time to load."""
+
+__all__ = sorted((*_LATER, "VirtualCoupling"))  # noqa: PLE0605  # what the type checker needs stands above
 
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
         raise AttributeError(f"module 'zwidth.rendering' has no attribute {name!r}")
-    return getattr(import_module(f"zwidth.rendering.{_LATER[name]}"), name)
+    return getattr(import_module(f"zwidth.{_LATER[name]}"), name)

@@ -19,14 +19,6 @@ from zwidth.rendering.energy import (
     passivity_controller,
     windowed_controller,
 )
-from zwidth.rendering.energy.dual_rate import DUAL_RATE
-from zwidth.rendering.energy.energy_bounding import ENERGY_BOUNDING
-from zwidth.rendering.energy.energy_tank import ENERGY_TANK
-from zwidth.rendering.energy.force_bounding import FORCE_BOUNDING
-from zwidth.rendering.energy.held import HELD
-from zwidth.rendering.energy.passive_leap import PASSIVE_LEAP
-from zwidth.rendering.energy.passivity_controller import PASSIVITY_CONTROLLER
-from zwidth.rendering.energy.windowed_controller import WINDOWED_CONTROLLER
 from zwidth.rendering.force import (
     braking_pulse,
     damper,
@@ -37,40 +29,7 @@ from zwidth.rendering.force import (
     saturation,
     slew_limit,
 )
-from zwidth.rendering.force.braking_pulse import BRAKING_PULSE
-from zwidth.rendering.force.damper import DAMPER
-from zwidth.rendering.force.dither import DITHER
-from zwidth.rendering.force.event_transient import EVENT_TRANSIENT
-from zwidth.rendering.force.hysteresis import HYSTERESIS
-from zwidth.rendering.force.rate_term import RATE_TERM
-from zwidth.rendering.force.saturation import SATURATION
-from zwidth.rendering.force.slew_limit import SLEW_LIMIT
 from zwidth.rendering.prediction import crossing, extrapolation, half_sample, pole_matched
-from zwidth.rendering.prediction.crossing import CROSSING
-from zwidth.rendering.prediction.extrapolation import EXTRAPOLATION
-from zwidth.rendering.prediction.half_sample import HALF_SAMPLE
-from zwidth.rendering.prediction.pole_matched import POLE_MATCHED
-
-_controlled = passivity_controller.step
-_windowed = windowed_controller.step
-_leading = rate_term.step
-_extrapolated = extrapolation.step
-_predicted = half_sample.step
-_corrected = crossing.step
-_matched = pole_matched.step
-_damped = damper.step
-_slipping = hysteresis.step
-_braked = braking_pulse.step
-_tapped = event_transient.step
-_slewed = slew_limit.step
-_dithered = dither.step
-_saturated = saturation.step
-_force_bounded = force_bounding.step
-_from_the_tank = energy_tank.step
-_energy_bounded = energy_bounding.step
-_leapt = passive_leap.step
-_local = dual_rate.step
-_held = held.step
 
 
 @compiled
@@ -80,10 +39,10 @@ def before(law: Array, at: int, count: int, memory: Array, slot: int, reading: f
     slot += 1
     for _ in range(count):
         code, size, slots = law[at], int(law[at + 1]), int(law[at + 2])
-        if code == EXTRAPOLATION:
-            reading = _extrapolated(law, at + 3, memory, slot, reading)
-        elif code == HALF_SAMPLE:
-            reading = _predicted(law, at + 3, memory, slot, reading, applied)
+        if code == extrapolation.EXTRAPOLATION:
+            reading = extrapolation.step(law, at + 3, memory, slot, reading)
+        elif code == half_sample.HALF_SAMPLE:
+            reading = half_sample.step(law, at + 3, memory, slot, reading, applied)
         at += 3 + size
         slot += slots
     return reading
@@ -96,42 +55,42 @@ def after(law: Array, at: int, count: int, memory: Array, slot: int, reading: fl
     slot += 1
     for _ in range(count):
         code, size, slots = law[at], int(law[at + 1]), int(law[at + 2])
-        if code == PASSIVITY_CONTROLLER:
-            force = _controlled(law, at + 3, memory, slot, reading, force, applied)
-        elif code == WINDOWED_CONTROLLER:
-            force = _windowed(law, at + 3, memory, slot, reading, force, applied)
-        elif code == RATE_TERM:
-            force = _leading(law, at + 3, memory, slot, reading, force, applied)
-        elif code == CROSSING:
-            force = _corrected(law, at + 3, memory, slot, reading, force, applied)
-        elif code == POLE_MATCHED:
-            force = _matched(law, at + 3, memory, slot, reading, force, applied)
-        elif code == DAMPER:
-            force = _damped(law, at + 3, memory, slot, reading, force, applied)
-        elif code == HYSTERESIS:
-            force = _slipping(law, at + 3, memory, slot, reading, force, applied)
-        elif code == BRAKING_PULSE:
-            force = _braked(law, at + 3, memory, slot, reading, force, applied)
-        elif code == EVENT_TRANSIENT:
-            force = _tapped(law, at + 3, memory, slot, reading, force, applied)
-        elif code == SLEW_LIMIT:
-            force = _slewed(law, at + 3, memory, slot, reading, force, applied)
-        elif code == DITHER:
-            force = _dithered(law, at + 3, memory, slot, reading, force, applied)
-        elif code == SATURATION:
-            force = _saturated(law, at + 3, memory, slot, reading, force, applied)
-        elif code == FORCE_BOUNDING:
-            force = _force_bounded(law, at + 3, memory, slot, reading, force, applied)
-        elif code == ENERGY_TANK:
-            force = _from_the_tank(law, at + 3, memory, slot, reading, force, applied)
-        elif code == ENERGY_BOUNDING:
-            force = _energy_bounded(law, at + 3, memory, slot, reading, force, applied)
-        elif code == PASSIVE_LEAP:
-            force = _leapt(law, at + 3, memory, slot, reading, force, applied)
-        elif code == DUAL_RATE:
-            force = _local(law, at + 3, memory, slot, reading, force, applied)
-        elif code == HELD:
-            force = _held(law, at + 3, memory, slot, reading, force, applied)
+        if code == passivity_controller.PASSIVITY_CONTROLLER:
+            force = passivity_controller.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == windowed_controller.WINDOWED_CONTROLLER:
+            force = windowed_controller.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == rate_term.RATE_TERM:
+            force = rate_term.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == crossing.CROSSING:
+            force = crossing.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == pole_matched.POLE_MATCHED:
+            force = pole_matched.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == damper.DAMPER:
+            force = damper.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == hysteresis.HYSTERESIS:
+            force = hysteresis.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == braking_pulse.BRAKING_PULSE:
+            force = braking_pulse.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == event_transient.EVENT_TRANSIENT:
+            force = event_transient.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == slew_limit.SLEW_LIMIT:
+            force = slew_limit.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == dither.DITHER:
+            force = dither.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == saturation.SATURATION:
+            force = saturation.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == force_bounding.FORCE_BOUNDING:
+            force = force_bounding.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == energy_tank.ENERGY_TANK:
+            force = energy_tank.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == energy_bounding.ENERGY_BOUNDING:
+            force = energy_bounding.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == passive_leap.PASSIVE_LEAP:
+            force = passive_leap.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == dual_rate.DUAL_RATE:
+            force = dual_rate.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == held.HELD:
+            force = held.step(law, at + 3, memory, slot, reading, force, applied)
         at += 3 + size
         slot += slots
     return force

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from zwidth.environment.hunt_crossley import HuntCrossley
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.rendering.stage import Surroundings
@@ -46,7 +45,7 @@ def stiffness(at: Surroundings, why: str) -> float:
         If its force is not K x at rest; `why` says what K is needed for.
     """
     met = at.environment
-    bent = isinstance(met, HuntCrossley) and met.exponent != 1
+    bent = met.power_law is not None and met.power_law.exponent != 1
     if bent or at.stiffness <= 0:
         raise InputError(f"{why}, and this environment has no K [N/m; N·m/rad]: {met.describe()}")
     return at.stiffness

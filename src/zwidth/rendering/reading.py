@@ -4,39 +4,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import inf, nextafter
-from typing import TypeVar
+from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import PLAIN, part
 from zwidth.rendering.stage import Surroundings
-
-T = TypeVar("T")
-
-
-def one_of(name: str, value: T, *words: T) -> T:
-    """The value, if it is one of these words.
-
-    Raises
-    ------
-    InputError
-        If it is none of them.
-    """
-    if value not in words:
-        raise InputError(f"{name} is one of {', '.join(map(repr, words))}, got {value!r}")
-    return value
-
-
-def truth(name: str, value: object, meaning: str) -> bool:
-    """True or False.
-
-    Raises
-    ------
-    InputError
-        If it is neither.
-    """
-    if not isinstance(value, bool):
-        raise InputError(f"{name} is True {meaning}, or False; got {value!r}")
-    return value
 
 
 def count(name: str, value: RealLike, why: str) -> int:
@@ -51,6 +24,16 @@ def count(name: str, value: RealLike, why: str) -> int:
     if not whole or value < 1:  # type: ignore[operator]
         raise InputError(f"{name} is a whole number of samples, at least 1, got {value}: {why}")
     return int(value)
+
+
+def updated_every() -> Any:
+    """The field `samples` of a law that updates the environment every N samples."""
+    return part(
+        "quantity",
+        lambda given, name: count(name, given, "the environment is updated every N"),
+        meaning="N, samples between two updates",
+        quantity=PLAIN,
+    )
 
 
 def damping_per_sample(at: Surroundings, law: str) -> float:

@@ -16,8 +16,8 @@ from typing import ClassVar, NamedTuple
 
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
-from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import Parametric
 from zwidth.rendering.theorem import Theorem
 
 
@@ -47,7 +47,7 @@ class Surroundings(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stage(ABC):
+class Stage(Parametric, ABC):
     """A law that changes the force of an environment, or the reading before it."""
 
     code: ClassVar[float]
@@ -55,6 +55,9 @@ class Stage(ABC):
 
     slots: ClassVar[int]
     """Numbers that it remembers."""
+
+    bounds_the_force: ClassVar[bool] = False
+    """True for force bounding: last in a row, it keeps to what the device pays for, whatever came before."""
 
     @abstractmethod
     def numbers(self, at: Surroundings) -> list[float]:
@@ -83,20 +86,3 @@ class Stage(ABC):
     @abstractmethod
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-
-
-def positive(name: str, value: RealLike, why: str, zero: bool = False) -> Exact:
-    """A parameter > 0, or ≥ 0.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-    """
-    try:
-        number = Exact(value)
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
-    if number < 0 or (number == 0 and not zero):
-        raise InputError(f"{name} must be {'≥' if zero else '>'} 0, got {float(number):g}: {why}")
-    return number

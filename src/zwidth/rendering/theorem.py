@@ -14,6 +14,7 @@ from fractions import Fraction
 
 from zwidth.device.actuator import current_rise
 from zwidth.device.device import Device
+from zwidth.quantity.text import quantity_unit
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +58,7 @@ class Theorem:
             (self.counts_current_rise, _rises_slowly(device), "a current that rises slowly"),
         )
         lacking = [f"{what}, not counted by the proof" for counts, there, what in record if there > counts]
-        has, unit = device.exact("coulomb_friction"), "N·m" if device.motion == "rotary" else "N"
+        has, unit = device.exact("coulomb_friction"), quantity_unit("coulomb_friction", device.motion)
         if has < self.coulomb_friction:
             lacking.append(
                 f"Coulomb friction of {float(has):.6g} {unit}, less than the "

@@ -12,8 +12,8 @@ from typing import Any
 
 from zwidth.environment import Environment
 from zwidth.errors import InputError
+from zwidth.quantity.kind import Kind, bracketed
 from zwidth.quantity.parameter import Parameter
-from zwidth.specification.kinds import Kind, bracketed
 from zwidth.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
 from zwidth.specification.values import read
 

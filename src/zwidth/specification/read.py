@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from zwidth.device import Device, catalogue
-from zwidth.device.rotary import rotary
+from zwidth.device.rotary import ROTARY, rotary
 from zwidth.environment import Environment
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, ends
@@ -36,10 +36,7 @@ _LONG_DELAY = Fraction(1, 2)
 LARGEST_FILE = 1 << 20
 """Bytes; a specification is a page of text."""
 
-ROTARY_KEYS = {"inertia": "kg*m^2", "counts_per_turn": "1", "handle_radius": "m"}
-"""The keys that make a device rotary, with their units."""
-
-DEVICE_KEYS = (*catalogue.PROPERTIES, *ROTARY_KEYS, "motion", "name", "catalogue")
+DEVICE_KEYS = (*catalogue.PROPERTIES, *ROTARY, "motion", "name", "catalogue")
 """The keys of a [device] table."""
 
 LOOP_TABLES = ("device", "environment")
@@ -128,7 +125,7 @@ def build_device(table: Table) -> Device:
         cannot have.
     """
     table.check_keys(DEVICE_KEYS, "a device")
-    turning = [key for key in ROTARY_KEYS if key in table.values]
+    turning = [key for key in ROTARY if key in table.values]
     motion = table.text("motion") if "motion" in table.values else "rotary" if turning else "linear"
     if turning and motion == "linear":
         raise InputError(
@@ -150,7 +147,7 @@ def build_device(table: Table) -> Device:
 def _device_value(table: Table, key: str, motion: str) -> Any:
     if key in ("name", "motion"):
         return table.text(key)
-    unit = ROTARY_KEYS[key] if key in ROTARY_KEYS else GLOSSARY[key].unit_for(motion)
+    unit = (ROTARY.get(key) or GLOSSARY[key]).unit_for(motion)
     with located(table.where(key)):
         value = parse(table.values[key], unit, key)
         if key == "delay":

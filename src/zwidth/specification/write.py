@@ -18,10 +18,11 @@ from zwidth.environment import BackwardDifference, Environment, OnePole, Velocit
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.kind import Kind, name_of
 from zwidth.quantity.text import exact_text
+from zwidth.rendering import ESTIMATORS, LAWS
 from zwidth.specification.environments import TYPES
-from zwidth.specification.kinds import name_of
-from zwidth.specification.laws import ESTIMATORS, LAWS, LawType, with_laws
+from zwidth.specification.laws import with_laws
 from zwidth.specification.read import WITH_LAWS, Specification, specified, tables_of
 
 
@@ -138,8 +139,8 @@ def _filter(estimate: object) -> dict[str, object]:
     raise InputError(f"a specification has no {type(estimate).__name__}")
 
 
-def _law(law: object, kinds: Mapping[str, LawType], motion: str) -> dict[str, object]:
-    name = next((name for name, row in kinds.items() if row.class_name == type(law).__name__), None)
+def _law(law: object, kinds: Mapping[str, Kind], motion: str) -> dict[str, object]:
+    name = name_of(law, kinds)
     if name is None:
         raise InputError(f"a specification has no {type(law).__name__}")
     values: dict[str, object] = {"type": name}

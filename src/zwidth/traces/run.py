@@ -11,7 +11,7 @@ from zwidth.bench import bench as _bench
 from zwidth.identification import recording as _recording
 from zwidth.loop import batch as _batch
 from zwidth.loop import simulate as _simulate
-from zwidth.passivity import passive_limit as _limit
+from zwidth.passivity.bracket import passive_limit as _limit
 from zwidth.passivity.storage import solution as _storage
 from zwidth.traces.progress import progress_bar
 
@@ -55,5 +55,5 @@ def available_storage(*args: Any, **kwargs: Any) -> _storage.AvailableStorage:
 simulate = _with_bar(_simulate.simulate, "samples")
 simulate_batch = _with_bar(_batch.simulate_batch, "loops")
 compare = _with_bar(_bench.compare, "laws")
-passive_limit = _with_bar(_limit.passive_limit, "loops")
+passive_limit = _with_bar(_limit, "loops")
 identify = _with_bar(_recording.identify, "samples")

@@ -326,6 +326,13 @@ CASES = [
         "longer than it is said",
     ),
     refused(
+        "three joints, a first column that is longer where the translation adds to it",
+        put(
+            CHAIN, {"arm.joints.0.largest_column_m_per_rad": "0.375", "arm.joints.0.coulomb_friction_N_m": 9}
+        ),
+        "longer than it is said",
+    ),
+    refused(
         "three joints, a longer last column",
         put(CHAIN, {"arm.joints.2.largest_column_m_per_rad": "0.09", "arm.joints.2.coulomb_friction_N_m": 9}),
         "longer than it is said",
@@ -385,7 +392,7 @@ CASES = [
     ),
     # held
     accepted("held in pose, no moments", NO_MOMENT, "for forces up to 1 N and moments up to 0 N·m"),
-    refused("a held torque and a delay", put(HELD, {"loop.delay_samples": 1}), "needs no delay"),
+    refused("a held torque and a delay", put(HELD, {"loop.delay_samples": 1}), "without a delay"),
     refused(
         "a curvature that is less than the bends",
         put(HELD, {"loop.curvature_m_per_rad2": "0.1"}),
@@ -443,14 +450,14 @@ CASES = [
         put(
             MIXED, {"wall.virtual_damping_N_s_per_m": [["0.25", "0", "0"], ["0", "0", "0"], ["0", "0", "0"]]}
         ),
-        "is no bound",
+        "is too small",
     ),
     refused(
         "a bound below the negative damping",
         put(
             MIXED, {"wall.virtual_damping_N_s_per_m": [["-0.25", "0", "0"], ["0", "0", "0"], ["0", "0", "0"]]}
         ),
-        "is no bound",
+        "is too small",
     ),
     refused(
         "matrices of two sizes", put(MIXED, {"wall.virtual_damping_N_s_per_m": [["0"]]}), "differ in size"
@@ -486,12 +493,12 @@ CASES = [
     refused(
         "no rotation",
         put(MIXED, {f"{JOINT}rotation": [["0.6", "-0.8", "0"], ["0.8", "0.6", "0"], ["0", "0", "1.1"]]}),
-        "is not one",
+        "at right angles",
     ),
     refused(
         "a rotation that is off a little",
         put(MIXED, {f"{JOINT}rotation": [["0.6", "-0.8", "0"], ["0.8", "0.60000001", "0"], ["0", "0", "1"]]}),
-        "is not one",
+        "at right angles",
     ),
     *(
         case(
@@ -502,7 +509,7 @@ CASES = [
             ),
             words,
         )
-        for case, by, words in ((accepted, 4, ""), (refused, 6, "is not one"))
+        for case, by, words in ((accepted, 4, ""), (refused, 6, "at right angles"))
     ),
     # what is beyond the first joint slides with the second: N = [[r, 1], [1, 0]] of r = 0.3 + 0.2 + 0.1
     *(
@@ -548,7 +555,7 @@ CASES = [
     refused(
         "a mirror",
         put(EVERY, {f"{JOINT}rotation": [["0.6", "0.8", "0"], ["0.8", "-0.6", "0"], ["0", "0", "1"]]}),
-        "mirrors",
+        "must not mirror",
     ),
     refused(
         "a mirror that changes every axis for another",
@@ -559,7 +566,7 @@ CASES = [
                 f"{JOINT}damping_N_m_s_per_rad": 9,
             },
         ),
-        "mirrors",
+        "must not mirror",
     ),
     accepted(
         "a rotation that changes every axis for another",
@@ -591,7 +598,7 @@ CASES = [
     ),
     refused("no rest", without(GIVEN, f"{JOINT}rest_rad"), "rest_rad is missing"),
     # legs
-    refused("legs in pose", {**TWO, "wall": PLANE["wall"]}, "no pose"),
+    refused("legs in pose", {**TWO, "wall": PLANE["wall"]}, "not of pose"),
     refused(
         "two legs, a region of three coordinates",
         put(TWO, {"arm.low_m": ["0.02", "0.09", "0"], "arm.high_m": ["0.02", "0.09", "0"]}),

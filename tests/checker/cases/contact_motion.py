@@ -187,7 +187,7 @@ CASES = [
     # 1 + ρ Δq: 2 · (1 + ½) at 1 after 0
     taken("a force that grows with the way", 6, law(THERE, rate_per_m="1/2", **POINTS)),
     taken("clamped, where it would pull", 3 * 0 + 3, law(THERE, clamped=True)),
-    refused("a force of a way without points", law(THERE, rate_per_m=1), "only the force of points"),
+    refused("a force of a way without points", law(THERE, rate_per_m=1), "only a law given by points"),
     refused("relaxing, not settled", law(THERE, **RELAXING), "has not settled"),
     # at 1 from rest 2 + 4 (1 − a): what a is kept to takes 4 · 2/(1 − p)/2⁸⁰ in a passage
     taken(
@@ -240,7 +240,7 @@ CASES = [
     refused(
         "a step of a law that relaxes",
         law(THERE, force_step_N=1, **RELAXING),
-        "without the steps of a converter",
+        "no force_step",
     ),
     refused("a limit of 0", law(THERE, force_limit_N=0), "none comes out"),
     # 1 − ρ at 1 after 2, 2 · 1: with ρ = ½ on the way back 1 · 1, and 4 (1 + 1) at 2 after 0
@@ -284,8 +284,8 @@ CASES = [
         law(THERE, relaxing={"pole": "-1/2", "stiffness_N_per_m": 1}),
         "relaxing.pole must be ≥ 0",
     ),
-    refused("relaxing beside two taps", law(DAMPED, **RELAXING), "stands beside one spring"),
-    refused("relaxing beside points", law(THERE, **POINTS, **RELAXING), "stands beside one spring"),
+    refused("relaxing beside two taps", law(DAMPED, **RELAXING), "has one tap"),
+    refused("relaxing beside points", law(THERE, **POINTS, **RELAXING), "has one tap"),
     refused("a key that is entries", law(THERE, remark=1), "entries"),
     refused("51 taps", law(THERE, taps_N_per_m=[0] * 51), "taps_N_per_m must have 0 to 50 entries"),
     # the device

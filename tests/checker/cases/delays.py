@@ -134,5 +134,5 @@ CASES = [
     refused("H(1) < 0", put(WIDE, {"loop.numerator": [-1]}), "H(1) is negative"),
     refused("pieces that are no list", put(WIDE, {"proof.pieces": {}}), "must be a list"),
     refused("without delay_high_s", without(WIDE, "delay_high_s"), "delay_high_s is missing"),
-    refused("more than 2000 samples", put(WIDE, {"delay_high_s": 2001}), "ordinary size"),
+    refused("more than 2000 samples", put(WIDE, {"delay_high_s": 2001}), "more than 2000 samples"),
 ]

@@ -67,7 +67,7 @@ CASES = [
         "N is too long", put(SPRING, {"loop.numerator": [0] * 2001}), "numerator must have 1 to 2000 entries"
     ),
     accepted("N is long", spring(0, [0] * 2000, [1] + [0] * 1999)),
-    refused("damping twice", put(SPRING, {"loop.damping_N_m_s_per_rad": 4}), "a device slides or turns"),
+    refused("damping twice", put(SPRING, {"loop.damping_N_m_s_per_rad": 4}), "of a rotary one"),
     refused(
         "damping in another unit",
         {

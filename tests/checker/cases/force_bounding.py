@@ -55,7 +55,7 @@ CASES = [
     refused(
         "without rounding, less friction",
         put(EXACT, {"loop.coulomb_friction_N": 2 - TINY}),
-        "more Coulomb friction",
+        "less Coulomb friction",
     ),
     accepted(
         "an ideal encoder and converter",
@@ -66,8 +66,8 @@ CASES = [
     less("less damping", "loop.damping_N_s_per_m", 2 - TINY, "more than b/T"),
     less("a longer period", "loop.sample_period_s", "0.500000001", "more than b/T"),
     less("more credit", "law.credit_N_per_m", 4 + TINY, "more than b/T"),
-    less("less friction", "loop.coulomb_friction_N", "2.019999999", "more Coulomb friction"),
-    less("more friction credited", "law.friction_N", 2 + TINY, "more Coulomb friction"),
+    less("less friction", "loop.coulomb_friction_N", "2.019999999", "less Coulomb friction"),
+    less("more friction credited", "law.friction_N", 2 + TINY, "less Coulomb friction"),
     less("a smaller count", "law.count_m", "0.499999999", "smaller than the encoder's"),
     less("larger counts", "loop.resolution_m", "0.500000001", "smaller than the encoder's"),
     less("less for the converter", "law.half_step_N", "0.1249999999", "half a step"),

@@ -1,4 +1,4 @@
-"""Every move on small boards of random numbers, beside the same conditions written once more, plainly.
+"""Every move on small grids of random numbers, beside the same conditions written once more, plainly.
 
 A function is raised until no move takes out more than it falls; then it holds by equality at many states, and
 one unit less at one of them is found there.
@@ -21,7 +21,7 @@ from . import Case
 
 ROUNDS = 10
 LOWERED = 12
-"""States of each board that are lowered."""
+"""States of each grid that are lowered."""
 TRIES = 400
 
 Needs = Callable[[Any], dict[int, int]]
@@ -83,7 +83,7 @@ def reached(n: int, reach: int, cells: int) -> range:
     return range(max(0, n - reach), min(cells, n + reach + 1))
 
 
-def boards(random: Random, memories: tuple[int, ...]) -> Iterator[tuple[int, int, int, int, Any, Any]]:
+def grids(random: Random, memories: tuple[int, ...]) -> Iterator[tuple[int, int, int, int, Any, Any]]:
     """Cells, histories, steps and reach; a value, and which states there are."""
     for round_ in range(ROUNDS):
         reach, steps = random.choice((1, 1, 2)), random.choice((1, 2, 3))
@@ -95,25 +95,25 @@ def boards(random: Random, memories: tuple[int, ...]) -> Iterator[tuple[int, int
         yield cells, histories, steps, reach, value, exists
 
 
-def on_a_board() -> str:
+def on_a_grid() -> str:
     """One force in each interval."""
     random = Random(11)
-    for cells, histories, steps, reach, value, exists in boards(random, (0, 1, 2, 1)):
+    for cells, histories, steps, reach, value, exists in grids(random, (0, 1, 2, 1)):
         forces = whole(random, (cells, histories), -6, 7)
         costs = rising(random, random.randrange(1, reach * steps + 1) + 1)
 
         def needs(
             value: Any, f: Any = forces, c: Any = costs, e: Any = exists, r: int = reach
         ) -> dict[int, int]:
-            cells, histories, knots = value.shape
+            cells, histories, nodes = value.shape
             out: dict[int, int] = {}
             for n, h, j in np.ndindex(value.shape):
                 for n2 in reached(n, r, cells) if e[n, h] else ():
-                    for j2 in range(knots):
-                        d = (n2 - n) * (knots - 1) + j2 - j
+                    for j2 in range(nodes):
+                        d = (n2 - n) * (nodes - 1) + j2 - j
                         if abs(d) < len(c):
                             then = value[n2, history(n, n2, h, r, histories), j2]
-                            state = (n * histories + h) * knots + j
+                            state = (n * histories + h) * nodes + j
                             out[state] = max(out.get(state, 0), then - f[n, h] * d - c[abs(d)])
             return out
 
@@ -130,10 +130,10 @@ def _floats(look: Any, exists: Any, tables: Any, sizes: Any, value: Any) -> int:
     return int(look(value.astype(np.float64), exists, *tables, *sizes))
 
 
-def in_two_parts_on_a_board() -> str:
+def in_two_parts_on_a_grid() -> str:
     """Two forces, the second of what all histories share but for the oldest reading."""
     random = Random(12)
-    for cells, histories, steps, reach, value, exists in boards(random, (1, 2, 1)):
+    for cells, histories, steps, reach, value, exists in grids(random, (1, 2, 1)):
         width = 2 * reach + 1
         forces, later = (
             whole(random, (cells, histories), -6, 7),
@@ -145,18 +145,18 @@ def in_two_parts_on_a_board() -> str:
 
         def needs(value: Any, f: Any = forces, g: Any = later, c: Any = costs, t: Any = then, e: Any = exists,
                   r: int = reach) -> dict[int, int]:  # fmt: skip
-            cells, histories, knots = value.shape
-            steps, out = knots - 1, {}
+            cells, histories, nodes = value.shape
+            steps, out = nodes - 1, {}
             for n, h in np.ndindex(cells, histories):
                 goal: dict[int, int] = {}
                 for n2 in reached(n, r, cells):
-                    for j2 in range(knots):
+                    for j2 in range(nodes):
                         at = n2 * steps + j2
                         goal[at] = max(goal.get(at, 0), value[n2, history(n, n2, h, r, histories), j2])
                 force = g[n, h // (2 * r + 1)]
                 middle = {m: _most(goal, m, force, t, goal[m]) for m in goal}
-                for j in range(knots if e[n, h] else 0):
-                    out[(n * histories + h) * knots + j] = _most(middle, n * steps + j, f[n, h], c, 0)
+                for j in range(nodes if e[n, h] else 0):
+                    out[(n * histories + h) * nodes + j] = _most(middle, n * steps + j, f[n, h], c, 0)
             return out
 
         tables = [table.astype(np.float64) for table in (forces, costs, second, then)]
@@ -174,7 +174,7 @@ def _most(goal: dict[int, int], start: int, force: int, costs: Any, least: int) 
 
 
 def in_a_table() -> str:
-    """What follows stands in a table; −1 is off the board."""
+    """What follows stands in a table; −1 is off the grid."""
     random = Random(13)
     for _ in range(ROUNDS):
         states, reach, steps = random.randrange(2, 7), random.choice((1, 2)), random.choice((1, 2))
@@ -184,12 +184,12 @@ def in_a_table() -> str:
 
         def needs(value: Any, f: Any = forces, c: Any = costs, then: Any = successors) -> dict[int, int]:
             out: dict[int, int] = {}
-            knots = value.shape[1]
+            nodes = value.shape[1]
             for (s, move), to in np.ndenumerate(then):
-                for j, j2 in np.ndindex(knots, knots):
-                    d = (move - then.shape[1] // 2) * (knots - 1) + j2 - j
+                for j, j2 in np.ndindex(nodes, nodes):
+                    d = (move - then.shape[1] // 2) * (nodes - 1) + j2 - j
                     if to >= 0 and abs(d) < len(c):
-                        state = s * knots + j
+                        state = s * nodes + j
                         out[state] = max(out.get(state, 0), value[to, j2] - f[s] * d - c[abs(d)])
             return out
 
@@ -270,12 +270,12 @@ def relaxing() -> str:
         def deficits(value: Any, rows: Any = rows, both: Any = both, images: Any = images, costs: Any = costs,
                      steps: int = steps) -> Iterator[tuple[Fraction, tuple[Any, ...]]]:  # fmt: skip
             """By how much each condition fails, and the values that would mend it."""
-            cells, histories, levels, knots = value.shape
+            cells, histories, levels, nodes = value.shape
             for n, h in np.ndindex(cells, histories):
                 row = rows[n, h]
                 for n2 in reached(n, 1, cells) if row >= 0 else ():
                     then = value[n2, history(n, n2, h, 1, histories)]
-                    for j, j2 in np.ndindex(knots, knots):
+                    for j, j2 in np.ndindex(nodes, nodes):
                         d = (n2 - n) * steps + j2 - j
                         if abs(d) >= len(costs):
                             continue
@@ -343,7 +343,7 @@ def a_level_that_is_passed_counts() -> str:
 def _from_one_cell(
     value: Any, images: Sequence[Fraction], pushed: Sequence[int], inwards: bool, stays: int, moves: int
 ) -> int:
-    """On a board of one cell of one step: forces one way, and what it costs to stay and to move."""
+    """On a grid of one cell of one step: forces one way, and what it costs to stay and to move."""
     rows, none = np.zeros((1, 1), np.int64), np.zeros((1, len(pushed)), np.int64)
     forces = [np.array([pushed]), none] if inwards else [none, np.array([pushed])]
     ends = [np.array([[f(x * PART) for x in images]]) for f in (int, ceil)]
@@ -391,8 +391,8 @@ def _at(values: Any, level: Fraction) -> Fraction:
 
 
 CHECKS = (
-    on_a_board,
-    in_two_parts_on_a_board,
+    on_a_grid,
+    in_two_parts_on_a_grid,
     in_a_table,
     on_a_line,
     relaxing,

@@ -1,6 +1,6 @@
 """The slow twin of the checks of storage functions, beside a plain search of the same moves.
 
-On boards of a few positions a function is raised until no move takes out more than it falls.  It then holds
+On grids of a few positions a function is raised until no move takes out more than it falls.  It then holds
 by equality at many places: the twin accepts it, and refuses it with one unit less at one of them.  Here all
 is in metres, newtons and joules, and a place of V is found by listing the states one after the other.
 """
@@ -26,7 +26,7 @@ KINDS = ("storage", "coarse storage", "row storage")
 TAKES = "takes out more"
 ROUNDS = 200
 LOWERED = 2000
-"""Values looked at again, about, on each board: the larger it is the fewer places are lowered."""
+"""Values looked at again, about, on each grid: the larger it is the fewer places are lowered."""
 
 
 def checker(name: str) -> Any:
@@ -55,8 +55,8 @@ def plainly(document: Any) -> tuple[bool, str]:
 
 OTHER_WORDS = {
     "from state 0 a move": TAKES,
-    "is empty": "a state of the table is not on the board",
-    "must hold 0": "the average leaves the board",
+    "is empty": "a state of the table is not on the grid",
+    "must hold 0": "the average leaves the grid",
     "too many numbers": "without numpy and numba at most",
 }
 """What the twin says where the fast check says something else."""
@@ -138,9 +138,9 @@ def conditions_of(
                     yield [[b for way in ways for b in way] for ways in zip(*corners, strict=True)]  # type: ignore[misc]
 
 
-def distances(part: Fraction, fastest: Fraction) -> int:
+def distances(part: Fraction, max_move: Fraction) -> int:
     """The longest move in a part of an interval, in steps: rounded up."""
-    return ceil(fastest * part)
+    return ceil(max_move * part)
 
 
 def best_way(
@@ -184,7 +184,7 @@ def lost(
 
 
 def histories(low: int, high: int, reach: int, memory: int) -> dict[tuple[int, ...], int]:
-    """Readings, the newest first, and their place; those with one off the board have a place and no use."""
+    """Readings, the newest first, and their place; those with one off the grid have a place and no use."""
     listed = product(range(low, high + 1), product(range(-reach, reach + 1), repeat=memory))
     states = [tuple(accumulate((newest, *moves))) for newest, moves in listed]
     return {s: place for place, s in enumerate(states) if all(low <= r <= high for r in s)}
@@ -212,7 +212,7 @@ def on_counts(told: Any) -> Board:
     kinks: dict[str, list[Condition]] = {}
 
     def places(state: tuple[int, ...], j: int, average: Fraction) -> Weights:
-        """V at a knot, between two levels."""
+        """V at a node, between two levels."""
         k = max(i for i, level in enumerate(levels) if level <= average)
         first = (states[state] * len(levels) + k) * (steps + 1) + j
         if levels[k] == average:
@@ -336,18 +336,18 @@ def in_a_table(told: Any) -> Board:
     conditions: list[Condition] = []
     at = {}
 
-    def knots(state: int) -> dict[int, Weights]:
+    def nodes(state: int) -> dict[int, Weights]:
         first = counts[state] * steps
         return {first + j: [(state * (steps + 1) + j, Fraction(1))] for j in range(steps + 1)}
 
     for state, force in enumerate(listed.listed(table.forces, table.states, listed.DOUBLE)):
         goal: dict[int, list[Weights]] = {}
         for then in flat[state * (2 * reach + 1) : (state + 1) * (2 * reach + 1)]:
-            for p, weights in knots(then).items() if then >= 0 else ():
+            for p, weights in nodes(then).items() if then >= 0 else ():
                 goal.setdefault(p, []).append(weights)
         far = distances(Fraction(1), domain.largest_move_counts * steps)
         models = [[(Fraction(force) * step, lost(m, step, losses.period), far)] for m in losses.models]
-        here = knots(state)
+        here = nodes(state)
         at.update(
             {
                 weights[0][0]: f"at {j}, with the readings {counts[state]},"
@@ -386,7 +386,7 @@ def raised(conditions: Sequence[Condition], least: Sequence[int]) -> list[int] |
     return None
 
 
-# --- the boards ------------------------------------------------------------------------------------
+# --- the grids ------------------------------------------------------------------------------------
 
 UNIT = Fraction(1, 7_000_003)
 PERIOD = {"sample_period_s": "1/4"}
@@ -419,7 +419,7 @@ def stored(kind: str, loop: Any, law: Any, domain: Any) -> Any:
 
 
 def counts(device: Any, low: int, high: int, steps: int, taps: Any, move: Any = 1, **law: Any) -> Any:
-    """A board of counts."""
+    """A grid of counts."""
     domain = {
         "lowest_count": low,
         "highest_count": high,
@@ -507,7 +507,7 @@ SEED = 2
 """With others a move of two cells in a part of a sample is nowhere the one that takes out the most."""
 
 # with little more friction than there must be for a storage function
-BOARDS = {
+GRIDS = {
     "a spring": counts(friction("9/40"), 0, 2, 2, ONE),
     "a spring, of long moves": counts(friction("9/40"), -1, 2, 3, ONE, "3/2"),
     "a spring on both sides": counts(friction("9/40"), -2, 1, 2, ONE, **NEITHER),
@@ -582,29 +582,29 @@ def refused_with_a_unit_less(name: str, highest: int = 0) -> str:
 
     The values are raised from 0, or from random ones, and then more is stored at some places than need be.
     """
-    document, random = plain(BOARDS[name]), Random(f"{name} {SEED}")
+    document, random = plain(GRIDS[name]), Random(f"{name} {SEED}")
     told = told_by(document)
-    board = SEARCHES[told.kind](told)
-    least = [random.choice((0, highest and random.randrange(highest))) for _ in range(board.size)]
-    value = raised(board.conditions, least)
+    grid = SEARCHES[told.kind](told)
+    least = [random.choice((0, highest and random.randrange(highest))) for _ in range(grid.size)]
+    value = raised(grid.conditions, least)
     if value is None:
         return "there is no such function"
     valid, words = plainly({**document, "storage": packed(value)})
     if not valid:
         return words
     of_place: dict[int, list[Condition]] = {}
-    for condition in board.conditions:
+    for condition in grid.conditions:
         for place in {place for way in condition for bound in way for place, _ in bound.here}:
             of_place.setdefault(place, []).append(condition)
-    places = [place for place in board.at if value[place] > 0]
+    places = [place for place in grid.at if value[place] > 0]
     tight = 0
-    for place in places[:: max(1, len(places) * board.size // LOWERED)]:
+    for place in places[:: max(1, len(places) * grid.size // LOWERED)]:
         less = [v - (k == place) for k, v in enumerate(value)]
         short = any(lacking(condition, less) > 0 for condition in of_place[place])
         valid, words = plainly({**document, "storage": packed(less)})
-        where = TAKES if "two frictions" in name else f"{board.at[place]} a move {TAKES}"
+        where = TAKES if "two frictions" in name else f"{grid.at[place]} a move {TAKES}"
         if valid is short or (short and where not in words):
-            return f"a unit less at {place}, {board.at[place]}: {valid}, {words}"
+            return f"a unit less at {place}, {grid.at[place]}: {valid}, {words}"
         tight += short
     return "" if tight else "nothing is tight"
 
@@ -665,16 +665,16 @@ level, or where the force of a clamped law becomes 0 for a hand that moves inwar
 
 def refused_for_what_is_between_two_levels(name: str) -> str:
     """All holds but at kinks of one sort between two levels, where a move takes out more."""
-    document = plain(BOARDS[name])
+    document = plain(GRIDS[name])
     told = told_by(document)
-    board = SEARCHES[told.kind](told)
+    grid = SEARCHES[told.kind](told)
     for kink, values in BETWEEN[name].items():
         value = [int(v) for v in values.split()]
-        left_out = set(map(id, board.kinks[kink]))
-        for condition in board.conditions:
+        left_out = set(map(id, grid.kinks[kink]))
+        for condition in grid.conditions:
             if id(condition) not in left_out and lacking(condition, value) > 0:
                 return f"{kink}: more is wrong"
-        if all(lacking(condition, value) <= 0 for condition in board.kinks[kink]):
+        if all(lacking(condition, value) <= 0 for condition in grid.kinks[kink]):
             return f"{kink}: nothing is wrong"
         valid, words = plainly({**document, "storage": packed(value)})
         if valid or TAKES not in words:
@@ -696,7 +696,7 @@ of friction that will do, and no model all three."""
 
 
 def refused_for_one_triangle() -> str:
-    """On each side, where the same knots of a cell stand in the opposite order."""
+    """On each side, where the same nodes of a cell stand in the opposite order."""
     for (device, force, values), side in product(TRIANGLES, (1, -1)):
         value = [int(v) for v in values.split()]
         if side < 0:
@@ -718,22 +718,22 @@ ON_ITS_SURFACE = counts(friction(1), 0, 0, 1, ONE, **BRANCH, **FED)
 
 MOVES = [
     ("a spring of one reading", ALONE, [2 * 6]),
-    ("a spring", BOARDS["a spring"], [9 * 9]),
-    ("a damped wall of long moves", BOARDS["a damped wall of long moves"], [50 * 10]),
-    ("two frictions", BOARDS["two frictions"], [12 * 20 * 3]),
-    ("a third of a sample late", BOARDS["a third of a sample late"], [27 * 9, 9 * 9**2]),
-    ("a law that relaxes", BOARDS["a law that relaxes"], [2 * 18 * 6]),
-    ("cells", BOARDS["cells"], [7 * 7]),
-    ("cells, a third of a sample late", BOARDS["cells, a third of a sample late"], [30 * 5**2]),
-    ("laws in a row", BOARDS["laws in a row"], [12 * 9]),
-    ("laws in a row, two frictions", BOARDS["laws in a row, two frictions"], [12 * 9 * 3]),
+    ("a spring", GRIDS["a spring"], [9 * 9]),
+    ("a damped wall of long moves", GRIDS["a damped wall of long moves"], [50 * 10]),
+    ("two frictions", GRIDS["two frictions"], [12 * 20 * 3]),
+    ("a third of a sample late", GRIDS["a third of a sample late"], [27 * 9, 9 * 9**2]),
+    ("a law that relaxes", GRIDS["a law that relaxes"], [2 * 18 * 6]),
+    ("cells", GRIDS["cells"], [7 * 7]),
+    ("cells, a third of a sample late", GRIDS["cells, a third of a sample late"], [30 * 5**2]),
+    ("laws in a row", GRIDS["laws in a row"], [12 * 9]),
+    ("laws in a row, two frictions", GRIDS["laws in a row, two frictions"], [12 * 9 * 3]),
 ]
 """Knots, times those that a move from one leads to, and how often each is looked at.  A line has one of each;
 of two parts of an interval, every place between is one more."""
 
 
 def moves_are_counted() -> str:
-    """A board with as many moves as can be checked, and with one more."""
+    """A grid with as many moves as can be checked, and with one more."""
     plainly_now = checker("storage.plainly")
     most = plainly_now.MOST_MOVES
     try:
@@ -781,48 +781,48 @@ def nearer(document: Any) -> Any:
 REFUSED = [
     *(
         (
-            f"laws in a row, where a reading off the board leads to {then}",
+            f"laws in a row, where a reading off the grid leads to {then}",
             table(friction("7/40"), 2, leads=((then, 0, 1), *LEADS[1:])),
             "is not closed",
         )
-        for then in (-2, -3, 0)
+        for then in (-2, -3, 0, 4, 99)
     ),
     (
         "laws in a row that begin in a state of the table and in another",
-        put(BOARDS["laws in a row"], {"table.starts": [0, 4]}),
+        put(GRIDS["laws in a row"], {"table.starts": [0, 4]}),
         "not in the table",
     ),
-    *((f"{name}, one reading less", nearer(BOARDS[name]), FORGOTTEN) for name in AT_THEIR_EDGE),
+    *((f"{name}, one reading less", nearer(GRIDS[name]), FORGOTTEN) for name in AT_THEIR_EDGE),
     (
         "cells of both sides, the one a tenth of a count too short",
-        put(BOARDS["cells of both sides, the one a count longer"], {"domain.counts_per_cell": "9/10"}),
+        put(GRIDS["cells of both sides, the one a count longer"], {"domain.counts_per_cell": "9/10"}),
         "as far on the one side",
     ),
     (
         "cells with two frictions",
-        put(BOARDS["cells"], {"loop": CURVE}),
+        put(GRIDS["cells"], {"loop": CURVE}),
         "one friction model",
     ),
     (
         "a law that relaxes with two frictions",
-        put(BOARDS["a law that relaxes"], {"loop": CURVE}),
+        put(GRIDS["a law that relaxes"], {"loop": CURVE}),
         "one friction",
     ),
     (
         "a law that relaxes, without levels",
-        without(BOARDS["a law that relaxes"], "domain.levels_per_count"),
+        without(GRIDS["a law that relaxes"], "domain.levels_per_count"),
         "levels_per_count is missing",
     ),
     (
         "a spring with levels",
-        put(BOARDS["a spring"], {"domain.levels_per_count": 1}),
+        put(GRIDS["a spring"], {"domain.levels_per_count": 1}),
         "levels_per_count is of no use",
     ),
     *(
         (
-            f"a law that begins anew, on a board outside alone, from {low} to {high}",
+            f"a law that begins anew, on a grid outside alone, from {low} to {high}",
             counts(friction(1), low, high, 1, [0], **relaxing(0, 0, resets=True), **NEITHER),
-            "leaves the board",
+            "leaves the grid",
         )
         for low, high in ((-9, -8), (-2, -2))
     ),
@@ -861,10 +861,10 @@ def accepted_where_nothing_moves_far() -> str:
 
 CASES = [
     *(Case(f"{kind}, as the fast check", partial(as_the_fast_check, kind), "") for kind in KINDS),
-    *(Case(name, partial(refused_with_a_unit_less, name), "") for name in BOARDS),
+    *(Case(name, partial(refused_with_a_unit_less, name), "") for name in GRIDS),
     *(
         Case(f"{name}, with more stored here and there", partial(refused_with_a_unit_less, name, highest), "")
-        for name, told in BOARDS.items()
+        for name, told in GRIDS.items()
         if (highest := HIGH if "relaxing" in told["law"] else HIGHER if "late" in name else 0)
     ),
     *(

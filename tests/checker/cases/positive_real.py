@@ -170,6 +170,10 @@ CASES = [
         "113/2",
         drawn({"kind": "sequence", "latent": [1, -4, 0]}, [1, 2], [1, "-1/2"], 2, **DISCRETE),
     ),
+    refused(
+        "an order of 401", put(DELAY, {"system.denominator": [1, *[0] * 401]}), "order is 401, more than 400"
+    ),
+    refused("a sequence of no samples", put(DELAY, {"motion.latent": []}), "none comes out"),
     refused("a sequence that takes nothing out", put(DELAY, {"motion.latent": [1, 1]}), "none comes out"),
     taken("a burst", 11 * WORK, FAST, "the input index is less than 2"),
     taken(
@@ -206,6 +210,11 @@ CASES = [
     refused("a burst of order 2", SMOOTH, "none comes out"),
     taken("a burst of order 2, a higher level", smooth(2), put(SMOOTH, {"level": 2})),
     refused("a burst that is not smooth", put(SMOOTH, {"motion.power": 0}), "more cycles than its power"),
+    refused(
+        "a burst of power 1 and order 3",
+        drawn(BURST, [1, 0, 0, -1], [1, 1, 1, 1], 2),
+        "a power of half the order or more",
+    ),
     refused("fewer cycles than its power", put(FAST, {"motion.cycles": 1}), "more cycles than its power"),
     refused(
         "a burst of too many lines",
@@ -224,9 +233,9 @@ CASES = [
         put(GROWS, {"motion.duration_s": -3}),
         "motion.duration_s must be > 0",
     ),
-    refused("a burst in steps", put(DELAY, {"motion": BURST}), "motion in this time"),
-    refused("a polynomial in steps", put(DELAY, {"motion": POLYNOMIAL}), "motion in this time"),
-    refused("a sequence in time", put(FAST, {"motion": SEQUENCE}), "motion in this time"),
+    refused("a burst in steps", put(DELAY, {"motion": BURST}), "is moved by a burst"),
+    refused("a polynomial in steps", put(DELAY, {"motion": POLYNOMIAL}), "is moved by a burst"),
+    refused("a sequence in time", put(FAST, {"motion": SEQUENCE}), "is moved by a burst"),
     *(
         refused(f"a {told['motion']['kind']} without {key}", without(told, f"motion.{key}"), "is missing")
         for told in (DELAY, FAST, GROWS)

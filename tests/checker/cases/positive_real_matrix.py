@@ -275,9 +275,21 @@ CASES = [
     refused(
         "two axes and three lists", put(LATE, {"motion.latent": [[1], [1], [1]]}), "one list for every axis"
     ),
+    refused(
+        "an order of 201", put(LATE, {"system.denominator": [1, *[0] * 201]}), "order is 201, more than 200"
+    ),
+    refused("two axes and one list", put(LATE, {"motion.latent": [[1]]}), "one list for every axis"),
     refused("axes of two lengths", put(LATE, {"motion.latent": [[1, 0], [1]]}), "of one length"),
     refused("a burst of one axis", put(CIRCLE, {"motion.cosine": [1]}), "two numbers for every axis"),
     refused("a burst of one axis, its sine", put(CIRCLE, {"motion.sine": [1]}), "two numbers for every axis"),
+    *(
+        refused(
+            f"a burst of {len(cosine)} and {len(sine)} numbers",
+            put(CIRCLE, {"motion.cosine": cosine, "motion.sine": sine}),
+            "two numbers for every axis",
+        )
+        for cosine, sine in (([1], [1]), ([1, 0, 0], [0, 1]), ([1, 0, 0], [0, 1, 0]))
+    ),
     refused("no pace", put(CIRCLE, {"motion.step_rad_per_s": 0}), "step_rad_per_s must be > 0"),
     refused("fewer cycles than its power", put(CIRCLE, {"motion.cycles": 1}), "more cycles than its power"),
     refused(
@@ -291,7 +303,7 @@ CASES = [
     refused(
         "a sequence in time",
         put(CIRCLE, {"motion": {"kind": "sequence", "latent": [[1], [1]]}}),
-        "motion in this time",
+        "is moved by a burst",
     ),
     *(
         refused(f"without {key}", without(CONSTANT, key), "is missing")

@@ -235,7 +235,7 @@ CASES = [
     refused(
         "uncertain numbers do not show that it moves",
         put(MOVES, {"loop.mass_kg": [1, "1.1"]}),
-        "must be certain",
+        "not of intervals",
     ),
     accepted("every value of a box", BOX, "for every value in the intervals"),
     accepted("an interval of one number", put(RESTS, {"loop.mass_kg": [1, 1]}), "after every disturbance"),

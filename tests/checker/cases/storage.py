@@ -1,7 +1,7 @@
 """Storage functions: every one a smallest, or nearly, so that one unit less at a state is less than a move
 takes out.
 
-They stand in `storages.json`, on boards of a few counts or cells.  The prover found them; each was then
+They stand in `storages.json`, on grids of a few counts or cells.  The prover found them; each was then
 lowered state
 by state as far as it holds.
 """
@@ -61,8 +61,8 @@ def of(name: str) -> list[Case]:
     ]
 
 
-def board(name: str, phrase: str, **entries: Any) -> Case:
-    """A board that is not what it must be."""
+def grid(name: str, phrase: str, **entries: Any) -> Case:
+    """A grid that is not what it must be."""
     kind, _, what = name.partition(": ")
     told = put(STORAGES[kind]["document"], {key.replace("__", "."): value for key, value in entries.items()})
     return refused(f"{kind}, {what}", told, phrase)
@@ -162,11 +162,11 @@ CASES = [
             ("a reading that leads to one further out", (1, 1), 0, "another reading"),
             ("a reading that leads nowhere", (0, 1), -1, "is not closed"),
             ("a reading that leads past the last state", (0, 1), 4, "is not closed"),
-            ("a reading off the board that leads somewhere", (0, 0), 0, "is not closed"),
+            ("a reading off the grid that leads somewhere", (0, 0), 0, "is not closed"),
         )
     ),
     refused(
-        "a board of a law that relaxes, that ends too near for long moves",
+        "a grid of a law that relaxes, that ends too near for long moves",
         put(STORAGES["solid"]["document"], {"domain.largest_move_counts": 2}),
         "must reach so far out",
     ),
@@ -175,8 +175,8 @@ CASES = [
         put(STORAGES["solid"]["document"], {"storage": packed([(i // 9 % 2) << 47 for i in range(36)])}),
         "too large to be compared",
     ),
-    accepted("a board inside a surface", SPRING, "at any position up to 3 counts inside"),
-    accepted("a board of both sides", STORAGES["points"]["document"], "at any position from -3 to 3 counts"),
+    accepted("a grid inside a surface", SPRING, "at any position up to 3 counts inside"),
+    accepted("a grid of both sides", STORAGES["points"]["document"], "at any position from -3 to 3 counts"),
     refused(
         "cells of a law of points",
         put(
@@ -217,9 +217,9 @@ CASES = [
             ("past the last state", [ROW["table"]["states"]], "not in the table"),
         )
     ),
-    refused("laws in a row, a board of less", put(ROW, {"domain.lowest_count": -1}), "not on the board"),
-    refused("laws in a row, a board of more", put(ROW, {"domain.lowest_count": -3}), "is not closed"),
-    refused("laws in a row, a board of more inside", put(ROW, {"domain.highest_count": 2}), "is not closed"),
+    refused("laws in a row, a grid of less", put(ROW, {"domain.lowest_count": -1}), "not on the grid"),
+    refused("laws in a row, a grid of more", put(ROW, {"domain.lowest_count": -3}), "is not closed"),
+    refused("laws in a row, a grid of more inside", put(ROW, {"domain.highest_count": 2}), "is not closed"),
     refused(
         "laws in a row, a state less",
         put(ROW, {"table.states": ROW["table"]["states"] - 1}),
@@ -227,17 +227,17 @@ CASES = [
     ),
     refused("laws in a row, part of a sample late", put(ROW, {"loop.delay_s": "0.0005"}), "whole samples"),
     refused(
-        "a board that ends too near",
+        "a grid that ends too near",
         put(STORAGES["damped"]["document"], {"domain.lowest_count": -2}),
         "must reach so far out",
     ),
     refused(
-        "a board of a late force that ends too near",
+        "a grid of a late force that ends too near",
         put(STORAGES["late"]["document"], {"domain.lowest_count": 0}),
         "must reach so far out",
     ),
     refused(
-        "a board of a law that relaxes that ends too near",
+        "a grid of a law that relaxes that ends too near",
         put(STORAGES["solid late"]["document"], {"domain.lowest_count": 0}),
         "must reach so far out",
     ),
@@ -288,7 +288,7 @@ CASES = [
         for name in STORED
     ),
     accepted(
-        "without a surface a board may lie to one side",
+        "without a surface a grid may lie to one side",
         put(
             SPRING,
             {
@@ -308,14 +308,14 @@ CASES = [
     refused("nothing packed", put(SPRING, {"storage": "AAAA"}), "cannot be unpacked"),
     refused("a list for a text", put(SPRING, {"storage": [1]}), "must be text"),
     *(
-        board(f"{name}: {what}", phrase, **{f"domain__{key}": value})
+        grid(f"{name}: {what}", phrase, **{f"domain__{key}": value})
         for name in ("spring", "solid", "row")
         for what, key, value, phrase in (
             ("moves of no length", "largest_move_counts", 0, "domain.largest_move_counts must be"),
             ("moves back", "largest_move_counts", -1, "domain.largest_move_counts must be"),
             ("moves without end", "largest_move_counts", 10_000_001, "domain.largest_move_counts must be"),
             ("no step", "steps_per_count", 0, "domain.steps_per_count must be ≥ 1"),
-            ("a board turned round", "highest_count", -9, EMPTY),
+            ("a grid turned round", "highest_count", -9, EMPTY),
             ("a count that is none", "lowest_count", "-1/2", "domain.lowest_count must be"),
             ("a count far off", "lowest_count", -(10**7) - 1, "domain.lowest_count must be"),
         )
@@ -418,7 +418,7 @@ CASES = [
         ),
     ),
     accepted(
-        "a law that relaxes, on a board outside alone",
+        "a law that relaxes, on a grid outside alone",
         relaxing(-1, 0, [0] * 8, {"surface": "penetration"}),
         "at any position from -1 to 1 counts",
     ),
@@ -427,7 +427,7 @@ CASES = [
         relaxing(-1, 0, [0] * 8, {"surface": "position", "resets": True}),
     ),
     refused(
-        "a law that begins anew beyond the board",
+        "a law that begins anew beyond the grid",
         relaxing(-2, -1, [0] * 8, {"surface": "position", "resets": True}),
         "must hold 0",
     ),

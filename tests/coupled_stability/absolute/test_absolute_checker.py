@@ -73,7 +73,7 @@ def test_sign_is_that_of_the_definition(seed):
     ("change", "reason"),
     [
         ({"taps": [{"place": 1, "weight": "-0.1"}]}, "not odd"),
-        ({"taps": [{"place": 1, "weight": "0.6"}, {"place": 2, "weight": "0.4"}]}, "outweigh"),
+        ({"taps": [{"place": 1, "weight": "0.6"}, {"place": 2, "weight": "0.4"}]}, "less than the center"),
         ({"taps": [{"place": 0, "weight": "0.1"}]}, "place"),
         ({"taps": [{"place": 1, "weight": "0.1"}, {"place": 1, "weight": "0.1"}]}, "place"),
         ({"smoothness": "-1"}, "≥ 0"),

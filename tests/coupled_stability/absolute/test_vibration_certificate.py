@@ -75,7 +75,7 @@ def test_the_size_follows_the_gap() -> None:
     [
         ({"inside": [True, False]}, "not one of the wall"),
         ({"inside": [True, False, False, False]}, "not one of the wall"),
-        ({"inside": [True, True, True]}, "some"),
+        ({"inside": [True, True, True]}, "samples inside"),
         ({"inside": [1, 0, 0]}, "true or false"),
         ({"inside": [True]}, "2 to 1000 entries"),
         ({"inside": "100"}, "a list"),

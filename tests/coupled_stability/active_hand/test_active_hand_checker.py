@@ -101,5 +101,5 @@ def test_activity_is_in_its_unit() -> None:
     kept, _ = proofs(zw.Wall(100, 0.05))
     activity = kept.pop("activity_N_s_per_m")
     turned = checker.verify({**kept, "activity_N_m_s_per_rad": activity})
-    assert "slides or turns" in turned.reason
+    assert "of a rotary one" in turned.reason
     assert "unit of activity" in checker.verify({**kept, "activity_mN_s_per_m": activity}).reason

@@ -258,3 +258,12 @@ def test_a_result_shows_in_a_line() -> None:
     found = zw.stability(PADDLE, zw.Wall(3000, 1), Finger())
     assert repr(found).startswith("<Stability stable: device and hand come to rest")
     assert repr(found).endswith(f"stiffest {found.max_stiffness:.6g}>")
+
+
+def test_a_hand_that_turns_says_its_numbers_in_rotary_units() -> None:
+    """The scope of a claim about a rotary device has no kilogram for an inertia."""
+    knob = zw.rotary(damping="0.001", inertia="1e-5", rate=1000)
+    hand = zw.PassiveHand(mass="2e-5", stiffness=(0, 3), damping="0.02")
+    said = zw.stability(knob, zw.Wall(1), hand).scope.hands.impedance
+    assert said == "m_h = 2e-05 kg*m^2, k = 0 … 3 N*m/rad, c = 0.02 N*m*s/rad"
+    assert "c = 0.02 N*s/m" in hand.describe()

@@ -62,7 +62,7 @@ def found(name: str, seed: int) -> zw.Identified:
     into, out = LAWS[name].friction(np.abs(v))
     force = MASS * a + np.where(v > 0, into, out) * np.sign(v) + 0.05 * rng.normal(size=v.size)
     return zw.identify(
-        zw.log_of(
+        zw.Log.from_arrays(
             position=np.floor(x / COUNT) * COUNT, hand_force=force, sample_period=PERIOD, resolution=COUNT
         )
     )

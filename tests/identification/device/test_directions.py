@@ -33,7 +33,7 @@ def recorded(seed: int, inward: float, outward: float, seconds: float = 60.0) ->
     x, v, a = waves(seed, seconds)
     force = 0.036 * a + np.where(v > 0, inward, outward) * v + 0.15 * np.sign(v)
     noise = 0.1 * np.random.default_rng(seed + 1000).normal(size=x.size)
-    return zw.log_of(
+    return zw.Log.from_arrays(
         position=np.floor(x / COUNT) * COUNT,
         hand_force=force + noise,
         sample_period=PERIOD,

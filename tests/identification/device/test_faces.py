@@ -23,7 +23,7 @@ from zwidth.specification.read import load
 
 def log_of(recording: Recording) -> zw.Log:
     """The arrays as a log."""
-    return zw.log_of(
+    return zw.Log.from_arrays(
         time=recording.time, position=recording.position, hand_force=recording.force, resolution=STEP
     )
 
@@ -172,7 +172,7 @@ def test_a_file_is_not_replaced_unasked(found: zw.Identified, tmp_path: Path) ->
 def test_a_rotary_device_is_saved_as_one(tmp_path: Path) -> None:
     """Inertia in the place of mass, angles and torques."""
     time, position, force = paddle()
-    log = zw.log_of(time=time, position=position, hand_force=force, resolution=STEP, motion="rotary")
+    log = zw.Log.from_arrays(time=time, position=position, hand_force=force, resolution=STEP, motion="rotary")
     found = zw.identify(log)
     found.save(tmp_path / "wheel.toml")
     read = load([tmp_path / "wheel.toml"], {"stiffness": "1"}).device

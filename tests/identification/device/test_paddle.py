@@ -11,7 +11,7 @@ from recordings import best_possible, hand_moves, paddle
 import zwidth as zw
 from zwidth.errors import InputError
 from zwidth.identification.device.identify import identify
-from zwidth.identification.logs import log_of
+from zwidth.identification.logs import Log
 from zwidth.quantity.exact import ends
 
 TRUE = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12}
@@ -19,7 +19,7 @@ TRUE = {"mass": 0.036, "damping": 0.15, "coulomb_friction": 0.12}
 
 def _log(recording, resolution=22.4e-6, **changes):
     arrays = {k: getattr(recording, k) for k in ("time", "position", "hand_force")}
-    return log_of(resolution=resolution, **{**arrays, **changes})
+    return Log.from_arrays(resolution=resolution, **{**arrays, **changes})
 
 
 @pytest.fixture(scope="module")
@@ -173,7 +173,7 @@ def _motor(seed, delay=0):
     push = zw.operators.RecordedForce(force)
     trace = zw.simulate(paddle(), zw.Wall(stiffness=1), push, 40, initial_position=-9.0)
     commanded = -np.concatenate([force[delay:], np.zeros(delay)])
-    return log_of(
+    return Log.from_arrays(
         time=time,
         position=trace["measured_position"].values[:-1],
         actuator_force=commanded,
@@ -216,7 +216,7 @@ def _releases(mass):
 def test_free_decay_with_a_known_mass():
     """The motion alone, with the mass from a scale: b and f_c to a few thousandths."""
     position = _releases(0.036)
-    log = log_of(time=np.arange(position.size) * 1e-3, position=position, resolution=22.4e-6)
+    log = Log.from_arrays(time=np.arange(position.size) * 1e-3, position=position, resolution=22.4e-6)
     found = identify(log, mass=0.036)
     assert "mass" not in found.estimates
     for name in ("damping", "coulomb_friction"):
@@ -281,4 +281,4 @@ def test_too_little_motion_is_refused(recording):
     """A second of motion says nothing, and the message says what to do."""
     arrays = {k: getattr(recording, k)[:600] for k in ("time", "position", "hand_force")}
     with pytest.raises(InputError, match="move to and fro"):
-        identify(log_of(resolution=22.4e-6, **arrays))
+        identify(Log.from_arrays(resolution=22.4e-6, **arrays))

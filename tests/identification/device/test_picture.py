@@ -16,7 +16,7 @@ from zwidth.identification.device.picture import expected_scatter, identificatio
 def found() -> zw.Identified:
     """The device of the recording."""
     time, position, force = paddle()
-    return zw.identify(zw.log_of(time=time, position=position, hand_force=force, resolution=STEP))
+    return zw.identify(zw.Log.from_arrays(time=time, position=position, hand_force=force, resolution=STEP))
 
 
 def test_four_pictures_and_the_numbers(found: zw.Identified) -> None:
@@ -51,7 +51,7 @@ def test_the_line_that_is_drawn_is_the_fit(found: zw.Identified) -> None:
 def test_a_given_mass_and_another_model_are_drawn_too(found: zw.Identified) -> None:
     """The force less m a in the place of the force; no mass–damper line beside a mass–damper fit."""
     time, position, force = paddle()
-    log = zw.log_of(time=time, position=position, hand_force=force, resolution=STEP, motion="rotary")
+    log = zw.Log.from_arrays(time=time, position=position, hand_force=force, resolution=STEP, motion="rotary")
     given = identification_figure(zw.identify(log, mass=0.0357))
     assert given.axes[2].get_ylabel() == "force less m a [N·m]"
     assert given.axes[0].get_xlabel() == "velocity v, into the wall on the right [rad/s]"

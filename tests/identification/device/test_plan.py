@@ -96,7 +96,7 @@ def test_stopping_when_the_rule_says_so_keeps_what_the_interval_promises():
         logs = []
         for run in range(6):
             logs.append(recorded(_kinds(plan, 30), np.random.default_rng([seed, run])))
-            found = identify(zw.join_logs(logs))
+            found = identify(zw.Log.concatenate(logs))
             if plan.reached(found):
                 break
         estimate = found.estimates["damping"]

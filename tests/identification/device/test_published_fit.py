@@ -17,7 +17,8 @@ def test_without_noise_counts_and_passes_it_finds_the_truth():
     speed = np.gradient(arrays.position, 1e-3)
     force = 0.036 * np.gradient(speed, 1e-3) + 0.15 * speed + 0.12 * np.sign(speed)
     found = zw.identify_published(
-        zw.log_of(time=arrays.time, position=arrays.position, hand_force=force, resolution=1e-9), passes=0
+        zw.Log.from_arrays(time=arrays.time, position=arrays.position, hand_force=force, resolution=1e-9),
+        passes=0,
     )
     assert found.mass == pytest.approx(TRUE["mass"], rel=1e-3)
     assert found.damping == pytest.approx(TRUE["damping"], rel=1e-3)
@@ -50,7 +51,7 @@ def test_few_passes_leave_counts_and_many_take_the_motion():
     """On 2.24 mm counts mass is lost with few passes; with many, damping is overstated."""
     device = paddle(resolution="2.24 mm")
     recording = hand_moves(device, 60.0, seed=3, drift=0.0)
-    log = zw.log_of(
+    log = zw.Log.from_arrays(
         time=recording.time,
         position=recording.position,
         hand_force=recording.hand_force,
@@ -75,7 +76,7 @@ def test_runs_are_stacked_and_not_smoothed_across():
     """Two runs far apart give what their stacked rows give: no row mixes them."""
     rng = np.random.default_rng(5)
     logs = [recorded([(0.06, 0.5, 5)], rng) for _ in range(2)]
-    both = zw.identify_published(zw.join_logs(logs), passes=5)
+    both = zw.identify_published(zw.Log.concatenate(logs), passes=5)
     each = [zw.identify_published(log, passes=5) for log in logs]
     assert both.samples == each[0].samples + each[1].samples
     assert min(e.mass for e in each) <= both.mass <= max(e.mass for e in each)
@@ -102,7 +103,9 @@ def test_a_log_without_force_or_motion_is_refused():
     time = np.arange(1000) * 1e-3
     moving = np.sin(time * 20) * 0.01
     with pytest.raises(zw.InputError, match="no force"):
-        zw.identify_published(zw.log_of(time=time, position=moving, resolution=1e-5))
-    even = zw.log_of(time=time, position=1e-5 * np.arange(1000), hand_force=np.sin(time), resolution=1e-5)
+        zw.identify_published(zw.Log.from_arrays(time=time, position=moving, resolution=1e-5))
+    even = zw.Log.from_arrays(
+        time=time, position=1e-5 * np.arange(1000), hand_force=np.sin(time), resolution=1e-5
+    )
     with pytest.raises(zw.InputError, match="apart"):
         zw.identify_published(even)

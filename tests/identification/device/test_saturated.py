@@ -32,7 +32,9 @@ def logged(seed: int, share: float = 0.0, way: Way = "cut off") -> zw.Identified
     recording = hand_moves(paddle(), 60.0, seed)
     force = saturated(recording.hand_force, share, way) if share else recording.hand_force
     return zw.identify(
-        zw.log_of(time=recording.time, position=recording.position, hand_force=force, resolution=22.4e-6)
+        zw.Log.from_arrays(
+            time=recording.time, position=recording.position, hand_force=force, resolution=22.4e-6
+        )
     )
 
 

@@ -19,7 +19,7 @@ def recording() -> Recording:
 
 def logged(recording: Recording, **forces: object) -> zw.Identified:
     """What the recording says with these forces in place of the hand's."""
-    log = zw.log_of(
+    log = zw.Log.from_arrays(
         time=recording.time,
         position=recording.position,
         resolution=22.4e-6,

@@ -18,7 +18,7 @@ FINGER = (0.006, 1.7, 500.0)
 
 def _log(arrays, *without, resolution=22.4e-6):
     kept = {name: values for name, values in arrays.items() if name not in without}
-    return zw.log_of(resolution=resolution, sample_period=1e-3, **kept)
+    return zw.Log.from_arrays(resolution=resolution, sample_period=1e-3, **kept)
 
 
 def _near(found, true, part):

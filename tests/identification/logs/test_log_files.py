@@ -273,7 +273,7 @@ def test_traces_of_zwidth_are_logs(suffix: str, rotary: bool, tmp_path: Path) ->
     assert np.abs(block.position - at_samples.measured_position.values).max() < 1e-12
     assert (block.hand_force == at_samples.hand_force.values).all()
     assert (block.actuator_force == at_samples.actuator_force.values).all()
-    (direct,) = zw.log_of(trace).blocks()
+    (direct,) = zw.Log.from_arrays(trace).blocks()
     assert all((a == b).all() for a, b in zip(direct[1:], block[1:], strict=True))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -26,7 +27,7 @@ def walk(count: int = 3000, seed: int = 4) -> np.ndarray:
 def test_any_step_is_found(step: float, seed: int, start: float) -> None:
     """Whole multiples of any number, wherever the first one lies, give that number back."""
     counts = walk(seed=seed)
-    log = zw.log_of(position=counts * step + start * 400 * step, sample_rate=1000)
+    log = zw.Log.from_arrays(position=counts * step + start * 400 * step, sample_rate=1000)
     assert log.resolution == pytest.approx(step, rel=1e-9)
     blocks = np.concatenate([b.position for b in log.blocks()])
     assert np.abs(blocks / log.resolution - np.rint(blocks / log.resolution)).max() < 1e-6
@@ -37,7 +38,7 @@ def test_a_step_is_found_behind_single_precision_and_decimals() -> None:
     """22.4 µm in float32, and written with 6 decimals of a metre."""
     x = walk() * 22.4e-6
     for position in (x.astype(np.float32), np.round(x, 6)):
-        log = zw.log_of(position=position, sample_rate=1000)
+        log = zw.Log.from_arrays(position=position, sample_rate=1000)
         assert log.resolution == pytest.approx(22.4e-6, rel=1e-4)
 
 
@@ -45,11 +46,13 @@ def test_positions_without_a_step_have_none() -> None:
     """Smooth numbers, also in single precision, are no encoder's; decimals are steps of their own."""
     x = np.cumsum(np.random.default_rng(0).normal(0, 1e-5, 5000))
     for position in (x, x.astype(np.float32)):
-        log = zw.log_of(position=position, sample_rate=1000)
+        log = zw.Log.from_arrays(position=position, sample_rate=1000)
         assert log.resolution == 0.0
         assert "no step" in kinds(log)
         assert (next(iter(log.blocks())).position == position).all()
-    assert zw.log_of(position=np.round(x, 6), sample_rate=1000).resolution == pytest.approx(1e-6, rel=1e-9)
+    assert zw.Log.from_arrays(position=np.round(x, 6), sample_rate=1000).resolution == pytest.approx(
+        1e-6, rel=1e-9
+    )
 
 
 @pytest.mark.parametrize(("stated", "used", "kind"), [
@@ -60,7 +63,7 @@ def test_positions_without_a_step_have_none() -> None:
 ])  # fmt: skip
 def test_a_stated_step_is_held_against_the_data(stated: str, used: float, kind: str) -> None:
     """What the positions do is believed, and a contradiction is said."""
-    log = zw.log_of(position=walk() * 22.4e-6, sample_rate=1000, resolution=stated)
+    log = zw.Log.from_arrays(position=walk() * 22.4e-6, sample_rate=1000, resolution=stated)
     assert log.resolution == pytest.approx(used, rel=1e-9)
     assert kind in kinds(log)
 
@@ -68,7 +71,7 @@ def test_a_stated_step_is_held_against_the_data(stated: str, used: float, kind: 
 def test_filtered_positions_stay_as_they_are() -> None:
     """A step is stated but the positions lie between: they were filtered, and are not rounded again."""
     x = np.convolve(walk() * 22.4e-6, np.full(7, 1 / 7), mode="same")
-    log = zw.log_of(position=x, sample_rate=1000, resolution="22.4 um")
+    log = zw.Log.from_arrays(position=x, sample_rate=1000, resolution="22.4 um")
     assert log.resolution == 22.4e-6
     assert "no step" in kinds(log)
     assert (next(iter(log.blocks())).position == x).all()
@@ -83,7 +86,7 @@ def test_a_counter_that_overflows_is_continued(bits: int, signed: bool) -> None:
         0.9 * size * np.sin(np.linspace(0, 40, 600_000)) + np.linspace(0, 3 * size, 600_000)
     ).astype(int)
     read = (counts + size // 2) % size - size // 2 if signed else counts % size
-    log = zw.log_of(position=read * 1e-5, sample_rate=1000)
+    log = zw.Log.from_arrays(position=read * 1e-5, sample_rate=1000)
     assert "overflow" in kinds(log)
     x = np.concatenate([b.position for b in log.blocks()])
     assert (np.rint(np.diff(x) / 1e-5) == np.diff(counts)).all()
@@ -92,7 +95,9 @@ def test_a_counter_that_overflows_is_continued(bits: int, signed: bool) -> None:
 def test_an_angle_that_starts_again_after_a_turn_is_continued() -> None:
     """Degrees from 0 to 360, as many encoders give them."""
     angle = np.linspace(0, 20, 5000) ** 1.5
-    log = zw.log_of(position=np.rint(angle / 1e-3) * 1e-3 % (2 * np.pi), sample_rate=1000, motion="rotary")
+    log = zw.Log.from_arrays(
+        position=np.rint(angle / 1e-3) * 1e-3 % (2 * np.pi), sample_rate=1000, motion="rotary"
+    )
     x = np.concatenate([b.position for b in log.blocks()])
     assert x[-1] - x[0] == pytest.approx(angle[-1], abs=0.01)
 
@@ -101,7 +106,7 @@ def test_a_large_fast_motion_is_no_overflow() -> None:
     """A jump by half the range only, or a range that the jumps do not fill, is left alone."""
     x = walk() * 1e-5
     x[1500:] += 0.55 * (x.max() - x.min())
-    log = zw.log_of(position=x, sample_rate=1000)
+    log = zw.Log.from_arrays(position=x, sample_rate=1000)
     assert "overflow" not in kinds(log)
 
 
@@ -121,4 +126,14 @@ def test_a_large_fast_motion_is_no_overflow() -> None:
 def test_arrays_that_say_nothing_are_refused(arguments: dict, message: str) -> None:
     """One message that says what is wrong."""
     with pytest.raises(zw.InputError, match=message):
-        zw.log_of(sample_rate=1000, **arguments)
+        zw.Log.from_arrays(sample_rate=1000, **arguments)
+
+
+def test_counts_per_turn_stand_for_what_a_dataset_states_itself() -> None:
+    """What is typed comes before the resolution of the file, as for a resolution that is typed."""
+    step = 2 * np.pi / 4096
+    angle = ("time", walk() * step, {"units": "rad"})
+    data = xr.Dataset({"position": angle}, attrs={"resolution_rad": 2 * step})
+    log = zw.Log.from_arrays(data, counts_per_turn=4096, sample_rate=1000)
+    assert log.motion == "rotary"
+    assert log.resolution == pytest.approx(step, rel=1e-12)

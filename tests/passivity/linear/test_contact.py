@@ -318,7 +318,7 @@ def _numbers(weights):
         (("law", "weights"), [], "H(z) is not the wall"),
         (("law", "weights"), "1", "weights must be a list"),
         (("law", "stiffness_N_per_rad"), "3", "unit of stiffness"),
-        (("loop", "delay_s"), "0.0015", "no whole number of samples"),
+        (("loop", "delay_s"), "0.0015", "a whole number of samples"),
         (("loop", "damping_N_s_per_m"), "0.3099", "damping is below"),
         (("loop", "coulomb_friction_N"), "0.0649", "Coulomb friction is below"),
     ],

@@ -159,3 +159,45 @@ def test_solids_that_are_touched_and_left(solid, delay, covered):
     verdict = check_by_closed_forms(device, solid)
     assert verdict.outcome == ("passive" if covered else "passive in contact")
     assert (verdict.certificate.covered().contact == "made and broken") is covered
+
+
+def touched_coupling(random):
+    """A coupling before a wall, and the least b and f_c of a device that renders it, T = Δ = 1."""
+    stiffness, damping, wall = (Fraction(random.randint(1, 40), 8) for _ in range(3))
+    pole = damping / (wall + stiffness + damping)
+    rest = wall * stiffness / (wall + stiffness)
+    part = wall * (stiffness + damping) / (wall + stiffness + damping) - rest
+    need = rest / 2 + part / (1 + pole), (rest + 2 * part) / 2
+    return zw.VirtualCoupling(stiffness, damping, zw.Wall(wall)), need
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_coupling_before_a_wall_relaxes_as_a_solid_does(seed):
+    """Fed with the penetration it is covered, contact made and broken, at its closed form and no less."""
+    coupling, (damping, friction) = touched_coupling(Random(seed))
+    device = zw.Device(damping=damping, coulomb_friction=friction, resolution=1, sample_period=1, delay=0)
+    verdict = check_by_closed_forms(device, coupling)
+    assert verdict.outcome == "passive"
+    assert (verdict.scope.contact, verdict.scope.fed_with) == ("made and broken", "penetration")
+    assert verdict.certificate.verify()
+    for key, value in (("damping", damping), ("coulomb_friction", friction)):
+        less = device.replace(**{key: value * (1 - Fraction(1, 10**9))})
+        assert check_by_closed_forms(less, coupling).outcome != "passive"
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_no_motion_gains_from_a_coupling_at_its_closed_form(seed):
+    """Random motions in and out, the force computed from springs and dashpot alone."""
+    random = Random(seed)
+    coupling, (damping, friction) = touched_coupling(random)
+    assert finite_law(zw.Device(damping=1, sample_period=1, resolution=1), coupling).surface == "penetration"
+    k, c, wall = (v.fraction for v in (coupling.stiffness, coupling.damping, coupling.environment.stiffness))
+    size, x, u, joint, work = random.choice((1, 2, 5, 20)), ZERO, ZERO, ZERO, ZERO
+    for _ in range(60):
+        x2 = moved(random, x, size)
+        before, u = u, max(Fraction(x // 1), ZERO)
+        joint = (k * u + c * (u - before) + c * joint) / (wall + k + c)  # the joint of coupling and wall
+        force, d = (wall * joint if x // 1 > 0 else ZERO), x2 - x
+        work += force * d + damping * d * d + friction * abs(d)
+        assert work >= 0
+        x = x2

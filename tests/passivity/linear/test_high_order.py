@@ -11,9 +11,9 @@ import pytest
 from flint import fmpq_poly, fmpz_poly
 
 import zwidth as zw
-from zwidth.passivity.limits import provable
 from zwidth.passivity.linear import delay_interval, positivity
 from zwidth.passivity.linear.loop import LARGEST_DIGITS, linear_loop
+from zwidth.passivity.parameter_limits import provable
 from zwidth.passivity.witness.sinusoid import sinusoids
 from zwidth.quantity.exact import Exact
 

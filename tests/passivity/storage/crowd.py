@@ -32,8 +32,8 @@ def force(law, readings, resolution):
 class Crowd:
     """A grid, its losses, and hands that are somewhere on it: cells, places in them, readings before."""
 
-    def __init__(self, game, storage=None, seed=0):
-        self.law, self.losses, self.domain = game.law, game.losses, game.domain
+    def __init__(self, program, storage=None, seed=0):
+        self.law, self.losses, self.domain = program.law, program.losses, program.domain
         self.taps = self.law.memory + 1
         self.memory = self.taps - 1 + self.losses.delay
         self.step, self.random = float(self.losses.resolution), np.random.default_rng(seed)

@@ -1,4 +1,4 @@
-"""The game of the worst hand once more, by its definition: explicit readings, one move at a time."""
+"""Value iteration once more, by its definition: explicit readings, one move at a time."""
 
 from __future__ import annotations
 

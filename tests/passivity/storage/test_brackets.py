@@ -9,7 +9,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
 
 BOUNDS = {"penetration": "0.001", "speed": "0.5"}
@@ -293,3 +293,15 @@ def test_what_plays_no_part_has_no_limit(parameter, options, words):
     paddle = zw.catalogue.device("haptic-paddle")
     with pytest.raises(zw.InputError, match=words):
         zw.passive_limit(paddle, zw.Wall(200), parameter, **options)
+
+
+def test_the_gain_of_a_transfer_function_is_bracketed():
+    """A factor on H(z), held against the one that the criterion gives."""
+    law = zw.PulseTransferFunction([100, -30], [1, "-0.2"])
+    ideal = device("0.15", "0.1", resolution=0)
+    bracket = passive_limit(ideal, law, "gain", tolerance=1e-4)
+    assert (bracket.parameter, bracket.unit) == ("environment.gain", "1")
+    assert bracket.passive <= zw.check(ideal, law).max_gain <= bracket.active
+    assert bracket.relative_width < 1e-4
+    with pytest.raises(zw.InputError, match="no parameter 'gain'"):
+        passive_limit(ideal, zw.Wall(100), "gain")

@@ -1,4 +1,5 @@
-"""Hunt–Crossley contacts in the game: friction of half the jump of the force that a toggling hand meets.
+"""Hunt–Crossley contacts by value iteration: friction of half the jump of the force that a toggling hand
+meets.
 
 A hand that toggles over the edge between the counts n − 1 and n, a little way ε to
 either side, meets p(n) (1 + λ Δ/T) going out and p(n − 1) (1 − λ Δ/T) going in, the
@@ -16,7 +17,7 @@ import numpy as np
 import pytest
 
 import zwidth as zw
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.evidence.playback import settled_round
 from zwidth.passivity.storage.grid.grid import Grid
@@ -81,9 +82,9 @@ def test_exponent_one_without_dissipation_is_a_spring_wall():
     held = device("0.16", "0.0165")
     one, other = (program_of(held, law, **BOUNDS) for law in (zw.HuntCrossley(300, 1), zw.Wall(300)))
     assert one.domain == other.domain
-    ours, theirs = (game.prove(8).iteration for game in (one, other))
+    ours, theirs = (program.prove(8).iteration for program in (one, other))
     assert ours.value.shape == theirs.value.shape
-    stored = (played.value * float(played.grid.energy_unit) for played in (ours, theirs))
+    stored = (each.value * float(each.grid.energy_unit) for each in (ours, theirs))
     assert next(stored) == pytest.approx(next(stored), rel=1e-6, abs=1e-12)
 
 
@@ -118,16 +119,16 @@ def test_forces_are_written_down_at_every_reading():
 
 
 @pytest.mark.parametrize("force_resolution", [False, True])
-def test_the_board_has_the_forces_of_the_law(force_resolution):
+def test_the_grid_has_the_forces_of_the_law(force_resolution):
     """To the unit below, for every reading and the one before it, with and without a converter."""
     held = device(8, 1, force_resolution="0.11")
-    game = program_of(held, zw.HuntCrossley(20000, "1.5", 4), force_resolution=force_resolution, **BOUNDS)
-    grid = Grid(game.law, game.losses, game.domain, 4, "outer")
-    step, seen = game.losses.resolution, 0
+    program = program_of(held, zw.HuntCrossley(20000, "1.5", 4), force_resolution=force_resolution, **BOUNDS)
+    grid = Grid(program.law, program.losses, program.domain, 4, "outer")
+    step, seen = program.losses.resolution, 0
     for i, n in enumerate(range(grid.domain.lowest, grid.domain.highest + 1)):
         for j, e in enumerate(range(-grid.domain.reach, grid.domain.reach + 1)):
             if grid.domain.lowest <= n + e <= grid.domain.highest:
-                force = game.law.force((n * step, (n + e) * step))
+                force = program.law.force((n * step, (n + e) * step))
                 assert int(grid.forces[i, j]) == force // grid.force_unit
                 seen += force > 0
     assert seen > 100

@@ -1,4 +1,5 @@
-"""The converter's steps in the game: friction of half the largest rise of the force from count to count.
+"""The converter's steps by value iteration: friction of half the largest rise of the force from count to
+count.
 
 A hand that toggles over an edge, a little way ε to either side, meets the two forces
 of its sides: it takes out J ε, J the rise from one count to the next, and pays
@@ -18,7 +19,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.loop.law import rounded
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.evidence.playback import settled_round
 from zwidth.passivity.storage.law import FiniteLaw, finite_law

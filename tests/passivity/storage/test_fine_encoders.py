@@ -114,8 +114,8 @@ def test_cells_of_many_counts_from_both_sides(name):
 def test_a_coarse_proof_that_was_tampered_with():
     """Every number of the loop, the law and the grid binds; V may nowhere be less by much."""
     loop = device(2**20, "0.04", "0.05", "0.0003")
-    game = program_of(loop, zw.Wall(150), "0.002", "0.5")
-    document = json.loads(json.dumps(game.prove_on_cells(64).documents[0]))
+    program = program_of(loop, zw.Wall(150), "0.002", "0.5")
+    document = json.loads(json.dumps(program.prove_on_cells(64).documents[0]))
     assert checker.verify(document).valid
     for path, value in (
         (("loop", "damping_N_s_per_m"), "0.001"),
@@ -221,14 +221,14 @@ def test_refuting_motions_keep_the_stated_bounds(seed):
 def test_the_way_in_is_as_slow_as_the_hand():
     """A device whose lead-in was half as fast again as the hand."""
     loop = zw.Device(damping=".454", coulomb_friction=".063", resolution="1e-5", sample_period="0.0005")
-    game = program_of(loop, zw.Wall(7600), "8e-5", "0.0262")
-    motion = game.refute(1024)
+    program = program_of(loop, zw.Wall(7600), "8e-5", "0.0262")
+    motion = program.refute(1024)
     assert motion.peak_speed <= 0.0262
     assert f"{motion.peak_speed:.4g} m/s" in motion.describe()
 
 
 def test_this_hand_is_never_worse_than_every_hand():
-    """A wheel of many counts, out of time before any game is over: what covers every hand covers this one."""
+    """A wheel of many counts, out of time at once: what covers every hand covers this one."""
     wheel = zw.Device(
         motion="rotary",
         damping="0.02",

@@ -11,7 +11,7 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
 from zwidth.passivity.storage.losses import Losses, inner_costs, outer_costs
 

@@ -1,4 +1,4 @@
-"""The game on a graphics card: thread by thread in numba's simulator of CUDA, on tiny grids."""
+"""Value iteration on a graphics card: thread by thread in numba's simulator of CUDA, on tiny grids."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ON_CARD = """
 import itertools
 
 import zwidth as zw
-from zwidth.passivity.storage import gpu
+from zwidth.passivity.storage.solve import gpu
 from zwidth.passivity.storage.domain import Domain
 from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.losses import Losses
@@ -82,7 +82,7 @@ def test_without_a_card_one_message_says_what_to_do() -> None:
             pytest.skip("there is a card")
     except ImportError:
         pass
-    with pytest.raises(InputError, match=r"leave out on='gpu'|zwidth\[gpu\]"):
+    with pytest.raises(InputError, match=r"leave out backend='gpu'|zwidth\[gpu\]"):
         value_iteration(_grid(), backend="gpu")
 
 

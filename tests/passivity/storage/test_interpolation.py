@@ -55,7 +55,7 @@ def test_never_more_than_the_true_drag(apart, side):
 
 
 @seeds(30)
-def test_every_move_between_knots_is_covered(seed):
+def test_every_move_between_nodes_is_covered(seed):
     """V and V' drawn at random, just large enough at the nodes: then nowhere between them too small."""
     random = Random(seed)
     steps, drag, force = 5, Fraction(random.randint(0, 9), 4), Fraction(random.randint(-9, 9), 2)
@@ -114,7 +114,7 @@ def _descended(random, apart, spared):
 
 
 @seeds(20)
-def test_the_boards_costs_are_these(seed):
+def test_the_costs_of_a_grid_are_these(seed):
     """Outer: at most φ D + β L(D) of the true friction and drag; inner: at least φ D + β D²."""
     random = Random(seed)
     losses = Losses(

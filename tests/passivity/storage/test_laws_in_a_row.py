@@ -1,4 +1,4 @@
-"""Laws in a row against the worst hand: the table of the law, the game on it, its proofs and motions."""
+"""Laws in a row: the table of the law, value iteration on it, its proofs and motions."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ def device(damping="0.26", friction="0.027", delay=0, **more):
 DEVICE = device()
 
 
-def played(environment, *laws, at=DEVICE, **more):
-    """The outcome of the game against laws in a row."""
+def decided(environment, *laws, at=DEVICE, **more):
+    """The outcome for laws in a row."""
     return zw.worst_hand(at, zw.render(environment, *laws), **{**BOUNDS, **more})
 
 
 @cache
 def proved():
     """A storage function of a wall with hysteresis and a force limit, and its document as it is saved."""
-    found = played(zw.Wall(200), rendering.Hysteresis("0.005", 150), rendering.Saturation("0.11"))
+    found = decided(zw.Wall(200), rendering.Hysteresis("0.005", 150), rendering.Saturation("0.11"))
     assert found.outcome == "passive"
     return found, json.loads(json.dumps(found.certificate.to_dict(), default=str))
 
@@ -59,7 +59,7 @@ def proved():
 @cache
 def refuted():
     """A motion against the same with too wide a hysteresis."""
-    found = played(zw.Wall(200), rendering.Hysteresis("0.05", 900))
+    found = decided(zw.Wall(200), rendering.Hysteresis("0.05", 900))
     assert found.outcome == "active"
     return found
 
@@ -84,7 +84,7 @@ SAME = {
 
 @pytest.mark.parametrize("name", SAME)
 def test_the_bracket_of_a_wall_alone_is_that_of_the_wall_behind_such_a_law(name):
-    """The game on the table and the game on differences of readings find the same limit."""
+    """Value iteration on the table and on differences of readings find the same limit."""
     at, wall, laws, counted = SAME[name]
     alone = zw.passive_limit(at, wall, **BOUNDS, **counted)
     if laws[0] is not FREE:
@@ -102,7 +102,7 @@ def test_the_bracket_of_a_wall_alone_is_that_of_the_wall_behind_such_a_law(name)
 def test_looking_ahead_is_a_filter_of_two_readings(stiffness):
     """x̂ = x_k + ½ (x_k − x_{k−1}) before a spring on both sides is H(z) = K (1.5 − 0.5/z)."""
     at = device("0.12", "0.02")
-    row = played(zw.PulseTransferFunction([stiffness], [1]), rendering.Extrapolation(), at=at)
+    row = decided(zw.PulseTransferFunction([stiffness], [1]), rendering.Extrapolation(), at=at)
     filtered = zw.PulseTransferFunction([1.5 * stiffness, -0.5 * stiffness], [1, 0])
     other = zw.worst_hand(at, filtered, **BOUNDS)
     assert row.outcome == other.outcome != "undecided"
@@ -113,7 +113,7 @@ def test_hysteresis_needs_its_width_in_friction(part, outcome):
     """To and fro over one edge is paid h + KΔ/2 each way: f_c must be as much; with K ≤ 2b/T it may."""
     at = device("0.5", "0.05")  # 2b/T = 1000 N/m; KΔ/2 = 0.01 N
     width = (Fraction("0.05") - Fraction("0.01")) * Fraction(part)
-    found = played(zw.Wall(200), rendering.Hysteresis(width, 2000), at=at)
+    found = decided(zw.Wall(200), rendering.Hysteresis(width, 2000), at=at)
     assert found.outcome == outcome
 
 
@@ -170,16 +170,16 @@ def test_no_move_of_random_hands_takes_out_more_than_the_storage_falls():
 def test_a_law_that_remembers_too_much_is_refused():
     """The energy that a controller has counted takes as many values as there are motions."""
     with pytest.raises(zw.InputError, match=r"does not close within 100,000 states .* remembers too much"):
-        played(zw.Wall(200), rendering.PassivityController())
+        decided(zw.Wall(200), rendering.PassivityController())
 
 
 def test_an_adaptive_window_of_three_readings_closes_and_one_of_fifteen_does_not():
     """What is remembered grows with the power of it."""
     short = rendering.Damper("0.05", rendering.AdaptiveWindow(longest=3))
     bounds = {"penetration": "0.0004", "speed": "0.3"}
-    assert played(zw.Wall(100), short, **bounds).outcome == "passive"
+    assert decided(zw.Wall(100), short, **bounds).outcome == "passive"
     with pytest.raises(zw.InputError, match="does not close"):
-        played(zw.Wall(100), rendering.Damper("0.05", rendering.AdaptiveWindow()), **bounds)
+        decided(zw.Wall(100), rendering.Damper("0.05", rendering.AdaptiveWindow()), **bounds)
 
 
 def test_bounds_are_chosen_where_none_are_given():
@@ -190,14 +190,14 @@ def test_bounds_are_chosen_where_none_are_given():
     assert much.domain.highest < 31
 
 
-def test_what_cannot_be_played_is_said():
+def test_what_cannot_be_iterated_is_said():
     """Part of a sample of delay, no force limit to count, an ideal encoder, a card."""
     law = zw.render(zw.Wall(200), FREE)
     for at, more, said in (
         (device(delay=Fraction(1, 2)), {}, "delays of whole samples"),
         (DEVICE, {"force_limit": True}, "force_limit is to be counted in"),
         (DEVICE.replace(resolution=0), {}, "ideal encoder"),
-        (DEVICE, {"on": "gpu"}, "leave out on"),
+        (DEVICE, {"backend": "gpu"}, "leave out backend"),
     ):
         with pytest.raises(zw.InputError, match=said):
             zw.worst_hand(at, law, **more)
@@ -351,28 +351,28 @@ def test_the_storage_is_shown_over_all_that_the_law_may_remember():
     least, most = energy.sel(remembered="least"), energy.sel(remembered="most")
     assert (most >= least).all()
     assert float((most - least).max()) > 0
-    game = found.storage.iteration
-    assert float(most.max()) == float(game.value.max() * game.grid.energy_unit)
+    storage = found.storage
+    assert float(most.max()) == float(storage.value.max() * storage.grid.energy_unit)
     lines = storage_figure(found).axes[0].lines
     assert [line.get_gid() for line in lines] == ["most"]
 
 
-def test_a_reading_off_the_board_leaves_its_row_alone():
+def test_a_reading_off_the_grid_leaves_its_row_alone():
     """The step that the table is made of stays on the grid."""
-    game = program_of(DEVICE, zw.render(zw.Wall(200), FREE), **BOUNDS)
-    row = game.law.starts[0]
+    program = program_of(DEVICE, zw.render(zw.Wall(200), FREE), **BOUNDS)
+    row = program.law.starts[0]
     out = np.full((1, 5, len(row)), 7.0)
-    after_every_reading(game.law.packed, row[None, :], np.array([0.0]), 1, -1, 1, scratch(), out)
+    after_every_reading(program.law.packed, row[None, :], np.array([0.0]), 1, -1, 1, scratch(), out)
     assert (out[0, [0, 4]] == 7).all()
     assert (out[0, 1:4, -1] == [0, 0, 200 * 1e-4]).all()
 
 
-def test_a_limit_is_sought_on_one_grid():
+def test_a_limit_is_sought_on_one_domain():
     """Where no bounds are given, those on which the law closes as it is hold for every value."""
     law = zw.render(zw.Wall(200), rendering.DualRate(samples=2))
     bracket = zw.passive_limit(DEVICE, law)
     grid = bracket.storage.grid
-    assert (grid.domain.highest + 1, grid.domain.reach) == program_of(DEVICE, law).grid
+    assert (grid.domain.highest + 1, grid.domain.reach) == program_of(DEVICE, law).counts
     assert f"({grid.domain.highest + 1} counts) on either side" in bracket.hand
     assert bracket.passive > 10**12  # its slope is never more than 2b/T
     assert bracket.active is None
@@ -392,4 +392,4 @@ def test_a_very_long_memory_is_refused_before_it_fills_the_machine():
     """A thousand readings in each state: few states are enough to say no."""
     law = rendering.Damper("0.05", rendering.AdaptiveWindow(longest=1000))
     with pytest.raises(zw.InputError, match=r"within 19,\d+ states"):
-        played(zw.Wall(100), law)
+        decided(zw.Wall(100), law)

@@ -1,4 +1,4 @@
-"""The worst hand and the closed forms on random walls near their limits: never a contradiction."""
+"""Available storage and the closed forms on random walls near their limits: never a contradiction."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ BENCHMARKS = Path(__file__).resolve().parents[3] / "benchmarks"
 
 sys.path.insert(0, str(BENCHMARKS))
 try:
-    import random_games
+    import random_walls
 finally:
     sys.path.pop(0)
 
 
 def tallied(seed, loops, replay):
     """What came out of so many loops."""
-    tally = random_games.Tally()
+    tally = random_walls.Tally()
     for number in range(loops):
-        random_games.compare(random_games.random_loop(Random(f"{seed} {number}")), tally, replay)
+        random_walls.compare(random_walls.random_loop(Random(f"{seed} {number}")), tally, replay)
     return tally
 
 
@@ -36,7 +36,7 @@ def test_no_contradiction(seed):
     """30 loops each; both verdicts occur, proofs of every kind among them."""
     tally = tallied(seed, 30, replay=False)
     assert not wrong(tally)
-    outcomes = Counter(text.split(", game ")[1] for text in tally.outcomes.elements())
+    outcomes = Counter(text.split(", storage ")[1] for text in tally.outcomes.elements())
     assert min(outcomes["passive"], outcomes["active"]) > 5
     assert any(text.startswith("check passive contact") for text in tally.outcomes)
 
@@ -50,11 +50,11 @@ def test_motions_replayed():
 
 
 def test_a_contradiction_would_be_seen(monkeypatch):
-    """With the friction taken out of the game's device only, proofs of the check meet motions."""
-    honest = random_games.losses_of
+    """With the friction taken out of the program's device only, proofs of the check meet motions."""
+    honest = random_walls.losses_of
 
     def without_friction(device):
         return honest(device.replace(coulomb_friction=device.exact("coulomb_friction") / 3))
 
-    monkeypatch.setattr(random_games, "losses_of", without_friction)
+    monkeypatch.setattr(random_walls, "losses_of", without_friction)
     assert "proof against motion" in wrong(tallied("a", 20, replay=False))

@@ -9,7 +9,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.passivity.passive_limit import passive_limit
+from zwidth.passivity.bracket import passive_limit
 from zwidth.passivity.storage import available_storage
 
 BOUNDS = {"penetration": "0.0008", "speed": "0.8"}

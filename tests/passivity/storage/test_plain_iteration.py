@@ -1,4 +1,4 @@
-"""`play` against the same game by its definition: the same outcome, and the same V to the last unit."""
+"""`value_iteration` against the same by its definition: the same outcome, and the same V to the last unit."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def domain_of(random, law, delay):
     reach = 1 if memory >= 2 else random.choice([1, 2])
     fastest = reach - Fraction(random.choice([0, 0, 1, 2]), 5)
     lowest = -2 if law.surface == "none" else 1 - (memory + 1) * reach
-    return Domain(lowest, 2, reach, fastest=fastest)
+    return Domain(lowest, 2, reach, max_speed=fastest)
 
 
 def column(grid, cell, before):
@@ -107,14 +107,14 @@ def compared(grid, plain, zeros):
     if zeros:
         grid.__dict__["first_guess"] = np.zeros_like(grid.first_guess)
     value, loop = plain.solved(_as_states(grid, plain, grid.first_guess))
-    played = value_iteration(grid)
+    iteration = value_iteration(grid)
     if loop is not None:
-        assert played.value is None
-        assert played.cycle
-        return "active", played
-    assert played.cycle == ()
-    assert _as_states(grid, plain, played.value) == value
-    return "passive", played
+        assert iteration.value is None
+        assert iteration.cycle
+        return "active", iteration
+    assert iteration.cycle == ()
+    assert _as_states(grid, plain, iteration.value) == value
+    return "passive", iteration
 
 
 def _as_states(grid, plain, value):
@@ -128,7 +128,7 @@ def _as_states(grid, plain, value):
 @pytest.mark.parametrize("approximation", ["outer", "inner"])
 @pytest.mark.parametrize("name", LAWS)
 def test_the_same_value_in_every_state(name, approximation):
-    """From the guess of the program and from nothing, passive and active."""
+    """From the first guess and from nothing, passive and active."""
     seen = []
     for seed, easier in product(range(5), (Fraction(1, 8), Fraction(1, 3), 1, 2)):
         random = Random(f"{name} {seed}")
@@ -137,11 +137,11 @@ def test_the_same_value_in_every_state(name, approximation):
         grid = Grid(law, losses, domain, random.choice([2, 3, 4]), approximation)
         nodes = grid.nodes.tolist() if approximation == "inner" else list(range(grid.steps + 1))
         plain = PlainIteration(law, losses, domain, grid.steps, nodes, approximation, grid.force_unit)
-        outcome, played = compared(grid, plain, zeros=seed % 2 == 1)
+        outcome, iteration = compared(grid, plain, zeros=seed % 2 == 1)
         seen.append(outcome)
         if approximation == "inner" and outcome == "active":
-            positions = [Fraction(node, grid.steps) for node, _ in played.cycle]
-            cells = [cell for _, cell in played.cycle]
+            positions = [Fraction(node, grid.steps) for node, _ in iteration.cycle]
+            cells = [cell for _, cell in iteration.cycle]
             assert all(0 <= x - n <= 1 for x, n in zip(positions, cells, strict=True))
             assert all(domain.lowest <= n <= domain.highest for n in cells)
             moves = [abs(a - b) for a, b in zip(positions, [*positions[1:], positions[0]], strict=True)]
@@ -163,8 +163,8 @@ def test_what_gains_by_the_inner_costs_gains_by_the_outer_ones(seed):
     assert not (inner.cycle and outer.value is not None)
 
 
-def test_a_board_is_not_played_when_there_is_no_time():
+def test_nothing_is_iterated_when_there_is_no_time():
     """A deadline in the past leaves neither a value nor a cycle."""
     law, losses = drawn(Random(1), "damped", 1)
-    played = value_iteration(Grid(law, losses, Domain(-3, 2, 2), 4, "outer"), deadline=0.0)
-    assert (played.value, played.cycle, played.rounds) == (None, (), 0)
+    iteration = value_iteration(Grid(law, losses, Domain(-3, 2, 2), 4, "outer"), deadline=0.0)
+    assert (iteration.value, iteration.cycle, iteration.rounds) == (None, (), 0)

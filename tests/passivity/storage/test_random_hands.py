@@ -70,7 +70,7 @@ def counted(loop):
 
 @cache
 def proved(name):
-    """The game and the storage function."""
+    """The dynamic program and the storage function."""
     loop, law = LOOPS[name]
     found = available_storage(loop, law, **counted(loop), **bounds(name))
     assert found.outcome == "passive"
@@ -78,7 +78,7 @@ def proved(name):
 
 
 def weaker(name, share):
-    """The same game on a device with a share of the damping and friction."""
+    """The same on a device with a share of the damping and friction."""
     loop, law = LOOPS[name]
     less = {key: loop.exact(key) * share for key in ("damping", "coulomb_friction")}
     return program_of(loop.replace(**less), law, **counted(loop), **bounds(name))
@@ -151,24 +151,24 @@ def test_hands_get_out_no_more_than_was_stored_at_the_start(name):
 @pytest.mark.parametrize("name", [n for n, (_, law) in LOOPS.items() if law.unilateral])
 def test_nor_hands_that_go_far_away_in_between(name):
     """Outside of the grid nothing is stored: a hand that leaves it and comes back takes no more."""
-    game, storage = proved(name)
-    crowd = Crowd(game, storage, seed=4)
-    number, reach = 4000, game.domain.reach
+    program, storage = proved(name)
+    crowd = Crowd(program, storage, seed=4)
+    number, reach = 4000, program.domain.reach
     cells, places = np.zeros(number, np.int64), crowd.place(number)
     before = np.zeros((number, crowd.memory), np.int64)
     at_start, out, most = crowd.stored(cells, places, before), np.zeros(number), np.zeros(number)
     left_the_grid = np.zeros(number, bool)
     for _ in range(80):
         ahead = crowd.random.integers(-reach, reach + 1, number)
-        there = np.minimum(cells + ahead, game.domain.highest)
+        there = np.minimum(cells + ahead, program.domain.highest)
         stop = crowd.place(number)
-        too_far = abs(there - cells + (stop - places)) > float(game.domain.speed)
+        too_far = abs(there - cells + (stop - places)) > float(program.domain.speed)
         there, stop = np.where(too_far, cells, there), np.where(too_far, places, stop)
         out += crowd.energy(cells, places, before, there, stop)
         before = crowd.after(cells, before)
         cells, places = there, stop
         most = np.maximum(most, out)
-        left_the_grid |= cells < game.domain.lowest
+        left_the_grid |= cells < program.domain.lowest
     assert left_the_grid.mean() > 0.3
     assert (most <= at_start + 1e-12 * crowd.value.max()).all()
 

@@ -32,7 +32,7 @@ def _drawn(rng, memory):
 
 
 def _start(rng, grid):
-    """V as a game may begin and go on, hills that are worth a walk, or any whole numbers."""
+    """V as an iteration may begin and go on, hills that are worth a walk, or any whole numbers."""
     guess = grid.first_guess
     some = (guess * rng.random(guess.shape)).astype(np.int64)
     x = np.arange(grid.domain.cells)[:, None] * grid.steps + grid.nodes

@@ -54,19 +54,21 @@ def least(name):
     """The smallest storage function there is, every value of it attained by a move; and its document."""
     loop, law = LOOPS[name]
     counted = {f"force_{key}": getattr(loop, f"force_{key}") is not None for key in ("limit", "resolution")}
-    game = program_of(loop, law, **counted, **BOUNDS)
+    program = program_of(loop, law, **counted, **BOUNDS)
 
     class FromNothing(Grid):
         """A grid whose search starts at 0."""
 
         first_guess = property(lambda b: np.zeros((b.domain.cells, b.histories, len(b.nodes)), np.int64))
 
-    played = value_iteration(FromNothing(game.law, game.losses, game.domain, 8, "outer"))
-    assert played.value is not None
-    document = json.loads(json.dumps(StorageFunction(played, "linear").certificate().to_dict(), default=str))
+    iteration = value_iteration(FromNothing(program.law, program.losses, program.domain, 8, "outer"))
+    assert iteration.value is not None
+    document = json.loads(
+        json.dumps(StorageFunction(iteration, "linear").certificate().to_dict(), default=str)
+    )
     verification = checker.verify(document)
     assert verification.valid, verification.reason
-    return played, document
+    return iteration, document
 
 
 def packed(value):
@@ -179,7 +181,7 @@ def test_every_number_of_the_law_binds(name):
 
 
 @pytest.mark.parametrize("name", LOOPS)
-def test_every_number_of_the_board_binds(name):
+def test_every_number_of_the_grid_binds(name):
     """Cells, reach, steps and unit, one more or less; and sizes that no grid has."""
     _, document = least(name)
     domain = document["domain"]
@@ -197,8 +199,8 @@ def test_every_number_of_the_board_binds(name):
 @pytest.mark.parametrize("name", LOOPS)
 def test_one_value_less_by_one_unit(name):
     """Every positive value is attained by a move: one unit less anywhere is too little."""
-    played, document = least(name)
-    value, random = played.value, Random(name)
+    iteration, document = least(name)
+    value, random = iteration.value, Random(name)
     places = np.argwhere(value > 0)
     assert len(places) > 10
     for at in random.sample([tuple(p) for p in places], min(len(places), 100)):
@@ -210,11 +212,11 @@ def test_one_value_less_by_one_unit(name):
 @pytest.mark.parametrize("name", LOOPS)
 def test_one_value_far_too_large(name):
     """What is said to be stored in one place must be stored in those from where one comes there."""
-    played, document = least(name)
-    random, cells = Random(name), len(played.value)
-    middle = played.grid.histories // 2
+    iteration, document = least(name)
+    random, cells = Random(name), len(iteration.value)
+    middle = iteration.grid.histories // 2
     for _ in range(20):
-        more = played.value.copy()
+        more = iteration.value.copy()
         cell, node = random.randrange(1, cells - 1), random.randrange(more.shape[2])
         more[cell, middle, node] += 2**40
         assert "takes out more" in rejected(changed(document, ("storage",), packed(more)))
@@ -223,8 +225,8 @@ def test_one_value_far_too_large(name):
 @pytest.mark.parametrize("name", LOOPS)
 def test_values_that_are_none(name):
     """Text cut short, another number of values, below 0, too large, no text."""
-    played, document = least(name)
-    text, value = document["storage"], played.value
+    iteration, document = least(name)
+    text, value = document["storage"], iteration.value
     negative = value.copy()
     negative[np.unravel_index(value.argmin(), value.shape)] = -1
     reasons = {
@@ -317,8 +319,8 @@ def test_nothing_in_a_document_raises(name):
 def active():
     """A wall that is too stiff, and the document of a motion that gains."""
     loop = device("0.2", "0.02", 0)
-    game = program_of(loop, zw.Wall(300, "0.1"), **BOUNDS)
-    motion = game.refute(1024)
+    program = program_of(loop, zw.Wall(300, "0.1"), **BOUNDS)
+    motion = program.refute(1024)
     assert motion is not None
     document = json.loads(json.dumps(motion.to_dict(), default=str))
     assert checker.verify(document).valid
@@ -366,15 +368,15 @@ def test_the_energy_of_a_motion_is_that_of_the_law_written_out():
     from plain_iteration import exact_force
 
     motion, document = active()
-    game = program_of(device("0.2", "0.02", 0), zw.Wall(300, "0.1"), **BOUNDS)
+    program = program_of(device("0.2", "0.02", 0), zw.Wall(300, "0.1"), **BOUNDS)
     positions = motion.motion.listed().positions
-    step, out = game.losses.resolution, Fraction(0)
+    step, out = program.losses.resolution, Fraction(0)
     counts = [x // step for x in positions]
     for k in range(len(positions) - 1):
         d = positions[k + 1] - positions[k]
-        force = exact_force(game.law, [counts[k], counts[max(k - 1, 0)]], step)
-        out -= force * d + game.losses.coulomb_friction * abs(d)
-        out -= game.losses.damping / game.losses.period * d**2
+        force = exact_force(program.law, [counts[k], counts[max(k - 1, 0)]], step)
+        out -= force * d + program.losses.coulomb_friction * abs(d)
+        out -= program.losses.damping / program.losses.period * d**2
     assert checker.verify(document).energy == motion.exact_energy == out
     more = changed(document, ("repeats", "times"), document["repeats"]["times"] + 1)
     assert checker.verify(more).energy - out == motion.exact_gain

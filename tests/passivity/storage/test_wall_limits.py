@@ -1,4 +1,4 @@
-"""Both sides of the closed limits, by the game alone: springs and damped walls with an encoder."""
+"""Both sides of the closed limits, by value iteration alone: springs and damped walls with an encoder."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ def draw(random, low, high):
 
 
 def program_of(device, wall, inside, reach):
-    """The game on a grid of so many counts."""
+    """The dynamic program of so many counts."""
     law, losses = finite_law(device, wall), losses_of(device)
     outside = 1 - (law.memory + losses.delay + 1) * reach
     return DynamicProgram(law, losses, Domain(outside, inside, reach), device.motion)
 
 
-def proved(game):
+def proved(program):
     """A storage function that the checker accepts."""
-    found = (game.prove(steps) for steps in STEPS)
+    found = (program.prove(steps) for steps in STEPS)
     storage = next((s for s in found if s is not None), None)
     return storage is not None and storage.certificate().verify()
 
 
-def refuted(game):
+def refuted(program):
     """A motion that the checker accepts, or None."""
-    found = (game.refute(steps) for steps in FINE)
+    found = (program.refute(steps) for steps in FINE)
     motion = next((m for m in found if m is not None), None)
     assert motion is None or motion.verify()
     return motion
@@ -141,7 +141,7 @@ def test_a_damped_wall_with_hardly_enough_damping(seed, clamped):
     assert max(abs(d) for d in moves(motion)) > step / 2
 
 
-def test_deeper_than_the_board_a_clamped_wall_is_not_seen():
+def test_deeper_than_the_grid_a_clamped_wall_is_not_seen():
     """Where B v is larger than K x at every depth of the grid, the friction limit does not show."""
     k, period, step = Fraction(100), Fraction(1, 1000), Fraction(1, 10**4)
     b = Fraction(1)  # B/(K T) = 10 counts

@@ -11,7 +11,7 @@ derivatives by lengths, |∂²p/∂q_i∂q_j| ≤ what lies beyond both joints, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import isqrt
 from typing import Any, NamedTuple
@@ -96,7 +96,7 @@ def chain_of(told: Read) -> Chain:
 
 
 def _joint_of(told: Read) -> Joint:
-    require_square(told.rotation, "a rotation is not one")
+    require_square(told.rotation, "the rows of a rotation must be of length 1, at right angles")
     if told.low > told.high:
         raise Invalid("a joint needs low ≤ high")
     return Joint(told.kind == "prismatic", told.rotation, told.translation, told.low, told.high)
@@ -148,9 +148,10 @@ def chain_surplus(
     return surplus
 
 
-def from_end(*listed: Sequence[Any]) -> Iterable[tuple[Any, ...]]:
+def from_end(*listed: Sequence[Any]) -> list[tuple[Any, ...]]:
     """What belongs to each joint, from the end to the base."""
-    return reversed(list(zip(*listed, strict=True)))
+    found: list[tuple[Any, ...]] = list(zip(*listed, strict=True))
+    return found[::-1]
 
 
 def _placements(chain: Chain) -> list[tuple[list[list[Enclosed]], list[Enclosed]]]:

@@ -141,7 +141,7 @@ def _quaternion(r: Matrix) -> list[Fraction]:
     """Along the unit quaternion c of a rotation: the largest row of 4 c cᵀ, which is linear in it."""
     (a, b, c), (d, e, f), (g, h, i) = r
     if a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0:
-        raise Invalid("a rotation mirrors")
+        raise Invalid("a rotation must not mirror")
     rows = [
         [1 + a + e + i, h - f, c - g, d - b],
         [h - f, 1 + a - e - i, b + d, c + g],

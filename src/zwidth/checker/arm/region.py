@@ -124,7 +124,7 @@ def claim_of(told: Read) -> Claim:
 
 def _of_legs(machine: Read, need: list[list[Enclosed]], words: str, pose: Pose, bounded: bool) -> Claim:
     if pose.turns:
-        raise Invalid("a parallel arm holds a point, and no pose")
+        raise Invalid("a parallel arm is proved for walls of position, not of pose")
     legs = legs_of(machine)
     if len(need) != len(legs.legs):
         raise Invalid("the wall has as many coordinates as the arm has legs")
@@ -178,14 +178,16 @@ def _matrices(wall: Read, pose: Pose) -> tuple[Matrix, Matrix, Matrix]:
     if not _semidefinite(stiffness):
         raise Invalid("the stiffness has a negative eigenvalue")
     if not (_semidefinite(_sum(bound, damping, 1)) and _semidefinite(_sum(bound, damping, -1))):
-        raise Invalid("the bound on the virtual damping is no bound")
+        raise Invalid(
+            "the bound on the virtual damping is too small: added or taken off, a negative eigenvalue is left"
+        )
     return stiffness, damping, bound
 
 
 def _price(chain: Chain, loop: Read, limits: tuple[Fraction, Fraction], pose: Pose) -> Fraction:
     """(h F + h_e M) T/2, where h − N ⪰ 0 with N_ij ≥ |∂²p/∂q_i∂q_j|."""
     if loop.delay_samples:
-        raise Invalid("a held torque needs no delay")
+        raise Invalid("a held torque is proved without a delay")
     curvature, most = loop.curvature, bends(chain)
     room = [[(curvature if i == k else 0) - x for k, x in enumerate(row)] for i, row in enumerate(most)]
     if not _semidefinite(room):

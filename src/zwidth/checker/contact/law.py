@@ -191,12 +191,12 @@ def law_of(told: Read) -> Law:
     if bool(told.taps) == bool(points):
         raise Invalid("a law has either taps or points")
     if told.rate_per and not points:
-        raise Invalid("only the force of points may grow with the way since the last reading")
+        raise Invalid("only a law given by points has rate_per")
     relaxing = told.relaxing and (told.relaxing.pole, told.relaxing.stiffness)
     if relaxing and (len(told.taps) != 1 or told.force_step is not None):
-        raise Invalid("a relaxing part stands beside one spring, without the steps of a converter")
+        raise Invalid("a law that relaxes has one tap, and no force_step")
     if told.resets is not None and not relaxing:
-        raise Invalid("only a law that relaxes begins anew")
+        raise Invalid("only a law that relaxes has resets")
     return Law(
         told.taps,
         points,

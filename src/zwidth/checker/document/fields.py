@@ -26,6 +26,9 @@ SHOWN_AT_MOST = 12
 MOST_LETTERS = 60
 """Of the words that say what a document is."""
 
+MOST_LEVELS = 12
+"""Of objects and lists within one another."""
+
 RATIONAL = {"type": "string", "pattern": PATTERN, "maxLength": LONGEST_NUMBER}
 """A number as text, in JSON Schema: `$defs/rational` of every schema."""
 
@@ -480,7 +483,9 @@ def _motion(fields: Record, document: Mapping[str, Any]) -> str:
     told = set(_told(document))
     slides, turns = sorted(told & linear), sorted(told & rotary)
     if slides and turns:
-        raise Invalid(f"a device slides or turns, and one document is of one: {slides[0]} and {turns[0]}")
+        raise Invalid(
+            f"one document has the units of a linear device or of a rotary one: {slides[0]} and {turns[0]}"
+        )
     return ROTARY if turns else LINEAR
 
 
@@ -491,10 +496,10 @@ def _keys_of_one_motion(fields: Record) -> tuple[set[str], set[str]]:
     return linear - rotary, rotary - linear
 
 
-def _told(value: Any, depth: int = 12) -> Iterator[str]:
+def _told(value: Any, depth: int = MOST_LEVELS) -> Iterator[str]:
     """The keys of a document."""
     if depth == 0:
-        raise Invalid("a document is not so deep")
+        raise Invalid(f"a document has at most {MOST_LEVELS} levels")
     if isinstance(value, Mapping):
         for key, inner in value.items():
             yield str(key)

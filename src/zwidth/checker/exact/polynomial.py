@@ -51,7 +51,7 @@ def bits(a: Sequence[int]) -> int:
     return max((c.bit_length() for c in a), default=0)
 
 
-def in_zeta(descending: Sequence[int]) -> list[int]:
+def shifted(descending: Sequence[int]) -> list[int]:
     """A polynomial in z in powers of ζ = z − 1, descending."""
     out: list[int] = []
     for c in descending:  # Horner

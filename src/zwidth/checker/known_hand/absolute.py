@@ -72,7 +72,7 @@ def _multiplier(told: Read) -> dict[int, Fraction]:
     if told.nonlinearity == "monotone" and any(h < 0 for h in taps.values()):
         raise Invalid("a wall that is not odd allows no negative tap")
     if sum(map(abs, taps.values()), Fraction(0)) >= told.center:
-        raise Invalid("the taps outweigh the center")
+        raise Invalid("the taps must weigh less than the center, all together")
     return {0: told.center, **{-place: -weight for place, weight in taps.items()}}
 
 

@@ -18,7 +18,7 @@ from ..document.refusal import Invalid
 from ..document.unit import DAMPING, MASS, SECONDS, STIFFNESS
 from ..exact.crossing import never_crosses
 from ..exact.enclosed import Enclosed, quotient
-from ..exact.polynomial import in_zeta, multiply
+from ..exact.polynomial import multiply, shifted
 from ..exact.schur_cohn import decays
 from .held_motion import Motion, Sampled, motion_of, sampled, sampled_free
 
@@ -76,7 +76,7 @@ def instability(told: Read) -> str:
     """That one does not."""
     loop = _read(told.loop)
     if loop.motion.middle != loop.motion:
-        raise Invalid("what does not come to rest must be certain")
+        raise Invalid("that a loop does not come to rest is proved of single values, not of intervals")
     if _decays(loop) is not False:
         raise Invalid("that a root lies on or outside the unit circle could not be confirmed")
     return "device, hand and wall do not come to rest, contact kept: a disturbance does not die out"
@@ -88,7 +88,7 @@ def _read(loop: Read) -> _Loop:
     if below[0] == 0 or len(above) > len(below):
         raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
     scale = common_scale((*above, *below))
-    return _Loop(motion, *(in_zeta([int(c * scale) for c in part]) for part in (above, below)))
+    return _Loop(motion, *(shifted([int(c * scale) for c in part]) for part in (above, below)))
 
 
 def _decays(loop: _Loop) -> bool | None:

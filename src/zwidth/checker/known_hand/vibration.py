@@ -40,7 +40,7 @@ VIBRATION = document(
 def vibration(told: Read) -> str:
     """Say what was proved."""
     if len(set(told.inside)) < 2:
-        raise Invalid("some samples must find the wall and some not")
+        raise Invalid("the pattern must have samples inside the wall and samples outside")
     order = len(_plant(told, PRECISIONS[0])[1])
     if order > MOST_ORDER or order**2 * len(told.inside) > MOST_EFFORT:
         raise Invalid("the order of G(z) is too high, or the motion too long for it")

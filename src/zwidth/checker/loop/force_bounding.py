@@ -80,7 +80,7 @@ def _moves_are_paid(device: _Device, law: Read) -> None:
     bracket is a quadratic form that is ≥ 0 exactly if its determinant is.
     """
     if law.friction * (1 + law.roundoff) > device.friction:
-        raise Invalid("the law credits more Coulomb friction than the device has, or not a rounding less")
+        raise Invalid("the law must credit less Coulomb friction than the device has, by a rounding at least")
     kappa = 1 / (4 * law.credit)
     if device.rate * kappa - Fraction(1, 4) < 0:
         raise Invalid("the law credits more than b/T for a move")

@@ -53,7 +53,7 @@ def delays(told: Read) -> str:
         raise Invalid("delays within an interval need damping and a law that is stable by itself")
     require_stable(proof.stability, p)
     if told.delay_high / p.period > MOST_DELAY:
-        raise Invalid("the delays of the interval must be of ordinary size")
+        raise Invalid(f"the delay is more than {MOST_DELAY} samples")
     reached = p.whole + p.part
     for piece in proof.pieces:
         if piece.low != reached:

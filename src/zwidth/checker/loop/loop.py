@@ -76,7 +76,7 @@ def proper(
 def require_whole_delay(p: Loop) -> None:
     """Refuse a delay that ends within a sample."""
     if p.part:
-        raise Invalid("the delay is no whole number of samples")
+        raise Invalid("the delay must be a whole number of samples")
 
 
 def require_surface(p: Loop) -> None:

@@ -33,7 +33,7 @@ def nonlinear_spring(told: Read) -> str:
     loop, points = told.loop, increasing(told.law.points, _POSITIONS)
     period, delay = loop.sample_period, loop.delay
     if delay % period or delay // period > MOST_DELAY:
-        raise Invalid("a nonlinear spring is proved for delays of whole samples, not too many")
+        raise Invalid(f"a nonlinear spring is proved for delays of whole samples, at most {MOST_DELAY}")
     if points[0][1] > 0 or points[-1][1] < 0:
         raise Invalid("beyond its ends the spring pulls away for ever: its potential has no lowest value")
     slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in pairwise(points)]

@@ -84,7 +84,7 @@ def extraction(told: Read) -> tuple[str, Fraction]:
     """
     p, motion = port_of(told), told.motion
     if p.continuous == (motion.kind == "sequence"):
-        raise Invalid(f"no {motion.kind!r} motion in this time")
+        raise Invalid("a continuous port is moved by a burst or a polynomial, a discrete one by a sequence")
     sums = {"burst": _burst, "polynomial": _polynomial, "sequence": _sequence}
     energy = -sums[motion.kind](p, motion) * (Fraction(pi) if motion.kind == "burst" else 1)
     if energy <= 0:
@@ -128,7 +128,7 @@ def _require_few_lines(p: Port, motion: Read) -> None:
     It has 2k + 1 lines; powers of the frequency of each are taken, for every entry of a matrix.
     """
     if motion.cycles <= motion.power or 2 * motion.power < p.order:
-        raise Invalid("a burst that begins and ends at rest has more cycles than its power, and power enough")
+        raise Invalid("a burst must have more cycles than its power, and a power of half the order or more")
     lines = p.axes**2 * (2 * motion.power + 1) * (p.order + 1) ** 2
     if lines * (16 + _bits((motion.cycles + motion.power) * _short(motion.step))) > MOST_LINES:
         raise Invalid("the burst has too many lines for so large a port")

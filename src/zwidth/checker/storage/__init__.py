@@ -1,1 +1,1 @@
-"""Storage functions on a board of readings, every move one by one."""
+"""Storage functions on a grid of readings, every move one by one."""

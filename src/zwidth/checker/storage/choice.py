@@ -6,8 +6,8 @@ from collections.abc import Callable
 from importlib import import_module
 
 from ..document.fields import Read
-from .board import storage
 from .coarse import coarse_storage
+from .grid import storage
 from .plainly import coarse_storage_plainly, row_storage_plainly, storage_plainly
 from .row import storage_of_row
 

@@ -54,7 +54,7 @@ class _Line(NamedTuple):
     """Cells of length h from low to high; moves of so many cells; the corners' places, whether inside."""
 
     length: Fraction
-    fastest: Fraction
+    max_move: Fraction
     reach: int
     memory: int
     places: list[int]
@@ -74,7 +74,7 @@ def coarse_storage(told: Read) -> str:
     width = 2 * line.reach + 1
     shape = (len(line.places), width**line.memory)
     if shape[0] * shape[1] > MOST_VALUES:
-        raise Invalid("the board is larger than can be checked")
+        raise Invalid("the grid is larger than can be checked")
     reserve(60 * shape[0] * shape[1])
     spend(PAIR * shape[0] * shape[1] * (2 * width + 1) * (2 if losses.part < 1 else 1))
     value = storage_of(told.storage, shape)
@@ -111,25 +111,25 @@ def proved(told: Read, losses: Losses) -> str:
 
 
 def _line(domain: Read, losses: Losses, law: Law) -> _Line:
-    low, high, fastest = domain.lowest_cell, domain.highest_cell, domain.largest_move_cells
+    low, high, max_move = domain.lowest_cell, domain.highest_cell, domain.largest_move_cells
     length = domain.counts_per_cell * losses.resolution
     if high - low > MOST_CELLS:
-        raise Invalid("the board has more cells than can be checked")
+        raise Invalid("the grid has more cells than can be checked")
     memory = law.memory + losses.delay
-    if law.surface != "none" and low > -(memory + 1) * fastest:
-        raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
+    if law.surface != "none" and low > -(memory + 1) * max_move:
+        raise Invalid("the grid must reach so far out that a hand beyond it has been forgotten")
     if law.surface == "none" and low * length + losses.resolution > -high * length:
-        raise Invalid("the board must reach as far on the one side as on the other")
+        raise Invalid("the grid must reach as far on the one side as on the other")
     if domain.remembered != memory:
         raise Invalid("the law remembers another number of readings")
     sheets = law.surface != "none"
     places = [*range(low, 1), *range(0 if sheets else 1, high + 1)]
     inside = [not sheets or k >= 1 - low for k in range(len(places))]
-    return _Line(length, fastest, ceil(fastest) + sheets, memory, places, inside)
+    return _Line(length, max_move, ceil(max_move) + sheets, memory, places, inside)
 
 
 def _columns(line: _Line) -> Any:
-    """The corners that are remembered, by the present one and by history; beyond the board at its ends."""
+    """The corners that are remembered, by the present one and by history; beyond the grid at its ends."""
     import numpy as np
 
     histories = histories_of(line.reach, line.memory)
@@ -175,6 +175,6 @@ def _costs(law: Law, losses: Losses, line: _Line, unit: Fraction, off: int, part
     bend = max(rising, falling)
     drag = damping / (part * losses.period) * line.length // unit
     lost = -(-bend * line.length // unit)
-    far = np.arange(ceil(line.fastest * part) + 1, dtype=object)
+    far = np.arange(ceil(line.max_move * part) + 1, dtype=object)
     curved = np.where(far > 1, drag * far * far - -(-(drag + lost) // 4), np.where(far > 0, -lost, 0))
     return (friction // unit - off) * far + curved

@@ -1,6 +1,6 @@
-"""The board of a storage function: its readings, the longest move, what moves cost, what is known in the end.
+"""The grid of a storage function: its readings, the longest move, what moves cost, what is known in the end.
 
-The law of these costs stands in `board`.
+The law of these costs stands in `grid`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..document.number import down
 MOST_VALUES = 60_000_000
 MOST_MOVES = 10_000_000
 PAIR = 1 / 30
-"""What a move from one knot to one other costs, in steps of work: 300 million take a second."""
+"""What a move from one node to one other costs, in steps of work: 300 million take a second."""
 
 FARTHEST = 10**7
 """Count."""
@@ -28,26 +28,26 @@ DOMAIN = {
     "largest_move_counts": Number(above=0, most=MOST_MOVES),
     "steps_per_count": Whole(least=1, most=MOST_MOVES),
 }
-"""The readings on the board, and the longest move in one sample."""
+"""The readings on the grid, and the longest move in one sample."""
 
 
 def proved(domain: Read, losses: Losses, law: Law) -> str:
-    """What is known of a board once every move was tried."""
-    low, high, fastest = domain.lowest_count, domain.highest_count, down(domain.largest_move_counts)
+    """What is known of a grid once every move was tried."""
+    low, high, max_move = domain.lowest_count, domain.highest_count, down(domain.largest_move_counts)
     inside = law.surface != "none" and law.relaxing is None
     side = f"up to {high + 1} counts inside" if inside else f"from {low} to {high + 1} counts"
     return (
         "no move takes out more than the storage function falls, "
-        f"at any position {side} and with any memory, for moves of up to {fastest} counts a sample"
+        f"at any position {side} and with any memory, for moves of up to {max_move} counts a sample"
         + ("" if losses.part == 1 else ", as fast in each part of a sample with one force")
     )
 
 
-def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, fastest: Fraction, steps: int) -> Any:
+def costs_of(losses: Losses, unit: Fraction, off: int, part: Fraction, max_move: Fraction, steps: int) -> Any:
     """What a move over 0, 1, … steps in a part of the interval costs."""
     import numpy as np
 
-    far = np.arange(ceil(fastest * steps * part) + 1, dtype=object)
+    far = np.arange(ceil(max_move * steps * part) + 1, dtype=object)
     costs = []
     for friction, damping in losses.models:
         drag = damping / (part * losses.period) * (losses.resolution / steps) // unit

@@ -14,18 +14,18 @@ def first_violation(value: Any, exists: Any, forces: Any, costs: Any, reach: int
 
     value is (cells, histories, steps + 1), forces and exists are (cells, histories).
     """
-    cells, histories, knots = value.shape
+    cells, histories, nodes = value.shape
     width = 2 * reach + 1
     older = histories // width if histories > 1 else 1
     worst = np.full(cells, -1, np.int64)
     for n in prange(cells):
-        gain, move = np.empty(width * knots), np.empty(width * knots)
+        gain, move = np.empty(width * nodes), np.empty(width * nodes)
         for newer in range(older):
-            for j in range(knots):
+            for j in range(nodes):
                 size = 0
                 for n2 in range(max(0, n - reach), min(cells, n + reach + 1)):
                     h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
-                    for j2 in range(knots):
+                    for j2 in range(nodes):
                         d = (n2 - n) * steps + j2 - j
                         if abs(d) < costs.size:
                             gain[size] = value[n2, h2, j2] - costs[abs(d)]
@@ -43,7 +43,7 @@ def first_violation(value: Any, exists: Any, forces: Any, costs: Any, reach: int
                             best = max(best, gain[t] - f * move[t])
                         done_force, done_best = f, best
                     if value[n, h, j] < done_best and worst[n] < 0:
-                        worst[n] = (n * histories + h) * knots + j
+                        worst[n] = (n * histories + h) * nodes + j
     for n in range(cells):
         if worst[n] >= 0:
             return int(worst[n])
@@ -62,7 +62,7 @@ def first_violation_in_parts(
     steps: int,
 ) -> int:
     """The same where each interval is two moves with two forces, the hand anywhere between them."""
-    cells, histories, knots = value.shape
+    cells, histories, nodes = value.shape
     width = 2 * reach + 1
     older = histories // width
     worst = np.full(cells, -1, np.int64)
@@ -81,7 +81,7 @@ def first_violation_in_parts(
             goal[:] = -1.0
             for n2 in range(low, high):
                 h2 = (n - n2 + reach) * older + newer
-                for j2 in range(knots):
+                for j2 in range(nodes):
                     at = (n2 - low) * steps + j2
                     goal[at] = max(goal[at], value[n2, h2, j2])
             for m in range(size):
@@ -93,13 +93,13 @@ def first_violation_in_parts(
                 if not exists[n, h]:
                     continue
                 f = forces[n, h]
-                for j in range(knots):
+                for j in range(nodes):
                     best = 0.0
                     at = j - start
                     for m in range(max(0, at - costs.size + 1), min(size, at + costs.size)):
                         best = max(best, middle[m] - f * (m - at) - costs[abs(m - at)])
                     if value[n, h, j] < best and worst[n] < 0:
-                        worst[n] = (n * histories + h) * knots + j
+                        worst[n] = (n * histories + h) * nodes + j
     for n in range(cells):
         if worst[n] >= 0:
             return int(worst[n])
@@ -108,20 +108,20 @@ def first_violation_in_parts(
 
 @njit(cache=True, parallel=True)
 def first_violation_in_table(value: Any, successors: Any, forces: Any, costs: Any, steps: int) -> int:
-    """The same where a table says which state follows, −1 off the board; value is (states, steps + 1)."""
-    states, knots = value.shape
+    """The same where a table says which state follows, −1 off the grid; value is (states, steps + 1)."""
+    states, nodes = value.shape
     reach = successors.shape[1] // 2
     worst = np.full(states, -1, np.int64)
     for s in prange(states):
-        for j in range(knots):
+        for j in range(nodes):
             for move in range(2 * reach + 1):
                 then = successors[s, move]
                 if then < 0:
                     continue
-                for j2 in range(knots):
+                for j2 in range(nodes):
                     d = (move - reach) * steps + j2 - j
                     if abs(d) < costs.size and value[s, j] < value[then, j2] - forces[s] * d - costs[abs(d)]:
-                        worst[s] = s * knots + j
+                        worst[s] = s * nodes + j
     for s in range(states):
         if worst[s] >= 0:
             return int(worst[s])
@@ -154,7 +154,7 @@ def first_relaxing_violation(
 
     value is (cells, histories, levels, steps + 1); lower and upper enclose the image of each level.
     """
-    cells, histories, levels, knots = value.shape
+    cells, histories, levels, nodes = value.shape
     older = histories // (2 * reach + 1) if histories > 1 else 1
     worst = np.full(cells, -1, np.int64)
     for n in prange(cells):
@@ -164,8 +164,8 @@ def first_relaxing_violation(
                 continue
             for n2 in range(max(0, n - reach), min(cells, n + reach + 1)):
                 h2 = (n - n2 + reach) * older + h // (2 * reach + 1) if histories > 1 else 0
-                for j in range(knots):
-                    for j2 in range(knots):
+                for j in range(nodes):
+                    for j2 in range(nodes):
                         d = (n2 - n) * steps + j2 - j
                         if abs(d) >= costs.size:
                             continue
@@ -190,7 +190,7 @@ def first_relaxing_violation(
                                     least = have + min((rise * early) >> 16, (rise * late) >> 16)
                                     bad = bad or least < value[n2, h2, passed, j2]
                             if bad and worst[n] < 0:
-                                worst[n] = ((n * histories + h) * levels + i) * knots + j
+                                worst[n] = ((n * histories + h) * levels + i) * nodes + j
     for n in range(cells):
         if worst[n] >= 0:
             return int(worst[n])

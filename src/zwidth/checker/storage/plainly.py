@@ -4,7 +4,7 @@ No move of the hand takes out more energy than V falls:
 
     V(s, x) ≥ −f (x' − x) − c(|x' − x|) + V(s', x')
 
-at all knots x, x', with the cost c of the lemma that extends it to all positions between.  Positions are
+at all nodes x, x', with the cost c of the lemma that extends it to all positions between.  Positions are
 counted in steps (of a line: in cells), energies in units of force times one step.  Forces are those of the
 law itself, in rationals: nothing is rounded, and nothing is allowed for.  So a storage function that the fast
 checks accept, with what they allow for their rounding, is accepted here as well.
@@ -35,7 +35,7 @@ Energies = Mapping[int, Any]
 
 
 def storage_plainly(told: Read) -> str:
-    """Of a board of counts; says what was proved."""
+    """Of a grid of counts; says what was proved."""
     losses, law = losses_of(told.loop), law_of(told.law)
     counts = _counts(told, losses, law)
     costs = [
@@ -167,10 +167,10 @@ def _costs(friction: Fraction, drag: Fraction, bend: Fraction, far: int) -> list
     return [friction * d + curved[d] for d in range(far + 1)]
 
 
-def _parts(losses: Losses, fastest: Fraction) -> list[tuple[Fraction, int]]:
+def _parts(losses: Losses, max_move: Fraction) -> list[tuple[Fraction, int]]:
     """The parts of an interval with one force each, and the farthest whole distance of a move in each."""
     parts = (losses.part, 1 - losses.part)
-    return [(part, ceil(fastest * part)) for part in parts if part > 0]
+    return [(part, ceil(max_move * part)) for part in parts if part > 0]
 
 
 def _raise(goal: dict[int, Any], first: int, values: Sequence[Any]) -> None:
@@ -192,7 +192,7 @@ class _Chain(NamedTuple):
 
     @property
     def size(self) -> int:
-        """Places of V, those of histories that leave the board among them."""
+        """Places of V, those of histories that leave the grid among them."""
         width: int = (2 * self.reach + 1) ** self.memory
         return (self.high - self.low + 1) * width
 
@@ -201,7 +201,7 @@ class _Chain(NamedTuple):
         return range(max(self.low, reading - self.reach), min(self.high, reading + self.reach) + 1)
 
     def states(self) -> list[tuple[int, ...]]:
-        """All readings that are remembered, on the board."""
+        """All readings that are remembered, on the grid."""
         found: list[tuple[int, ...]] = [(reading,) for reading in range(self.low, self.high + 1)]
         for _ in range(self.memory):
             found = [(*readings, older) for readings in found for older in self.near(readings[-1])]
@@ -221,7 +221,7 @@ class _Chain(NamedTuple):
 
 
 class _Counts(NamedTuple):
-    """A board of counts in steps; V at levels of the average `least`, `least` + 1/`per_count`, … [counts]."""
+    """A grid of counts in steps; V at levels of the average `least`, `least` + 1/`per_count`, … [counts]."""
 
     law: Law
     losses: Losses
@@ -245,13 +245,13 @@ class _Counts(NamedTuple):
         return sorted({*levels, *(kink for kink in kinks if levels[0] < kink < levels[-1])})
 
     def stored(self, readings: Sequence[int], average: Fraction) -> dict[int, Any]:
-        """V at the knots of the cell of the hand."""
+        """V at the nodes of the cell of the hand."""
         level, between = 0, Fraction(0)
         if self.law.relaxing is not None:
             at = (average / self.losses.resolution - self.least) * self.per_count
             level, between = int(at // 1), at % 1
         if not 0 <= level + between <= self.levels - 1:
-            raise Invalid("the average leaves the board")
+            raise Invalid("the average leaves the grid")
         first = (self.chain.place(readings) * self.levels + level) * (self.steps + 1)
         here: list[Any] = self.value[first : first + self.steps + 1]
         if between:
@@ -281,21 +281,21 @@ def _counts(told: Read, losses: Losses, law: Law) -> _Counts:
     chain = _Chain(low, high, ceil(domain.largest_move_counts), law.memory + losses.delay)
     only_if(law.relaxing, domain.levels_per_count, "levels_per_count")
     if high < low:
-        raise Invalid("the board is empty")
+        raise Invalid("the grid is empty")
     _require_covered(losses, law)
     forgets = law.surface == "penetration" if law.relaxing else law.surface != "none"
     if forgets and low > 1 - (chain.memory + 1) * chain.reach:
-        raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
+        raise Invalid("the grid must reach so far out that a hand beyond it has been forgotten")
     least, per_count, levels = 0, 1, 1
     if law.relaxing is not None:
         least = 0 if law.surface == "penetration" else low
         per_count = domain.levels_per_count
         levels = (max(high, least + 1) - least) * per_count + 1
-    knots = chain.size * levels * (steps + 1)
+    nodes = chain.size * levels * (steps + 1)
     goals = (2 * chain.reach + 1) * (steps + 1)
-    _require_few(knots, (2 if law.relaxing else 1) * goals * len(losses.models))
+    _require_few(nodes, (2 if law.relaxing else 1) * goals * len(losses.models))
     _require_few(chain.size if losses.part < 1 else 0, goals**2)
-    return _Counts(law, losses, chain, steps, least, per_count, levels, _stored(told.storage, knots))
+    return _Counts(law, losses, chain, steps, least, per_count, levels, _stored(told.storage, nodes))
 
 
 def _require_covered(losses: Losses, law: Law) -> None:
@@ -355,9 +355,9 @@ def _line(told: Read, losses: Losses, law: Law) -> _Line:
         raise Invalid("the law remembers another number of readings")
     surface = law.surface != "none"
     if surface and low > -(memory + 1) * domain.largest_move_cells:
-        raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
+        raise Invalid("the grid must reach so far out that a hand beyond it has been forgotten")
     if not surface and low * length + losses.resolution > -high * length:
-        raise Invalid("the board must reach as far on the one side as on the other")
+        raise Invalid("the grid must reach as far on the one side as on the other")
     outside = [*range(low, 1)] if surface else []
     inside = [*range(0 if surface else low, high + 1)]
     places = outside + inside
@@ -370,17 +370,17 @@ def _line(told: Read, losses: Losses, law: Law) -> _Line:
 
 
 def _closed(table: Read, domain: Read, reach: int) -> tuple[list[int], list[list[int]]]:
-    """The count of each state, and what follows it: a state for each reading on the board, and no other."""
-    width, on_board = 2 * reach + 1, range(domain.lowest_count, domain.highest_count + 1)
+    """The count of each state, and what follows it: a state for each reading on the grid, and no other."""
+    width, on_grid = 2 * reach + 1, range(domain.lowest_count, domain.highest_count + 1)
     counts = listed(table.counts, table.states)
     flat = listed(table.successors, table.states * width)
-    if any(count not in on_board for count in counts):
-        raise Invalid("a state of the table is not on the board")
+    if any(count not in on_grid for count in counts):
+        raise Invalid("a state of the table is not on the grid")
     successors = [flat[state * width : (state + 1) * width] for state in range(table.states)]
     for count, following in zip(counts, successors, strict=True):
         for reading, then in enumerate(following, start=count - reach):
-            if (0 <= then < len(counts)) is not (reading in on_board) or then < -1:
-                raise Invalid("the table is not closed: a reading on the board leads nowhere")
+            if then not in (range(len(counts)) if reading in on_grid else (-1,)):
+                raise Invalid("the table is not closed: a reading on the grid leads nowhere")
             if then >= 0 and counts[then] != reading:
                 raise Invalid("a reading leads to a state of another reading")
     return counts, successors
@@ -394,11 +394,11 @@ def _stored(text: str, count: int) -> list[int]:
     return value
 
 
-def _require_few(knots: int, each: int) -> None:
+def _require_few(nodes: int, each: int) -> None:
     """The moves are counted before any is tried."""
-    if knots * each > MOST_MOVES:
+    if nodes * each > MOST_MOVES:
         raise Invalid(
-            f"the board has {knots * each} moves: without numpy and numba at most {MOST_MOVES} can be checked"
+            f"the grid has {nodes * each} moves: without numpy and numba at most {MOST_MOVES} can be checked"
         )
 
 

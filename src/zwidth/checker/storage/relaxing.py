@@ -1,7 +1,7 @@
 """A storage function of a law that relaxes: re-checked at every level, and where a move passes one.
 
 The law adds y = g (u − a) with a' = p a + (1 − p) u.  V is given at levels of a and
-is meant to be linear between them, as it is between knots.  Along a between two
+is meant to be linear between them, as it is between nodes.  Along a between two
 levels, V(s, a) + f(a) d is linear and V(s', a') has one kink at most, where a' passes
 a level.  So what holds at both levels and there holds between.
 """
@@ -36,23 +36,23 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
         raise Invalid("a force limit together with a law that relaxes is not covered")
     domain, unit = told.domain, told.force_unit
     low, high, per_count = domain.lowest_count, domain.highest_count, domain.levels_per_count
-    fastest, steps = domain.largest_move_counts, domain.steps_per_count
-    reach = ceil(fastest)
+    max_move, steps = domain.largest_move_counts, domain.steps_per_count
+    reach = ceil(max_move)
     least = 0 if law.surface == "penetration" else low
     top = max(high, least + 1)
     if law.resets and top < 0:
-        raise Invalid("the board must hold 0, where the average begins anew")
+        raise Invalid("the grid must hold 0, where the average begins anew")
     levels = (top - least) * per_count + 1
     columns = (2 * reach + 1) ** losses.delay
     if reach * steps > MOST_MOVES:
         raise Invalid("the moves are longer than can be checked")
     if high < low or (high - low + 1) * columns * levels * (steps + 1) > MOST_VALUES:
-        raise Invalid("the board is empty, or larger than can be checked")
+        raise Invalid("the grid is empty, or larger than can be checked")
     states = (high - low + 1) * columns * levels * (steps + 1)
     reserve(24 * states)
     spend(SLOWER * PAIR * states * (2 * reach + 1) * (steps + 1))
     if law.surface == "penetration" and low > 1 - (losses.delay + 1) * reach:
-        raise Invalid("the board must reach so far out that a hand beyond it feels no force")
+        raise Invalid("the grid must reach so far out that a hand beyond it feels no force")
     value = storage_of(told.storage, (high - low + 1, columns, levels, steps + 1))
     spring = int(law.taps[0] * losses.resolution // unit)
     branch = int(law.relaxing[1] * losses.resolution / per_count // unit)
@@ -60,7 +60,7 @@ def storage_of_relaxing(told: Read, losses: Losses, law: Law) -> str:
     if abs(spring) * farthest + abs(branch) * levels >= _MOST:
         raise Invalid("the forces are too large to be compared exactly")
     off = farthest + 2 + 2 * levels + 2
-    costs = costs_of(losses, unit, off, Fraction(1), fastest, steps)
+    costs = costs_of(losses, unit, off, Fraction(1), max_move, steps)
     forces = _forces(law, spring, branch, low, high, least, per_count, levels)
     images = _images(law, low, high, least, per_count, levels)
     rows = _rows(low, high, reach, losses.delay)
@@ -114,7 +114,7 @@ def _images(law: Law, low: int, high: int, least: int, per_count: int, levels: i
 
 
 def _rows(low: int, high: int, reach: int, delay: int) -> Any:
-    """The row of the reading from which the acting force was computed; −1 if a reading is off the board."""
+    """The row of the reading from which the acting force was computed; −1 if a reading is off the grid."""
     import numpy as np
 
     columns = histories_of(reach, delay)

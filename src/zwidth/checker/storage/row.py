@@ -2,7 +2,7 @@
 
 The document lists states, each with its count and the force that acts until the next sample, and
 where every reading leads.  It is checked that the list is closed: from each state every reading
-on the board leads to a state of that reading; and that no move takes out more than V falls, by
+on the grid leads to a state of that reading; and that no move takes out more than V falls, by
 the rules of `storage_proof`.  That the list is what the law does is not checked here: this needs the law.
 """
 
@@ -54,10 +54,10 @@ def storage_of_row(told: Read) -> str:
     if losses.part < 1:
         raise Invalid("laws in a row are checked for delays of whole samples")
     low, high, states = domain.lowest_count, domain.highest_count, table.states
-    fastest, steps, unit = domain.largest_move_counts, domain.steps_per_count, told.force_unit
-    reach = ceil(fastest)
+    max_move, steps, unit = domain.largest_move_counts, domain.steps_per_count, told.force_unit
+    reach = ceil(max_move)
     if high < low or reach * steps > MOST_MOVES:
-        raise Invalid("the board is empty, or its moves are longer than can be checked")
+        raise Invalid("the grid is empty, or its moves are longer than can be checked")
     if states * max(2 * reach + 1, steps + 1) > MOST_VALUES:
         raise Invalid("the table is larger than can be checked")
     reserve(24 * states * (2 * reach + steps + 2))
@@ -69,7 +69,7 @@ def storage_of_row(told: Read) -> str:
         raise Invalid("the hand begins in a state that is not in the table")
     forces = _in_units(values_of(table.forces, (states,), DOUBLE), unit)
     value = storage_of(told.storage, (states, steps + 1))
-    costs = costs_of(losses, unit, 1, losses.part, fastest, steps)  # a force is rounded down once
+    costs = costs_of(losses, unit, 1, losses.part, max_move, steps)  # a force is rounded down once
     largest = int(value.max()) + int(abs(costs).max()) + max(map(abs, forces)) * (len(costs) + 1)
     if largest >= _EXACT:
         raise Invalid("the numbers are too large to be compared exactly")
@@ -93,17 +93,17 @@ def proved(domain: Read, states: int) -> str:
 
 
 def _require_closed(counts: Any, successors: Any, low: int, high: int, reach: int) -> None:
-    """Every reading on the board leads to a state of that reading."""
+    """Every reading on the grid leads to a state of that reading."""
     import numpy as np
 
     if counts.min() < low or counts.max() > high:
-        raise Invalid("a state of the table is not on the board")
+        raise Invalid("a state of the table is not on the grid")
     then = counts[:, None] + np.arange(-reach, reach + 1)
-    on_board = (then >= low) & (then <= high)
-    reached = successors[on_board]
-    if reached.min() < 0 or reached.max() >= len(counts) or (successors[~on_board] != -1).any():
-        raise Invalid("the table is not closed: a reading on the board leads nowhere")
-    if (counts[reached] != then[on_board]).any():
+    on_grid = (then >= low) & (then <= high)
+    reached = successors[on_grid]
+    if reached.min() < 0 or reached.max() >= len(counts) or (successors[~on_grid] != -1).any():
+        raise Invalid("the table is not closed: a reading on the grid leads nowhere")
+    if (counts[reached] != then[on_grid]).any():
         raise Invalid("a reading leads to a state of another reading")
 
 

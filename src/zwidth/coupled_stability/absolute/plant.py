@@ -22,10 +22,10 @@ from zwidth.device import Device
 from zwidth.environment import PulseTransferFunction
 from zwidth.errors import InputError
 from zwidth.operator.operator import LinearHand, Operator
-from zwidth.passivity.document import unit_key, unit_suffix
+from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.schur import is_schur
 from zwidth.quantity.exact import Exact
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
 
 

@@ -31,7 +31,7 @@ from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate, certify, linear_proof, positivity_document
 from zwidth.passivity.decision import Decision, decide
-from zwidth.passivity.document import loop_document, unit_suffix
+from zwidth.passivity.document import loop_document
 from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.linear.linear import LinearProof
 from zwidth.passivity.linear.loop import LinearLoop
@@ -39,7 +39,7 @@ from zwidth.passivity.result import Result
 from zwidth.passivity.scope import Contact, Hands, Scope, scope_of
 from zwidth.passivity.wording import if_friction_goes_on, lines
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text, unit_text
 from zwidth.quantity.units import parse_number
 
@@ -187,7 +187,7 @@ def tolerated_activity(
     hand = None
     if kept is not None and device.mass is not None and not decision.loop.part_delay:
         hand = shaking_hand(decision.loop, float(device.exact("mass")), band, device.motion)
-    unit = GLOSSARY["damping"].unit_for(device.motion)
+    unit = device.unit("damping")
     scope = _scope(device, law, kept, float(band.below))
     return ToleratedActivity(
         claim=_claim(kept, scope, unit),

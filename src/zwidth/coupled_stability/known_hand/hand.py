@@ -13,6 +13,7 @@ from typing import Any
 
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
+from zwidth.quantity.glossary import GLOSSARY
 
 Parameter = RealLike | Interval | tuple[RealLike, RealLike]
 
@@ -50,14 +51,15 @@ class PassiveHand:
                 )
             object.__setattr__(self, name, number)
 
-    def describe(self) -> str:
-        """The hand with its numbers, on one line."""
+    def describe(self, motion: str = "linear") -> str:
+        """The hand with its numbers, on one line, in linear or rotary units."""
         parts = [
-            f"{symbol} = {value if isinstance(value, Interval) else f'{float(value):.6g}'} {unit}"
-            for symbol, value, unit in (
-                ("m_h", self.mass, "kg"),
-                ("k", self.stiffness, "N/m"),
-                ("c", self.damping, "N*s/m"),
+            f"{symbol} = {value if isinstance(value, Interval) else f'{float(value):.6g}'} "
+            f"{GLOSSARY[name].unit_for(motion)}"
+            for symbol, name, value in (
+                ("m_h", "mass", self.mass),
+                ("k", "stiffness", self.stiffness),
+                ("c", "damping", self.damping),
             )
             if ends(value)[1]
         ]

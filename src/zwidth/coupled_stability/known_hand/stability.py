@@ -21,8 +21,7 @@ from zwidth.coupled_stability.known_hand.hand import PassiveHand, as_hand
 from zwidth.coupled_stability.known_hand.plant import Motion
 from zwidth.coupled_stability.known_hand.proof import evidence
 from zwidth.device import Device
-from zwidth.environment import Wall
-from zwidth.environment.environment import Environment, RationalFunction, certain
+from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import Certificate
@@ -30,7 +29,6 @@ from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.result import Answer
 from zwidth.passivity.scope import Hands, Scope, scope_of
-from zwidth.passivity.wording import lines
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.glossary import GLOSSARY
@@ -72,6 +70,7 @@ class Stability(Answer):
 
     FORMAT = "zwidth stability 1"
     YES = "stable"
+    witness = None
 
     outcome: Outcome
     claim: str
@@ -87,11 +86,6 @@ class Stability(Answer):
     def stable(self) -> bool:
         """True where the outcome is "stable": proved for the hand and the wall that were given."""
         return self.outcome == "stable"
-
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What the claim rests on, line by line."""
-        return lines(self.scope)
 
     @property
     def margin(self) -> float:
@@ -217,10 +211,10 @@ def largest_stable(motion: Motion, law: Environment, units: str) -> tuple[float 
 
     For intervals the largest that the independent checker accepts for every value in them.
     """
-    if not isinstance(law, Wall):
+    wall = law.damped_spring(motion.period)
+    if wall is None:
         return None, None
-    damping = certain(law.damping, "damping")
-    velocity = law.velocity_filter.transfer(motion.period)
+    damping, velocity = wall.damping, wall.velocity
     ends_of_bands = [last_stable(_plain(corner, velocity), float(damping)) for corner in corners(motion)]
     if any(end is None for end in ends_of_bands):
         return None, None
@@ -282,7 +276,7 @@ def _scope(device: Device, hand: PassiveHand, law: Environment) -> Scope:
     """One linear system: contact is kept, and neither Coulomb friction nor the encoder's steps are in it."""
     asked = scope_of(device, law)
     return asked.replace(
-        hands=Hands(impedance=hand.describe()),
+        hands=Hands(impedance=hand.describe(device.motion)),
         contact="kept" if law.unilateral else "both sides",
         encoder="not counted" if asked.encoder == "counted" else "ideal",
         coulomb_friction=None,

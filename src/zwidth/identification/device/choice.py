@@ -77,13 +77,7 @@ class Choice(NamedTuple):
 
 
 def choose(log: Log, names: tuple[str, ...], mass: float | None, delay: float, zero: Zero) -> Choice:
-    """Decide, for a fit of the named parameters and a delay of the actuator's force [samples].
-
-    Raises
-    ------
-    InputError
-        If the motion shows too little.
-    """
+    """Decide, for a fit of the named parameters and a delay of the actuator's force [samples]."""
     beginning = list(_first(pieces(log)))
     knee = KNEE * _mean_speed(beginning, log.sample_period)
     pilot = _Pilot(beginning, log.sample_period, knee, names, mass, delay, zero)

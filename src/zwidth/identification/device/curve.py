@@ -184,15 +184,7 @@ def _bend_up(means: list[_Mean]) -> Array:
 
 
 def curve_below(points: xr.Dataset, confidence: float, bins: int, steepest: float) -> FrictionCurve:
-    """The lower bounds as a friction curve, see `Identified.friction_curve`.
-
-    Parameters
-    ----------
-    points, confidence, bins
-        As there.
-    steepest
-        Slope of the last chord, from the largest speed on [N·s/m; N·m·s/rad].
-    """
+    """The lower bounds as a friction curve with this slope [N·s/m; N·m·s/rad] beyond the largest speed."""
     if not 0 < confidence < 1:
         raise InputError(
             f"confidence must be between 0 and 1, got {confidence!r}: it is how often all the bounds hold"

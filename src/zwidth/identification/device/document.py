@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from zwidth.identification.device.limits import advice, limits
-from zwidth.passivity.document import unit_suffix
-from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 
 if TYPE_CHECKING:
     from zwidth.identification.device.estimate import Estimate

@@ -7,9 +7,26 @@ t is of Student, for the degrees of freedom that the scatter of the strokes leav
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from scipy import stats
+
+from zwidth.identification.logs import Finding
+
+_UNITS = {
+    "mass": ("kg", "kg m²"),
+    "damping": ("N s/m", "N m s/rad"),
+    "coulomb_friction": ("N", "N m"),
+    "spring": ("N/m", "N m/rad"),
+    "stiffness": ("N/m", "N m/rad"),
+    "quadratic": ("N s²/m²", "N m s²/rad²"),
+    "force_lag": ("s", "s"),
+    "asymmetry": ("N s/m", "N m s/rad"),
+    "quadratic_asymmetry": ("N s²/m²", "N m s²/rad²"),
+    "slow": ("N", "N m"),
+}
+"""Of each parameter, linear and rotary."""
 
 MOST_CONFIDENCE = 0.999999
 """Beyond it the tails of Student's t say nothing about real data."""
@@ -40,7 +57,7 @@ class Estimate(NamedTuple):
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
         """Where the truth is, this often: value ∓ (t · error + shift)."""
-        reach = float(stats.t.ppf(0.5 + confidence / 2, self.degrees)) * self.error + self.shift
+        reach = student(confidence, self.degrees) * self.error + self.shift
         return self.value - reach, self.value + reach
 
     def beyond(self, confidence: float) -> bool:
@@ -51,6 +68,25 @@ class Estimate(NamedTuple):
     def __str__(self) -> str:
         low, high = self.interval()
         return f"{self.value:.4g} {self.unit} (95 %: {low:.4g} to {high:.4g})"
+
+
+def unit_of(parameter: str, motion: str) -> str:
+    """The unit of a parameter."""
+    return _UNITS[parameter][motion == "rotary"]
+
+
+def student(confidence: float, degrees: int) -> float:
+    """t, standard errors to either side of an interval that holds the truth this often."""
+    return float(stats.t.ppf(0.5 + confidence / 2, degrees))
+
+
+def perhaps_none(estimates: Mapping[str, Estimate], names: Iterable[str]) -> Iterator[Finding]:
+    """Those of the named parameters that may be 0."""
+    for name in names:
+        if name in estimates and estimates[name].interval(0.95)[0] <= 0:
+            word = name.replace("_", " ")
+            text = f"the data do not rule out that {word} is 0: {estimates[name]}"
+            yield Finding(kind=f"no {word}", text=text)
 
 
 class Directions(NamedTuple):

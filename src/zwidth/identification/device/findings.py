@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from zwidth.identification.device.choice import SURE
-from zwidth.identification.device.estimate import Directions, Estimate
-from zwidth.identification.device.fit import Found, units_of
+from zwidth.identification.device.estimate import Directions, Estimate, perhaps_none, unit_of
+from zwidth.identification.device.fit import Found
 from zwidth.identification.logs import Finding
+from zwidth.quantity.text import quantity_unit
 
 _SEEN = {
     "slow": "more friction at rest than f_c, as of lubricated contacts (Stribeck),",
@@ -36,14 +37,11 @@ def findings(
             text=f"damping differs by direction: {directions.inward} into the wall, {directions.outward} "
             "out of it; a hand may be quick one way and slow the other, so walls rest on the smaller",
         )
-    for name in ("damping", "coulomb_friction"):
-        if name in estimates and estimates[name].interval(0.95)[0] <= 0:
-            word = name.replace("_", " ")
-            text = f"the data do not rule out that {word} is 0: {estimates[name]}"
-            yield Finding(kind=f"no {word}", text=text)
+    yield from perhaps_none(estimates, ("damping", "coulomb_friction"))
+    per_second = quantity_unit("friction_speed", found.motion)
     for name, what in _SEEN.items():
         if name in estimates:
-            until = f", gone at {found.moments.knee:.3g} {_speed(found)}" if name == "slow" else ""
+            until = f", gone at {found.moments.knee:.3g} {per_second}" if name == "slow" else ""
             text = f"{what} is seen and fitted: {estimates[name]}{until}"
             yield Finding(kind=_KINDS.get(name, name.replace("_", " ")), text=text)
     yield from _bend(found, names, slopes, speed)
@@ -55,38 +53,34 @@ def _bend(found: Found, names: tuple[str, ...], slopes: Directions, speed: float
         return
     more = () if "slow" in names else ("slow",)
     if found.sees(names, "quadratic") or found.sees((*names, *more), "quadratic"):
+        unit = quantity_unit("friction_speed", found.motion)
         yield Finding(
             kind="bent friction",
-            text=f"friction is not f_c + b |v|: at {speed:.3g} {_speed(found)} its slope is {slopes.weaker}; "
+            text=f"friction is not f_c + b |v|: at {speed:.3g} {unit} its slope is {slopes.weaker}; "
             "what is proved rests on the largest model below the friction curve",
         )
-
-
-def _speed(found: Found) -> str:
-    return "rad/s" if found.motion == "rotary" else "m/s"
 
 
 def _model(
     found: Found, names: tuple[str, ...], estimates: Mapping[str, Estimate], period: float
 ) -> Iterable[Finding]:
-    units = units_of(found.motion)
     whole = (*(n for n in names if n != "coulomb_friction"), "coulomb_friction")
     full, viscous = found.regression(whole), found.regression(whole[:-1])
     if full is None or viscous is None:
         return
-    limits = [f"{2 * fit.value('damping') / period:.4g} {units['spring']}" for fit in (viscous, full)]
+    stiffness, damping, force = (unit_of(n, found.motion) for n in ("spring", "damping", "coulomb_friction"))
+    limits = [f"{2 * fit.value('damping') / period:.4g} {stiffness}" for fit in (viscous, full)]
     if "coulomb_friction" not in names:
         if found.sees(names, "coulomb_friction"):
             yield Finding(
                 kind="wrong model",
-                text=f"a mass and a damper are the wrong model: Coulomb friction of "
-                f"{full.value('coulomb_friction'):.3g} {units['coulomb_friction']} is seen; without it 2b/T "
-                f"reads {limits[0]} instead of {limits[1]}: walls between the two would be called passive "
-                "and are not",
+                text="a mass and a damper are the wrong model: Coulomb friction of "
+                f"{full.value('coulomb_friction'):.3g} {force} is seen; without it 2b/T reads {limits[0]} "
+                f"instead of {limits[1]}: walls between the two would be called passive and are not",
             )
     elif estimates["coulomb_friction"].beyond(SURE):
         yield Finding(
             kind="Coulomb friction",
             text=f"Coulomb friction is seen; a mass–damper model of the same data would say b = "
-            f"{viscous.value('damping'):.3g} {units['damping']}, 2b/T = {limits[0]} instead of {limits[1]}",
+            f"{viscous.value('damping'):.3g} {damping}, 2b/T = {limits[0]} instead of {limits[1]}",
         )

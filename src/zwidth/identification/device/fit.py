@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from zwidth.identification.device.choice import LONGER, SAFETY, SURE, Choice, Zero, shifts
-from zwidth.identification.device.estimate import Directions, Estimate
+from zwidth.identification.device.estimate import Directions, Estimate, unit_of
 from zwidth.identification.device.moments import Moments
 from zwidth.identification.device.pieces import pieces
 from zwidth.identification.device.points import Points
@@ -60,7 +60,6 @@ class Found(NamedTuple):
         longer = regress(self.longer, names, self.mass, self.shares[1])
         if fit is None or longer is None:
             return None
-        units = units_of(self.motion)
         offsets = {"force_lag": self.late}
         return {
             name: Estimate(
@@ -68,7 +67,7 @@ class Found(NamedTuple):
                 fit.error(name),
                 float(shift),
                 fit.degrees,
-                units[name],
+                unit_of(name, self.motion),
             )
             for name, shift in zip(names, shifts(fit, longer), strict=True)
         }
@@ -98,7 +97,7 @@ class Found(NamedTuple):
         fit, longer = self.regression(names), regress(self.longer, names, self.mass, self.shares[1])
         if fit is None or longer is None:
             return None
-        unit = units_of(self.motion)["damping"]
+        unit = unit_of("damping", self.motion)
 
         def slope(both: float, side: float) -> Estimate:
             of = {"damping": both, "asymmetry": side}
@@ -140,19 +139,3 @@ def gather(
         if progress is not None:
             progress(done, log.samples)
     return found
-
-
-def units_of(motion: str) -> dict[str, str]:
-    """The unit of each parameter."""
-    turn = motion == "rotary"
-    return {
-        "mass": "kg m²" if turn else "kg",
-        "damping": "N m s/rad" if turn else "N s/m",
-        "coulomb_friction": "N m" if turn else "N",
-        "spring": "N m/rad" if turn else "N/m",
-        "quadratic": "N m s²/rad²" if turn else "N s²/m²",
-        "force_lag": "s",
-        "asymmetry": "N m s/rad" if turn else "N s/m",
-        "quadratic_asymmetry": "N m s²/rad²" if turn else "N s²/m²",
-        "slow": "N m" if turn else "N",
-    }

@@ -10,7 +10,7 @@ equation to smoothed and differentiated positions.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from math import inf
 from typing import Literal
 
@@ -19,11 +19,10 @@ import numpy as np
 from zwidth.errors import InputError
 from zwidth.identification.device.choice import Zero, choose, too_little
 from zwidth.identification.device.curve import fastest
-from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.device.findings import findings
-from zwidth.identification.device.fit import gather
+from zwidth.identification.device.fit import Found, gather
 from zwidth.identification.device.identified import Identified
-from zwidth.identification.device.impossible import impossible
+from zwidth.identification.device.impossible import refuse_impossible
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.device.regression import offset
 from zwidth.identification.logs import Log
@@ -40,59 +39,27 @@ def identify(
     model: Model = "Coulomb and viscous",
     progress: Callable[[int, int], None] | None = None,
 ) -> Identified:
-    """Identify a device: ``m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a``.
-
-    Parameters
-    ----------
-    log
-        What was recorded, see `read_log`: the position, and the force of the hand, of the actuator, or both.
-        Without any force mass must be given: a free motion shows b/m and f_c/m only.
-    mass
-        m > 0 where it is known [kg; kg·m²].
-    delay
-        From a sample to the actuator force computed from it, ≥ 0 [s].
-    zero
-        Of the force: "drifts" along straight lines of some seconds (a load cell; the default where there is
-        a hand force), "constant" (gravity; the default otherwise), or "exact".
-    model
-        "viscous" fits a mass and a damper; where Coulomb friction is seen, it says so.
-    progress
-        Told (samples done, samples in all).
-
-    Raises
-    ------
-    InputError
-        If the log shows too little: too few strokes, or no force and no mass; or a mass or damping below 0,
-        as with a sensor that counts the other way.
-    """
-    zero = _checked(log, mass, delay, zero)
-    if model not in ("Coulomb and viscous", "viscous"):
-        raise InputError(f'model is "Coulomb and viscous" or "viscous", got {model!r}')
+    """As `zwidth.identify`, with numbers in the place of texts: mass [kg; kg·m²], delay [s]."""
+    zero = _checked(log, mass, delay, zero, model)
     own = (*(() if mass is not None else ("mass",)), "damping", "coulomb_friction")
-    samples = delay / log.sample_period
-    choice = choose(log, own, mass, samples, zero)
-    found = gather(log, choice, mass=mass, delay=samples, zero=zero, progress=progress)
-    friction = own if model == "Coulomb and viscous" else own[:-1]
-    spring = ("spring",) if found.sees(own, "spring") else ()
-    slow = ("slow",) if friction == own and found.sees((*own, "quadratic"), "slow") else ()
-    names = (*friction, *spring, *slow, *(("force_lag",) if choice.late else ()))
+    late = delay / log.sample_period
+
+    def through(other: Log, progress: Callable[[int, int], None] | None = None) -> Found:
+        choice = choose(other, own, mass, late, zero)
+        return gather(other, choice, mass=mass, delay=late, zero=zero, progress=progress)
+
+    found = through(log, progress)
+    names = _terms(found, own, model)
     estimates, fit = found.estimates(names), found.regression(names)
     viscous = found.regression(tuple(n for n in names if n not in ("coulomb_friction", "slow")))
     if estimates is None or fit is None or viscous is None:
         raise InputError(too_little(log))
-
-    def again(other: Log) -> Mapping[str, Estimate] | None:
-        chosen = choose(other, own, mass, samples, zero)
-        return gather(other, chosen, mass=mass, delay=samples, zero=zero, progress=None).estimates(names)
-
     points = found.points.dataset(fit, mass, log.motion)
     quickest = fastest(points)
     directions, slopes = found.directions(names), found.slopes(names, min(quickest))
     if directions is None or slopes is None or not min(quickest) > 0:
         raise InputError(too_little(log))
-    wrong = impossible(log, estimates, again)
-    if wrong is not None:
-        raise InputError(wrong)
+    refuse_impossible(log, estimates, lambda other: through(other).estimates(names))
     weights = found.shape.value / found.shape.piece
     return Identified(
         estimates=estimates,
@@ -108,7 +75,7 @@ def identify(
         force_noise=float(np.sqrt(fit.residual / np.sum(weights**2))),
         offset=offset(found.moments, fit, mass),
         viscous_alone=viscous.value("damping"),
-        pulse_length=PIECES * choice.piece * log.sample_period,
+        pulse_length=PIECES * found.shape.piece * log.sample_period,
         strokes=found.moments.strokes,
         pulses=found.moments.pulses,
         findings=(
@@ -119,7 +86,17 @@ def identify(
     )
 
 
-def _checked(log: Log, mass: float | None, delay: float, zero: Zero | None) -> Zero:
+def _terms(found: Found, own: tuple[str, ...], model: Model) -> tuple[str, ...]:
+    """What is fitted: friction as it was asked for, and what else is seen."""
+    friction = own if model == "Coulomb and viscous" else own[:-1]
+    spring = ("spring",) if found.sees(own, "spring") else ()
+    slow = ("slow",) if friction == own and found.sees((*own, "quadratic"), "slow") else ()
+    return (*friction, *spring, *slow, *(("force_lag",) if found.late else ()))
+
+
+def _checked(log: Log, mass: float | None, delay: float, zero: Zero | None, model: str) -> Zero:
+    if model not in ("Coulomb and viscous", "viscous"):
+        raise InputError(f'model is "Coulomb and viscous" or "viscous", got {model!r}')
     if not log.channels and mass is None:
         raise InputError(
             f"{log.source} has no force: a free motion shows b/m and f_c/m only; give the mass "

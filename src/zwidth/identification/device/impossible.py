@@ -11,9 +11,10 @@ from dataclasses import replace
 from itertools import combinations
 from typing import NamedTuple
 
+from zwidth.errors import InputError
 from zwidth.identification.device.estimate import Estimate
 from zwidth.identification.logs import Log
-from zwidth.identification.logs.log import Block
+from zwidth.identification.logs.block import Block
 
 Estimates = Mapping[str, Estimate]
 
@@ -48,33 +49,21 @@ DEVICE = Bounds(
 )
 
 
-def impossible(
+def refuse_impossible(
     log: Log, estimates: Estimates, again: Callable[[Log], Estimates | None], bounds: Bounds = DEVICE
-) -> str | None:
-    """What is wrong with a log that shows what is surely below 0 and cannot be; None where nothing is.
-
-    Parameters
-    ----------
-    log
-        What was recorded.
-    estimates
-        What it shows.
-    again
-        What a log with other signs shows, fitted likewise; None if nothing.
-    bounds
-        What cannot be below 0.
-    """
+) -> None:
+    """Refuse a log that shows what is surely below 0 and cannot be; `again` fits it with other signs."""
     below = [name for name in bounds.above if name in estimates and estimates[name].interval()[1] < 0]
     sure = [name for name in bounds.sure if name in estimates]
     if not below:
-        return None
+        return
     said = " and ".join(f"{name} comes out as {estimates[name]}" for name in below)
     said = f"{log.source}: {said}, and no {bounds.whose} has that"
     for channels in _subsets(log.channels):
         found = again(_turned(log, channels))
         if found is not None and all(found[name].interval()[0] > 0 for name in sure):
-            return f"{said}; {_flipped(log, channels, found, below)}"
-    return f"{said}; {bounds.causes}"
+            raise InputError(f"{said}; {_flipped(log, channels, found, below)}")
+    raise InputError(f"{said}; {bounds.causes}")
 
 
 def _flipped(log: Log, channels: tuple[str, ...], found: Estimates, below: list[str]) -> str:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from zwidth.quantity.text import quantity_unit
+
 if TYPE_CHECKING:
     from zwidth.identification.device.estimate import Estimate
     from zwidth.identification.device.numbers import IdentifiedNumbers
@@ -78,7 +80,7 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
     found = limits(identified)
     binding = min(found, key=lambda limit: limit.interval(confidence)[0])
     name = {"damping": "damping", "coulomb_friction": "Coulomb friction"}[binding.parameter]
-    unit = "N·m/rad" if identified.motion == "rotary" else "N/m"
+    unit = quantity_unit("stiffness", identified.motion)
     low, _ = binding.interval(confidence)
     lines = [f"{name} limits the wall: {binding.symbol} ≥ {low:.4g} {unit} at {percent(confidence)}"]
     longer = _times_longer(binding.estimate, confidence)
@@ -92,10 +94,10 @@ def advice(identified: IdentifiedNumbers, confidence: float) -> tuple[str, ...]:
             f"a longer log would not halve the interval of {name}: half of it and more is what means over "
             f"{1e3 * identified.pulse_length:.3g} ms may be off; smoother, longer strokes allow longer ones"
         )
-    speed = "rad/s" if identified.motion == "rotary" else "m/s"
+    speed = quantity_unit("friction_speed", identified.motion)
     lines.append(
         f"friction was seen up to {identified.fastest[0]:.3g} {speed} into the wall and "
-        f"{identified.fastest[1]:.3g} out of it: of a hand that is quicker nothing is known; "
+        f"{identified.fastest[1]:.3g} out of it; at higher speeds it is not known: "
         "log quicker strokes, zwidth plan --speed says which"
     )
     slow, quick = np.quantile(np.abs(identified.points["speed"].values), [0.1, 0.9])

@@ -20,6 +20,7 @@ from zwidth.identification.device.table import rows, title
 from zwidth.plots.files import save_figure
 from zwidth.plots.style import BLACK, BLUE, GREY, LOOK, ORANGE, RED, low_index, new_figure
 from zwidth.quantity.exact import ends
+from zwidth.quantity.text import quantity_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,20 +47,14 @@ def save_identification(identified: IdentifiedNumbers, path: str | Path, overwri
     Raises
     ------
     InputError
-        As `save_check`.
+        If the ending is another one, or the file exists or cannot be written.
     """
     save_figure(lambda: identification_figure(identified), path, overwrite)
 
 
 @rc_context(LOOK)
 def identification_figure(identified: IdentifiedNumbers) -> Figure:
-    """Friction against speed beside the numbers; below, some seconds of the log and what is left over.
-
-    Parameters
-    ----------
-    identified
-        What `zwidth.identify` returned.
-    """
+    """Friction against speed beside the numbers; below, some seconds of the log and what is left over."""
     figure = new_figure(11.0, 7.4)
     grid = figure.add_gridspec(2, 1, height_ratios=(1.25, 1.0))
     upper = grid[0].subgridspec(1, 2, width_ratios=(1.75, 1.0))
@@ -276,8 +271,8 @@ def _thinned(identified: IdentifiedNumbers) -> xr.Dataset:
 
 
 def _force(identified: IdentifiedNumbers) -> str:
-    return "N·m" if identified.motion == "rotary" else "N"
+    return quantity_unit("force", identified.motion)
 
 
 def _speed(identified: IdentifiedNumbers) -> str:
-    return "rad/s" if identified.motion == "rotary" else "m/s"
+    return quantity_unit("friction_speed", identified.motion)

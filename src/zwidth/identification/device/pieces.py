@@ -18,6 +18,7 @@ from zwidth.identification.device.strokes import (
     positions,
 )
 from zwidth.identification.logs import Block, Log
+from zwidth.identification.logs.block import joined
 from zwidth.identification.logs.stops import beyond
 
 SECONDS = 10.0
@@ -88,31 +89,15 @@ def _cut(blocks: Iterator[Block], size: int) -> Iterator[Block]:
     held = 0
     for block in chain(blocks, [None]):
         if kept and (block is None or block.run != kept[0].run):
-            yield _joined(kept)
+            yield joined(kept)
             kept, held = [], 0
         if block is None:
             return
         while held + block.time.size >= size:
-            taken, block = _split(block, size - held)
-            yield _joined([*kept, taken])
+            at = size - held
+            taken, block = block.part(slice(None, at)), block.part(slice(at, None))
+            yield joined([*kept, taken])
             kept, held = [], 0
         if block.time.size:
             kept.append(block)
             held += block.time.size
-
-
-def _split(block: Block, at: int) -> tuple[Block, Block]:
-    def part(where: slice) -> Block:
-        columns = (None if c is None else c[where] for c in block[1:])
-        return Block(block.run, *columns)  # type: ignore[arg-type]
-
-    return part(slice(None, at)), part(slice(at, None))
-
-
-def _joined(blocks: list[Block]) -> Block:
-    if len(blocks) == 1:
-        return blocks[0]
-    columns = (
-        None if c[0] is None else np.concatenate(c) for c in zip(*(b[1:] for b in blocks), strict=True)
-    )
-    return Block(blocks[0].run, *columns)  # type: ignore[arg-type]

@@ -4,7 +4,7 @@
 
 (Abbott & Okamura 2005): of b and f_c only the one that sets the limit must be known well, and
 the plan gives the time to the speeds that tell it (`design`).  Its guess of m, b, f_c and of the
-noise may be poor: after each run the data decide, `Plan.reached`.
+noise may be poor: after each run the data decide, `MeasurementPlan.reached`.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from zwidth.errors import InputError
 from zwidth.identification.device.design import PARAMETERS, Stroke, best_shares, covariance
 from zwidth.identification.device.identified import Identified
 from zwidth.quantity.exact import Interval, ends
+from zwidth.quantity.text import quantity_unit
 
 RUN = 30.0
 """Length of a run [s]: a load cell is zeroed again after it."""
@@ -37,7 +38,7 @@ LEAST_SHARE = 0.1
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Plan:
+class MeasurementPlan:
     """How to move a device so that its limit becomes known.
 
     Parameters
@@ -105,7 +106,7 @@ class Plan:
         Parameters
         ----------
         found
-            Of all runs so far together, see `join_logs`.
+            Of all runs so far together, see `Log.concatenate`.
         """
         value = found.estimates[self.limits].value
         low, high = found.estimates[self.limits].interval(self.confidence)
@@ -117,13 +118,13 @@ class Plan:
         return "\n".join(_protocol(self))
 
 
-def _protocol(plan: Plan) -> Iterator[str]:
+def _protocol(plan: MeasurementPlan) -> Iterator[str]:
     rotary = plan.guess.motion == "rotary"
     force = "N m" if rotary else "N"
     symbol, wall = {"damping": ("b", "2b/T"), "coulomb_friction": ("f_c", "2f_c/Δ")}[plan.limits]
     known = f"{symbol} within ±{plan.precision:.3g} of itself ({plan.confidence:.4g} confidence)"
     yield f"To know {known}; it sets the limit K = {wall}:"
-    yield _reached(plan, "rad/s" if rotary else "m/s")
+    yield _reached(plan)
     yield (
         "1. Motor off. Hold the handle by the load cell and by nothing else; "
         f"up to {plan.force:.2g} {force} will act."
@@ -139,10 +140,11 @@ def _protocol(plan: Plan) -> Iterator[str]:
     yield (f"Expected: {runs} of {RUN:.0f} s. Let lengths and times vary, do not rest, do not hit the stops.")
 
 
-def _reached(plan: Plan, unit: str) -> str:
+def _reached(plan: MeasurementPlan) -> str:
     """Up to which speed friction will be seen, and what is known of it: a promise ends there."""
     will = max(s.speed for s in plan.strokes) / MARGIN
-    told = f"Friction will be seen up to some {will:.2g} {unit}; of faster motions nothing will be known."
+    unit = quantity_unit("friction_speed", plan.guess.motion)
+    told = f"Friction will be seen up to some {will:.2g} {unit}; at higher speeds it will not be known."
     if plan.guess.friction_speed is None:
         return told
     before = float(ends(plan.guess.friction_speed)[0])
@@ -167,7 +169,7 @@ def plan_identification(
     precision: float = 0.05,
     confidence: float = 0.95,
     speed: float | None = None,
-) -> Plan:
+) -> MeasurementPlan:
     """Plan the motion that tells how stiff a wall may be, ``K ≤ min(2b/T, 2f_c/Δ)``.
 
     Parameters
@@ -204,9 +206,7 @@ def plan_identification(
         given["speed"] = speed
     for name, value in given.items():
         if not 0 < value < inf:
-            raise InputError(
-                f"{name} must be > 0 and finite, got {value!r}: without it nothing is to be planned"
-            )
+            raise InputError(f"{name} must be > 0 and finite, got {value!r}: no plan can be made without it")
     for name, value in {"precision": precision, "confidence": confidence}.items():
         if not 0 < value < 1:
             raise InputError(f"{name} must be between 0 and 1, got {value!r}; 0.05 and 0.95 are usual")
@@ -219,7 +219,7 @@ def plan_identification(
         fast = min(fast, length / 2 * pi / (MARGIN * speed))
     strokes = (Stroke(length, slow), Stroke(length, fast))
     shares = np.clip(best_shares(strokes, limits), LEAST_SHARE, 1 - LEAST_SHARE)
-    return Plan(
+    return MeasurementPlan(
         limits=limits,
         guess=device,
         strokes=strokes,

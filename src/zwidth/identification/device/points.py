@@ -9,6 +9,7 @@ import numpy as np
 from zwidth.compiled import Array
 from zwidth.identification.device import pulses
 from zwidth.identification.device.moments import REGRESSORS, halves, line
+from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,8 +76,8 @@ class Points:
             found["piece"].append(np.full(len(rows), piece))
             strokes += int(stroke[-1]) + 1
         units = {
-            "force": "N*m" if motion == "rotary" else "N",
-            "speed": "rad/s" if motion == "rotary" else "m/s",
+            "force": GLOSSARY["force"].unit_for(motion),
+            "speed": GLOSSARY["friction_speed"].unit_for(motion),
         }
         data = {
             key: (

@@ -16,7 +16,6 @@ here to be compared with `identify`, which has no such number to choose.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -25,13 +24,14 @@ import numpy as np
 from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.identification.logs import Block, Log
+from zwidth.identification.logs.block import whole_runs
 
 PASSES = 20
 """Of the moving average where nothing else is said; the paper gives no number."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Published:
+class PublishedFit:
     """What smoothing and least squares make of a log; without intervals, for the method has none.
 
     Parameters
@@ -63,7 +63,7 @@ def identify_published(
     *,
     passes: int = PASSES,
     model: Literal["Coulomb and viscous", "viscous"] = "Coulomb and viscous",
-) -> Published:
+) -> PublishedFit:
     """Fit ``m ẍ + b ẋ + f_c sgn ẋ = f_h − f_a`` to smoothed positions, as Abbott & Okamura (2005) did.
 
     All samples are held in memory, some 100 bytes each: `identify` reads logs of any length.
@@ -88,7 +88,11 @@ def identify_published(
         raise InputError(f"passes must be a whole number ≥ 0, got {passes!r}: so often the average is taken")
     if model not in ("Coulomb and viscous", "viscous"):
         raise InputError(f'model is "Coulomb and viscous" or "viscous", got {model!r}')
-    parts = [_rows(x, f, passes, log.sample_period) for x, f in _runs(log) if x.size > 4 * passes + 4]
+    parts = [
+        _rows(run.position, _force(run), passes, log.sample_period)
+        for run in whole_runs(log.blocks())
+        if run.position.size > 4 * passes + 4
+    ]
     matrix = np.concatenate([m for m, _ in parts]) if parts else np.empty((0, 3))
     if model == "viscous":
         matrix = matrix[:, :2]
@@ -101,7 +105,7 @@ def identify_published(
     if rank < matrix.shape[1]:
         raise InputError(f"{log.source} does not tell the parameters apart: move to and fro, at many speeds")
     left = force - matrix @ found
-    return Published(
+    return PublishedFit(
         mass=float(found[0]),
         damping=float(found[1]),
         coulomb_friction=float(found[2]) if model == "Coulomb and viscous" else None,
@@ -111,26 +115,14 @@ def identify_published(
     )
 
 
-def _runs(log: Log) -> Iterator[tuple[Array, Array]]:
-    """Position and force of each uninterrupted run."""
-    kept: list[Block] = []
-    for block in log.blocks():
-        if kept and block.run != kept[0].run:
-            yield _run(kept)
-            kept = []
-        kept.append(block)
-    if kept:
-        yield _run(kept)
-
-
-def _run(blocks: list[Block]) -> tuple[Array, Array]:
-    position = np.concatenate([b.position for b in blocks])
-    force = np.zeros(position.size)
-    if blocks[0].hand_force is not None:
-        force += np.concatenate([b.hand_force for b in blocks if b.hand_force is not None])
-    if blocks[0].actuator_force is not None:
-        force -= np.concatenate([b.actuator_force for b in blocks if b.actuator_force is not None])
-    return position, force
+def _force(run: Block) -> Array:
+    """f_h − f_a, as far as they were logged."""
+    force = np.zeros(run.position.size)
+    if run.hand_force is not None:
+        force += run.hand_force
+    if run.actuator_force is not None:
+        force -= run.actuator_force
+    return force
 
 
 def _rows(position: Array, force: Array, passes: int, period: float) -> tuple[Array, Array]:

@@ -143,21 +143,7 @@ def weighed(
     hand_force: Array | None,
     actuator_force: Array | None,
 ) -> Array:
-    """What each pulse gives, a row for each.
-
-    Parameters
-    ----------
-    shape
-        The pulse.
-    position
-        Inside the strokes [m; rad].
-    strokes
-        Where they are.
-    period
-        T [s].
-    hand_force, actuator_force
-        [N; N·m]; None where there is none.
-    """
+    """What each pulse gives, a row for each: of positions inside the strokes [m; rad] and forces [N; N·m]."""
     reach = _reach(shape.piece)
     room = strokes.last - strokes.first - 1 - 2 * reach
     most = int(np.maximum(room // shape.piece + 1, 0).sum())

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from math import nan
 
 import numpy as np
-from scipy import stats
 
 from zwidth.compiled import Array
+from zwidth.identification.device.estimate import student
 from zwidth.identification.device.moments import COLUMNS, PAIRS, REGRESSORS, Moments
 
 FEWEST = 6
@@ -63,7 +63,7 @@ class Regression:
 
     def reach(self, confidence: float) -> float:
         """Standard errors to either side of a two-sided interval of Student's t."""
-        return float(stats.t.ppf(0.5 + confidence / 2, self.degrees))
+        return student(confidence, self.degrees)
 
 
 def regress(
@@ -71,16 +71,8 @@ def regress(
 ) -> Regression | None:
     """Fit the named parameters; None where the strokes are too few or too much alike.
 
-    Parameters
-    ----------
-    moments
-        The sums.
-    names
-        Some of `REGRESSORS`.
-    mass
-        m where it is known and not fitted [kg; kg·m²]: m a then counts to the force.
-    share
-        Part of the variance of df/dt that is motion and not noise, for `force_lag`.
+    A mass that is given [kg; kg·m²] is not fitted: m a then counts to the force.  `share` is the part of the
+    variance of df/dt that is motion and not noise, for `force_lag`.
     """
     degrees = moments.strokes - len(names) - moments.lines
     if degrees < FEWEST:
@@ -92,8 +84,7 @@ def regress(
         known[REGRESSORS.index("mass")] = -mass
     matrix = moments.sum[np.ix_(chosen, chosen)]
     right = moments.sum[chosen] @ known
-    size = np.sqrt(np.abs(np.diag(matrix)))
-    if not (size > 0).all() or np.linalg.cond(matrix / np.outer(size, size)) > 1e10:
+    if not tells_apart(matrix, 1e10):
         return None
     if "force_lag" in names and share != 1.0:
         lag = names.index("force_lag")
@@ -116,18 +107,14 @@ def regress(
     )
 
 
-def offset(moments: Moments, fit: Regression, mass: float | None) -> float:
-    """What the force has besides the fitted terms, f̄ − m ā − Σ θ Ā in means over the pieces [N; N·m].
+def tells_apart(matrix: Array, most: float) -> bool:
+    """True where normal equations, scaled to ones on the diagonal, have at most this condition number."""
+    size = np.sqrt(np.abs(np.diag(matrix)))
+    return bool((size > 0).all() and np.linalg.cond(matrix / np.outer(size, size)) <= most)
 
-    Parameters
-    ----------
-    moments
-        The sums that were fitted.
-    fit
-        The parameters.
-    mass
-        m where it is known and not fitted [kg; kg·m²], as in `regress`.
-    """
+
+def offset(moments: Moments, fit: Regression, mass: float | None) -> float:
+    """What the force has besides the fitted terms, f̄ − m ā − Σ θ Ā in means over the pieces [N; N·m]."""
     known = moments.means[-1] - (mass or 0.0) * moments.means[0]
     terms = sum(fit.value(name) * moments.means[REGRESSORS.index(name)] for name in fit.names)
     return float((known - terms) / max(moments.pieces, 1))

@@ -66,7 +66,7 @@ def _origin(identified: IdentifiedNumbers, key: str, motion: str, confidence: fl
     if key in ("sample_period", "resolution"):
         return f"{unit}: of the log"
     if key == "friction_speed":
-        return f"{unit}: the fastest motion seen, each way; beyond it b and f_c are taken for granted"
+        return f"{unit}: the fastest motion seen in both directions; beyond it b and f_c are assumed"
     return f"{unit}: as given"
 
 

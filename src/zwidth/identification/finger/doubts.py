@@ -40,12 +40,12 @@ USUAL = {"position": (1e-5, 0.05), "hand_force": (0.01, 100.0), "actuator_force"
 """How far it goes about while a finger is shaken [m], [N]."""
 
 
-def scale_wrong(log: Log, pieces: Pieces, stiffness: Estimate) -> str | None:
-    """Why a stiffness is no finger's; None where it may be one, or the device turns."""
+def refuse_scale(log: Log, pieces: Pieces, stiffness: Estimate) -> None:
+    """Refuse a stiffness that is no finger's, unless the device turns."""
     low, high = stiffness.interval()
     if log.motion == "rotary" or (high >= SOFTEST and low <= STIFFEST):
-        return None
-    return (
+        return
+    raise InputError(
         f"{log.source}: stiffness comes out as {stiffness}, and no finger, hand or arm has that "
         f"({SOFTEST:g} to {STIFFEST:g} N/m at the most): {_ranges(log, pieces)}; most likely a unit "
         f"is off by 1000, "
@@ -72,23 +72,16 @@ def _ranges(log: Log, pieces: Pieces) -> str:
     return ", ".join(said)
 
 
-def disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_known: bool) -> str | None:
-    """Why two forces are not of one finger: its stiffness by each; None where they may be.
+def refuse_disagreement(log: Log, hand: Estimate, actuator: Estimate, friction_known: bool) -> None:
+    """Refuse two forces that are not of one finger, by its stiffness by each.
 
-    Parameters
-    ----------
-    log
-        What was recorded.
-    hand, actuator
-        The stiffness by either force.
-    friction_known
-        False: the device's Coulomb friction was left out of the second.
+    Where the device's Coulomb friction is not known, it was left out of the second.
     """
     apart = 1.0 if friction_known else APART
     (low, high), (least, most) = hand.interval(0.999), actuator.interval(0.999)
     if low <= apart * most and least <= apart * high:
-        return None
-    return (
+        return
+    raise InputError(
         f"{log.source}: the two forces are not of one finger: its stiffness is {hand} by the hand's "
         f"force and "
         f"{actuator} by the actuator's, {hand.value / actuator.value:.3g} times as much; most likely "
@@ -108,11 +101,10 @@ def late(log: Log, lag: Lag) -> LoadCellError:
     """What is said of a load cell that is late."""
     return LoadCellError(
         f"{log.source}: the force of the hand is recorded late, by {1e3 * lag.least:.2g} to "
-        f"{1e3 * lag.most:.2g} ms: "
-        "each millisecond takes as much damping from the finger as its spring gives in it, and mass "
-        "too; give "
-        "the device and log the actuator's force, which tell the finger without the load cell; or take the "
-        "filter of the load cell away, or shift its samples by what it is late"
+        f"{1e3 * lag.most:.2g} ms: each millisecond takes as much damping from the finger as its spring "
+        "gives in it, and mass too; give the device and log the actuator's force, which tell the finger "
+        "without the load cell; or take the filter of the load cell away, or shift its samples by what it is "
+        "late"
     )
 
 
@@ -121,10 +113,9 @@ def at_the_stop(log: Log) -> LoadCellError | None:
     for finding in log.findings:
         if finding.kind == "saturated":
             return LoadCellError(
-                f"{log.source}: {finding.text}, and what is left shows too little: shake less "
-                f"strongly, take a "
-                "larger load cell, or give the device and log the actuator's force, which tell the "
-                "finger without it"
+                f"{log.source}: {finding.text}, and what is left shows too little: shake less strongly, take "
+                "a larger load cell, or give the device and log the actuator's force, which tell the finger "
+                "without it"
             )
     return None
 
@@ -133,11 +124,10 @@ def doubts(lag: Lag) -> Iterator[Finding]:
     """What the lag that may be there makes of the intervals."""
     yield Finding(
         kind="late, or read before the step",
-        text=f"the force of the hand shows the actuator's steps late: either it is read before them, "
-        f"and in time, "
-        f"or it is recorded up to {1e3 * lag.most:.2g} ms late; nothing in the log tells which, and "
-        f"the intervals of mass "
-        "and damping hold both; give the device or the actuator's delay, and they will not have to",
+        text="the force of the hand shows the actuator's steps late: either it is read before them, and in "
+        f"time, or it is recorded up to {1e3 * lag.most:.2g} ms late; nothing in the log tells which, and "
+        "the intervals of mass and damping hold both; give the device or the actuator's delay, and they will "
+        "not have to",
     )
 
 
@@ -153,22 +143,13 @@ def widened(fit: Fit, lag: Lag | None) -> np.ndarray:
 
 
 def apart(log: Log, hand: Estimate, actuator: Estimate) -> tuple[float, Finding] | None:
-    """By how much two dampings of one finger surely differ, and the finding; None where they may be the same.
-
-    Parameters
-    ----------
-    log
-        What was recorded.
-    hand, actuator
-        The damping by either force, the second with the device known.
-    """
+    """By how much two dampings of one finger surely differ, and the finding; None where they may not."""
     (low, high), (least, most) = hand.interval(0.999), actuator.interval(0.999)
     if low <= most and least <= high:
         return None
     finding = Finding(
         kind="dampings apart",
-        text=f"damping is {hand} by the hand's force and {actuator} by the actuator's: the load cell "
-        f"is a little "
-        "late, or the device is not as it is said to be; the intervals hold both",
+        text=f"damping is {hand} by the hand's force and {actuator} by the actuator's: the load cell is a "
+        "little late, or the device is not as it is said to be; the intervals hold both",
     )
     return abs(hand.value - actuator.value), finding

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from zwidth.compiled import Array
+from zwidth.identification.device.regression import tells_apart
 from zwidth.identification.finger.means import Means
 
 if TYPE_CHECKING:
@@ -63,16 +64,9 @@ class Fit(NamedTuple):
 def fitted(rows: Means | None, by_hand: bool, friction: float, resting: bool = False) -> Fit | None:
     """Mass, damping and stiffness of what meets a force; None where too little is known.
 
-    Parameters
-    ----------
-    rows
-        The means.
-    by_hand
-        True: of the finger, from −f_h; False: of device and finger, from −f_a − f_c sgn ẋ.
-    friction
-        f_c, of the device [N; N·m]; where it is not 0 only pulses count that have no more than short turns.
-    resting
-        True: as if in a turn there were no friction; else it changes its sign in the middle.
+    By the hand: of the finger, from −f_h; else of device and finger, from −f_a − f_c sgn ẋ.  Where f_c is
+    not 0 only pulses count that have no more than short turns, in which friction changes its sign in the
+    middle, or is left out (`resting`).
     """
     if rows is None:
         return None
@@ -98,10 +92,9 @@ def solved(pairs: list[tuple[Array, Array]], y: Array, piece: NDArray[np.int64])
     count = pairs[0][0].shape[1]
     if starts.size < FEWEST + count:
         return None
-    matrix = sum(z.T @ a for z, a in pairs)
+    matrix: Array = np.asarray(sum(z.T @ a for z, a in pairs))
     right = sum(z.T @ y for z, _ in pairs)
-    size = np.sqrt(np.abs(np.diag(matrix)))
-    if not (size > 0).all() or np.linalg.cond(matrix / np.outer(size, size)) > 1e8:
+    if not tells_apart(matrix, 1e8):
         return None
     values: Array = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     scatter = sum(z * (y - a @ values)[:, None] for z, a in pairs)

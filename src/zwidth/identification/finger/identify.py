@@ -31,8 +31,8 @@ from zwidth.compiled import Array
 from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.identification.device.choice import LENGTHS, LONGER, SAFETY
-from zwidth.identification.device.estimate import Estimate
-from zwidth.identification.device.impossible import impossible
+from zwidth.identification.device.estimate import Estimate, perhaps_none, unit_of
+from zwidth.identification.device.impossible import refuse_impossible
 from zwidth.identification.device.pulses import PIECES
 from zwidth.identification.finger.doubts import (
     BY_ACTUATOR,
@@ -40,10 +40,10 @@ from zwidth.identification.finger.doubts import (
     LoadCellError,
     apart,
     at_the_stop,
-    disagreement,
     doubts,
     late,
-    scale_wrong,
+    refuse_disagreement,
+    refuse_scale,
     widened,
 )
 from zwidth.identification.finger.fit import TERMS, Fit, fitted
@@ -135,7 +135,11 @@ class _Task(NamedTuple):
     @property
     def known(self) -> dict[str, tuple[float, float]]:
         """The ends of what the device takes of the actuator's force; nothing where no mass is known."""
-        return {} if self.device is None or self.device.mass is None else _known(self.device)
+        if self.device is None or self.device.mass is None:
+            return {}
+        names = ("mass", "damping", "coulomb_friction")
+        pairs = {name: ends(getattr(self.device, name)) for name in names}
+        return {name: (float(low), float(high)) for name, (low, high) in pairs.items()}
 
     @property
     def friction(self) -> float:
@@ -155,19 +159,14 @@ class _Road(NamedTuple):
 def _identified(task: _Task) -> IdentifiedFinger:
     log = task.log
     road = _begun(task)
-    wrong = impossible(log, _stiffnesses(task, road), lambda other: _turned(task, other), FINGER)
-    if wrong is not None:
-        raise InputError(wrong)
+    refuse_impossible(log, _stiffnesses(task, road), lambda other: _turned(task, other), FINGER)
     road = _finished(task, road)
     shift, said = _against_the_other_force(task, road)
     estimates = _estimates(
         road.ways.fit, _shift(task, road) + shift, {} if task.by_hand else task.known, log.motion
     )
-    wrong = scale_wrong(log, road.pieces, estimates["stiffness"]) or impossible(
-        log, estimates, lambda _: None, FINGER
-    )
-    if wrong is not None:
-        raise InputError(wrong)
+    refuse_scale(log, road.pieces, estimates["stiffness"])
+    refuse_impossible(log, estimates, lambda _: None, FINGER)
     fit = road.ways.fit
     return IdentifiedFinger(
         estimates=estimates,
@@ -245,19 +244,13 @@ def _apart(ways: Ways) -> Array:
 
 
 def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Finding]]:
-    """What the hand's force may be off beside the actuator's: in its scale and in time.
-
-    Raises
-    ------
-    InputError
-        If the two are not of one finger, or the hand's is late.
-    """
+    """What the hand's force may be off beside the actuator's: in its scale and in time."""
     nothing, log, ways = np.zeros(len(TERMS)), task.log, road.ways
     if not task.by_hand:
         return nothing, []
     stiffness = _stiffnesses(task, road)
     if road.total is not None:
-        _refuse(disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], False))
+        refuse_disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], False)
     period = log.sample_period
     lag = (
         lag_without_actuator(road.pieces, period)
@@ -270,7 +263,7 @@ def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Find
     shift = widened(ways.fit, lag)
     if road.total is None or not task.known:
         return shift, said
-    _refuse(disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], True))
+    refuse_disagreement(log, stiffness["stiffness"], stiffness[BY_ACTUATOR], True)
     hand = _estimates(ways.fit, _shift(task, road), {}, log.motion)["damping"]
     by_actuator = task._replace(by_hand=False)
     other = _estimates(
@@ -280,11 +273,6 @@ def _against_the_other_force(task: _Task, road: _Road) -> tuple[Array, list[Find
     if found is not None:
         shift, said = shift + np.array([0.0, found[0], 0.0]), [*said, found[1]]
     return shift, said
-
-
-def _refuse(wrong: str | None) -> None:
-    if wrong is not None:
-        raise InputError(wrong)
 
 
 def _checked(
@@ -316,16 +304,6 @@ def _checked(
     if instrument == "perturbation" and not recorded:
         raise InputError(f'{log.source} has no force of the actuator to serve as instrument; take "position"')
     return instrument or ("perturbation" if recorded else "position")
-
-
-def _known(device: Device | None) -> dict[str, tuple[float, float]]:
-    """The ends of what the device takes of the actuator's force."""
-    assert device is not None  # checked
-    found = {}
-    for name in ("mass", "damping", "coulomb_friction"):
-        low, high = ends(getattr(device, name))
-        found[name] = (float(low), float(high))
-    return found
 
 
 def _chosen(pieces: Pieces, log: Log, delay: float, by_hand: bool, friction: float) -> Ways:
@@ -392,8 +370,6 @@ def _too_little(log: Log) -> str:
 def _estimates(
     fit: Fit, shift: Array, known: dict[str, tuple[float, float]], motion: str
 ) -> dict[str, Estimate]:
-    turn = motion == "rotary"
-    units = ("kg m²", "N m s/rad", "N m/rad") if turn else ("kg", "N s/m", "N/m")
     found = {}
     for k, name in enumerate(TERMS):
         low, high = known.get(name, (0.0, 0.0))
@@ -402,15 +378,13 @@ def _estimates(
             float(fit.errors[k]),
             float(shift[k]) + (high - low) / 2,
             fit.pieces - len(TERMS),
-            units[k],
+            unit_of(name, motion),
         )
     return found
 
 
 def _findings(estimates: dict[str, Estimate], by_hand: bool, instrument: Instrument) -> Iterable[Finding]:
-    for name, estimate in estimates.items():
-        if estimate.interval(0.95)[0] <= 0:
-            yield Finding(kind=f"no {name}", text=f"the data do not rule out that {name} is 0: {estimate}")
+    yield from perhaps_none(estimates, TERMS)
     if instrument == "position":
         yield Finding(
             kind="tremor",

@@ -23,10 +23,10 @@ from math import ceil
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
 
 from zwidth.compiled import Array
 from zwidth.identification.device.choice import LONGER, SAFETY, SURE
+from zwidth.identification.device.estimate import student
 from zwidth.identification.finger.fit import FEWEST, Fit, fitted, without_slow
 from zwidth.identification.finger.means import Means, Pieces, later, means
 from zwidth.identification.finger.weights import Weights, weights
@@ -69,18 +69,7 @@ class Lag(NamedTuple):
 def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: float) -> Lag | None:
     """How late the force of the hand is beside the actuator's; None where nothing tells.
 
-    Parameters
-    ----------
-    pieces
-        The recording.
-    shape
-        The pulse.
-    total
-        Mass, damping and stiffness of device and finger by the actuator's force.
-    delay
-        From a sample to its actuator force [samples].
-    period
-        T [s].
+    `total` is the fit of device and finger to the actuator's force, whose delay is in samples.
     """
     other = weights(LONGER * shape.piece, delay)
     rows, longer = (means(pieces, s, period) for s in (shape, other))
@@ -93,7 +82,7 @@ def lag_of(pieces: Pieces, shape: Weights, total: Fit, delay: float, period: flo
     if here is None or there is None:
         return None
     apart = SAFETY * abs(here[0] - there[0])
-    reach = float(stats.t.ppf(0.5 + SURE / 2, max(here[2], FEWEST))) * here[1] + apart
+    reach = student(SURE, max(here[2], FEWEST)) * here[1] + apart
     early, late = _moments(delay)
     value = here[0] + best * period
     low, high = value - late * period, value - early * period
@@ -116,15 +105,7 @@ def _apparent(rows: Means, total: Fit, period: float) -> tuple[float, float, int
 
 
 def lag_without_actuator(pieces: Pieces, period: float) -> Lag | None:
-    """How late the force of the hand is, where it alone is logged; None where nothing tells.
-
-    Parameters
-    ----------
-    pieces
-        The recording.
-    period
-        T [s].
-    """
+    """How late the force of the hand is, where it alone is logged; None where nothing tells."""
     shape = weights(SHORTEST, 0.0)
     rows = means(pieces, shape, period)
     if rows is None:
@@ -138,7 +119,7 @@ def lag_without_actuator(pieces: Pieces, period: float) -> Lag | None:
     if left[best].size < FEWEST:
         return None
     worse = {samples: _worse(rest - left[best]) for samples, rest in left.items()}
-    reach = float(stats.t.ppf(0.5 + SURE / 2, left[best].size - 1))
+    reach = student(SURE, left[best].size - 1)
     inside = [samples for samples, t in worse.items() if t <= reach]
     sure = min(inside) > 0 and worse.get(0, 0.0) > SURELY * reach
     least, most = max(min(inside) - 1, 0) * period, (max(inside) + 0.5) * period

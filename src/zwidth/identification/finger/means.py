@@ -17,7 +17,8 @@ from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.identification.device.strokes import count_without_steps, find_strokes
 from zwidth.identification.finger.weights import Weights
-from zwidth.identification.logs import Block, Log
+from zwidth.identification.logs import Log
+from zwidth.identification.logs.block import whole_runs
 from zwidth.identification.logs.stops import beyond
 
 if TYPE_CHECKING:
@@ -84,42 +85,29 @@ class Means(NamedTuple):
 def pieces_of(log: Log, seconds: float, by_hand: bool) -> Pieces:
     """The log cut into pieces of so many seconds, each within a run; what is left over is not used.
 
-    Parameters
-    ----------
-    log
-        What was recorded.
-    seconds
-        Of a piece.
-    by_hand
-        True: no means are taken of a piece in which the sensor of the hand's force is at an end of its range;
-        as a whole, since which of its pulses stay must not depend on the force that they show.
-
-    Raises
-    ------
-    InputError
-        If no run is that long.
+    Where the hand's force answers, no means are taken of a piece in which its sensor is at an end of its
+    range: as a whole, since which of its pulses stay must not depend on the force that they show.
     """
     size = round(seconds / log.sample_period)
-    runs = [run for run in _whole_runs(log) if len(run[0]) >= size]
+    runs = [run for run in whole_runs(log.blocks()) if run.position.size >= size]
     if not runs:
         raise InputError(
-            f"{log.source} has no run of {seconds:g} s without a hole: {log.runs} runs in "
-            f"{log.duration:.3g} s; "
-            "record a minute, lose no samples, or take shorter pieces"
+            f"{log.source} has no run of {seconds:g} s without a hole: {log.runs} runs in {log.duration:.3g} "
+            "s; record a minute, lose no samples, or take shorter pieces"
         )
 
     def rows(columns: Iterable[Array | None]) -> Array | None:
         parts = [_cut(c, size) for c in columns if c is not None]
         return np.concatenate(parts) if parts else None
 
-    position, side = rows(r[0] for r in runs), rows(_side(r[0], log) for r in runs)
+    position, side = rows(r.position for r in runs), rows(_side(r.position, log) for r in runs)
     assert position is not None  # every log has positions
     assert side is not None
-    hand, actuator = (rows(r[n] for r in runs) for n in (1, 2))
+    hand, actuator = rows(r.hand_force for r in runs), rows(r.actuator_force for r in runs)
     clear: NDArray[np.bool_] = np.ones(len(position), dtype=bool)
     if by_hand and hand is not None:
         clear = np.logical_not(np.any(beyond(hand, log.stops), axis=1))
-    return Pieces(position, None, hand, actuator, side, tuple(len(r[0]) // size for r in runs), clear)
+    return Pieces(position, None, hand, actuator, side, tuple(r.position.size // size for r in runs), clear)
 
 
 def response(log: Log, pieces: Pieces, total: Array, delay: float) -> Array:
@@ -138,26 +126,6 @@ def response(log: Log, pieces: Pieces, total: Array, delay: float) -> Array:
         found.append(lfilter(numerator[0], denominator, force).reshape(count, -1))
         first += count
     return np.concatenate(found)
-
-
-def _whole_runs(log: Log) -> list[tuple[Array, Array | None, Array | None]]:
-    """Position, force of the hand, force of the actuator of each uninterrupted run."""
-    runs: dict[int, list[Block]] = {}
-    for block in log.blocks():
-        runs.setdefault(block.run, []).append(block)
-    return [
-        (
-            np.concatenate([b.position for b in blocks]),
-            _joined([b.hand_force for b in blocks]),
-            _joined([b.actuator_force for b in blocks]),
-        )
-        for blocks in runs.values()
-    ]
-
-
-def _joined(parts: list[Array | None]) -> Array | None:
-    known = [part for part in parts if part is not None]
-    return np.concatenate(known) if known else None
 
 
 def _side(position: Array, log: Log) -> Array:

@@ -1,4 +1,4 @@
-"""A log from arrays, or from an xarray.Dataset such as a trace of `zwidth.simulate`."""
+"""The table of arrays in SI units, or of an xarray.Dataset such as a trace of `zwidth.simulate`."""
 
 from __future__ import annotations
 
@@ -8,98 +8,38 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.build import log_from, stated_period
-from zwidth.identification.logs.log import Log, Motion
 from zwidth.identification.logs.names import recognise
-from zwidth.identification.logs.scales import meaning_of
 from zwidth.identification.logs.table import Table, Values
+from zwidth.quantity.glossary import GLOSSARY
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import ArrayLike
 
 
-def log_of(
-    data: xr.Dataset | None = None,
-    /,
-    *,
-    time: ArrayLike | None = None,
-    position: ArrayLike | None = None,
-    hand_force: ArrayLike | None = None,
-    actuator_force: ArrayLike | None = None,
-    columns: Mapping[str, str | None] | None = None,
-    units: Mapping[str, str] | None = None,
-    scale: Mapping[str, object] | None = None,
-    sample_rate: object = None,
-    sample_period: object = None,
-    resolution: object = None,
-    counts_per_turn: object = None,
-    motion: Motion | None = None,
-) -> Log:
-    """A log from arrays in SI units, or from the variables of a Dataset with their units.
-
-    Parameters
-    ----------
-    data
-        A Dataset whose variables have the attribute `units`, such as a trace; instead of the arrays.
-    time
-        [s] stamp of each sample; or leave it out and state the rate.
-    position
-        [m; rad] positive into the wall.
-    hand_force
-        [N; N·m] of the hand on the device, positive into the wall.
-    actuator_force
-        [N; N·m] of the actuator, positive out of the wall.
-    columns, units, scale, sample_rate, sample_period, resolution, counts_per_turn
-        As for `zwidth.read_log`.
-    motion
-        "linear", where nothing else is said, or "rotary".
-
-    Raises
-    ------
-    InputError
-        If the arrays are of different lengths, or nothing can be learnt from them.
-    """
-    given = {"time": time, "position": position, "hand_force": hand_force, "actuator_force": actuator_force}
-    arrays = {name: values for name, values in given.items() if values is not None}
-    period = stated_period(sample_rate, sample_period)
-    if data is None:
-        if columns is not None or units is not None:
-            raise InputError(
-                "columns and units are for a Dataset; arrays are in SI units, scale={…} changes them"
-            )
-        if motion is None:
-            motion = "rotary" if counts_per_turn is not None else "linear"
-        table = _table({name: _vector(name, values) for name, values in arrays.items()}, _si(motion), {})
-        names = {name: name for name in arrays}
-    else:
+def table_of(
+    data: xr.Dataset | None,
+    arrays: Mapping[str, Any],
+    columns: Mapping[str, str | None] | None,
+    units: Mapping[str, str] | None,
+    motion: str,
+) -> tuple[Table, dict[str, str]]:
+    """The table of a Dataset, or of the arrays of each quantity; and the column of each quantity."""
+    if data is not None:
         if arrays:
             raise InputError("give a Dataset or arrays, not both")
         table = _of_dataset(data)
-        names = recognise(table.units, columns, table.source)
-    if "position" not in names:
+        return table, recognise(table.units, columns, table.source)
+    if columns is not None or units is not None:
+        raise InputError(
+            "columns and units are for a Dataset; arrays are in SI units, scale={…} changes them"
+        )
+    if "position" not in arrays:
         raise InputError("a log needs positions; give position=…")
-    meaning = meaning_of(
-        table,
-        names,
-        units=units,
-        scale=scale,
-        resolution=resolution if resolution is not None else stated_resolution(table),
-        counts_per_turn=counts_per_turn,
-        motion=motion,
-    )
-    return log_from(table, meaning, period)
-
-
-def stated_resolution(table: Table) -> object:
-    """The resolution that a trace of ours says it has, or None."""
-    values = (table.attributes.get(key) for key in ("resolution_m", "resolution_rad"))
-    return next((float(v) for v in values if v is not None), None)
-
-
-def _si(motion: str) -> dict[str, str]:
-    length, force = ("rad", "N*m") if motion == "rotary" else ("m", "N")
-    return {"time": "s", "position": length, "hand_force": force, "actuator_force": force}
+    length, force = (GLOSSARY[name].unit_for(motion) for name in ("position", "force"))
+    si = {"time": "s", "position": length, "hand_force": force, "actuator_force": force}
+    return _table({name: _vector(name, values) for name, values in arrays.items()}, si, {}), {
+        name: name for name in arrays
+    }
 
 
 def _vector(name: str, values: Any) -> Values:

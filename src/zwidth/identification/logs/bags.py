@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.log import Finding
+from zwidth.identification.logs.block import Finding
 from zwidth.identification.logs.pieces import check_bag, check_messages
-from zwidth.identification.logs.table import PIECE, Table, Values
+from zwidth.identification.logs.table import MOST_COLUMNS, Table, Values, in_pieces
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,19 +25,12 @@ if TYPE_CHECKING:
 TIME = "time"
 """The column of stamps: of the topic that holds the position."""
 
-_MOST_FIELDS = 64
 _UNITS = {"geometry_msgs/msg/Vector3.force": "N", "geometry_msgs/msg/Vector3.torque": "N*m"}
 _INSTALL = "reading ROS bags and MCAP takes a library that is not installed: pip install 'zwidth[logs]'"
 
 
 def bag_table(path: Path) -> Table:
-    """The numbers in a bag.
-
-    Raises
-    ------
-    InputError
-        If the library for bags is not installed, or the messages are not of ROS.
-    """
+    """The numbers in a bag."""
     paths: dict[str, str] = {}
     units: dict[str, str | None] = {TIME: "ns"}
     bag = _opened(path)
@@ -78,7 +71,7 @@ def _fields(message: Any) -> Iterator[tuple[str, str | None]]:
             continue
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             yield name, None
-        elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu" and value.size <= _MOST_FIELDS:
+        elif isinstance(value, np.ndarray) and value.dtype.kind in "fiu" and value.size <= MOST_COLUMNS:
             for k in range(value.size):
                 yield f"{name}[{k}]", None
         elif hasattr(value, "__dataclass_fields__"):
@@ -103,8 +96,7 @@ def _read(
                 f'"{name}" is of another topic than the position; each sample has the value nearest in time'
             )
             notes[name] = Finding(kind="two topics", text=text)
-    for k in range(0, stamps[main].size, PIECE):
-        yield tuple(columns[name][k : k + PIECE] for name in names)
+    yield from in_pieces(str(path), columns, names)
 
 
 def _unpacked(reader: Any, topics: dict[str, str]) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[Any]]]:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from zwidth.errors import InputError
 from zwidth.identification.logs import findings
-from zwidth.identification.logs.log import Block, Log
-from zwidth.identification.logs.rows import Recording, Rows, joined
+from zwidth.identification.logs.block import Block
+from zwidth.identification.logs.rows import Recording
 from zwidth.identification.logs.runs import Cutter, Segment
 from zwidth.identification.logs.scales import Meaning
 from zwidth.identification.logs.stamps import Clock, clock_of
@@ -20,6 +20,7 @@ from zwidth.identification.logs.steps import Grid
 from zwidth.identification.logs.survey import Survey
 from zwidth.identification.logs.table import Table, listed
 from zwidth.identification.logs.wraps import Unwrapper
+from zwidth.quantity.text import quantity_unit
 from zwidth.quantity.units import parse_number
 
 if TYPE_CHECKING:
@@ -27,24 +28,12 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-MEMORY = 2**28
-"""[bytes] A log whose numbers need no more is kept in memory after the first pass."""
-
-_FIRST = 2**14
-"""Samples that the clock is read from, where there are as many."""
-
 _START = 4096
 """Samples whose stamps say when a run began, where stamps vary."""
 
 
 def stated_period(sample_rate: object, sample_period: object) -> float | None:
-    """[s] T as stated by a rate or a period, or None.
-
-    Raises
-    ------
-    InputError
-        If both are given, or either is not above 0.
-    """
+    """[s] T as stated by a rate or a period, or None."""
     if sample_rate is not None and sample_period is not None:
         raise InputError("sample_rate and sample_period say the same; give one of them")
     given, unit, name = (
@@ -58,14 +47,8 @@ def stated_period(sample_rate: object, sample_period: object) -> float | None:
     return float(1 / value.fraction) if unit == "Hz" else float(value)
 
 
-def log_from(table: Table, meaning: Meaning, stated: float | None) -> Log:
-    """Go through a table once, and make a log of it.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or nothing can be learnt from it.
-    """
+def contents(table: Table, meaning: Meaning, stated: float | None) -> dict[str, Any]:
+    """Go through a table once: the fields of its `Log`."""
     timed = "time" in meaning.columns
     if not timed and stated is None:
         raise InputError(
@@ -74,8 +57,8 @@ def log_from(table: Table, meaning: Meaning, stated: float | None) -> Log:
         )
     recording = Recording(table, meaning, None if timed else stated)
     tally: Counter[str] = Counter()
-    kept: list[Rows] | None = []
-    start, rows = _opening(recording.rows(tally))
+    rows = recording.rows(tally)
+    start = next(rows, None)
     if start is None or start.time.size < 2:
         raise InputError(
             f"{table.source} holds fewer than two rows with numbers in the columns that are used"
@@ -83,42 +66,17 @@ def log_from(table: Table, meaning: Meaning, stated: float | None) -> Log:
     clock = clock_of(start.time, table.source) if timed else Clock(period=stated or 0.0, group=1)
     cutter = Cutter(clock, table.source, tally)
     survey = Survey(clock.period, meaning.resolution, meaning.factors["position"], table.source)
-    size = 0
-
-    def passing() -> Iterator[Rows]:
-        nonlocal kept, size
-        for piece in rows:
-            size += sum(column.nbytes for column in piece if column is not None)
-            if size > MEMORY:
-                kept = None
-            if kept is not None:
-                kept.append(piece)
-            yield piece
-
-    for _ in survey.take(cutter.segments(passing())):
-        pass
-    if kept is not None:
-        recording.keep(kept)
+    survey.look(cutter.segments(chain([start], rows)))
     findings.refuse(survey, tally, table.source)
-    return _log(recording, cutter, survey, tally, stated)
+    return _contents(recording, cutter, survey, tally, stated)
 
 
-def _opening(pieces: Iterator[Rows]) -> tuple[Rows | None, Iterator[Rows]]:
-    """Enough rows to read the clock from; and all rows, those included."""
-    start: Rows | None = None
-    for piece in pieces:
-        start = piece if start is None else joined(start, piece)
-        if start.time.size >= _FIRST:
-            break
-    return start, chain([] if start is None else [start], pieces)
-
-
-def _log(
+def _contents(
     recording: Recording, cutter: Cutter, survey: Survey, tally: Counter[str], stated: float | None
-) -> Log:
+) -> dict[str, Any]:
     source, meaning = recording.table.source, recording.meaning
     timed = recording.period is None
-    unit = "rad" if meaning.motion == "rotary" else "m"
+    length, force = (quantity_unit(name, meaning.motion) for name in ("position", "force"))
     period, about_period = findings.period(survey, stated, timed, source)
     snapped = survey.grid if survey.off_grid <= 0.01 * survey.samples else None
     step = survey.grid.step if survey.grid is not None else (meaning.resolution or 0.0)
@@ -127,8 +85,8 @@ def _log(
         *recording.table.notes.values(),
         about_period,
         *findings.clock(survey, cutter, tally),
-        *findings.position(survey, wrap, unit),
-        *findings.forces(survey, "N·m" if meaning.motion == "rotary" else "N"),
+        *findings.position(survey, wrap, length),
+        *findings.forces(survey, force),
     )
     varying = cutter.clock.group > 1 or survey.deviation > 1e-6 * period
 
@@ -136,18 +94,18 @@ def _log(
         again = Cutter(cutter.clock, source, Counter())
         return _blocks(again.segments(recording.rows()), period, varying, snapped, Unwrapper(wrap))
 
-    return Log(
-        source=source,
-        motion=meaning.motion,
-        sample_period=period,
-        resolution=step,
-        samples=survey.samples,
-        runs=survey.runs,
-        channels=tuple(survey.ranges),
-        findings=said,
-        stops=survey.stops.found()[0],
-        _blocks=blocks,
-    )
+    return {
+        "source": source,
+        "motion": meaning.motion,
+        "sample_period": period,
+        "resolution": step,
+        "samples": survey.samples,
+        "runs": survey.runs,
+        "channels": tuple(survey.ranges),
+        "findings": said,
+        "stops": survey.stops.found()[0],
+        "_blocks": blocks,
+    }
 
 
 def _blocks(

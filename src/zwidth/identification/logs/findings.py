@@ -4,26 +4,51 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from math import isfinite
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.log import Finding
+from zwidth.identification.logs.block import Finding
 from zwidth.identification.logs.runs import Cutter
 from zwidth.identification.logs.stamps import settled
+from zwidth.identification.logs.stops import at_ends
 from zwidth.identification.logs.survey import Survey
 
 _LITTLE, _LOT = 1e-4, 0.02
 """Between them a stated period that differs from the stamps' is used and reported; beyond, refused."""
 
+_COUNTED = {
+    "dates": ("dates", "the stamps are dates; time counts from the first of them", ""),
+    "missing": ("missing", "{missing} of {rows} rows lack a number and are left out", "missing"),
+    "infinite": (
+        "infinite",
+        "{infinite} of {rows} rows hold an infinite number and are left out",
+        "infinite",
+    ),
+    "gaps": (
+        "gap",
+        "{gaps} gaps, about {lost} samples, the longest {longest:.4g} s; a new run begins after each",
+        "lost",
+    ),
+    "restarts": (
+        "restart",
+        "time starts again, {restarts} ×: recordings one after the other, a run each",
+        "",
+    ),
+    "repeated": (
+        "repeated",
+        "{repeated} rows come twice while the clock goes on; the second is left out",
+        "repeated",
+    ),
+    "twice": (
+        "stamp twice",
+        "{twice} stamps come twice with different numbers; they are taken for two samples",
+        "twice",
+    ),
+}
+"""What the rows were counted for: the finding's kind, its sentence, and the count of its samples."""
+
 
 def refuse(survey: Survey, tally: Counter[str], source: str) -> None:
-    """Refuse a log that says nothing.
-
-    Raises
-    ------
-    InputError
-        If there are no samples, most rows are not numbers, the runs are scraps, or nothing moves.
-    """
+    """Refuse a log that says nothing."""
     if survey.samples < 2:
         raise InputError(
             f"{source} holds {survey.samples} samples; a log needs two at least, and many to say something"
@@ -53,19 +78,15 @@ def refuse(survey: Survey, tally: Counter[str], source: str) -> None:
 
 
 def period(survey: Survey, stated: float | None, timed: bool, source: str) -> tuple[float, Finding]:
-    """T [s], and where it comes from.
-
-    Raises
-    ------
-    InputError
-        If the stamps contradict the stated period.
-    """
+    """T [s], and where it comes from."""
     if not timed:
         assert stated is not None
         text = f"sample period {stated:.9g} s as stated; there are no stamps to compare with"
         return stated, Finding(kind="sample period", text=text)
-    mean, count = survey.mean_interval, max(1, survey.intervals)
-    uncertainty = (2 * survey.deviation * survey.runs**0.5 + 4e-16 * survey.latest) / count + 1e-12 * mean
+    mean, count = survey.mean_interval, max(1, survey.intervals.number)
+    uncertainty = (
+        2 * survey.deviation * survey.runs**0.5 + 4e-16 * survey.intervals.latest
+    ) / count + 1e-12 * mean
     inferred = settled(mean, uncertainty)
     if stated is None:
         return inferred, Finding(kind="sample period", text=f"sample period {inferred:.9g} s from the stamps")
@@ -88,29 +109,10 @@ def period(survey: Survey, stated: float | None, timed: bool, source: str) -> tu
 
 def clock(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Finding]:
     """Gaps, restarts, repetitions, jitter."""
-    if tally["dates"]:
-        yield Finding(kind="dates", text="the stamps are dates; time counts from the first of them")
-    if tally["missing"]:
-        text = f"{tally['missing']} of {tally['rows']} rows lack a number and are left out"
-        yield Finding(kind="missing", text=text, samples=tally["missing"])
-    if tally["infinite"]:
-        text = f"{tally['infinite']} of {tally['rows']} rows hold an infinite number and are left out"
-        yield Finding(kind="infinite", text=text, samples=tally["infinite"])
-    if tally["gaps"]:
-        text = (
-            f"{tally['gaps']} gaps, about {tally['lost']} samples, the longest {cutter.longest_gap:.4g} s; "
-            "a new run begins after each"
-        )
-        yield Finding(kind="gap", text=text, samples=tally["lost"])
-    if tally["restarts"]:
-        text = f"time starts again, {tally['restarts']} ×: recordings one after the other, a run each"
-        yield Finding(kind="restart", text=text)
-    if tally["repeated"]:
-        text = f"{tally['repeated']} rows come twice while the clock goes on; the second is left out"
-        yield Finding(kind="repeated", text=text, samples=tally["repeated"])
-    if tally["twice"]:
-        text = f"{tally['twice']} stamps come twice with different numbers; they are taken for two samples"
-        yield Finding(kind="stamp twice", text=text, samples=tally["twice"])
+    numbers = {**tally, "longest": cutter.longest_gap}
+    for what, (kind, text, samples) in _COUNTED.items():
+        if tally[what]:
+            yield Finding(kind=kind, text=text.format_map(numbers), samples=tally[samples] if samples else 0)
     supposed = (
         "supposed: the samples were taken evenly and only the stamps vary, so the row's number is the clock"
     )
@@ -123,7 +125,7 @@ def clock(survey: Survey, cutter: Cutter, tally: Counter[str]) -> Iterator[Findi
     elif survey.deviation > 1e-3 * survey.period:
         text = (
             f"intervals between stamps vary by {survey.deviation:.3g} s (standard deviation), from "
-            f"{survey.shortest:.6g} to {survey.longest:.6g} s; {supposed}"
+            f"{survey.intervals.shortest:.6g} to {survey.intervals.longest:.6g} s; {supposed}"
         )
         yield Finding(kind="jitter", text=text)
 
@@ -170,14 +172,13 @@ def forces(survey: Survey, unit: str) -> Iterator[Finding]:
     low, high = survey.ranges.get("actuator_force", (0.0, 1.0))
     if low == high:
         yield Finding(kind="constant", text=f"the actuator force is {low:g} throughout")
-    (low, high), samples = survey.stops.found()
-    ends = " and at ".join(f"{end:.4g} {unit}" for end in (low, high) if isfinite(end))
+    stops, samples = survey.stops.found()
+    ends = at_ends(stops, unit)
     if ends:
         share = 100 * samples / survey.samples
         text = (
             f"the hand's force stays at {ends} in {samples} samples, {share:.2g} %: the sensor is at the end "
-            "of its range, and what the hand does beyond is not known; strokes, or pieces of a "
-            "shaken finger, "
-            "with such samples are left out"
+            "of its range, and larger forces are not known; strokes, or pieces of a shaken finger, with such "
+            "samples are left out"
         )
         yield Finding(kind="saturated", text=text, samples=samples)

@@ -9,11 +9,8 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
-from zwidth.errors import InputError
-from zwidth.identification.logs.table import PIECE, Table, Values
+from zwidth.identification.logs.table import MOST_COLUMNS, PIECE, Table, Values, check_lengths
 from zwidth.reading import check_dataset
-
-_MOST_COLUMNS = 64
 
 
 class _Column(NamedTuple):
@@ -59,9 +56,9 @@ def _columns(name: str, data: h5py.Dataset) -> dict[str, _Column]:
     if len(data.shape) == 1:
         return {name: _Column(name, data.shape[0], unit, None, about)}
     rows, width = data.shape
-    upright = width <= min(rows, _MOST_COLUMNS)
+    upright = width <= min(rows, MOST_COLUMNS)
     count, length = (width, rows) if upright else (rows, width)
-    if count > _MOST_COLUMNS:
+    if count > MOST_COLUMNS:
         return {}
     return {
         name if count == 1 else f"{name}[{k}]": _Column(name, length, unit, (upright, k), about)
@@ -80,13 +77,8 @@ def _part(data: Any, column: _Column, start: int, end: int) -> Values:
 
 
 def _read(path: Path, columns: list[_Column], names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
-    rows = columns[0].rows
-    for name, column in zip(names, columns, strict=True):
-        if column.rows != rows:
-            raise InputError(
-                f'{path}: "{names[0]}" has {rows} samples, "{name}" has {column.rows}; '
-                "choose columns of one length"
-            )
+    sizes = {name: column.rows for name, column in zip(names, columns, strict=True)}
+    rows = check_lengths(str(path), sizes)
     with h5py.File(path, "r") as file:
         data = [file[column.dataset] for column in columns]
         for one in data:

@@ -7,6 +7,7 @@ What stands above is a header, a line of units below it, or a preamble.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -85,13 +86,7 @@ class Layout:
 
 
 def layout_of(start: bytes, source: str, whole: bool) -> Layout:
-    """The layout of a text that starts so; `whole` says that this is all of it.
-
-    Raises
-    ------
-    InputError
-        If it is empty, no text, or holds no table of numbers.
-    """
+    """The layout of a text that starts so; `whole` says that this is all of it."""
     text = _decoded(start, source)
     lines = text.splitlines()
     if not whole and len(lines) > 1:
@@ -172,9 +167,7 @@ def _layout(lines: list[str], delimiter: str, columns: int, first: int) -> Layou
     plain = [line for line in above if not _comment(line)]
     header, units_line = _header(plain, comments, delimiter, columns)
     names = _split(header.lstrip("#%/ "), delimiter) if header else []
-    names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names)]) or [
-        f"column {k + 1}" for k in range(columns)
-    ]
+    names = _distinct([name or f"column {k + 1}" for k, name in enumerate(names or [""] * columns)])
     units = {n: u.strip("[]() ") for n, u in zip(names, units_line, strict=False) if u.strip("[]() -")}
     body = [
         _split(line, delimiter) for line in lines[first : first + 200] if line.strip() and not _comment(line)
@@ -217,9 +210,9 @@ def _header(
 
 
 def _distinct(names: list[str]) -> list[str]:
-    seen: dict[str, int] = {}
+    seen: Counter[str] = Counter()
     result = []
     for name in names:
-        seen[name] = seen.get(name, 0) + 1
+        seen[name] += 1
         result.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
     return result

@@ -8,70 +8,23 @@ so that it may be longer than the memory.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
-from math import inf
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import inf, isclose
+from typing import TYPE_CHECKING
 
-import numpy as np
+from zwidth.errors import InputError
+from zwidth.identification.logs.arrays import table_of
+from zwidth.identification.logs.block import Block, Finding, Motion
+from zwidth.identification.logs.build import contents, stated_period
+from zwidth.identification.logs.scales import meaning_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    import xarray as xr
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
-
-BLOCK_SIZE = 2**18
-"""Most samples in a block."""
-
-Motion = Literal["linear", "rotary"]
-
-
-class Block(NamedTuple):
-    """A stretch without a gap, at most `BLOCK_SIZE` samples.
-
-    Parameters
-    ----------
-    run
-        Which uninterrupted run it belongs to, from 0; consecutive blocks of one run follow each other
-        without a gap.
-    time
-        [s] of each sample.
-    position
-        [m; rad] as the encoder read it, positive into the wall; whole multiples of the resolution if one is
-        known.
-    hand_force
-        [N; N·m] of the hand on the device, positive into the wall; None if the log has none.
-    actuator_force
-        [N; N·m] of the actuator, positive out of the wall; None if the log has none.
-    """
-
-    run: int
-    time: Array
-    position: Array
-    hand_force: Array | None
-    actuator_force: Array | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Finding:
-    """Something odd in a log, and what was done about it.
-
-    Parameters
-    ----------
-    kind
-        A word for programs, such as "gap" or "jitter".
-    text
-        A sentence for people, with numbers.
-    samples
-        How many samples it concerns; 0 if it concerns all.
-    """
-
-    kind: str
-    text: str
-    samples: int = 0
-
-    def __str__(self) -> str:
-        return self.text
+SAME = 1e-3
+"""Relative difference below which two sample periods, or two resolutions, are one that was measured twice."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,6 +65,112 @@ class Log:
     stops: tuple[float, float] = (-inf, inf)
     _blocks: Callable[[], Iterator[Block]] = field(repr=False, compare=False)
 
+    @classmethod
+    def from_arrays(
+        cls,
+        data: xr.Dataset | None = None,
+        /,
+        *,
+        time: ArrayLike | None = None,
+        position: ArrayLike | None = None,
+        hand_force: ArrayLike | None = None,
+        actuator_force: ArrayLike | None = None,
+        columns: Mapping[str, str | None] | None = None,
+        units: Mapping[str, str] | None = None,
+        scale: Mapping[str, object] | None = None,
+        sample_rate: object = None,
+        sample_period: object = None,
+        resolution: object = None,
+        counts_per_turn: object = None,
+        motion: Motion | None = None,
+    ) -> Log:
+        """A log from arrays in SI units, or from the variables of a Dataset with their units.
+
+        Parameters
+        ----------
+        data
+            A Dataset whose variables have the attribute `units`, such as a trace; instead of the arrays.
+        time
+            [s] stamp of each sample; or leave it out and state the rate.
+        position
+            [m; rad] positive into the wall.
+        hand_force
+            [N; N·m] of the hand on the device, positive into the wall.
+        actuator_force
+            [N; N·m] of the actuator, positive out of the wall.
+        columns, units, scale, sample_rate, sample_period, resolution, counts_per_turn
+            As for `zwidth.read_log`.
+        motion
+            "linear", where nothing else is said, or "rotary".
+
+        Raises
+        ------
+        InputError
+            If the arrays are of different lengths, or nothing can be learnt from them.
+        """
+        given = {
+            "time": time,
+            "position": position,
+            "hand_force": hand_force,
+            "actuator_force": actuator_force,
+        }
+        arrays = {name: values for name, values in given.items() if values is not None}
+        period = stated_period(sample_rate, sample_period)
+        if motion is None and data is None:
+            motion = "rotary" if counts_per_turn is not None else "linear"
+        table, names = table_of(data, arrays, columns, units, motion or "linear")
+        meaning = meaning_of(
+            table,
+            names,
+            units=units,
+            scale=scale,
+            resolution=resolution,
+            counts_per_turn=counts_per_turn,
+            motion=motion,
+        )
+        return cls(**contents(table, meaning, period))
+
+    @classmethod
+    def concatenate(cls, logs: Sequence[Log]) -> Log:
+        """One log of the runs of all, one after the other; none is read before it is wanted.
+
+        Parameters
+        ----------
+        logs
+            Of the same device: as often sampled, with the same encoder and the same forces.
+
+        Raises
+        ------
+        InputError
+            If there is none, or they differ in that.
+        """
+        if not logs:
+            raise InputError("there is no log to join; give one at least")
+        first = logs[0]
+        for log in logs[1:]:
+            _same(first, log)
+
+        def blocks() -> Iterator[Block]:
+            before = 0
+            for log in logs:
+                for block in log.blocks():
+                    yield block._replace(run=block.run + before)
+                before += log.runs
+
+        return replace(
+            first,
+            source=", ".join(log.source for log in logs),
+            samples=sum(log.samples for log in logs),
+            runs=sum(log.runs for log in logs),
+            findings=tuple(
+                replace(finding, text=f"{log.source}: {finding.text}")
+                for log in logs
+                for finding in log.findings
+            ),
+            stops=(max(log.stops[0] for log in logs), min(log.stops[1] for log in logs)),
+            _blocks=blocks,
+        )
+
     def blocks(self) -> Iterator[Block]:
         """Every block from the start; may be called as often as needed."""
         return self._blocks()
@@ -120,3 +179,18 @@ class Log:
     def duration(self) -> float:
         """[s] of all runs together."""
         return self.samples * self.sample_period
+
+
+def _same(first: Log, log: Log) -> None:
+    if not isclose(log.sample_period, first.sample_period, rel_tol=SAME):
+        raise InputError(
+            f"{first.source} has a sample period of {first.sample_period:g} s and {log.source} of "
+            f"{log.sample_period:g} s: the limit 2b/T is another for each; identify them one by one"
+        )
+    for what in ("motion", "resolution", "channels"):
+        one, other = getattr(first, what), getattr(log, what)
+        if one != other and not (what == "resolution" and isclose(one, other, rel_tol=SAME)):
+            raise InputError(
+                f"{first.source} and {log.source} differ in their {what}, {one!r} and {other!r}: "
+                "only logs of one device, recorded alike, can be joined"
+            )

@@ -12,13 +12,12 @@ from scipy.io import loadmat
 from scipy.io.matlab import mat_struct
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.table import PIECE, Table, Values
+from zwidth.identification.logs.table import MOST_COLUMNS, Table, Values, in_pieces
 from zwidth.reading import FREE, RATIO, check_expansion, inflated
 
 LARGEST = 2**30
 """[bytes] Largest file that is read whole; MATLAB's own limit for a variable in it is 2 GiB."""
 
-_MOST_COLUMNS = 64
 _HEADER, _COMPRESSED = 128, 15
 """Bytes before the first variable, and the type of one that is compressed."""
 
@@ -27,13 +26,7 @@ _PIECE = 2**20
 
 
 def matlab_table(path: Path) -> Table:
-    """The vectors in a file of MATLAB 4 to 7.2, structures included.
-
-    Raises
-    ------
-    InputError
-        If it is larger than `LARGEST`, or would be when it is expanded.
-    """
+    """The vectors in a file of MATLAB 4 to 7.2, structures included."""
     size = path.stat().st_size
     if size > LARGEST:
         raise InputError(
@@ -46,16 +39,11 @@ def matlab_table(path: Path) -> Table:
         if not name.startswith("__"):
             columns.update(_vectors(name, value))
 
-    def read(names: tuple[str, ...]) -> Iterator[tuple[Values, ...]]:
-        chosen = [columns[name] for name in names]
-        sizes = {name: values.size for name, values in zip(names, chosen, strict=True)}
-        if len(set(sizes.values())) > 1:
-            said = ", ".join(f'"{name}" has {count}' for name, count in sizes.items())
-            raise InputError(f"{path}: columns of one length belong together; {said} samples")
-        for k in range(0, chosen[0].size, PIECE):
-            yield tuple(values[k : k + PIECE] for values in chosen)
-
-    return Table(source=str(path), units=dict.fromkeys(columns), read=read)
+    return Table(
+        source=str(path),
+        units=dict.fromkeys(columns),
+        read=lambda names: in_pieces(str(path), columns, names),
+    )
 
 
 def _expanded(path: Path) -> int:
@@ -94,8 +82,8 @@ def _vectors(name: str, value: Any) -> dict[str, Values]:
         return {}
     if array.ndim == 1:
         return {name: array}
-    if array.shape[1] > min(array.shape[0], _MOST_COLUMNS):
+    if array.shape[1] > min(array.shape[0], MOST_COLUMNS):
         array = array.T
-    if array.shape[1] > _MOST_COLUMNS:
+    if array.shape[1] > MOST_COLUMNS:
         return {}
     return {f"{name}[{k}]": array[:, k] for k in range(array.shape[1])}

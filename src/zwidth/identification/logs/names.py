@@ -54,13 +54,7 @@ _INDEX = re.compile(r"\[\d+\]$")
 def recognise(
     columns: Mapping[str, Any], chosen: Mapping[str, str | None] | None, source: str
 ) -> dict[str, str]:
-    """The column of each quantity that there is; what the user chose comes first, None means to go without.
-
-    Raises
-    ------
-    InputError
-        If a choice names no column, no position is found, or there are several candidates.
-    """
+    """The column of each quantity that there is: first what the user chose, None to go without."""
     found = _checked(columns, chosen or {}, source)
     for quantity in QUANTITIES:
         if quantity in found or quantity in (chosen or {}):
@@ -116,10 +110,15 @@ def _candidates(quantity: str, columns: list[str]) -> list[str]:
     return []
 
 
+def check_quantity(what: str, name: str) -> None:
+    """Refuse a name that is none of the quantities."""
+    if name not in QUANTITIES:
+        raise InputError(f'{what}: there is no quantity "{name}"; there are {", ".join(QUANTITIES)}')
+
+
 def _checked(columns: Mapping[str, Any], chosen: Mapping[str, str | None], source: str) -> dict[str, str]:
     for quantity, column in chosen.items():
-        if quantity not in QUANTITIES:
-            raise InputError(f'columns: there is no quantity "{quantity}"; there are {", ".join(QUANTITIES)}')
+        check_quantity("columns", quantity)
         if column is not None and column not in columns:
             near = get_close_matches(column, list(columns), n=1)
             hint = f'; did you mean "{near[0]}"?' if near else ""

@@ -35,13 +35,7 @@ class _Piece(NamedTuple):
 
 
 def check_bag(path: Path) -> None:
-    """Refuse a bag of which a piece would become too large.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
+    """Refuse a bag of which a piece would become too large."""
     files = [file for file in sorted(path.iterdir()) if file.is_file()] if path.is_dir() else [path]
     for file in files:
         with open(file, "rb") as opened:
@@ -64,13 +58,7 @@ def _check_packed(path: Path) -> None:
 
 
 def check_messages(path: Path, reader: Any) -> None:
-    """Refuse a bag whose messages are compressed one by one, if one would become too large.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
+    """Refuse a bag whose messages are compressed one by one, if one would become too large."""
     for part in reader.readers:
         if getattr(part, "compression_mode", None) != "message":
             continue

@@ -7,9 +7,9 @@ from os import PathLike
 from pathlib import Path
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.arrays import stated_resolution
-from zwidth.identification.logs.build import log_from, stated_period
-from zwidth.identification.logs.log import Log, Motion
+from zwidth.identification.logs.block import Motion
+from zwidth.identification.logs.build import contents, stated_period
+from zwidth.identification.logs.log import Log
 from zwidth.identification.logs.names import recognise
 from zwidth.identification.logs.scales import meaning_of
 from zwidth.identification.logs.table import Table, readable
@@ -64,11 +64,11 @@ def read_log(
             names,
             units=units,
             scale=scale,
-            resolution=resolution if resolution is not None or counts_per_turn else stated_resolution(table),
+            resolution=resolution,
             counts_per_turn=counts_per_turn,
             motion=motion,
         )
-        return log_from(table, meaning, period)
+        return Log(**contents(table, meaning, period))
 
 
 def _table(path: Path) -> Table:
@@ -92,12 +92,7 @@ def _table(path: Path) -> Table:
         from zwidth.identification.logs.matlab import matlab_table
 
         return matlab_table(path)
-    if (
-        path.is_dir()
-        or start[:5] == b"\x89MCAP"
-        or start[:9] == b"#ROSBAG V"
-        or start[:13] == b"SQLite format"
-    ):
+    if path.is_dir() or start.startswith((b"\x89MCAP", b"#ROSBAG V", b"SQLite format")):
         from zwidth.identification.logs.bags import bag_table
 
         return bag_table(path)

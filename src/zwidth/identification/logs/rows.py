@@ -26,6 +26,12 @@ if TYPE_CHECKING:
 DATE = 1e8
 """[s] Stamps beyond it, three years, are dates."""
 
+MEMORY = 2**28
+"""[bytes] A log whose numbers need no more is kept in memory after the first pass."""
+
+_FIRST = 2**14
+"""Rows of the first piece, where there are as many: the clock is read from them."""
+
 
 class Rows(NamedTuple):
     """Consecutive rows, finite, in SI units."""
@@ -59,18 +65,39 @@ class Recording:
     def __init__(self, table: Table, meaning: Meaning, period: float | None) -> None:
         self.table, self.meaning, self.period = table, meaning, period
         self._kept: list[Rows] | None = None
+        self._fits = True
 
     def rows(self, tally: Counter[str] | None = None) -> Iterator[Rows]:
-        """Every finite row, in pieces of at most `PIECE`; `tally` counts the others."""
+        """Every finite row, in pieces of at most `PIECE` but for the first; `tally` counts the others."""
         if self._kept is not None:
             yield from self._kept
             return
-        with readable(self.table.source):
-            yield from self._read(Counter() if tally is None else tally)
+        kept, size = [], 0
+        for piece in self._opened(Counter() if tally is None else tally):
+            size += sum(column.nbytes for column in piece if column is not None)
+            if size > MEMORY:
+                self._fits = False
+            if self._fits:
+                kept.append(piece)
+            else:
+                kept.clear()
+            yield piece
+        if self._fits:
+            self._kept = kept
 
-    def keep(self, rows: list[Rows]) -> None:
-        """Remember rows that fit in memory, instead of reading them again."""
-        self._kept = rows
+    def _opened(self, tally: Counter[str]) -> Iterator[Rows]:
+        """The pieces, enough of them joined at the beginning to read the clock from."""
+        with readable(self.table.source):
+            pieces = self._read(tally)
+            start = next(pieces, None)
+            while start is not None and start.time.size < _FIRST:
+                more = next(pieces, None)
+                if more is None:
+                    break
+                start = joined(start, more)
+            if start is not None:
+                yield start
+            yield from pieces
 
     def _read(self, tally: Counter[str]) -> Iterator[Rows]:
         quantities = tuple(self.meaning.columns)

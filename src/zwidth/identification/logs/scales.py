@@ -9,31 +9,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.log import Motion
-from zwidth.identification.logs.names import QUANTITIES, name_and_unit
+from zwidth.identification.logs.block import Motion
+from zwidth.identification.logs.names import check_quantity, name_and_unit
 from zwidth.identification.logs.table import Table
-from zwidth.quantity.dimension import PI, Unit, unit_of
+from zwidth.quantity.dimension import PI, Dimension, Unit, unit_of
 from zwidth.quantity.exact import Exact
+from zwidth.quantity.spelling import plain, spelled
 from zwidth.quantity.units import parse_number
 
 _LENGTH, _ANGLE, _TIME = unit_of("m").dimension, unit_of("rad").dimension, unit_of("s").dimension
 _FORCE, _TORQUE = unit_of("N").dimension, unit_of("N*m").dimension
-_ALIASES = {
-    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
-    **dict.fromkeys(("msec", "milliseconds", "millisecond"), "ms"),
-    **dict.fromkeys(("usec", "microseconds", "microsecond"), "us"),
-    **dict.fromkeys(("nsec", "nanoseconds", "nanosecond"), "ns"),
-    **dict.fromkeys(("degree", "degrees"), "deg"),
-    **dict.fromkeys(("radian", "radians"), "rad"),
-    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
-    **dict.fromkeys(("newton", "newtons", "n"), "N"),
-    **dict.fromkeys(("turns", "revs"), "turn"),
-    **dict.fromkeys(("N_m", "Nm", "N.m", "N m", "N-m"), "N*m"),
-    **dict.fromkeys(("mNm", "mN_m", "mN.m", "mN m"), "mN*m"),
-    **dict.fromkeys(("Nmm", "N_mm", "N.mm", "N mm"), "N*mm"),
-}
 _COUNTS = ("count", "counts", "cnt", "cts", "ticks", "tick", "lsb", "LSB", "digit", "digits")
-_SPELLING = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*", "°": "deg"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,21 +54,17 @@ def meaning_of(
     counts_per_turn: object,
     motion: str | None,
 ) -> Meaning:
-    """Factors to SI of every column, and whether the device turns.
-
-    Raises
-    ------
-    InputError
-        If a unit is missing, unknown, or of another kind than the quantity.
-    """
+    """Factors to SI of every column, and whether the device turns."""
     _check_keys("units", units, columns)
     _check_keys("scale", scale, columns)
     scale = {quantity: _number_or_text(given) for quantity, given in (scale or {}).items()}
     _check_scales(scale)
     _refuse_other_units(table, columns, units or {})
-    stated = {q: _unit_text(table, q, c, units) for q, c in columns.items()}
+    stated = {q: _stated((units or {}).get(q), q) or _own_unit(table, c, q) for q, c in columns.items()}
     if motion is None and table.attributes.get("motion") in ("linear", "rotary"):
         motion = table.attributes["motion"]
+    if resolution is None and counts_per_turn is None:
+        resolution = _resolution(table)
     turning = _turning(motion, stated["position"], scale.get("position"), resolution, counts_per_turn)
     step = _step(resolution, counts_per_turn, turning)
     factors = {}
@@ -106,18 +88,23 @@ def meaning_of(
 
 def is_unit(text: str) -> bool:
     """True where a text spells a unit, a count, or nothing."""
-    plain = text.translate(_SPELLING)
+    unit = spelled(text)
     try:
-        unit_of(_ALIASES.get(plain, plain))
+        unit_of(unit)
     except InputError:
-        return _is_counts(plain)
+        return _is_counts(unit)
     return True
+
+
+def _resolution(table: Table) -> float | None:
+    """The resolution that a trace of ours says it has."""
+    values = (table.attributes.get(key) for key in ("resolution_m", "resolution_rad"))
+    return next((float(v) for v in values if v is not None), None)
 
 
 def _check_keys(what: str, given: Mapping[str, object] | None, columns: Mapping[str, str]) -> None:
     for key in given or {}:
-        if key not in QUANTITIES:
-            raise InputError(f'{what}: there is no quantity "{key}"; there are {", ".join(QUANTITIES)}')
+        check_quantity(what, key)
         if key not in columns:
             raise InputError(f"{what}: the log has no {key}; leave it out, or name its column in columns")
 
@@ -134,8 +121,8 @@ def _refuse_other_units(table: Table, columns: Mapping[str, str], units: Mapping
     """A unit that is given for a column whose file or name states another: which of the two is meant?"""
     for quantity, given in units.items():
         column = columns[quantity]
-        stated = _spelled(table.units[column] or name_and_unit(column, quantity)[1], quantity)
-        if stated is None or _is_counts(stated) or not is_unit(stated) or stated == _spelled(given, quantity):
+        stated = _own_unit(table, column, quantity)
+        if stated is None or _is_counts(stated) or not is_unit(stated) or stated == _stated(given, quantity):
             continue
         raise InputError(
             f'{table.source}: column "{column}" says of itself that it is in {stated}, and {given} is given; '
@@ -152,20 +139,16 @@ def _check_scales(scale: Mapping[str, object]) -> None:
             raise InputError(f"{what} must not be 0: nothing would be left of the column")
 
 
-def _unit_text(table: Table, quantity: str, column: str, units: Mapping[str, str] | None) -> str | None:
-    return _spelled(
-        (units or {}).get(quantity) or table.units[column] or name_and_unit(column, quantity)[1], quantity
-    )
+def _own_unit(table: Table, column: str, quantity: str) -> str | None:
+    """The unit that the file, or else the name of the column, states."""
+    return _stated(table.units[column] or name_and_unit(column, quantity)[1], quantity)
 
 
-def _spelled(text: str | None, quantity: str) -> str | None:
+def _stated(text: str | None, quantity: str) -> str | None:
     """A unit in the spelling of `unit_of`."""
     if text is None:
         return None
-    plain = text.strip().translate(_SPELLING)
-    if quantity == "time":
-        plain = plain.split(" since ")[0]
-    return _ALIASES.get(plain, plain)
+    return spelled(text.split(" since ")[0] if quantity == "time" else text)
 
 
 def _is_counts(unit: str | None) -> bool:
@@ -184,7 +167,7 @@ def _turning(
     elif unit is not None and not _is_counts(unit):
         kinds.append(unit_of(unit).dimension)
     if isinstance(resolution, str):
-        kinds.append(unit_of(resolution.translate(_SPELLING).lstrip("+-0123456789.eE/ ")).dimension)
+        kinds.append(unit_of(plain(resolution).lstrip("+-0123456789.eE/ ")).dimension)
     if counts_per_turn is not None:
         kinds.append(_ANGLE)
     turns = {_ANGLE: True, _LENGTH: False}
@@ -216,28 +199,34 @@ def _step(resolution: object, counts_per_turn: object, turning: bool) -> float |
 
 
 def _factor(where: str, quantity: str, unit: str | None, scale: object, turning: bool) -> float:
-    wanted = {"time": _TIME, "position": _ANGLE if turning else _LENGTH}.get(
-        quantity, _TORQUE if turning else _FORCE
-    )
-    kind = {
-        _TIME: "a time, such as ms",
-        _LENGTH: "a length, such as mm",
-        _ANGLE: "an angle, such as deg",
-    }.get(wanted, "a torque, such as N*m" if turning else "a force, such as N")
-    if scale is not None and not isinstance(scale, str):
-        return _factor(where, quantity, unit, None, turning) * float(
-            parse_number(scale, "1", f"{where}: scale")
-        )
-    if scale is not None:
-        factor, result, per = _scale(scale, f"{where}: scale")
-        if result.dimension != wanted:
-            raise InputError(f'{where}: scale "{scale}" does not lead to {kind}')
-        if unit is None or _is_counts(unit) or per is None:
-            return factor * _si(result)
-        raw = _known(unit, where)
-        if raw.dimension != per.dimension:
-            raise InputError(f'{where} is in {unit}; scale "{scale}" is for another unit')
-        return factor * _si(result) * _si(raw) / _si(per)
+    if isinstance(scale, str):
+        return _by_scale(where, unit, scale, *_wanted(quantity, turning))
+    factor = _by_unit(where, quantity, unit, *_wanted(quantity, turning))
+    return factor if scale is None else factor * float(parse_number(scale, "1", f"{where}: scale"))
+
+
+def _wanted(quantity: str, turning: bool) -> tuple[Dimension, str]:
+    """The dimension of a quantity, and what it is in words."""
+    if quantity == "time":
+        return _TIME, "a time, such as ms"
+    if quantity == "position":
+        return (_ANGLE, "an angle, such as deg") if turning else (_LENGTH, "a length, such as mm")
+    return (_TORQUE, "a torque, such as N*m") if turning else (_FORCE, "a force, such as N")
+
+
+def _by_scale(where: str, unit: str | None, scale: str, wanted: Dimension, kind: str) -> float:
+    factor, result, per = _scale(scale, f"{where}: scale")
+    if result.dimension != wanted:
+        raise InputError(f'{where}: scale "{scale}" does not lead to {kind}')
+    if unit is None or _is_counts(unit) or per is None:
+        return factor * _si(result)
+    raw = _known(unit, where)
+    if raw.dimension != per.dimension:
+        raise InputError(f'{where} is in {unit}; scale "{scale}" is for another unit')
+    return factor * _si(result) * _si(raw) / _si(per)
+
+
+def _by_unit(where: str, quantity: str, unit: str | None, wanted: Dimension, kind: str) -> float:
     if unit is None:
         example = {"time": "ms", "position": "mm"}.get(quantity, "N")
         raise InputError(f'{where} has no unit; state it with units={{"{quantity}": "{example}"}}')
@@ -266,16 +255,15 @@ def _si(unit: Unit) -> float:
 
 def _scale(text: str, what: str) -> tuple[float, Unit, Unit | None]:
     """The number, the unit it leads to, and the unit it is for (None: counts): "2 N/V"."""
-    plain = text.translate(_SPELLING).strip()
-    top, slash, bottom = plain.rpartition("/")
+    top, slash, bottom = text.rpartition("/")
     if not slash:
-        top, bottom = plain, "count"
-    number, _, unit = top.strip().partition(" ")
-    bottom = bottom.strip()
+        top, bottom = text, "count"
+    number, _, unit = plain(top).strip().partition(" ")
+    bottom = plain(bottom).strip()
     try:
         factor = float(Exact(number))
         per = None if _is_counts(bottom) else unit_of(bottom)
-        return factor, unit_of(_ALIASES.get(unit.strip(), unit.strip())), per
+        return factor, unit_of(spelled(unit)), per
     except InputError as error:
         raise InputError(
             f'{what}: "{text}" is no factor such as "2 N/V" or "0.01 N/count": {error}'

@@ -66,13 +66,7 @@ class Clock:
 
 
 def clock_of(time: Array, source: str) -> Clock:
-    """The period that most of the intervals between stamps have, or have on average.
-
-    Raises
-    ------
-    InputError
-        If time stands still, or the intervals have nothing in common.
-    """
+    """The period that most of the intervals between stamps have, or have on average."""
     steps = np.diff(time)
     if steps.size == 0 or not (steps > 0).any():
         raise InputError(

@@ -79,6 +79,11 @@ def beyond(force: Array, stops: tuple[float, float]) -> NDArray[np.bool_]:
     return found
 
 
+def at_ends(stops: tuple[float, float], unit: str) -> str:
+    """The finite ones in a sentence: "-10 N and at 10 N"; nothing where there is none."""
+    return " and at ".join(f"{end:.4g} {unit}" for end in stops if np.isfinite(end))
+
+
 def _piles_up(counts: NDArray[np.int64], k: int) -> bool:
     beside = counts[k + 1 : k + 1 + _BESIDE]
     if beside.size < 2:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
+from math import inf
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,50 @@ _LONG = 4096
 """Samples whose mean interval shows that the rate is another one."""
 
 
+class Intervals(NamedTuple):
+    """Sums over the intervals between stamps.
+
+    Parameters
+    ----------
+    number
+        How many.
+    elapsed
+        [s] of all together.
+    squares
+        [s²] of how much each is longer than T.
+    shortest, longest
+        [s] of them.
+    latest
+        [s] stamp that is farthest from 0.
+    """
+
+    number: int = 0
+    elapsed: float = 0.0
+    squares: float = 0.0
+    shortest: float = inf
+    longest: float = -inf
+    latest: float = 0.0
+
+    def and_those(self, time: Array, before: float, period: float) -> Intervals:
+        """With those of a stretch, which begins after the stamp `before`; NaN where it begins a run."""
+        start = float(time[0] if np.isnan(before) else before)
+        steps = np.diff(time)
+        if not np.isnan(before):
+            steps = np.append(steps, time[0] - before)
+        latest = max(self.latest, abs(float(time[-1])), abs(start))
+        if steps.size == 0:
+            return self._replace(latest=latest)
+        late = steps - period
+        return Intervals(
+            self.number + steps.size,
+            self.elapsed + float(time[-1] - start),
+            self.squares + float(late @ late),
+            min(self.shortest, float(steps.min())),
+            max(self.longest, float(steps.max())),
+            latest,
+        )
+
+
 class Survey:
     """What the segments of a log have in common.
 
@@ -43,8 +88,7 @@ class Survey:
     def __init__(self, period: float, resolution: float | None, unit: float, source: str) -> None:
         self.period, self.stated, self.unit, self.source = period, resolution, unit, source
         self.samples = self.runs = 0
-        self.intervals, self.elapsed, self.squares = 0, 0.0, 0.0
-        self.shortest, self.longest, self.latest = np.inf, -np.inf, 0.0
+        self.intervals = Intervals()
         self.ranges: dict[str, tuple[float, float]] = {}
         self.jumps = Jumps()
         self.stops = Stops()
@@ -54,57 +98,36 @@ class Survey:
         self._levels = np.empty(0)
         self._before = np.nan
 
-    def take(self, segments: Iterable[Segment]) -> Iterator[Segment]:
-        """Look at each segment as it passes."""
+    def look(self, segments: Iterable[Segment]) -> None:
+        """Look at every segment, in their order."""
         for segment in segments:
             self.samples += segment.rows.time.size
             self.runs += segment.begins
-            self._stamps(segment)
+            self._stamps(segment.rows.time, segment.begins)
             self.jumps.take(segment.rows.position, follows=not segment.begins)
             self._position(segment.rows.position)
             for name in ("hand_force", "actuator_force"):
                 self._force(name, getattr(segment.rows, name))
-            yield segment
         if not self.sought:
             self._seek()
 
     @property
     def mean_interval(self) -> float:
         """[s] over all runs."""
-        return self.elapsed / self.intervals if self.intervals else self.period
+        return self.intervals.elapsed / self.intervals.number if self.intervals.number else self.period
 
     @property
     def deviation(self) -> float:
         """[s] standard deviation of the intervals between stamps."""
-        if not self.intervals:
+        if not self.intervals.number:
             return 0.0
-        return float(
-            np.sqrt(max(0.0, self.squares / self.intervals - (self.mean_interval - self.period) ** 2))
-        )
+        mean = self.intervals.squares / self.intervals.number
+        return float(np.sqrt(max(0.0, mean - (self.mean_interval - self.period) ** 2)))
 
-    def _stamps(self, segment: Segment) -> None:
-        time = segment.rows.time
-        start = time[0] if segment.begins else self._before
-        steps = np.diff(time)
-        if not segment.begins:
-            steps = np.append(steps, time[0] - self._before)
-        self._before = time[-1]
-        self.latest = max(self.latest, abs(float(time[-1])), abs(float(start)))
-        if steps.size == 0:
-            return
-        self.intervals += steps.size
-        self.elapsed += float(time[-1] - start)
-        self.shortest, self.longest = min(self.shortest, steps.min()), max(self.longest, steps.max())
-        steps -= self.period
-        self.squares += float(steps @ steps)
-        means = np.diff(time[::_LONG]) / _LONG
-        other = np.flatnonzero(np.abs(means - self.period) > 0.01 * self.period)
-        if other.size:
-            raise InputError(
-                f"{self.source}: the sample period changes: roughly {self.period:.6g} s, but "
-                f"{means[other[0]]:.6g} s after t = {time[other[0] * _LONG]:.6g} s; cut the file where "
-                "it changes"
-            )
+    def _stamps(self, time: Array, begins: bool) -> None:
+        self.intervals = self.intervals.and_those(time, np.nan if begins else self._before, self.period)
+        self._before = float(time[-1])
+        _refuse_other_rate(time, self.period, self.source)
 
     def _position(self, position: Array) -> None:
         if not self.sought:
@@ -134,3 +157,14 @@ class Survey:
             self.ranges[name] = min(low, float(force.min())), max(high, float(force.max()))
             if name == "hand_force":
                 self.stops.take(force)
+
+
+def _refuse_other_rate(time: Array, period: float, source: str) -> None:
+    """Refuse stamps that many samples later have another mean interval."""
+    means = np.diff(time[::_LONG]) / _LONG
+    other = np.flatnonzero(np.abs(means - period) > 0.01 * period)
+    if other.size:
+        raise InputError(
+            f"{source}: the sample period changes: roughly {period:.6g} s, but {means[other[0]]:.6g} s after "
+            f"t = {time[other[0] * _LONG]:.6g} s; cut the file where it changes"
+        )

@@ -10,10 +10,13 @@ from typing import Any
 from numpy.typing import NDArray
 
 from zwidth.errors import InputError
-from zwidth.identification.logs.log import Finding
+from zwidth.identification.logs.block import Finding
 
 PIECE = 2**18
 """Rows that are read at once, where the format lets us choose."""
+
+MOST_COLUMNS = 64
+"""Of one matrix, or one message: more are no columns of a log."""
 
 Values = NDArray[Any]
 
@@ -43,15 +46,26 @@ class Table:
     notes: dict[str, Finding] = field(default_factory=dict)
 
 
+def in_pieces(
+    source: str, columns: Mapping[str, Values], names: tuple[str, ...]
+) -> Iterator[tuple[Values, ...]]:
+    """Columns that are held in memory, in pieces."""
+    rows = check_lengths(source, {name: columns[name].size for name in names})
+    for k in range(0, rows, PIECE):
+        yield tuple(columns[name][k : k + PIECE] for name in names)
+
+
+def check_lengths(source: str, sizes: Mapping[str, int]) -> int:
+    """The number of rows that all columns have; refuse those that differ."""
+    if len(set(sizes.values())) > 1:
+        said = ", ".join(f'"{name}" has {size} samples' for name, size in sizes.items())
+        raise InputError(f"{source}: {said}; choose columns of one length")
+    return next(iter(sizes.values()))
+
+
 @contextmanager
 def readable(source: str) -> Iterator[None]:
-    """Whatever a library says of foreign bytes becomes one message.
-
-    Raises
-    ------
-    InputError
-        Instead of what the library raised.
-    """
+    """Whatever a library says of foreign bytes becomes one message."""
     try:
         yield
     except (InputError, KeyboardInterrupt, GeneratorExit):

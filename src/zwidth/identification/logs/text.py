@@ -13,8 +13,8 @@ import pyarrow as pa
 import pyarrow.csv as pc
 
 from zwidth.errors import InputError
+from zwidth.identification.logs.block import Finding
 from zwidth.identification.logs.layout import SNIFFED, Layout, layout_of
-from zwidth.identification.logs.log import Finding
 from zwidth.identification.logs.table import Table, Values
 from zwidth.reading import Bounded
 
@@ -25,13 +25,7 @@ _MOST_BROKEN = 0.01
 
 
 def text_table(path: Path) -> Table:
-    """The table in a text file.
-
-    Raises
-    ------
-    InputError
-        If it is no text, or holds no table of numbers.
-    """
+    """The table in a text file."""
     with _opened(path) as file:
         start = file.read(SNIFFED)
         whole = not file.read(1)
@@ -137,7 +131,7 @@ class _Parser:
             try:
                 batch = self._parsed(cleaned)
             except pa.ArrowInvalid as error:
-                raise self._culprit(cleaned, error) from None
+                raise self._refusal(cleaned, error) from None
             self.rows += batch.num_rows
             if self.broken > 20 and self.broken > _MOST_BROKEN * (self.rows + self.broken):
                 raise InputError(
@@ -197,7 +191,7 @@ class _Parser:
             lines = re.sub(rb"(?m)^ | ?\r?$", b"", lines)
         return lines
 
-    def _culprit(self, lines: bytes, error: Exception) -> InputError:
+    def _refusal(self, lines: bytes, error: Exception) -> InputError:
         """The field that is no number, and where it stands."""
         for k, line in enumerate(lines.decode("utf-8", "replace").splitlines()):
             fields = [f.strip() for f in line.split(self.layout.delimiter)]

@@ -102,13 +102,7 @@ def _wandering(time: Array) -> list[Array]:
 
 
 def hole_places(time: Array, position: Array, source: str = "the record") -> tuple[int, ...]:
-    """The samples that come after a hole in time across which the position moved.
-
-    Raises
-    ------
-    InputError
-        If there are too many.
-    """
+    """The samples that come after a hole in time across which the position moved."""
     steps = np.diff(time)
     padded = np.concatenate([[np.inf], steps, [np.inf]])
     beside = np.minimum(np.maximum(padded[:-2], padded[2:]), np.minimum(padded[:-2], padded[2:]) * 4)
@@ -116,9 +110,8 @@ def hole_places(time: Array, position: Array, source: str = "the record") -> tup
     holes = holes[(holes > 1) & (holes < time.size - 1)]
     if holes.size > MOST_HOLES:
         raise InputError(
-            f"{source} has {holes.size} holes in time, the first after t = {time[holes[0] - 1]:.6g} "
-            f"s: what a tissue "
-            "holds after each is not known; record without losing samples, or give a part with fewer"
+            f"{source} has {holes.size} holes in time, the first after t = {time[holes[0] - 1]:.6g} s: what "
+            "a tissue holds after each is not known; record without losing samples, or give a part with fewer"
         )
     return tuple(holes.tolist())
 

@@ -11,8 +11,10 @@ from zwidth.compiled import Array
 from zwidth.errors import InputError
 from zwidth.identification.logs import Finding
 from zwidth.identification.logs.steps import grid_of
+from zwidth.identification.logs.stops import at_ends
 from zwidth.identification.tissue.faults import Faults
 from zwidth.identification.tissue.model import Record
+from zwidth.quantity.text import quantity_unit
 
 SOFTEST, STIFFEST = 5.0, 5e4
 """Between them lies what a probe feels of soft tissue, phantoms included [N/m]."""
@@ -42,54 +44,25 @@ def unlikely_units(stiffness: float, depth: float) -> Iterator[str]:
 
 
 def coarse(position: Array, stiffness: float, rms: float) -> Iterator[str]:
-    """Why intervals are too narrow: most of what the fit leaves may be the position's steps.
-
-    Parameters
-    ----------
-    position
-        As it was read [m; rad].
-    stiffness
-        At once [N/m; N·m/rad].
-    rms
-        Of what the fit leaves [N; N·m].
-    """
+    """Why intervals are too narrow: most of what the fit leaves [N; N·m] may be the position's steps."""
     grid = grid_of(position)
     if grid is not None and stiffness * grid.step / sqrt(12.0) > SHARE * rms > 0:
         yield (
-            f"the position is read in steps of {grid.step:.3g}, and most of what the fit leaves may "
-            f"come from them: "
-            "the intervals take the position for exact and are too narrow; move further, or read it "
-            "more finely"
+            f"the position is read in steps of {grid.step:.3g}, and most of what the fit leaves may come "
+            "from them: the intervals take the position for exact and are too narrow; move further, or read "
+            "it more finely"
         )
 
 
 def refuse_sign(record: Record, left: Array, size: float, again: Callable[[Record], Array]) -> None:
-    """Refuse a record that is of a tissue only with the other sign.
-
-    Parameters
-    ----------
-    record
-        What was recorded.
-    left
-        What the fit leaves, in parts of the size.
-    size
-        Of the output.
-    again
-        What a fit of another record leaves.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
+    """Refuse a record that is of a tissue only with the other sign, by what a fit of each leaves."""
     spread = float(np.var(record.output)) / size**2
     if spread == 0 or float(np.mean(left**2)) < (1 - POOR) * spread:
         return
     if float(np.mean(again(record._replace(force=-record.force)) ** 2)) < (1 - GOOD) * spread:
         raise InputError(
-            "no tissue pulls the probe in: with the sign of the force turned round, or that of the "
-            "position, the record "
-            "is of one; give positions that are positive inside the tissue and forces that are "
+            "no tissue pulls the probe in: with the sign of the force turned round, or that of the position, "
+            "the record is of one; give positions that are positive inside the tissue and forces that are "
             "positive out of it"
         )
 
@@ -105,24 +78,12 @@ def findings(
 ) -> Iterator[Finding]:
     """What was found, and what was done about it.
 
-    Parameters
-    ----------
-    record, faults
-        With its holes; and what was fitted besides.
-    zero
-        What was found of it: at the start, then further on [N; N·m].
-    late
-        By how much the force is [s].
-    stops, left_out
-        The ends of the sensor's range that were found, and how many samples do not count.
-    motion
-        "linear" or "rotary".
+    `zero` is that at the start, then further on [N; N·m]; the force is `late` [s]; `left_out` samples at the
+    ends of the sensor's range do not count.
     """
-    unit = "N·m" if motion == "rotary" else "N"
-    if record.response == "position":
-        unit = "rad" if motion == "rotary" else "m"
-    if np.isfinite(stops).any():
-        ends = " and at ".join(f"{end:.4g} {unit}" for end in stops if np.isfinite(end))
+    unit = quantity_unit(record.response, motion)
+    ends = at_ends(stops, unit)
+    if ends:
         text = (
             f"the force stays at {ends}: the sensor is at an end of its range; {left_out} samples do "
             "not count"
@@ -131,9 +92,8 @@ def findings(
     if record.begins:
         places = ", ".join(f"{record.time[b]:.4g} s" for b in record.begins[:3])
         text = (
-            f"{len(record.begins)} holes, before t = "
-            f"{places}{' …' if len(record.begins) > 3 else ''}: what the branches "
-            "held after each was fitted"
+            f"{len(record.begins)} holes, before t = {places}{' …' if len(record.begins) > 3 else ''}: what "
+            "the branches held after each was fitted"
         )
         yield Finding(kind="hole", text=text)
     if faults.drift:
@@ -152,9 +112,8 @@ def findings(
 def _lateness(kind: str, late: float) -> Finding:
     if late < 0:
         text = (
-            f"the force looks {-1e3 * late:.3g} ms early: the position is recorded late, or the model "
-            f"has too few "
-            "elements; fitted as a delay"
+            f"the force looks {-1e3 * late:.3g} ms early: the position is recorded late, or the model has "
+            "too few elements; fitted as a delay"
         )
         return Finding(kind="force early", text=text)
     how = "a delay" if kind == "delay" else "a filter of the first order with this time constant"

@@ -43,13 +43,7 @@ class Solid(NamedTuple):
 
 
 def as_rule(rule: object) -> Rule:
-    """Check the name of a rule.
-
-    Raises
-    ------
-    InputError
-        If it is none.
-    """
+    """Check the name of a rule."""
     if rule not in RULES:
         raise InputError(f'rule is "ramp", "bilinear" or "backward", got {rule!r}')
     return rule  # type: ignore[return-value]

@@ -153,9 +153,8 @@ def _record(time: Any, position: Any, force: Any, response: object, rest: float 
     begins = hole_places(t, x if response == "force" else f)
     if begins and response == "position":
         raise InputError(
-            f"the record has a hole in time after t = {t[begins[0] - 1]:.6g} s, across which the "
-            f"force changes: how the "
-            "tissue crept meanwhile is not known; give the part before it or after it"
+            f"the record has a hole in time after t = {t[begins[0] - 1]:.6g} s, across which the force "
+            "changes: how the tissue crept meanwhile is not known; give the part before it or after it"
         )
     return Record(t, x, f, response, None if rest is None else float(rest), begins)
 

@@ -23,6 +23,7 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.relaxing import Elements, force_response
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Interval
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import Given
 
 Response = Literal["force", "position"]
@@ -139,13 +140,7 @@ class Model:
 
 
 def as_model(name: object, branches: int | None, response: Response) -> Model:
-    """Check the name of a model and its branches.
-
-    Raises
-    ------
-    InputError
-        If there is no such model, it has no such number of branches, or cannot predict the response.
-    """
+    """Check the name of a model and its branches."""
     if name not in OWN_PARAMETERS:
         choices = ", ".join(f'"{choice}"' for choice in OWN_PARAMETERS)
         raise InputError(f"model is one of {choices}; got {name!r}")
@@ -156,7 +151,7 @@ def as_model(name: object, branches: int | None, response: Response) -> Model:
         )
     if name != "generalized-maxwell":
         if branches is not None:
-            raise InputError(f'branches is for "generalized-maxwell"; {name!r} has what it has')
+            raise InputError(f'branches is for "generalized-maxwell"; that of {name!r} is fixed')
         return Model(str(name), 1 if name in ("maxwell", "standard-linear-solid") else 0)
     number = 2 if branches is None else branches
     if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= MOST_BRANCHES:
@@ -168,15 +163,7 @@ def as_model(name: object, branches: int | None, response: Response) -> Model:
 
 
 def unit_of(parameter: str, motion: str, exponent: float = 1.0) -> str:
-    """The SI unit of a parameter, as the glossary writes it."""
-    length = "rad" if motion == "rotary" else "m"
-    force = "N*m" if motion == "rotary" else "N"
-    if parameter == "offset":
-        return ""
-    if parameter == "exponent":
-        return "1"
-    if parameter == "dissipation":
-        return f"s/{length}"
-    viscous = "N*m*s/rad" if motion == "rotary" else "N*s/m"
+    """The SI unit of a parameter, as the glossary writes it; a stiffness is per length to the exponent."""
+    name = parameter.rstrip("_0123456789")
     power = "" if exponent == 1 else f"^{exponent:.3g}"
-    return viscous if "damping" in parameter else f"{force}/{length}{power}"
+    return GLOSSARY[name].unit_for(motion) + power

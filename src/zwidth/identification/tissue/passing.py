@@ -30,23 +30,9 @@ FEWEST = 30
 def passed_over(
     position: Array, force: Array, time: ArrayLike | None, period: float, stiffness: float
 ) -> tuple[NDArray[np.bool_], tuple[Finding, ...]]:
-    """Which samples are passed over, and why.
+    """Which samples of a record are passed over, and why: at an end of the sensor's range, and after a hole.
 
-    Parameters
-    ----------
-    position, force
-        x [m; rad], positive inside, and the force of the tissue [N; N·m].
-    time
-        Of the samples [s]; None: without holes.
-    period
-        T [s].
-    stiffness
-        At once, of the solid that the tracker starts from [N/m; N·m/rad].
-
-    Raises
-    ------
-    InputError
-        If the tissue pulls the probe in, or the times are no such samples.
+    `stiffness` is that at once, of the solid that the tracker starts from [N/m; N·m/rad].
     """
     _check_sign(position, force)
     passed, findings = np.zeros(force.size, dtype=bool), [*_units(position, force, stiffness)]
@@ -88,9 +74,8 @@ def _units(position: Array, force: Array, stiffness: float) -> Iterator[Finding]
     times = float(np.ptp(force[inside])) / moved / stiffness
     if not 1 / FAR <= times <= FAR:
         text = (
-            f"the force goes about {times:.3g} times as much as that of the solid at the start: most "
-            f"likely a unit is "
-            "off by 1000, mm for m or mN for N"
+            f"the force goes about {times:.3g} times as much as that of the solid at the start: most likely "
+            "a unit is off by 1000, mm for m or mN for N"
         )
         yield Finding(kind="units", text=text)
 

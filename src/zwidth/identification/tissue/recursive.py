@@ -85,12 +85,16 @@ class RecursiveSolid:
     InputError
         If an argument is not of these.
 
-    Notes ----- What is returned is admissible: μ0, μ1 ≥ 0, η1/μ1 > 0 and within the bounds.  The regression
-    itself runs without bounds, so that nothing measured is lost; what it finds is moved to the nearest
-    bound, number by number. P is that of ((1 + p)/g, (b0 + b1)/(g S), −b1/S), g = T μ1/η1 and S = μ0 + μ1
-    at the start, all of the size of 1; it begins as the identity over noise²; times noise² it is the
-    covariance of these three.  "instrumental" has no P: `Track.trace` is what stands for it, and is bounded
-    by what the noise leaves to know.
+    Notes
+    -----
+    What is returned is admissible: μ0, μ1 ≥ 0, η1/μ1 > 0 and within the bounds.  The regression itself runs
+    without bounds, so that nothing measured is lost; what it finds is moved to the nearest bound, number by
+    number.
+
+    P is that of ((1 + p)/g, (b0 + b1)/(g S), −b1/S), g = T μ1/η1 and S = μ0 + μ1 at the start, all of the
+    size of 1; it begins as the identity over noise²; times noise² it is the covariance of these three.
+    "instrumental" has no P: `Track.trace` is what stands for it, and is bounded by what the noise leaves to
+    know.
     """
 
     sample_period: Exact
@@ -260,13 +264,7 @@ class Tracker:
 
 
 def positive(name: str, value: RealLike) -> Exact:
-    """A number > 0; `name` is said where it is not.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-    """
+    """A number > 0; `name` is said where it is not."""
     try:
         number = Exact(value)
     except InputError as error:

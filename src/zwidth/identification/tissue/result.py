@@ -19,6 +19,7 @@ from zwidth.identification.tissue.findings import coarse, unlikely_units
 from zwidth.identification.tissue.model import Model, unit_of
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Interval
+from zwidth.quantity.glossary import GLOSSARY
 from zwidth.showing import Lines, Part, Table
 
 if TYPE_CHECKING:
@@ -274,8 +275,7 @@ class TissueFit(Documented):
 
     def _unit(self, name: str) -> str:
         if name == "offset":
-            index = int(self.response == "force")
-            return (("m", "N"), ("rad", "N*m"))[self.motion == "rotary"][index]
+            return GLOSSARY[self.response].unit_for(self.motion)
         return unit_of(name, self.motion, self.values.get("exponent", 1.0) if name == "stiffness" else 1.0)
 
     def table(self) -> list[list[str]]:

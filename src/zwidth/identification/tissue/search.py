@@ -78,19 +78,7 @@ class Solved(NamedTuple):
 
 
 def fitted(model: Model, record: Record, offset: bool, noise: str, motion: str) -> TissueFit:
-    """The fit, with all that was found in the record.
-
-    Parameters
-    ----------
-    model, record
-        What is fitted to what.
-    offset
-        True: a constant too, whether or not it is seen.
-    noise
-        "correlated" or "white".
-    motion
-        "linear" or "rotary".
-    """
+    """The fit, with all that was found in the record; with an offset, whether or not it is seen."""
     order = 0 if noise == "white" else LARGEST_ORDER
     task = Task(model, record, np.ones(record.time.size, dtype=bool), Faults(offset=offset), order)
     stops = stops_of(record.force) if record.response == "force" else NOWHERE
@@ -184,13 +172,7 @@ def _asked(task: Task, solved: Solved) -> Iterator[tuple[float, Task]]:
 
 
 def _within(task: Task, stops: tuple[float, float]) -> tuple[Task, Solved, tuple[float, float]] | None:
-    """The solution without what the sensor cannot say; None where it could, as where a motion rests.
-
-    Raises
-    ------
-    InputError
-        If too little is left.
-    """
+    """The solution without what the sensor cannot say; None where it could, as where a motion rests."""
     force = task.record.force
     at_low, at_high = force <= stops[0], force >= stops[1]
     at = at_low | at_high
@@ -218,9 +200,8 @@ def _plenty(task: Task, used: Mask) -> bool:
 def _enough(task: Task, used: Mask) -> Mask:
     if not _plenty(task, used):
         raise InputError(
-            f"in {used.size - np.count_nonzero(used)} of {used.size} samples the force is at an end "
-            f"of the sensor's "
-            "range, and what is left shows too little: press less, or take a larger load cell"
+            f"in {used.size - np.count_nonzero(used)} of {used.size} samples the force is at an end of the "
+            "sensor's range, and what is left shows too little: press less, or take a larger load cell"
         )
     return used
 

@@ -90,7 +90,9 @@ class CouplingCondition(Answer):
 
     @property
     def scope(self) -> Scope:
-        """Environments that are touched and left, on an exact position."""
+        """Environments touched and left, on an exact position; where it fails that of the counterexample."""
+        if self.counterexample is not None:
+            return self.counterexample.scope
         return Scope(
             contact="made and broken",
             encoder="not counted" if self.device.exact("resolution") else "ideal",

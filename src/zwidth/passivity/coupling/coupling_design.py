@@ -31,6 +31,7 @@ from scipy.optimize import minimize_scalar
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.environment import Environment, certain
+from zwidth.environment.wall import wall_of
 from zwidth.errors import InputError
 from zwidth.passivity.check import check
 from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition, needed_damping
@@ -185,11 +186,12 @@ def design_coupling(device: Device, goal: Goal = "stiffest", margin: RealLike = 
 
 
 def _wanted(goal: object) -> tuple[Fraction, Fraction]:
-    if not isinstance(goal, Wall) or goal.clamped or not isinstance(goal.velocity_filter, BackwardDifference):
+    wall = wall_of(goal)
+    if wall is None or wall.clamped or wall.velocity_filter != BackwardDifference():
         raise InputError(
             f'goal is "stiffest" or a plain Wall(stiffness, damping), not clamped or filtered; got {goal!r}'
         )
-    k, b = certain(goal.stiffness, "stiffness"), certain(goal.damping, "damping")
+    k, b = certain(wall.stiffness, "stiffness"), certain(wall.damping, "damping")
     if b < 0:
         raise InputError(f"damping of the goal must be ≥ 0, got {float(b):g}: less of it never asks for less")
     return k, b

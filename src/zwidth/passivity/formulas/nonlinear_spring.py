@@ -15,11 +15,12 @@ from itertools import pairwise
 from typing import Any
 
 from zwidth.device import Device
-from zwidth.environment.nonlinear_spring import NonlinearSpring
+from zwidth.environment.environment import Environment
 from zwidth.passivity.certificate import FORMAT, Certificate
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.result import Evidence
 from zwidth.passivity.scope import Contact
+from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import exact_text, quantity_unit
 
 
@@ -48,7 +49,7 @@ class SpringNeed:
     bounded: bool
 
 
-def spring_need(device: Device, spring: NonlinearSpring) -> SpringNeed:
+def spring_need(device: Device, spring: Environment) -> SpringNeed:
     """What the slopes of a spring ask of a device.
 
     Raises
@@ -56,10 +57,8 @@ def spring_need(device: Device, spring: NonlinearSpring) -> SpringNeed:
     InputError
         If a number of the device is an interval.
     """
-    points = list(zip(spring.positions, spring.forces, strict=True))
-    slopes = [
-        (f1.fraction - f0.fraction) / (x1.fraction - x0.fraction) for (x0, f0), (x1, f1) in pairwise(points)
-    ]
+    points = [(x.fraction, f.fraction) for x, f in spring.points]
+    slopes = [(f1 - f0) / (x1 - x0) for (x0, f0), (x1, f1) in pairwise(points)]
     largest, steepest = max(*slopes, Fraction(0)), max(map(abs, slopes))
     period = device.exact("sample_period")
     samples = device.exact("delay") / period
@@ -69,7 +68,7 @@ def spring_need(device: Device, spring: NonlinearSpring) -> SpringNeed:
         steepest=steepest,
         damping=(largest / 2 + samples * steepest) * period if whole else None,
         coulomb_friction=steepest * device.exact("resolution") / 2,
-        bounded=spring.forces[0] <= 0 <= spring.forces[-1],
+        bounded=points[0][1] <= 0 <= points[-1][1],
     )
 
 
@@ -110,25 +109,22 @@ class EndlessPull(Evidence):
         return f"beyond an end the spring pulls away with {self.pull:.6g} {self.unit} for ever"
 
 
-def refute_spring(device: Device, spring: NonlinearSpring) -> EndlessPull | None:
+def refute_spring(device: Device, spring: Environment) -> EndlessPull | None:
     """The proof that a spring pulls away for ever, if it does and the checker accepts it."""
-    pull = max(spring.forces[0].fraction, -spring.forces[-1].fraction)
+    pull = max(spring.points[0][1].fraction, -spring.points[-1][1].fraction)
     unit = quantity_unit("force", device.motion)
     found = EndlessPull(_document(device, spring, "endless pull"), float(pull), unit)
     return found if found.verify() else None
 
 
-def certify_spring(device: Device, spring: NonlinearSpring) -> Certificate:
+def certify_spring(device: Device, spring: Environment) -> Certificate:
     """The loop and the points; the checker evaluates the conditions."""
     return Certificate((_document(device, spring, "nonlinear spring"),))
 
 
-def _document(device: Device, spring: NonlinearSpring, kind: str) -> dict[str, Any]:
+def _document(device: Device, spring: Environment, kind: str) -> dict[str, Any]:
     names = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
     loop = {unit_key(name, device.motion): exact_text(device.exact(name)) for name in names}
-    units = "rad_N_m" if device.motion == "rotary" else "m_N"
-    points = [
-        [exact_text(x.fraction), exact_text(f.fraction)]
-        for x, f in zip(spring.positions, spring.forces, strict=True)
-    ]
-    return {"format": FORMAT, "kind": kind, "loop": loop, "law": {f"points_{units}": points}}
+    length, force = (unit_suffix(device.unit(name)) for name in ("position", "force"))
+    points = [[exact_text(x.fraction), exact_text(f.fraction)] for x, f in spring.points]
+    return {"format": FORMAT, "kind": kind, "loop": loop, "law": {f"points_{length}_{force}": points}}

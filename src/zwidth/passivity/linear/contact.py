@@ -13,48 +13,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from flint import fmpq, fmpq_poly
-
-from zwidth.environment import BackwardDifference, OnePole, VelocityFilter, Wall, Window
-from zwidth.environment.environment import Environment, certain
-from zwidth.environment.velocity import VelocityEstimator
+from zwidth.environment.environment import Environment
+from zwidth.environment.velocity_weights import Average, Decay
 from zwidth.passivity.linear.loop import LinearLoop
-from zwidth.quantity.exact import Exact
-
-
-@dataclass(frozen=True)
-class Average:
-    """v = Σ w_j (q(k−j) − q(k−j−1))/T over the samples of a window."""
-
-    weights: tuple[Fraction, ...]
-
-    @property
-    def gain(self) -> Fraction:
-        """Σ|w_j|."""
-        return sum((abs(w) for w in self.weights), Fraction(0))
-
-    @property
-    def variation(self) -> Fraction:
-        """T ‖h_v‖₁ = |w_0| + Σ|w_j − w_{j−1}|, what comes after the last weight included."""
-        steps = zip((*self.weights, Fraction(0)), (Fraction(0), *self.weights), strict=True)
-        return sum((abs(w - before) for w, before in steps), Fraction(0))
-
-
-@dataclass(frozen=True)
-class Decay:
-    """w_j = (1 − p) pʲ, 0 ≤ p < 1."""
-
-    pole: Fraction
-
-    @property
-    def gain(self) -> Fraction:
-        """Σ|w_j| = 1."""
-        return Fraction(1)
-
-    @property
-    def variation(self) -> Fraction:
-        """T ‖h_v‖₁ = 2 (1 − p)."""
-        return 2 * (1 - self.pole)
 
 
 @dataclass(frozen=True)
@@ -87,34 +48,7 @@ class DampedWall:
 
 def damped_wall(environment: Environment, period: Fraction) -> DampedWall | None:
     """The environment at the sample period T [s], if it is a wall whose estimate has such weights."""
-    if not isinstance(environment, Wall):
+    law = environment.damped_spring(period)
+    if law is None or law.weights is None:
         return None
-    found = _estimate(environment.velocity_filter, period)
-    if found is None:
-        return None
-    return DampedWall(
-        certain(environment.stiffness, "stiffness"), certain(environment.damping, "damping"), found
-    )
-
-
-def _estimate(velocity: VelocityEstimator, period: Fraction) -> Average | Decay | None:
-    if isinstance(velocity, BackwardDifference):
-        return Average((Fraction(1),))
-    if isinstance(velocity, Window):
-        return Average((Fraction(1, velocity.samples),) * velocity.samples)
-    if isinstance(velocity, OnePole):
-        tau = certain(velocity.time_constant, "time_constant")
-        return Decay(tau / (period + tau))
-    return _finite(velocity)
-
-
-def _finite(velocity: VelocityFilter) -> Average | None:
-    """F(z) = Σ w_j z⁻ʲ, if it ends."""
-    late = (Exact(0),) * (len(velocity.denominator) - len(velocity.numerator))
-    n, d = (
-        fmpq_poly([fmpq(c.fraction.numerator, c.fraction.denominator) for c in part])
-        for part in ((*late, *velocity.numerator), velocity.denominator)
-    )
-    if n % d != 0:
-        return None
-    return Average(tuple(Fraction(int(c.p), int(c.q)) for c in (n // d).coeffs()))
+    return DampedWall(law.stiffness, law.damping, law.weights)

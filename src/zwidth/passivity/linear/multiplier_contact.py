@@ -23,7 +23,6 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
 from zwidth.passivity.linear.cosines import real_product
 from zwidth.passivity.linear.loop import LinearLoop
@@ -162,9 +161,9 @@ class MultiplierLaw:
 
 
 def multiplier_law(environment: Environment, loop: LinearLoop) -> MultiplierLaw | None:
-    """A wall, if it is stable, with memory, and its delay one of whole samples."""
+    """A law fed with the position, if it is stable, with memory, and its delay one of whole samples."""
     static = loop.static_stiffness
-    if not isinstance(environment, Wall) or static is None or static < 0 or loop.part_delay:
+    if environment.surface != "position" or static is None or static < 0 or loop.part_delay:
         return None
     memory = len(loop.numerator) + len(loop.denominator) > 2
     if not (memory and loop.hidden_modes_decay and is_schur(loop.denominator[::-1])):

@@ -21,7 +21,6 @@ from fractions import Fraction
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from zwidth.environment import GeneralizedMaxwell, Maxwell, StandardLinearSolid, Wall
 from zwidth.environment.environment import Environment
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.roots import rational_roots_inside
@@ -101,15 +100,14 @@ class RelaxingLaw:
 
 
 def relaxing_law(environment: Environment, loop: LinearLoop) -> RelaxingLaw | None:
-    """A one-sided wall or solid, if H(z) is a spring and parts with rational poles."""
-    solid = isinstance(environment, Maxwell | StandardLinearSolid | GeneralizedMaxwell)
-    if not (solid or isinstance(environment, Wall)):
+    """A one-sided law, if H(z) is a spring and parts with rational poles."""
+    if not environment.unilateral:
         return None
     found = _parts(loop)
     static = loop.static_stiffness
     if found is None or static is None or static < 0:
         return None
-    return RelaxingLaw(static, found, solid, environment.clamped)
+    return RelaxingLaw(static, found, environment.surface == "penetration", environment.clamped)
 
 
 def _parts(loop: LinearLoop) -> tuple[Part, ...] | None:

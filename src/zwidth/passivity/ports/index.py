@@ -4,12 +4,11 @@
     output  ρ = max σ: ∫ uᵀy ≥ σ ∫ yᵀy      1/G − ρ positive real, G (1 − ρ G)⁻¹ passive
 
 from rest, for every u and every time (in discrete time sums).  Both are one
-question, of F = G and of F = 1/G: see `positive_real`, and for several axes `multiport`.
+question, of F = G and of F = 1/G, of one axis and of several: see `positive_real`.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -19,8 +18,14 @@ from typing import Any, Literal
 
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import FORMAT, Certificate
-from zwidth.passivity.ports.extracted import AnyPort, Extraction
-from zwidth.passivity.ports.positive_real import Largest, NoLevel
+from zwidth.passivity.ports.documents import motion_document, proof_document, system_document
+from zwidth.passivity.ports.extracting_input import ExtractingInput
+from zwidth.passivity.ports.largest import Largest, NoLevel
+from zwidth.passivity.ports.motion import absorbed
+from zwidth.passivity.ports.poles import places_of
+from zwidth.passivity.ports.port import Port
+from zwidth.passivity.ports.positive_real import prove_level
+from zwidth.passivity.ports.search import find_motion
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.showing import Part, Shown
 
@@ -28,7 +33,7 @@ Which = Literal["input", "output"]
 
 
 @dataclass(frozen=True, repr=False)
-class PassivityIndex(Shown, ABC):
+class PassivityIndex(Shown):
     """The largest level σ of one index, with where it is reached.
 
     Attributes
@@ -42,7 +47,7 @@ class PassivityIndex(Shown, ABC):
     """
 
     name: Which
-    port: AnyPort
+    port: Port
     found: Largest | NoLevel | None
 
     @cached_property
@@ -82,7 +87,7 @@ class PassivityIndex(Shown, ABC):
 
     def at_least(self, level: RealLike) -> bool:
         """Whether the index is at least this level, decided exactly."""
-        return self.found is None or self._proof(Exact(level).fraction) is not None
+        return self.found is None or prove_level(self.port, Exact(level).fraction) is not None
 
     def certificate(self, level: RealLike | None = None) -> Certificate:
         """The proof that the index is at least this level, by default `value`.
@@ -95,15 +100,15 @@ class PassivityIndex(Shown, ABC):
         if level is None and not isinstance(self.found, Largest):
             raise InputError(f"the {self.name} index is {self.value}; there is nothing to certify")
         at = Fraction(repr(self.value)) if level is None else Exact(level).fraction
-        proof = None if self.found is None else self._proof(at)
+        proof = None if self.found is None else prove_level(self.port, at)
         if proof is None:
             raise InputError(
                 f"the {self.name} index is {self.value:.17g}, so the level {float(at):.17g} cannot be "
                 "certified; give a lower one"
             )
-        return Certificate((self._document(proof, at),))
+        return Certificate((self._document(proof_document(proof), at),))
 
-    def refute(self, level: RealLike = 0) -> Extraction | None:
+    def refute(self, level: RealLike = 0) -> ExtractingInput | None:
         """A motion by which the port gives out more than this level allows.
 
         None if the level holds; or, though it does not, where no motion was found that the
@@ -111,16 +116,30 @@ class PassivityIndex(Shown, ABC):
         """
         if self.at_least(level):
             return None
-        cosine = self.found.cosine if isinstance(self.found, Largest) else None
-        return self._extraction(Exact(level).fraction, cosine)
+        at = Exact(level).fraction
+        motion = find_motion(self.port, at, self.found.cosine if isinstance(self.found, Largest) else None)
+        if motion is None:
+            return None
+        taken = -absorbed(self.port, at, motion)
+        size = absorbed(self.port, Fraction(0), motion) - absorbed(self.port, Fraction(1), motion)
+        share = float(taken / size) if size else inf
+        return ExtractingInput(self._document(motion_document(motion), at), share, self.port, motion)
 
-    @abstractmethod
     def places(self) -> list[complex]:
         """Poles and zeros of the port, to rounding."""
+        both = (self.port.poles(), self.port.inverse().poles())
+        return [root for p in both if p is not None for root in places_of(p.numer())]
 
-    @abstractmethod
     def curve(self, frequencies: Sequence[float]) -> list[float]:
-        """The real part whose least value is the index, at these frequencies [Hz]; ±inf or nan at a pole."""
+        """The real part (least eigenvalue) whose least value is the index, at these frequencies [Hz].
+
+        Of one axis ±inf at a pole of one sign; otherwise nan at a pole.
+        """
+        return self.curves(frequencies)[0]
+
+    def curves(self, frequencies: Sequence[float]) -> list[list[float]]:
+        """All eigenvalues, the least first, each at these frequencies [Hz]."""
+        return [list(curve) for curve in zip(*self.port.eigenvalues(frequencies), strict=True)]
 
     def describe(self) -> str:
         """The index in a line."""
@@ -142,19 +161,8 @@ class PassivityIndex(Shown, ABC):
         """Which index, and what it is."""
         yield f"{self.name} index {self.describe()}"
 
-    @abstractmethod
-    def _proof(self, level: Fraction) -> dict[str, Any] | None:
-        """The proof at a level as plain data; None if it does not hold."""
-
-    @abstractmethod
-    def _extraction(self, level: Fraction, cosine: Fraction | None) -> Extraction | None:
-        """A motion that refutes the level, looked for at c = cosine first."""
-
-    @abstractmethod
-    def _system(self) -> dict[str, Any]:
-        """G as plain data."""
-
     def _document(self, evidence: dict[str, Any], level: Fraction) -> dict[str, Any]:
         """`evidence`, a kind with a proof or a motion, as a document of its own."""
-        claim = {"index": self.name, "level": str(level), "system": self._system()}
+        system = system_document(self.port if self.name == "input" else self.port.inverse())
+        claim = {"index": self.name, "level": str(level), "system": system}
         return {"format": FORMAT, "kind": evidence["kind"], **claim, **evidence}

@@ -1,189 +1,217 @@
-"""A linear one-port F = N/D, in continuous or discrete time, on one circle.
+"""A linear port of m axes, u = D φ and y = N φ with square polynomial matrices, in either time.
 
-    s = (1 − ζ)/(1 + ζ)   continuous: Re s > 0 is |ζ| < 1, ω = tan(θ/2)
-    z = 1/ζ               discrete:   |z| > 1 is |ζ| < 1, ωT = θ
+    given as G = N/d, one denominator d for all:   D = d·1
+    from output to input:                          D and N exchanged
 
-so that with c = cos θ both are questions about polynomials on [−1, 1]:
-ω² = (1 − c)/(1 + c), and c = −1 is ω = ∞ or the Nyquist frequency.
-Everything is rational.
+Any signals φ that begin at rest make a pair u, y that answer each other, and every smooth pair
+is made so.  What the port absorbs above a level σ is a form of φ; on the `circle` it is
+
+    Π_σ = ½(Dᴴ N + Nᴴ D) − σ Dᴴ D
+
+Of one axis that is Re(N D̄) − σ |D|², one polynomial in c.  Everything is rational.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import acos, inf, lcm, pi, sqrt
-from typing import Any, Literal
+from math import cos, inf, nan, pi
+from typing import Any
 
-from flint import fmpq_poly, fmpz_poly
+import numpy as np
+from flint import fmpq, fmpq_poly
 
-from zwidth.environment.environment import Environment
-from zwidth.environment.system import Polynomial, is_system, read_system
-from zwidth.errors import InputError
 from zwidth.passivity.linear.cosines import real_product
-from zwidth.passivity.linear.loop import LARGEST_DEGREE
-from zwidth.passivity.linear.schur import is_schur
+from zwidth.passivity.ports.circle import ONE, OnCircle, Time, frequency_of, in_zeta, product
+from zwidth.passivity.ports.leverrier import leverrier, multiplied
 from zwidth.quantity.balls import as_fmpq, as_fraction
 
-Time = Literal["continuous", "discrete"]
+Polynomials = tuple[tuple[tuple[int, ...], ...], ...]
+"""Rows of integer polynomials in ascending powers of s or z."""
 
 
 @dataclass(frozen=True)
 class Port:
-    """F = N/D in lowest terms, N and D integer polynomials in ascending powers of s or z.
+    """u = D φ and y = N φ, see the module.
 
     Parameters
     ----------
-    numerator, denominator
-        Coprime integer coefficients; the denominator's last is not zero.
+    outputs, inputs
+        N and D; of one axis coprime.
+    denominator
+        d in ascending powers of s or z.
     time
         "continuous" or "discrete".
     period
         T [s] of a discrete port; 1 where it does not say.
     hidden_modes_decay
-        False when a factor that N and D had in common does not decay: it is not
-        seen at the port and no index speaks of it.
+        False when a mode that no input reaches or no output sees does not decay.
     """
 
-    numerator: tuple[int, ...]
+    outputs: Polynomials
+    inputs: Polynomials
     denominator: tuple[int, ...]
     time: Time
     period: Fraction
     hidden_modes_decay: bool = True
 
     @property
+    def axes(self) -> int:
+        """m."""
+        return len(self.outputs)
+
+    @cached_property
     def order(self) -> int:
-        """The larger degree of N and D."""
-        return max(len(self.numerator), len(self.denominator)) - 1
+        """The largest degree of an entry."""
+        return max(len(p) for side in (self.outputs, self.inputs) for row in side for p in row) - 1
+
+    @cached_property
+    def is_direct(self) -> bool:
+        """True for D = d·1, from inputs to outputs."""
+        size, nothing = range(self.axes), (0,)
+        return all(self.inputs[i][j] == (self.denominator if i == j else nothing) for i in size for j in size)
 
     @property
     def is_zero(self) -> bool:
-        """True for F = 0."""
-        return not any(self.numerator)
+        """True for D = 0: of the inverse of G = 0."""
+        return not any(any(p) for row in self.inputs for p in row)
 
     def inverse(self) -> Port:
-        """1/F, what the port is from its output to its input."""
-        return Port(self.denominator, self.numerator, self.time, self.period, self.hidden_modes_decay)
+        """What the port is from its outputs to its inputs."""
+        own = (self.denominator, self.time, self.period, self.hidden_modes_decay)
+        return Port(self.inputs, self.outputs, *own)
 
     @cached_property
-    def on_circle(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """N and D as polynomials in ascending powers of ζ, both of length order + 1."""
-        return (
-            in_zeta(self.numerator, self.order, self.time),
-            in_zeta(self.denominator, self.order, self.time),
+    def on_circle(self) -> tuple[list[list[tuple[int, ...]]], list[list[tuple[int, ...]]]]:
+        """N and D as polynomials in ascending powers of ζ, all of length order + 1."""
+        n, d = (
+            [[in_zeta(p, self.order, self.time) for p in row] for row in side]
+            for side in (self.outputs, self.inputs)
         )
+        return n, d
+
+    @cached_property
+    def forms(self) -> tuple[list[list[OnCircle]], list[list[OnCircle]]]:
+        """½(Dᴴ N + Nᴴ D) and Dᴴ D on the circle, times the same positive factor."""
+        n, d = self.on_circle
+        size = range(self.axes)
+
+        def pairing(a: Any, b: Any, i: int, j: int) -> OnCircle:
+            """(Aᴴ B)_ij."""
+            total = product(b[0][j], a[0][i])
+            for k in size[1:]:
+                total = total + product(b[k][j], a[k][i])
+            return total
+
+        crossed = [[pairing(d, n, i, j) for j in size] for i in size]
+        power = [[(crossed[i][j] + crossed[j][i].conjugate()) / 2 for j in size] for i in size]
+        return power, [[pairing(d, d, i, j) for j in size] for i in size]
 
     @cached_property
     def real_part(self) -> tuple[fmpq_poly, fmpq_poly]:
-        """Re(N D̄) and |D|² as polynomials in c, times the same positive factor."""
-        n, d = self.on_circle
+        """Of one axis the same: Re(N D̄) and |D|² in c, times the same positive factor."""
+        ((n,),), ((d,),) = self.on_circle
         return real_product(n, d), real_product(d, d)
 
-    def is_stable_with(self, gain: Fraction) -> bool:
-        """True when N + gain · D has every root in the open left half plane (inside the circle)."""
-        n, d = self.on_circle
-        total = [x * gain.denominator + y * gain.numerator for x, y in zip(n, d, strict=True)]
-        return total[0] != 0 and _outside_circle(total)
+    @cached_property
+    def minors_at_zero(self) -> list[fmpq_poly]:
+        """e_1 … e_m of Π_0, in c."""
+        return [minor.real for minor in leverrier(self.forms[0], ONE).minors]
 
-    def real_part_at(self, c: Fraction) -> float:
-        """Re F at cos θ = c; ±inf or nan at a pole."""
-        p, w = (as_fraction(v) for v in (r(as_fmpq(c)) for r in self.real_part))
-        if w == 0:
-            return inf if p > 0 else -inf if p < 0 else float("nan")
-        try:
-            return float(p / w)
-        except OverflowError:
-            return inf if p > 0 else -inf
+    @cached_property
+    def rank(self) -> int:
+        """The rank of D at all but some frequencies."""
+        found = leverrier(self.forms[1], ONE).minors
+        return max((k + 1 for k, minor in enumerate(found) if minor.real.degree() >= 0), default=0)
+
+    def form(self, level: fmpq | int) -> list[list[OnCircle]]:
+        """Π_σ at the level σ."""
+        return [
+            [p - q * level for p, q in zip(first, second, strict=True)]
+            for first, second in zip(*self.forms, strict=True)
+        ]
+
+    @cached_property
+    def weight(self) -> fmpq_poly:
+        """|d|² in c, up to a positive factor."""
+        d = in_zeta(self.denominator, self.order, self.time)
+        return real_product(d, d)
+
+    def resolvent(self, gain: fmpq) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
+        """(π, R) in lowest terms with D (N + gain·D)⁻¹ = R/π; None where nothing is inverse."""
+        n, d = (_as_polynomials(side) for side in (self.outputs, self.inputs))
+        total = [[x + gain * y for x, y in zip(*rows, strict=True)] for rows in zip(n, d, strict=True)]
+        found = leverrier(total, fmpq_poly([1]))
+        return in_lowest_terms(multiplied(d, found.adjugate), found.minors[-1])
+
+    def poles(self) -> fmpq_poly | None:
+        """The least common denominator of N D⁻¹; None where D is not invertible."""
+        n, d = (_as_polynomials(side) for side in (self.outputs, self.inputs))
+        found = leverrier(d, fmpq_poly([1]))
+        fraction = in_lowest_terms(multiplied(n, found.adjugate), found.minors[-1])
+        return None if fraction is None else fraction[0]
+
+    def eigenvalues(self, frequencies: Sequence[float]) -> list[list[float]]:
+        """Of the Hermitian part of N D⁻¹ at these frequencies [Hz], ascending, to rounding; nan at a pole.
+
+        Where D is not invertible, of what it reaches.  Of one axis Re N/D, ±inf at a pole of one sign.
+        """
+        if self.axes == 1:
+            return [[self._real_part(f)] for f in frequencies]
+        found, rank = [], self.rank
+        for f in frequencies:
+            omega = 2 * pi * f
+            point = np.exp(1j * omega * float(self.period)) if self.time == "discrete" else 1j * omega
+            n, d = (_at(side, point) for side in (self.outputs, self.inputs))
+            left, sizes, right = np.linalg.svd(d)
+            if rank and sizes[rank - 1] > 0:
+                reached = left[:, :rank].conj().T @ n @ (right[:rank].conj().T / sizes[:rank])
+                found.append([float(x) for x in np.linalg.eigvalsh((reached + reached.conj().T) / 2)])
+            else:
+                found.append([float("nan")] * max(rank, 1))
+        return found
 
     def frequency(self, cosine: Fraction) -> float:
         """ω/2π [Hz] of c = cos θ; inf for a continuous port at c = −1."""
         return frequency_of(cosine, self.time, self.period)
 
+    def _real_part(self, frequency: float) -> float:
+        """Re N/D of one axis at a frequency [Hz], exactly; ±inf or nan at a pole."""
+        p, w = (part(as_fmpq(self._cosine(frequency))) for part in self.real_part)
+        if w != 0:
+            try:
+                return float(as_fraction(p / w))
+            except OverflowError:
+                pass
+        return inf if p > 0 else -inf if p < 0 else nan
 
-def read_port(thing: Environment | Any, period: Fraction | None = None) -> Port:
-    """A port from a system of python-control or scipy.signal, or from an environment's H(z).
-
-    Raises
-    ------
-    InputError
-        If it is neither, has several inputs or outputs, is not causal in discrete time or of
-        too high an order, or does not say whether its time is continuous.
-    """
-    if isinstance(thing, Environment):
-        if period is None:
-            raise InputError("an environment has an H(z) at a sample period only; give the device it runs on")
-        h = thing.pulse_transfer_function(period)
-        return port(h.numerator, h.denominator, "discrete", period)
-    if not is_system(thing):
-        raise InputError(
-            f"a port is a system of python-control or scipy.signal, or an environment; got {thing!r}"
-        )
-    system = read_system(thing)
-    time = said_time(system.time, (system.numerator, system.denominator))
-    return port(system.numerator, system.denominator, time, system.sample_period or Fraction(1))
+    def _cosine(self, frequency: float) -> Fraction:
+        """c = cos θ of a frequency [Hz]."""
+        if self.time == "discrete":
+            return Fraction(cos(2 * pi * frequency * float(self.period)))
+        square = Fraction(2 * pi * frequency) ** 2
+        return (1 - square) / (1 + square)
 
 
-def said_time(time: Time | Literal["unsaid"], polynomials: Iterable[Polynomial]) -> Time:
-    """The time that a system says, or any of a constant one."""
-    if time == "unsaid" and any(any(p[:-1]) for p in polynomials):
-        raise InputError(
-            "the system has dt=None and so does not say whether it is G(s) or G(z); give it a dt: 0 for "
-            "continuous time, the sample period or True for discrete time"
-        )
-    return "discrete" if time == "discrete" else "continuous"
+def in_lowest_terms(
+    numerators: list[list[fmpq_poly]], denominator: fmpq_poly
+) -> tuple[fmpq_poly, list[list[fmpq_poly]]] | None:
+    """(π, R) with R/π the same matrix and no factor common to π and all of R; None over 0."""
+    if denominator.degree() < 0:
+        return None
+    common = denominator.numer()
+    for row in numerators:
+        for entry in row:
+            common = common.gcd(entry.numer())
+    shared = fmpq_poly(common)
+    return denominator // shared, [[entry // shared for entry in row] for row in numerators]
 
 
-def frequency_of(cosine: Fraction, time: Time, period: Fraction) -> float:
-    """ω/2π [Hz] of c = cos θ; inf in continuous time at c = −1."""
-    if time == "discrete":
-        return acos(max(-1.0, min(1.0, float(cosine)))) / (2 * pi * float(period))
-    if cosine == -1:
-        return inf
-    return sqrt((1 - cosine) / (1 + cosine)) / (2 * pi)
+def _as_polynomials(side: Polynomials) -> list[list[fmpq_poly]]:
+    return [[fmpq_poly(list(p)) for p in row] for row in side]
 
 
-def port(numerator: Polynomial, denominator: Polynomial, time: Time, period: Fraction) -> Port:
-    """The port of two polynomials in descending powers, in lowest terms."""
-    scale = lcm(*(c.denominator for c in (*numerator, *denominator)))
-    n, d = (fmpz_poly([int(c * scale) for c in reversed(p)]) for p in (numerator, denominator))
-    if d.degree() < 0:
-        raise InputError("the denominator of the transfer function is zero")
-    if time == "discrete" and n.degree() > d.degree():
-        raise InputError("G(z) has more zeros than poles: it would need samples that are still to come")
-    order = max(n.degree(), d.degree())
-    if order > LARGEST_DEGREE:
-        raise InputError(f"the system has order {order}; at most {LARGEST_DEGREE} is decided")
-    common = n.gcd(d)
-    n, d = n // common, d // common
-    decay = n.degree() < 0 or decays([int(c) for c in common.coeffs()], time)
-    top = tuple(int(c) for c in n.coeffs()) or (0,)
-    return Port(top, tuple(int(c) for c in d.coeffs()), time, period, decay)
-
-
-def decays(ascending: Sequence[int], time: Time) -> bool:
-    """True when every root lies in the open left half plane (inside the circle)."""
-    q = in_zeta(ascending, len(ascending) - 1, time)
-    return q[0] != 0 and _outside_circle(q)
-
-
-def _outside_circle(in_zeta: Sequence[int]) -> bool:
-    """Every root ζ has |ζ| > 1: from rigorous balls about them, or where these touch the circle exactly."""
-    p = fmpz_poly(list(in_zeta))
-    sizes = [abs(root) for root, _ in p.complex_roots()] if p.degree() > 0 else []
-    if any(size < 1 for size in sizes):
-        return False
-    return all(size > 1 for size in sizes) or is_schur(in_zeta[::-1])
-
-
-def in_zeta(ascending: Sequence[int], order: int, time: Time) -> tuple[int, ...]:
-    """p(z) ζⁿ, or p(s) (1 + ζ)ⁿ, as a polynomial in ζ with n = order."""
-    if time == "discrete":
-        padded = [*ascending, *[0] * (order + 1 - len(ascending))]
-        return tuple(padded[::-1])
-    total, minus, plus = fmpz_poly([]), fmpz_poly([1, -1]), fmpz_poly([1, 1])
-    for power, coefficient in enumerate(ascending):
-        if coefficient:
-            total += coefficient * minus**power * plus ** (order - power)
-    return tuple(int(total[i]) for i in range(order + 1))
+def _at(side: Polynomials, point: complex) -> Any:
+    return np.array([[np.polyval([float(c) for c in p[::-1]], point) for p in row] for row in side])

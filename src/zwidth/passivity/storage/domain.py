@@ -95,14 +95,14 @@ def losses_of(device: Device, friction: FrictionCurve | None = None) -> Losses:
     resolution, period, delay = (device.exact(k) for k in ("resolution", "sample_period", "delay"))
     if resolution == 0:
         raise InputError(
-            "the worst hand is sought count by count, and the resolution is 0: an ideal encoder has no "
+            "available storage is computed count by count, and the resolution is 0: an ideal encoder has no "
             "counts; zwidth check decides linear laws there exactly"
         )
     samples = ceil(delay / period)
     part = delay / period - samples + 1
     if friction is not None and part < 1:
         raise InputError(
-            f"a friction curve is played with delays of whole samples; this one is {float(delay):g} s with a "
+            f"a friction curve is taken with delays of whole samples; this one is {float(delay):g} s with a "
             f"sample period of {float(period):g} s: take a model below the curve, such as curve.best(…)"
         )
     losses = device.exact("damping"), device.exact("coulomb_friction"), resolution, period
@@ -117,9 +117,9 @@ def domain_for(
     Parameters
     ----------
     law, losses
-        What is played.
+        The loop.
     penetration
-        Deepest position of the hand [m; rad], > 0; None: as many counts as are quickly played.
+        Deepest position of the hand [m; rad], > 0; None: as many counts as are quickly gone through.
         For a law on both sides of x = 0 it holds on both.
     speed
         Largest mean speed of the hand over a sample, or over each part of it between two
@@ -131,10 +131,10 @@ def domain_for(
         If a number is not positive, or a law that relaxes meets a delay that is not whole samples.
     """
     if law.relaxing is not None and losses.curve is not None:
-        raise InputError("a friction curve is not played against a law that relaxes: take a model below it")
+        raise InputError("a friction curve is not taken with a law that relaxes: take a model below it")
     if law.relaxing is not None and losses.part < 1:
         raise InputError(
-            "the worst hand of a law that relaxes is sought for delays of whole samples; this one is "
+            "available storage of a law that relaxes is computed for delays of whole samples; this one is "
             f"{float(losses.lag):g} s with a sample period of {float(losses.period):g} s; zwidth check "
             "covers it in sustained contact"
         )
@@ -155,11 +155,11 @@ def domain_for(
 
 
 def too_large(law: FiniteLaw, losses: Losses, domain: Domain) -> str | None:
-    """Why a grid has more states than are played, in words; None if it has not."""
+    """Why a grid has more states than are gone through, in words; None if it has not."""
     if law.power is not None and domain.highest > MOST_DEPTHS:
         return (
-            f"a contact is played up to {MOST_DEPTHS} counts deep, and penetration is {domain.highest + 1} "
-            "counts: give a smaller one"
+            f"a contact is looked at up to {MOST_DEPTHS} counts deep, and penetration is "
+            f"{domain.highest + 1} counts: give a smaller one"
         )
     memory = law.memory + losses.delay
     if states_of(law, losses, domain) * 9 <= MOST_STATES:

@@ -23,10 +23,7 @@ from typing import Any, Literal
 
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
-from zwidth.environment.hunt_crossley import HuntCrossley, resting_force
-from zwidth.environment.nonlinear_spring import NonlinearSpring
-from zwidth.environment.viscoelastic import GeneralizedMaxwell, Maxwell, StandardLinearSolid
-from zwidth.environment.wall import Wall
+from zwidth.environment.hunt_crossley import resting_force
 from zwidth.errors import InputError
 from zwidth.passivity.document import unit_key
 from zwidth.quantity.text import exact_text
@@ -200,14 +197,13 @@ def _counted(device: Device, key: str, what: str) -> Fraction:
 
 def _unlimited(device: Device, environment: Environment) -> FiniteLaw:
     """The law by itself, with an actuator that gives every force."""
-    if isinstance(environment, NonlinearSpring):
-        ends = zip(environment.positions, environment.forces, strict=True)
-        points = tuple((x.fraction, f.fraction) for x, f in ends)
-        return FiniteLaw((), "none", False, points)
-    if isinstance(environment, HuntCrossley):
-        power = environment.stiffness.fraction, environment.exponent.fraction
-        rate = environment.dissipation.fraction / device.exact("sample_period")
-        return FiniteLaw((), "position", environment.clamped, power=power, rate=rate)
+    if environment.points:
+        points = tuple((x.fraction, f.fraction) for x, f in environment.points)
+        return FiniteLaw((), environment.surface, environment.clamped, points)
+    if environment.power_law is not None:
+        k, n, dissipation = (number.fraction for number in environment.power_law)
+        rate = dissipation / device.exact("sample_period")
+        return FiniteLaw((), environment.surface, environment.clamped, power=(k, n), rate=rate)
     h = environment.pulse_transfer_function(device.exact("sample_period"))
     numerator, denominator = _trimmed(h.numerator, h.denominator)
     if any(denominator[1:]):
@@ -217,10 +213,10 @@ def _unlimited(device: Device, environment: Environment) -> FiniteLaw:
         taps = taps[:-1]
     if len(taps) - 1 > LONGEST_MEMORY:
         raise InputError(
-            f"the law remembers {len(taps) - 1} readings, more than the {LONGEST_MEMORY} for which the worst "
-            "hand is sought: the number of states grows with the power of it"
+            f"the law remembers {len(taps) - 1} readings, more than the {LONGEST_MEMORY} for which "
+            "available storage is computed: the number of states grows with the power of it"
         )
-    return FiniteLaw(taps, _surface(environment), environment.clamped)
+    return FiniteLaw(taps, environment.surface, environment.clamped)
 
 
 def _relaxing(environment: Environment, numerator: list[Fraction], denominator: list[Fraction]) -> FiniteLaw:
@@ -230,23 +226,14 @@ def _relaxing(environment: Environment, numerator: list[Fraction], denominator: 
         n, d = n[:-1], d[:-1]
     if len(d) != 2 or not 0 < -d[1] < 1:
         raise InputError(
-            "the worst hand is sought against laws that remember a few readings, or have one part that "
+            "available storage is computed for laws that remember a few readings, or have one part that "
             f"relaxes and does not swing; this one has more: {environment.describe()}; zwidth check covers "
             "it in sustained contact"
         )
     pole = -d[1]
     stiffness = (n[0] + n[1]) / (1 - pole)
-    surface = _surface(environment)
-    return FiniteLaw((stiffness,), surface, environment.clamped, (), None, (pole, n[0] - stiffness))
-
-
-def _surface(environment: Environment) -> Surface:
-    if not environment.unilateral:
-        return "none"
-    solids = (StandardLinearSolid, Maxwell, GeneralizedMaxwell)
-    return (
-        "penetration" if isinstance(environment, solids) and not isinstance(environment, Wall) else "position"
-    )
+    relaxing = pole, n[0] - stiffness
+    return FiniteLaw((stiffness,), environment.surface, environment.clamped, (), None, relaxing)
 
 
 def _trimmed(

@@ -22,7 +22,7 @@ from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, progra
 from zwidth.passivity.storage.row.program import RowProgram
 from zwidth.passivity.storage.slow_hands import slow_hands
 from zwidth.passivity.storage.solve.value_iteration import Progress
-from zwidth.passivity.wording import claim_of_passivity, lines
+from zwidth.passivity.wording import claim_of_passivity
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
@@ -68,6 +68,10 @@ class AvailableStorage(PassivityAnswer):
             return f"A motion of the hand takes energy out of this loop: {self.witness.describe()}."
         return "Neither a proof nor a motion was found: finer steps, or more time, may decide."
 
+    def figure(self) -> Any:
+        """The storage function; of an active loop the motion."""
+        return super().figure() if self.witness is None else self.witness.figure()
+
     def available_storage(self) -> xr.DataArray:
         """V(x) for each reading before [J]: the most that a hand can take out from there.
 
@@ -87,11 +91,6 @@ class AvailableStorage(PassivityAnswer):
                 "of an active loop has no bound"
             )
         return self.storage.to_xarray()
-
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What the outcome covers and takes for granted, line by line."""
-        return lines(self.scope, self.outcome)
 
 
 def available_storage(

@@ -17,7 +17,6 @@ from itertools import chain, pairwise
 from math import ceil
 from typing import Any
 
-from zwidth.environment import Wall
 from zwidth.environment.environment import Environment
 from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.linear.rhythm import Surface, rhythms
@@ -91,17 +90,16 @@ def refute_touching(setting: Setting, environment: Environment) -> Witness | Non
     loop = setting.loop
     if not (setting.unilateral and is_schur(loop.denominator[::-1]) and loop.damping > 0):
         return None
-    fed_with = "position" if isinstance(environment, Wall) else "penetration"
     touched = TouchedSetting(
         loop,
         setting.coulomb_friction,
         setting.resolution,
         True,
         setting.motion,
-        fed_with,
+        environment.fed_with,
         environment.clamped,
     )
-    surface = Surface(loop, fed_with == "penetration", environment.clamped)
+    surface = Surface(loop, environment.surface == "penetration", environment.clamped)
     motions = chain(rhythms(surface), _deep(surface))
     found = (_sized(touched, surface, positions) for positions in motions)
     return next((witness for witness in found if witness is not None), None)

@@ -221,7 +221,7 @@ def _wall_document(wall: Wall | MatrixWall, size: int) -> dict[str, Any]:
         stiffness = k if _is_semidefinite(k) else _raised(k, wall.turns)
         bound = _raised(_absolute(b, wall.turns), wall.turns)
         matrices = [_matrix(m) for m in (stiffness, b, bound)]
-    keys = _POSE_KEYS if isinstance(wall, MatrixWall) and wall.turns else _KEYS
+    keys = _POSE_KEYS if wall.turns else _KEYS
     return dict(zip(keys, matrices, strict=True))
 
 

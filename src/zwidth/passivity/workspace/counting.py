@@ -79,7 +79,7 @@ def with_motion(
 ) -> EncoderSteps | None:
     """The steps with the smallest force at which a motion across their edges is known to take energy out."""
     chain, steps = with_encoders(arm), found.steps
-    if chain is None or steps is None or (isinstance(wall, Wall) and wall.clamped):
+    if chain is None or steps is None or wall.clamped:
         return steps  # a wall that never pulls has a normal, and the motion's forces may not be along it
     motion = first_motion(chain, wall, period, samples, sites.joints, torque_held)
     return steps if motion is None else replace(steps, refuted=motion.largest_force, motion=motion)

@@ -16,7 +16,6 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope, Torque
-from zwidth.passivity.wording import lines
 from zwidth.passivity.workspace.report import finite, motion_document, steps_document, wall_document
 
 if TYPE_CHECKING:
@@ -80,6 +79,7 @@ class Workspace(PassivityAnswer):
 
     FORMAT = "zwidth workspace 1"
     PICTURE = "workspace_figure"
+    witness = None  # its motion is reckoned in doubles, and no evidence
 
     outcome: Outcome
     claim: str
@@ -131,11 +131,6 @@ class Workspace(PassivityAnswer):
         if self.largest_stiffness is not None:
             stiffest = f"{self.largest_stiffness:.6g} N/m"
         return f"<Workspace {self.outcome}: {self.claim} Stiffest wall at every point: {stiffest}>"
-
-    @property
-    def assumptions(self) -> tuple[str, ...]:
-        """What the claim covers and takes for granted, line by line."""
-        return lines(self.scope, self.outcome)
 
     @property
     def margin(self) -> float:

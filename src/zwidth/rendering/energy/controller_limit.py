@@ -12,11 +12,11 @@ from typing import Literal
 
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
-from zwidth.environment.wall import Wall
+from zwidth.environment.wall import wall_of
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.quantity.exact import Exact, ends
+from zwidth.quantity.parameter import Parametric
 from zwidth.rendering.reading import below
-from zwidth.rendering.stage import positive
 
 Limit = Exact | Literal["unlimited"] | None
 
@@ -26,18 +26,9 @@ NO_LIMIT = 1e300
 """Of a controller without one, as the steps read it: more than any force or damping."""
 
 
-def limit(name: str, value: RealLike | None) -> Limit:
-    """A number > 0, None or "unlimited".
-
-    Raises
-    ------
-    InputError
-        If it is none of these.
-    """
-    if value is None or value == UNLIMITED:
-        return value  # type: ignore[return-value]  # the word itself, by the line above
-    why = 'it limits what the controller adds; leave it out for what the loop can bear, or say "unlimited"'
-    return positive(name, value, why)
+WHY_A_LIMIT = (
+    'it limits what the controller adds; leave it out for what the loop can bear, or say "unlimited"'
+)
 
 
 def largest_damping(given: Limit, device: Device, spring: Exact | None) -> Fraction | None:
@@ -73,9 +64,10 @@ def largest_damping(given: Limit, device: Device, spring: Exact | None) -> Fract
 
 def spring_of(environment: Environment) -> Exact | None:
     """K of a wall that is a spring and nothing else; None of all others."""
-    if not isinstance(environment, Wall) or environment.damping:
+    wall = wall_of(environment)
+    if wall is None or wall.damping:
         return None
-    return environment.stiffness if isinstance(environment.stiffness, Exact) else None
+    return wall.stiffness if isinstance(wall.stiffness, Exact) else None
 
 
 def as_read(alpha: Fraction | None) -> float:
@@ -83,8 +75,8 @@ def as_read(alpha: Fraction | None) -> float:
     return NO_LIMIT if alpha is None else below(alpha)
 
 
-def said(given: Limit, unit: str, otherwise: str) -> str:
-    """The limit in a few words."""
-    if given == UNLIMITED:
+def said(controller: Parametric, name: str, otherwise: str, motion: str = "linear") -> str:
+    """One of its limits in a few words; `otherwise` where it was not given."""
+    if getattr(controller, name) == UNLIMITED:
         return "no limit: a hand can take out any energy"
-    return f"at most {otherwise if given is None else f'{float(given):g} {unit}'}"
+    return f"at most {controller.with_unit(name, motion) or otherwise}"

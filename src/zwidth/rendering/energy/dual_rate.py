@@ -19,10 +19,11 @@ from math import sqrt
 from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import CertainOrNone, Count, parameter, word
 from zwidth.rendering.energy.controller_limit import NO_LIMIT
-from zwidth.rendering.reading import count, damping_per_sample, one_of
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.reading import damping_per_sample, updated_every
+from zwidth.rendering.stage import Stage, Surroundings
 from zwidth.rendering.theorem import Theorem, half_a_step
 
 DUAL_RATE = 24.0
@@ -31,7 +32,7 @@ _SAMPLES, _SLOPE, _PUSHES, _JUMPS, _LIMIT = range(5)
 _LEFT, _REFERENCE, _FORCE, _OFF, _SPARE = range(5)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class DualRate(Stage):
     """``f = F + κ (x − X)`` between updates every N samples, F paid for by potential, κ ≤ 2b/T.
 
@@ -61,21 +62,16 @@ class DualRate(Stage):
     code: ClassVar[float] = DUAL_RATE
     slots: ClassVar[int] = 5
 
-    samples: int
-    slope: Exact | None
-    updates: Literal["continuous", "jump"]
-
-    def __init__(
-        self,
-        *,
-        samples: int,
-        slope: RealLike | None = None,
-        updates: Literal["continuous", "jump"] = "continuous",
-    ) -> None:
-        local = None if slope is None else positive("slope", slope, "it is that of a local spring")
-        object.__setattr__(self, "samples", count("samples", samples, "the environment is updated every N"))
-        object.__setattr__(self, "slope", local)
-        object.__setattr__(self, "updates", one_of("updates", updates, "continuous", "jump"))
+    samples: Count = updated_every()
+    slope: CertainOrNone = parameter(
+        "stiffness",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is that of a local spring",
+        meaning="κ, by default what b pays for",
+    )
+    updates: Literal["continuous", "jump"] = word("continuous", "jump")
 
     def numbers(self, at: Surroundings) -> list[float]:
         """As the step reads them.
@@ -114,9 +110,8 @@ class DualRate(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit = "N·m/rad" if motion == "rotary" else "N/m"
         parts = [f"updated every {self.samples} samples"]
-        parts += [] if self.slope is None else [f"slope {float(self.slope):g} {unit}"]
+        parts += [] if self.slope is None else [f"slope {self.with_unit('slope', motion)}"]
         return f"local spring ({', '.join([*parts, f'{self.updates} updates'])})"
 
 

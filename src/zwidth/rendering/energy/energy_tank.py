@@ -21,9 +21,11 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import CertainOrNone, parameter
 from zwidth.rendering.reading import damping_per_sample
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.stage import Stage, Surroundings
 
 ENERGY_TANK = 21.0
 
@@ -31,7 +33,7 @@ _LEVEL, _REFILL, _MOST = range(3)
 _BEFORE, _ENERGY = range(2)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class EnergyTank(Stage):
     """``|f| ≤ H/(|v| T)`` and 0 where the tank H is empty; a damper ``d = α max(0, H_d − H)`` refills it.
 
@@ -60,23 +62,29 @@ class EnergyTank(Stage):
     code: ClassVar[float] = ENERGY_TANK
     slots: ClassVar[int] = 2
 
-    level: Exact | None
-    refill: Exact | None
-    largest_damping: Exact | None
-
-    def __init__(
-        self,
-        *,
-        level: RealLike | None = None,
-        refill: RealLike | None = None,
-        largest_damping: RealLike | None = None,
-    ) -> None:
-        for name, value, what in (
-            ("level", level, "it is the energy that the tank is filled to"),
-            ("refill", refill, "without it the tank never fills"),
-            ("largest_damping", largest_damping, "without a damper the tank never fills"),
-        ):
-            object.__setattr__(self, name, None if value is None else positive(name, value, what))
+    level: CertainOrNone = parameter(
+        "energy",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is the energy that the tank is filled to",
+        meaning="H_d, to which the tank is filled",
+    )
+    refill: CertainOrNone = parameter(
+        Quantity("refill", "α", "s/m^2", "N*m*s/rad/J", "α, damping per lacking energy"),
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="without it the tank never fills",
+    )
+    largest_damping: CertainOrNone = parameter(
+        "virtual_damping",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="without a damper the tank never fills",
+        meaning="d, by default the device's",
+    )
 
     def numbers(self, at: Surroundings) -> list[float]:
         """As the step reads them.
@@ -98,7 +106,7 @@ class EnergyTank(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit = "N·m·s/rad" if motion == "rotary" else "N·s/m"
+        unit = self._unit("largest_damping", motion)
         said = (
             ("to", self.level, "J"),
             ("refill", self.refill, f"{unit} per J"),

@@ -30,7 +30,8 @@ from math import sqrt
 from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
-from zwidth.rendering.reading import above, below, damping_per_sample, half_step, one_of, truth
+from zwidth.quantity.parameter import flag, word
+from zwidth.rendering.reading import above, below, damping_per_sample, half_step
 from zwidth.rendering.stage import Stage, Surroundings
 
 FORCE_BOUNDING = 20.0
@@ -44,7 +45,7 @@ _PAID, _FRICTION, _COUNT, _HALF_STEP, _RESETS = range(5)
 _BEFORE, _ENERGY, _SLOPE = range(3)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class ForceBounding(Stage):
     """``|f| ≤ 2 √(b E/T)``, E what the hand has put in, device damping counted.
 
@@ -74,13 +75,10 @@ class ForceBounding(Stage):
 
     code: ClassVar[float] = FORCE_BOUNDING
     slots: ClassVar[int] = 3
+    bounds_the_force: ClassVar[bool] = True
 
-    encoder: Literal["counted", "ideal"]
-    resets: bool
-
-    def __init__(self, *, encoder: Literal["counted", "ideal"] = "counted", resets: bool = False) -> None:
-        object.__setattr__(self, "encoder", one_of("encoder", encoder, "counted", "ideal"))
-        object.__setattr__(self, "resets", truth("resets", resets, "to forget the energy without force"))
+    encoder: Literal["counted", "ideal"] = word("counted", "ideal")
+    resets: bool = flag("to forget the energy where there was no force", False)
 
     def numbers(self, at: Surroundings) -> list[float]:
         """As the step reads them.

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
-from zwidth.rendering.reading import count
+from zwidth.quantity.parameter import Count
+from zwidth.rendering.reading import updated_every
 from zwidth.rendering.stage import Stage, Surroundings
 
 HELD = 25.0
@@ -22,7 +23,7 @@ _SAMPLES = 0
 _LEFT, _FORCE = range(2)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Held(Stage):
     """The force of every N-th sample, held for N: an environment that is updated slowly.
 
@@ -44,10 +45,7 @@ class Held(Stage):
     code: ClassVar[float] = HELD
     slots: ClassVar[int] = 2
 
-    samples: int
-
-    def __init__(self, *, samples: int) -> None:
-        object.__setattr__(self, "samples", count("samples", samples, "the environment is updated every N"))
+    samples: Count = updated_every()
 
     def numbers(self, at: Surroundings) -> list[float]:
         """As the step reads them."""

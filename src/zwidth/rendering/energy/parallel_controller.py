@@ -27,9 +27,9 @@ from typing import Literal
 
 from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.energy.controller_limit import NO_LIMIT, UNLIMITED, Limit, limit, said
-from zwidth.rendering.reading import one_of, truth
-from zwidth.rendering.stage import positive
+from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import Certain, CertainOrNone, Parametric, Reads, flag, parameter, word
+from zwidth.rendering.energy.controller_limit import NO_LIMIT, UNLIMITED, WHY_A_LIMIT, Limit, said
 
 _PERIOD, _MOBILITY, _VELOCITY, _FLOOR, _PUBLISHED, _RESETS, _CEILING = range(7)
 ENERGY, HELD, BEFORE = range(3)
@@ -38,8 +38,8 @@ SLOTS = 3
 """Numbers that it remembers."""
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
-class ParallelController:
+@dataclass(frozen=True, kw_only=True)
+class ParallelController(Parametric):
     """Passivity observer and controller in parallel, ``v ← v − (E + T φ v)/(T φ)`` where that dissipates.
 
     Parameters
@@ -67,35 +67,25 @@ class ParallelController:
         If a number is not positive, or a word is not one of these.
     """
 
-    observer: Literal["sampled", "published"]
-    largest_mobility: Limit
-    largest_velocity: Exact | None
-    weakest: Exact
-    resets: bool
-    ceiling: Exact | None
-
-    def __init__(
-        self,
-        *,
-        observer: Literal["sampled", "published"] = "sampled",
-        largest_mobility: RealLike | None = None,
-        largest_velocity: RealLike | None = None,
-        weakest: RealLike = 0,
-        resets: bool = False,
-        ceiling: RealLike | None = None,
-    ) -> None:
-        own = {
-            "observer": one_of("observer", observer, "sampled", "published"),
-            "largest_mobility": limit("largest_mobility", largest_mobility),
-            "largest_velocity": _given(
-                "largest_velocity", largest_velocity, "it limits what the controller adds; None: none"
-            ),
-            "weakest": positive("weakest", weakest, "it is a force up to which nothing is added", zero=True),
-            "resets": truth("resets", resets, "to count anew in each touch"),
-            "ceiling": _given("ceiling", ceiling, "it is the energy that is kept at most", zero=True),
-        }
-        for name, value in own.items():
-            object.__setattr__(self, name, value)
+    observer: Literal["sampled", "published"] = word("sampled", "published")
+    largest_mobility: Reads[Limit, RealLike | None] = parameter(
+        Quantity("mobility", "β", "m/N/s", "rad/N/m/s", "β_max, what it adds at most"),
+        None,
+        kept=Exact,
+        bound="> 0",
+        why=WHY_A_LIMIT,
+        words=(UNLIMITED,),
+    )
+    largest_velocity: CertainOrNone = parameter(
+        "speed", None, kept=Exact, bound="> 0", why="it limits what the controller adds; None: none"
+    )
+    weakest: Certain = parameter(
+        "force", 0, kept=Exact, bound="≥ 0", why="it is a force up to which nothing is added"
+    )
+    resets: bool = flag("to count anew in each touch", False)
+    ceiling: CertainOrNone = parameter(
+        "energy", None, kept=Exact, bound="≥ 0", why="it is the energy that is kept at most"
+    )
 
     def numbers(self, period: float, mass: float) -> list[float]:
         """As the step reads them; the period in s, the mass of the body in kg."""
@@ -116,10 +106,9 @@ class ParallelController:
 
     def describe(self) -> str:
         """The law with its numbers, in a few words."""
-        parts = [f"{self.observer} observer"]
-        parts.append(said(self.largest_mobility, "m/(N·s)", "T/(2M) of the body"))
+        parts = [f"{self.observer} observer", said(self, "largest_mobility", "T/(2M) of the body")]
         if self.largest_velocity is not None:
-            parts.append(f"at most {float(self.largest_velocity):g} m/s")
+            parts.append(f"at most {self.with_unit('largest_velocity')}")
         parts += ["resets"] if self.resets else []
         return f"parallel passivity controller ({', '.join(parts)})"
 
@@ -127,10 +116,6 @@ class ParallelController:
 def observer_only(period: float) -> list[float]:
     """The numbers of a controller that counts as "sampled" does, and adds nothing."""
     return [period, 0.0, 0.0, NO_LIMIT, 0.0, 0.0, NO_LIMIT]
-
-
-def _given(name: str, value: RealLike | None, why: str, zero: bool = False) -> Exact | None:
-    return None if value is None else positive(name, value, why, zero)
 
 
 def _or_none(value: Exact | None) -> float:

@@ -23,9 +23,10 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.reading import damping_per_sample, truth
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import CertainOrNone, flag, parameter
+from zwidth.rendering.reading import damping_per_sample
+from zwidth.rendering.stage import Stage, Surroundings
 from zwidth.rendering.theorem import Theorem, half_a_step
 
 PASSIVE_LEAP = 23.0
@@ -34,7 +35,7 @@ _STIFFNESS, _PAID, _FRICTION, _RESETS = range(4)
 _BEFORE, _ENERGY = range(2)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class PassiveLeap(Stage):
     """``|f| ≤ √(2 K E)``: the force of a spring that stores what the hand has put in, to the joule.
 
@@ -61,15 +62,15 @@ class PassiveLeap(Stage):
     code: ClassVar[float] = PASSIVE_LEAP
     slots: ClassVar[int] = 2
 
-    stiffness: Exact | None
-    resets: bool
-
-    def __init__(self, *, stiffness: RealLike | None = None, resets: bool = False) -> None:
-        spring = (
-            None if stiffness is None else positive("stiffness", stiffness, "the spring keeps the energy")
-        )
-        object.__setattr__(self, "stiffness", spring)
-        object.__setattr__(self, "resets", truth("resets", resets, "to forget credit without force"))
+    stiffness: CertainOrNone = parameter(
+        "stiffness",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="the spring keeps the energy",
+        meaning="K of that spring, by default the environment's",
+    )
+    resets: bool = flag("to forget credit where there was no force", False)
 
     def numbers(self, at: Surroundings) -> list[float]:
         """As the step reads them.
@@ -103,8 +104,7 @@ class PassiveLeap(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit = "N·m/rad" if motion == "rotary" else "N/m"
-        parts = [] if self.stiffness is None else [f"a spring of {float(self.stiffness):g} {unit}"]
+        parts = [] if self.stiffness is None else [f"a spring of {self.with_unit('stiffness', motion)}"]
         parts += ["resets"] if self.resets else []
         return f"passive leap ({', '.join(parts)})" if parts else "passive leap"
 

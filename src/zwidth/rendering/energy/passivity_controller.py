@@ -30,17 +30,18 @@ from zwidth.compiled import Array, compiled
 from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import Certain, CertainOrNone, Reads, flag, parameter, word
 from zwidth.rendering.energy.controller_limit import (
     NO_LIMIT,
+    UNLIMITED,
+    WHY_A_LIMIT,
     Limit,
     as_read,
     largest_damping,
-    limit,
     said,
     spring_of,
 )
-from zwidth.rendering.reading import one_of, truth
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.stage import Stage, Surroundings
 
 PASSIVITY_CONTROLLER = 1.0
 
@@ -56,7 +57,7 @@ _SAMPLED, _PAST, _PUBLISHED = 0.0, 1.0, 2.0
 Observer = Literal["sampled", "past", "published"]
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class PassivityController(Stage):
     """Passivity observer and controller in series, ``f ← f + (E_ref − E − f Δx)/Δx`` where that dissipates.
 
@@ -102,46 +103,51 @@ class PassivityController(Stage):
     code: ClassVar[float] = PASSIVITY_CONTROLLER
     slots: ClassVar[int] = 4
 
-    observer: Observer
-    largest_damping: Limit
-    largest_force: Exact | None
-    slowest: Exact
-    credit: bool
-    reference: Literal["zero", "spring"]
-    resets: bool
-    ceiling: Exact | None
-    forgetting: Exact | None
-
-    def __init__(
-        self,
-        *,
-        observer: Observer = "sampled",
-        largest_damping: RealLike | None = None,
-        largest_force: RealLike | None = None,
-        slowest: RealLike = 0,
-        credit: bool = False,
-        reference: Literal["zero", "spring"] = "zero",
-        resets: bool = False,
-        ceiling: RealLike | None = None,
-        forgetting: RealLike | None = None,
-    ) -> None:
-        own = {
-            "observer": one_of("observer", observer, *OBSERVERS),
-            "largest_damping": limit("largest_damping", largest_damping),
-            "largest_force": _limit("largest_force", largest_force),
-            "slowest": positive("slowest", slowest, "it is a speed below which nothing is added", zero=True),
-            "credit": truth("credit", credit, "to count in what the device dissipates"),
-            "reference": one_of("reference", reference, "zero", "spring"),
-            "resets": truth("resets", resets, "to count anew in each contact"),
-            "ceiling": None
-            if ceiling is None
-            else positive("ceiling", ceiling, "it is the energy that is kept at most", zero=True),
-            "forgetting": None
-            if forgetting is None
-            else positive("forgetting", forgetting, "it is the time in which credit is forgotten"),
-        }
-        for name, value in own.items():
-            object.__setattr__(self, name, value)
+    observer: Observer = word(*OBSERVERS)
+    largest_damping: Reads[Limit, RealLike | None] = parameter(
+        "virtual_damping",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why=WHY_A_LIMIT,
+        meaning='α, what it adds at most, by default b of the device; or "unlimited"',
+        words=(UNLIMITED,),
+    )
+    largest_force: CertainOrNone = parameter(
+        "force",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it limits what the controller adds; None: none",
+        meaning="what it adds at most",
+    )
+    slowest: Certain = parameter(
+        "speed",
+        0,
+        kept=Exact,
+        bound="≥ 0",
+        why="it is a speed below which nothing is added",
+        meaning="speed below which it adds nothing",
+    )
+    credit: bool = flag("to count in what the device dissipates", False)
+    reference: Literal["zero", "spring"] = word("zero", "spring")
+    resets: bool = flag("to count anew in each contact", False)
+    ceiling: CertainOrNone = parameter(
+        "energy",
+        None,
+        kept=Exact,
+        bound="≥ 0",
+        why="it is the energy that is kept at most",
+        meaning="energy above which no credit is kept",
+    )
+    forgetting: CertainOrNone = parameter(
+        "time_constant",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is the time in which credit is forgotten",
+        meaning="time constant in which credit is forgotten",
+    )
 
     def numbers(self, at: Surroundings) -> list[float]:
         """As the step reads them.
@@ -181,21 +187,15 @@ class PassivityController(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit, force = ("N·m·s/rad", "N·m") if motion == "rotary" else ("N·s/m", "N")
-        parts = [f"{self.observer} observer"]
-        parts.append(said(self.largest_damping, unit, "b of the device"))
+        parts = [f"{self.observer} observer", said(self, "largest_damping", "b of the device", motion)]
         if self.largest_force is not None:
-            parts.append(f"at most {float(self.largest_force):g} {force}")
+            parts.append(f"at most {self.with_unit('largest_force', motion)}")
         parts += [word for word, said in (("device credited", self.credit), ("resets", self.resets)) if said]
         if self.forgetting is not None:
             parts.append(f"forgets credit in {float(self.forgetting):g} s")
         if self.reference == "spring":
             parts.append("the spring's energy as reference")
         return f"passivity controller ({', '.join(parts)})"
-
-
-def _limit(name: str, value: RealLike | None) -> Exact | None:
-    return None if value is None else positive(name, value, "it limits what the controller adds; None: none")
 
 
 @compiled

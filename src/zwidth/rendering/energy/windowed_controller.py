@@ -28,14 +28,13 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.device.device import Device
-from zwidth.environment.viscoelastic import GeneralizedMaxwell, StandardLinearSolid
-from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import PLAIN, Certain, CertainOrNone, Count, parameter, part, plain
 from zwidth.rendering.energy.controller_limit import largest_damping as or_the_devices
 from zwidth.rendering.energy.controller_limit import spring_of
 from zwidth.rendering.reading import below, count
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.stage import Stage, Surroundings
 
 WINDOWED_CONTROLLER = 2.0
 
@@ -45,14 +44,19 @@ LONGEST = 1000
 SLOWEST = {"linear": 0.01, "rotary": sqrt(0.001)}
 """v₀ where none is given [m/s; rad/s]."""
 
-_WITH_A_SPRING = (Wall, StandardLinearSolid, GeneralizedMaxwell)
-"""Whose stiffness is that of a spring from the surface, all of the force at rest."""
-
 _PERIOD, _MOST, _FLOOR, _HALF_STIFFNESS, _WINDOW = range(5)
 _BEFORE, _LOST, _HEAD, _RING = range(4)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+def _samples(window: RealLike, name: str) -> int:
+    why = "it is how long what was lost may pay for what comes out"
+    samples = count(name, window, why)
+    if samples > LONGEST:
+        raise InputError(f"{name} is {LONGEST} samples at most, got {samples}: {why}; take a shorter one")
+    return samples
+
+
+@dataclass(frozen=True, kw_only=True)
 class WindowedController(Stage):
     """``f ← f + α Δx/T``, ``α = min(lack T/max(Δx², (v₀ T)²), s α_max)``; what was lost is forgotten.
 
@@ -85,26 +89,44 @@ class WindowedController(Stage):
 
     code: ClassVar[float] = WINDOWED_CONTROLLER
 
-    window: int
-    slowest: Exact | None
-    share: Exact
-    largest_damping: Exact | None
+    window: Count = part(
+        "quantity",
+        _samples,
+        30,
+        meaning="N, samples after which what was lost is forgotten, by default 30",
+        quantity=PLAIN,
+    )
+    slowest: CertainOrNone = parameter(
+        "speed",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is a floor under a speed",
+        meaning="v₀, floor under the speed, by default 0.01 m/s; 0.0316 rad/s",
+    )
+    share: Certain = parameter(
+        plain("share", "s, part of the largest damping that is used, by default 0.9"),
+        "0.9",
+        kept=Exact,
+        bound="> 0",
+        why="it is the part of the largest damping that is used",
+    )
+    largest_damping: CertainOrNone = parameter(
+        "virtual_damping",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it limits what the controller adds; leave it out for b of the device",
+        meaning="α_max, by default b of the device",
+    )
 
-    def __init__(
-        self,
-        *,
-        window: RealLike = 30,
-        slowest: RealLike | None = None,
-        share: RealLike = "0.9",
-        largest_damping: RealLike | None = None,
-    ) -> None:
-        floor = None if slowest is None else positive("slowest", slowest, "it is a floor under a speed")
-        why = "it limits what the controller adds; leave it out for b of the device"
-        most = None if largest_damping is None else positive("largest_damping", largest_damping, why)
-        object.__setattr__(self, "window", _samples(window))
-        object.__setattr__(self, "slowest", floor)
-        object.__setattr__(self, "share", _share(share))
-        object.__setattr__(self, "largest_damping", most)
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.share > 1:
+            raise InputError(
+                f"share must be ≤ 1, got {self.share:g}: beyond it the damping would exceed its own "
+                "limit; give a larger largest_damping"
+            )
 
     @property
     def slots(self) -> int:  # type: ignore[override]  # as many as the window is long
@@ -124,7 +146,7 @@ class WindowedController(Stage):
             at.period,
             below(self.most_damping(at.device, spring_of(at.environment))),
             slowest * at.period,
-            at.stiffness / 2 if isinstance(at.environment, _WITH_A_SPRING) else 0.0,
+            at.stiffness / 2 if at.environment.rests_on_spring else 0.0,
             float(self.window),
         ]
 
@@ -136,31 +158,12 @@ class WindowedController(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit, speed = ("N·m·s/rad", "rad/s") if motion == "rotary" else ("N·s/m", "m/s")
         slowest = SLOWEST[motion] if self.slowest is None else float(self.slowest)
-        of = "b of the device" if self.largest_damping is None else f"{float(self.largest_damping):g} {unit}"
+        of = self.with_unit("largest_damping", motion) or "b of the device"
         return (
-            f"windowed passivity controller ({self.window} samples, floor {slowest:.3g} {speed}, at most "
-            f"{float(self.share):g} of {of})"
+            f"windowed passivity controller ({self.window} samples, floor {slowest:.3g} "
+            f"{self._unit('slowest', motion)}, at most {float(self.share):g} of {of})"
         )
-
-
-def _samples(window: RealLike) -> int:
-    why = "it is how long what was lost may pay for what comes out"
-    samples = count("window", window, why)
-    if samples > LONGEST:
-        raise InputError(f"window is {LONGEST} samples at most, got {samples}: {why}; take a shorter one")
-    return samples
-
-
-def _share(share: RealLike) -> Exact:
-    number = positive("share", share, "it is the part of the largest damping that is used")
-    if number > 1:
-        raise InputError(
-            f"share must be ≤ 1, got {float(number):g}: beyond it the damping would exceed its own "
-            "limit; give a larger largest_damping"
-        )
-    return number
 
 
 @compiled

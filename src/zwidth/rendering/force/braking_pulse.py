@@ -13,10 +13,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import CertainOrNone, Reads, parameter
 from zwidth.rendering.defaults import given_or_known, surface
-from zwidth.rendering.stage import Stage, Surroundings, positive
-from zwidth.rendering.velocity.estimate import as_estimator, estimate, packed
+from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.velocity.estimate import estimate, estimated, packed
 from zwidth.rendering.velocity.estimator import Estimator
 
 BRAKING_PULSE = 12.0
@@ -27,7 +28,7 @@ _INSIDE, _REMEMBERED = range(2)
 UNLIMITED = 1e300
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class BrakingPulse(Stage):
     """One sample of force at entry, ``f ← f + min(m v̂/T, F)``.
 
@@ -49,20 +50,23 @@ class BrakingPulse(Stage):
 
     code: ClassVar[float] = BRAKING_PULSE
 
-    mass: Exact | None
-    limit: Exact | None
-    velocity: Estimator
-
-    def __init__(
-        self,
-        mass: RealLike | None = None,
-        limit: RealLike | None = None,
-        velocity: Estimator | None = None,
-    ) -> None:
-        own = {"mass": (mass, "it is what the pulse stops"), "limit": (limit, "it is the largest pulse")}
-        for name, (value, why) in own.items():
-            object.__setattr__(self, name, None if value is None else positive(name, value, why))
-        object.__setattr__(self, "velocity", as_estimator(velocity))
+    mass: CertainOrNone = parameter(
+        "mass",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is what the pulse stops",
+        meaning="what is to be stopped, by default the device's",
+    )
+    limit: CertainOrNone = parameter(
+        "force",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is the largest pulse",
+        meaning="the largest pulse, by default the force limit",
+    )
+    velocity: Reads[Estimator, Estimator | None] = estimated()
 
     @property
     def slots(self) -> int:  # type: ignore[override]  # the estimator's among them, known once it is chosen
@@ -83,9 +87,8 @@ class BrakingPulse(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        mass, force = ("kg·m²", "N·m") if motion == "rotary" else ("kg", "N")
-        what = "the device" if self.mass is None else f"{self.mass:g} {mass}"
-        most = "" if self.limit is None else f", at most {self.limit:g} {force}"
+        what = self.with_unit("mass", motion) or "the device"
+        most = f", at most {self.with_unit('limit', motion)}" if self.limit is not None else ""
         return f"braking pulse that stops {what}{most} on {self.velocity.describe(motion)}"
 
 

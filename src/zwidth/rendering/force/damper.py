@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
-from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.reading import truth
-from zwidth.rendering.stage import Stage, Surroundings, positive
-from zwidth.rendering.velocity.estimate import as_estimator, estimate, packed
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import Certain, Reads, flag, parameter
+from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.velocity.estimate import estimate, estimated, packed
 from zwidth.rendering.velocity.estimator import Estimator
 
 DAMPER = 10.0
@@ -23,7 +23,7 @@ DAMPER = 10.0
 _DAMPING, _SURFACE, _CLAMPED, _ESTIMATOR = range(4)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class Damper(Stage):
     """Virtual damping on an estimated velocity, ``f ← f + B v̂ if x > 0``.
 
@@ -44,15 +44,15 @@ class Damper(Stage):
 
     code: ClassVar[float] = DAMPER
 
-    damping: Exact
-    velocity: Estimator
-    clamped: bool
-
-    def __init__(self, damping: RealLike, velocity: Estimator | None = None, clamped: bool = False) -> None:
-        why = "a negative damper drives the hand"
-        object.__setattr__(self, "damping", positive("damping", damping, why, zero=True))
-        object.__setattr__(self, "velocity", as_estimator(velocity))
-        object.__setattr__(self, "clamped", truth("clamped", clamped, "for a sum that never pulls"))
+    damping: Certain = parameter(
+        "virtual_damping",
+        kept=Exact,
+        bound="≥ 0",
+        why="a negative damper drives the hand",
+        meaning="B of the damper",
+    )
+    velocity: Reads[Estimator, Estimator | None] = estimated()
+    clamped: bool = flag("for a sum that never pulls", False)
 
     @property
     def slots(self) -> int:  # type: ignore[override]  # it is the estimator's, known once it is chosen
@@ -70,9 +70,8 @@ class Damper(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit = "N·m·s/rad" if motion == "rotary" else "N·s/m"
         never = ", never pulls" if self.clamped else ""
-        return f"damper of {float(self.damping):g} {unit} on {self.velocity.describe(motion)}{never}"
+        return f"damper of {self.with_unit('damping', motion)} on {self.velocity.describe(motion)}{never}"
 
 
 @compiled

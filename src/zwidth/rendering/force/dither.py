@@ -16,10 +16,10 @@ from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import PLAIN, CertainOrNone, Count, parameter, word
 from zwidth.rendering.defaults import given_or_known
-from zwidth.rendering.reading import one_of
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.stage import Stage, Surroundings
 
 DITHER = 15.0
 
@@ -28,7 +28,13 @@ _AMPLITUDE, _RANDOM, _SURFACE = range(3)
 MODULUS, _FACTOR = 2147483647.0, 16807.0
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+def _seed(seed: Exact) -> int:
+    if seed.fraction.denominator != 1 or seed >= int(MODULUS):
+        raise InputError(f"seed is a whole number from 1 to {int(MODULUS) - 1}, got {seed:g}")
+    return int(seed)
+
+
+@dataclass(frozen=True)
 class Dither(Stage):
     """A force of amplitude a that changes from sample to sample, where the environment acts.
 
@@ -51,21 +57,23 @@ class Dither(Stage):
     code: ClassVar[float] = DITHER
     slots: ClassVar[int] = 1
 
-    amplitude: Exact | None
-    kind: Literal["alternating", "random"]
-    seed: int
-
-    def __init__(
-        self,
-        amplitude: RealLike | None = None,
-        kind: Literal["alternating", "random"] = "alternating",
-        seed: int = 1,
-    ) -> None:
-        why = "without one there is no dither"
-        own = None if amplitude is None else positive("amplitude", amplitude, why)
-        object.__setattr__(self, "amplitude", own)
-        object.__setattr__(self, "kind", one_of("kind", kind, "alternating", "random"))
-        object.__setattr__(self, "seed", _seed(seed))
+    amplitude: CertainOrNone = parameter(
+        "force",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="without one there is no dither",
+        meaning="a, by default a part of a converter step",
+    )
+    kind: Literal["alternating", "random"] = word("alternating", "random")
+    seed: Count = parameter(
+        PLAIN,
+        1,
+        kept=_seed,
+        bound="> 0",
+        why="0 would stay 0 for ever",
+        meaning="of the random one, a whole number",
+    )
 
     def numbers(self, at: Surroundings) -> list[float]:
         """a, whether it is random, whether there is a surface."""
@@ -79,16 +87,7 @@ class Dither(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit = "N·m" if motion == "rotary" else "N"
-        size = "of part of a converter step" if self.amplitude is None else f"of {self.amplitude:g} {unit}"
-        return f"{self.kind} dither {size}"
-
-
-def _seed(seed: int) -> int:
-    number = positive("seed", seed, "0 would stay 0 for ever").fraction
-    if number.denominator != 1 or number >= int(MODULUS):
-        raise InputError(f"seed is a whole number from 1 to {int(MODULUS) - 1}, got {seed}")
-    return int(number)
+        return f"{self.kind} dither of {self.with_unit('amplitude', motion) or 'part of a converter step'}"
 
 
 @compiled

@@ -15,17 +15,18 @@ deceleration without a record is half a sine.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from math import cos, exp, pi, sin
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import CertainOrNone, Reads, parameter, part, word
 from zwidth.rendering.defaults import given_or_known, surface
-from zwidth.rendering.reading import one_of
-from zwidth.rendering.stage import Stage, Surroundings, positive
-from zwidth.rendering.velocity.estimate import as_estimator, estimate, packed
+from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.velocity.estimate import estimate, estimated, packed
 from zwidth.rendering.velocity.estimator import Estimator
 
 EVENT_TRANSIENT = 13.0
@@ -46,7 +47,24 @@ _OF_KIND = {
 }
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+def _shaping(quantity: str, meaning: str) -> Any:
+    """A number > 0 that shapes the transient."""
+    return parameter(quantity, None, kept=Exact, bound="> 0", why="it shapes the transient", meaning=meaning)
+
+
+def _record(values: Sequence[RealLike] | None, name: str) -> tuple[Exact, ...] | None:
+    if values is None:
+        return None
+    try:
+        record = tuple(Exact(value) for value in values)
+    except (TypeError, InputError) as error:
+        raise InputError(f"{name} is one deceleration [1/s] a sample: {error}") from None
+    if not 1 <= len(record) <= LONGEST_TRANSIENT:
+        raise InputError(f"{name} has from 1 to {LONGEST_TRANSIENT} samples, got {len(record)}")
+    return record
+
+
+@dataclass(frozen=True)
 class EventTransient(Stage):
     """An open-loop transient at entry, scaled by its speed; armed again when the hand has left.
 
@@ -80,46 +98,30 @@ class EventTransient(Stage):
 
     code: ClassVar[float] = EVENT_TRANSIENT
 
-    kind: Literal["fixed", "decaying", "acceleration"]
-    amplitude: Exact | None
-    duration: Exact | None
-    frequency: Exact | None
-    time_constant: Exact | None
-    record: tuple[Exact, ...] | None
-    mass: Exact | None
-    velocity: Estimator
+    kind: Literal["fixed", "decaying", "acceleration"] = word("decaying", "fixed", "acceleration")
+    _: KW_ONLY
+    amplitude: CertainOrNone = _shaping("virtual_damping", "A, by default what stops the mass")
+    duration: CertainOrNone = _shaping("time_constant", "how long it is played")
+    frequency: CertainOrNone = _shaping("frequency", "f of the decaying one, by default 100 Hz")
+    time_constant: CertainOrNone = _shaping("time_constant", "τ of the decaying one, by default 10 ms")
+    record: Reads[tuple[Exact, ...] | None, Sequence[RealLike] | None] = part(
+        "list",
+        _record,
+        None,
+        meaning="deceleration in a tap at unit speed, a number a sample",
+        quantity=Quantity("record", "d", "1/s", "1/s", ""),
+    )
+    mass: CertainOrNone = _shaping("mass", "what is to be stopped, by default the device's")
+    velocity: Reads[Estimator, Estimator | None] = estimated()
 
-    def __init__(
-        self,
-        kind: Literal["fixed", "decaying", "acceleration"] = "decaying",
-        *,
-        amplitude: RealLike | None = None,
-        duration: RealLike | None = None,
-        frequency: RealLike | None = None,
-        time_constant: RealLike | None = None,
-        record: Sequence[RealLike] | None = None,
-        mass: RealLike | None = None,
-        velocity: Estimator | None = None,
-    ) -> None:
-        object.__setattr__(self, "kind", one_of("kind", kind, *_OF_KIND))
-        numbers = {
-            "amplitude": amplitude,
-            "duration": duration,
-            "frequency": frequency,
-            "time_constant": time_constant,
-        }
-        for name, value in {**numbers, "record": record}.items():
-            if value is not None and name not in _OF_KIND[kind]:
-                raise InputError(
-                    f"{name} is not of the {kind} transient, which has {', '.join(_OF_KIND[kind])}"
-                )
-        if record is not None and duration is not None:
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("amplitude", "duration", "frequency", "time_constant", "record"):
+            if getattr(self, name) is not None and name not in _OF_KIND[self.kind]:
+                has = ", ".join(_OF_KIND[self.kind])
+                raise InputError(f"{name} is not of the {self.kind} transient, which has {has}")
+        if self.record is not None and self.duration is not None:
             raise InputError("give either record or duration: a record is as long as it is")
-        for name, value in {**numbers, "mass": mass}.items():
-            own = None if value is None else positive(name, value, "it shapes the transient")
-            object.__setattr__(self, name, own)
-        object.__setattr__(self, "record", None if record is None else _record(record))
-        object.__setattr__(self, "velocity", as_estimator(velocity))
 
     @property
     def slots(self) -> int:  # type: ignore[override]  # the estimator's among them, known once it is chosen
@@ -185,10 +187,9 @@ class EventTransient(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit = "N·m·s/rad" if motion == "rotary" else "N·s/m"
         parts: list[str] = [self.kind]
         if self.amplitude is not None:
-            parts.append(f"{self.amplitude:g} {unit}")
+            parts.append(self.with_unit("amplitude", motion))
         if self.kind == "decaying":
             parts.append(f"{self._own('frequency'):g} Hz, {self._own('time_constant'):g} s")
         if self.record is not None:
@@ -196,16 +197,6 @@ class EventTransient(Stage):
         elif self.kind != "decaying" or self.duration is not None:
             parts.append(f"for {self._own('duration'):g} s")
         return f"transient at entry ({', '.join(parts)}) on {self.velocity.describe(motion)}"
-
-
-def _record(values: Sequence[RealLike]) -> tuple[Exact, ...]:
-    try:
-        record = tuple(Exact(value) for value in values)
-    except (TypeError, InputError) as error:
-        raise InputError(f"record is one deceleration [1/s] a sample: {error}") from None
-    if not 1 <= len(record) <= LONGEST_TRANSIENT:
-        raise InputError(f"record has from 1 to {LONGEST_TRANSIENT} samples, got {len(record)}")
-    return record
 
 
 @compiled

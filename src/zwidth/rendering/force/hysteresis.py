@@ -18,15 +18,15 @@ the spring slips, so that a hand that goes to and fro finds the same forces agai
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import CertainOrNone, flag, parameter
 from zwidth.rendering.defaults import stiffness as stiffness_of
-from zwidth.rendering.reading import truth
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.stage import Stage, Surroundings
 
 HYSTERESIS = 11.0
 
@@ -34,7 +34,7 @@ _FORCE, _STIFFNESS, _SURFACE, _CLAMPED = range(4)
 _RELAXED = 0
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class Hysteresis(Stage):
     """Rate-independent hysteresis, ``s ← clamp(s + k Δu, ±h)``, ``f ← f + s`` inside.
 
@@ -60,32 +60,40 @@ class Hysteresis(Stage):
     code: ClassVar[float] = HYSTERESIS
     slots: ClassVar[int] = 1
 
-    force: Exact | None
-    stiffness: Exact | None
-    fastest: Exact | None
-    clamped: bool
+    force: CertainOrNone = parameter(
+        "force",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is the force at which the spring slips",
+        meaning="h, at which the spring slips; this or fastest is needed",
+    )
+    stiffness: CertainOrNone = parameter(
+        "stiffness",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is the spring that slips",
+        meaning="k of that spring, by default the environment's",
+    )
+    _: KW_ONLY
+    fastest: CertainOrNone = parameter(
+        "speed",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is the speed up to which the hysteresis pays for the hold",
+        meaning="speed up to which it pays for the hold",
+    )
+    clamped: bool = flag("for a sum that never pulls", False)
 
-    def __init__(
-        self,
-        force: RealLike | None = None,
-        stiffness: RealLike | None = None,
-        *,
-        fastest: RealLike | None = None,
-        clamped: bool = False,
-    ) -> None:
-        if (force is None) == (fastest is None):
+    def __post_init__(self) -> None:
+        if (self.force is None) == (self.fastest is None):
             raise InputError(
-                f"give either force [N] or fastest [m/s], got {'neither' if force is None else 'both'}: "
+                f"give either force [N] or fastest [m/s], got {'neither' if self.force is None else 'both'}: "
                 "the width h is ½ K v_max T for a hand that is never faster than v_max"
             )
-        own = {
-            "force": (force, "it is the force at which the spring slips"),
-            "stiffness": (stiffness, "it is the spring that slips"),
-            "fastest": (fastest, "it is the speed up to which the hysteresis pays for the hold"),
-        }
-        for name, (value, why) in own.items():
-            object.__setattr__(self, name, None if value is None else positive(name, value, why))
-        object.__setattr__(self, "clamped", truth("clamped", clamped, "for a sum that never pulls"))
+        super().__post_init__()
 
     def numbers(self, at: Surroundings) -> list[float]:
         """h, k, whether there is a surface, whether it is clamped."""
@@ -108,14 +116,11 @@ class Hysteresis(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        force, speed = ("N·m", "rad/s") if motion == "rotary" else ("N", "m/s")
-        per = "N·m/rad" if motion == "rotary" else "N/m"
-        width = (
-            f"±{self.force:g} {force}"
-            if self.force is not None
-            else f"the width for {self.fastest:g} {speed}"
+        force, stiffness, fastest = (
+            self.with_unit(name, motion) for name in ("force", "stiffness", "fastest")
         )
-        spring = "" if self.stiffness is None else f", spring of {self.stiffness:g} {per}"
+        width = f"±{force}" if force else f"the width for {fastest}"
+        spring = f", spring of {stiffness}" if stiffness else ""
         return f"hysteresis of {width}{spring}{', never pulls' if self.clamped else ''}"
 
 

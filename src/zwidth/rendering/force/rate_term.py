@@ -24,8 +24,9 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.device.device import Device
-from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import CertainOrNone, parameter
+from zwidth.rendering.stage import Stage, Surroundings
 
 RATE_TERM = 17.0
 
@@ -33,7 +34,7 @@ _SAMPLES = 0
 _BEGUN, _LAST = range(2)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class RateTerm(Stage):
     """``f ← f + τ (f − f_{k−1})/T``: the force leads by τ.
 
@@ -58,12 +59,14 @@ class RateTerm(Stage):
     code: ClassVar[float] = RATE_TERM
     slots: ClassVar[int] = 2
 
-    time_constant: Exact | None
-
-    def __init__(self, time_constant: RealLike | None = None) -> None:
-        why = "it is how far the force leads; without it the law does nothing"
-        value = None if time_constant is None else positive("time_constant", time_constant, why)
-        object.__setattr__(self, "time_constant", value)
+    time_constant: CertainOrNone = parameter(
+        "time_constant",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="it is how far the force leads; without it the law does nothing",
+        meaning="τ, by default T/2",
+    )
 
     def numbers(self, at: Surroundings) -> list[float]:
         """τ/T."""
@@ -82,8 +85,7 @@ class RateTerm(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        lead = "T/2" if self.time_constant is None else f"{float(self.time_constant):g} s"
-        return f"rate term of {lead}"
+        return f"rate term of {self.with_unit('time_constant', motion) or 'T/2'}"
 
 
 @compiled

@@ -12,14 +12,15 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import CertainOrNone, parameter
 from zwidth.rendering.defaults import given_or_known
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.rendering.stage import Stage, Surroundings
 
 SATURATION = 16.0
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class Saturation(Stage):
     """``f ← clamp(f, ±F)``.
 
@@ -37,11 +38,14 @@ class Saturation(Stage):
     code: ClassVar[float] = SATURATION
     slots: ClassVar[int] = 0
 
-    limit: Exact | None
-
-    def __init__(self, limit: RealLike | None = None) -> None:
-        why = "without force nothing is rendered"
-        object.__setattr__(self, "limit", None if limit is None else positive("limit", limit, why))
+    limit: CertainOrNone = parameter(
+        "force",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="without force nothing is rendered",
+        meaning="F, by default the force limit",
+    )
 
     def numbers(self, at: Surroundings) -> list[float]:
         """F."""
@@ -53,8 +57,7 @@ class Saturation(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit = "N·m" if motion == "rotary" else "N"
-        return f"saturation at {'the force limit' if self.limit is None else f'{self.limit:g} {unit}'}"
+        return f"saturation at {self.with_unit('limit', motion) or 'the force limit'}"
 
 
 @compiled

@@ -15,8 +15,10 @@ from typing import ClassVar
 from zwidth.compiled import Array, compiled
 from zwidth.device.amplifier import VoltageLimited
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import CertainOrNone, parameter
+from zwidth.rendering.stage import Stage, Surroundings
 
 SLEW_LIMIT = 14.0
 
@@ -24,7 +26,7 @@ _STEP = 0
 _BEGUN, _LAST = range(2)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class SlewLimit(Stage):
     """The force changes by R T a sample at most.
 
@@ -42,11 +44,13 @@ class SlewLimit(Stage):
     code: ClassVar[float] = SLEW_LIMIT
     slots: ClassVar[int] = 2
 
-    rate: Exact | None
-
-    def __init__(self, rate: RealLike | None = None) -> None:
-        why = "a force that never changes renders nothing"
-        object.__setattr__(self, "rate", None if rate is None else positive("rate", rate, why))
+    rate: CertainOrNone = parameter(
+        Quantity("rate", "R", "N/s", "N*m/s", "R, by default what the device's winding allows"),
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="a force that never changes renders nothing",
+    )
 
     def numbers(self, at: Surroundings) -> list[float]:
         """R T."""
@@ -66,8 +70,7 @@ class SlewLimit(Stage):
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
-        unit = "N·m/s" if motion == "rotary" else "N/s"
-        return f"slew limit of {'the motor' if self.rate is None else f'{self.rate:g} {unit}'}"
+        return f"slew limit of {self.with_unit('rate', motion) or 'the motor'}"
 
 
 @compiled

@@ -25,11 +25,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from zwidth.compiled import Array, compiled
+from zwidth.quantity.parameter import part
 from zwidth.rendering.prediction.modelled import (
     FF,
     FV,
@@ -58,7 +59,7 @@ TERMS = 18
 BISECTIONS = 50
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class CrossingCorrection(Modelled):
     """After a crossing, ``Φ² ξ_k + ΦΓ u_k + Γ u_{k+1} = ξ*``, ξ* of the continuous wall.
 
@@ -79,11 +80,9 @@ class CrossingCorrection(Modelled):
     code: ClassVar[float] = CROSSING
     slots: ClassVar[int] = 4
 
-    throughout: bool
-
-    def __init__(self, *, throughout: bool = False, **model: Any) -> None:
-        super().__init__(**model)
-        object.__setattr__(self, "throughout", bool(throughout))
+    throughout: bool = part(
+        "flag", lambda given, _: bool(given), False, meaning="true to go on with it inside"
+    )
 
     def numbers(self, at: Surroundings) -> list[float]:
         """The model, the continuous wall and (ΦΓ, Γ)⁻¹.

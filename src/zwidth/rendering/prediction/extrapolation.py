@@ -18,13 +18,14 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
-from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import Certain, parameter, plain
+from zwidth.rendering.stage import Stage, Surroundings
 
 EXTRAPOLATION = 30.0
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Extrapolation(Stage):
     """Before the environment, ``x̂ = x_k + n (x_k − x_{k−1})``.
 
@@ -44,11 +45,13 @@ class Extrapolation(Stage):
     code: ClassVar[float] = EXTRAPOLATION
     slots: ClassVar[int] = 1
 
-    samples: Exact
-
-    def __init__(self, *, samples: RealLike = "0.5") -> None:
-        why = "the force is applied after the reading, not before"
-        object.__setattr__(self, "samples", positive("samples", samples, why, zero=True))
+    samples: Certain = parameter(
+        plain("samples", "n, by default ½"),
+        "0.5",
+        kept=Exact,
+        bound="≥ 0",
+        why="the force is applied after the reading, not before",
+    )
 
     def numbers(self, at: Surroundings) -> list[float]:
         """As the step reads them."""

@@ -28,7 +28,7 @@ _HALF = MODEL
 """Where the same numbers for half a sample begin."""
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class HalfSamplePrediction(Modelled):
     """Before the environment, ``x̂ = (Φ(T/2) ξ_k + Γ(T/2) (f_{k−1} − k x_a))₁``.
 

@@ -26,10 +26,11 @@ import numpy as np
 from scipy.linalg import expm
 
 from zwidth.compiled import Array, compiled
-from zwidth.environment.wall import Wall
+from zwidth.environment.wall import wall_of
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike, ends
-from zwidth.rendering.stage import Stage, Surroundings, positive
+from zwidth.quantity.exact import Exact, ends
+from zwidth.quantity.parameter import Certain, CertainOrNone, parameter
+from zwidth.rendering.stage import Stage, Surroundings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,6 +43,10 @@ MODEL = 7
 
 SHORTEST = 1e-6
 """φ₁₂/T below which positions say nothing about velocities."""
+
+
+_NOT_MEANT = "of the device, where its own is not meant"
+_PASSIVE = "device and finger are passive"
 
 
 class Plant(NamedTuple):
@@ -67,7 +72,7 @@ class Plant(NamedTuple):
         return [*phi.ravel().tolist(), *gamma.tolist(), self.stiffness * self.position]
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Modelled(Stage):
     """A law that knows device and finger.
 
@@ -92,33 +97,22 @@ class Modelled(Stage):
         If a number is outside its bound.
     """
 
-    mass: Exact | None
-    damping: Exact | None
-    finger_mass: Exact
-    finger_stiffness: Exact
-    finger_damping: Exact
-    finger_position: Exact
-
-    def __init__(
-        self,
-        *,
-        mass: RealLike | None = None,
-        damping: RealLike | None = None,
-        finger_mass: RealLike = 0,
-        finger_stiffness: RealLike = 0,
-        finger_damping: RealLike = 0,
-        finger_position: RealLike = 0,
-    ) -> None:
-        own = {
-            "mass": None if mass is None else positive("mass", mass, "a force moves it; None: the device's"),
-            "damping": None if damping is None else _not_negative("damping", damping),
-            "finger_mass": _not_negative("finger_mass", finger_mass),
-            "finger_stiffness": _not_negative("finger_stiffness", finger_stiffness),
-            "finger_damping": _not_negative("finger_damping", finger_damping),
-            "finger_position": _number("finger_position", finger_position),
-        }
-        for name, value in own.items():
-            object.__setattr__(self, name, value)
+    mass: CertainOrNone = parameter(
+        "mass", None, kept=Exact, bound="> 0", why="a force moves it; None: the device's", meaning=_NOT_MEANT
+    )
+    damping: CertainOrNone = parameter(
+        "damping", None, kept=Exact, bound="≥ 0", why=_PASSIVE, meaning=_NOT_MEANT
+    )
+    finger_mass: Certain = parameter(
+        "mass", 0, kept=Exact, bound="≥ 0", why=_PASSIVE, meaning="of the finger that the law reckons with"
+    )
+    finger_stiffness: Certain = parameter(
+        "stiffness", 0, kept=Exact, bound="≥ 0", why=_PASSIVE, meaning="of that finger"
+    )
+    finger_damping: Certain = parameter(
+        "damping", 0, kept=Exact, bound="≥ 0", why=_PASSIVE, meaning="of that finger"
+    )
+    finger_position: Certain = parameter("position", 0, kept=Exact, meaning="where that finger is at rest")
 
     def plant(self, at: Surroundings) -> Plant:
         """Device and finger, what was left out taken from the device.
@@ -155,26 +149,23 @@ class Modelled(Stage):
         InputError
             If it is no wall.
         """
-        wall = at.environment
-        if not isinstance(wall, Wall):
+        wall = wall_of(at.environment)
+        if wall is None:
             raise InputError(
                 f"{type(self).__name__} computes how a wall K x + B v would move the hand and needs a Wall, "
-                f"got {wall.describe()}"
+                f"got {at.environment.describe()}"
             )
         return float(ends(wall.stiffness)[0]), float(ends(wall.damping)[0])
 
     def describe_model(self, motion: str = "linear") -> str:
         """What it knows of the finger, in a few words."""
-        mass, spring, damper = (
-            ("kg·m²", "N·m/rad", "N·m·s/rad") if motion == "rotary" else ("kg", "N/m", "N·s/m")
-        )
         device = [
-            f"{word} {float(value):g} {unit}"
-            for word, value, unit in (("mass", self.mass, mass), ("damping", self.damping, damper))
-            if value is not None
+            f"{name} {self.with_unit(name, motion)}"
+            for name in ("mass", "damping")
+            if getattr(self, name) is not None
         ]
-        own = ((self.finger_mass, mass), (self.finger_stiffness, spring), (self.finger_damping, damper))
-        finger = [f"{float(value):g} {unit}" for value, unit in own if value != 0]
+        own = ("finger_mass", "finger_stiffness", "finger_damping")
+        finger = [self.with_unit(name, motion) for name in own if getattr(self, name) != 0]
         return ", ".join([*device, f"finger {', '.join(finger)}" if finger else "no finger"])
 
 
@@ -191,17 +182,6 @@ def _held(plant: Plant, time: float) -> tuple[Matrix, Matrix]:
 def turns_over(matrix: Matrix, period: float) -> bool:
     """True where ξ̇ = A ξ swings half a turn or more in one sample."""
     return bool(np.max(np.abs(np.linalg.eigvals(matrix).imag)) * period >= np.pi)
-
-
-def _not_negative(name: str, value: RealLike) -> Exact:
-    return positive(name, value, "device and finger are passive", zero=True)
-
-
-def _number(name: str, value: RealLike) -> Exact:
-    try:
-        return Exact(value)
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
 
 
 @compiled

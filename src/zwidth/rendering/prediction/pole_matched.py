@@ -36,7 +36,7 @@ POLE_MATCHED = 36.0
 _POSITION, _VELOCITY, _CLAMPED = range(MODEL, MODEL + 3)
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class PoleMatched(Modelled):
     """In the place of a wall, ``f = g_x x + g_v v̂ if x > 0`` with the poles e^{sT} of K x + B v.
 

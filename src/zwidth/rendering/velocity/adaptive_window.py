@@ -18,10 +18,10 @@ from typing import ClassVar, Literal
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import PLAIN, CertainOrNone, Count, parameter, word
 from zwidth.rendering.defaults import given_or_known
-from zwidth.rendering.reading import one_of
-from zwidth.rendering.stage import Surroundings, positive
+from zwidth.rendering.stage import Surroundings
 from zwidth.rendering.velocity.estimator import Estimator
 
 ADAPTIVE_WINDOW = 1.0
@@ -35,7 +35,16 @@ _EDGE = 1.0 + 1e-9
 LARGEST_WINDOW = 1000
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+def _samples(longest: Exact) -> int:
+    if longest.fraction.denominator != 1 or longest > LARGEST_WINDOW:
+        raise InputError(
+            f"longest is a whole number of samples from 1 to {LARGEST_WINDOW}, got {longest:g}: a window "
+            "longer than that lags behind every hand"
+        )
+    return int(longest)
+
+
+@dataclass(frozen=True)
 class AdaptiveWindow(Estimator):
     """First-order adaptive windowing: slope of the longest line that fits the readings.
 
@@ -56,17 +65,23 @@ class AdaptiveWindow(Estimator):
 
     kind: ClassVar[float] = ADAPTIVE_WINDOW
 
-    noise: Exact | None
-    longest: int
-    fit: Literal["end", "best"]
-
-    def __init__(
-        self, noise: RealLike | None = None, longest: int = 15, fit: Literal["end", "best"] = "end"
-    ) -> None:
-        why = "it is how far a reading may be off"
-        object.__setattr__(self, "noise", None if noise is None else positive("noise", noise, why, zero=True))
-        object.__setattr__(self, "longest", _samples(longest))
-        object.__setattr__(self, "fit", one_of("fit", fit, "end", "best"))
+    noise: CertainOrNone = parameter(
+        "position",
+        None,
+        kept=Exact,
+        bound="≥ 0",
+        why="it is how far a reading may be off",
+        meaning="d, how far a reading may be off, by default one count",
+    )
+    longest: Count = parameter(
+        PLAIN,
+        15,
+        kept=_samples,
+        bound="> 0",
+        why="it counts samples",
+        meaning="N, the longest window in samples, by default 15",
+    )
+    fit: Literal["end", "best"] = word("end", "best")
 
     @property
     def slots(self) -> int:
@@ -84,19 +99,8 @@ class AdaptiveWindow(Estimator):
 
     def describe(self, motion: str = "linear") -> str:
         """In a few words."""
-        unit = "rad" if motion == "rotary" else "m"
-        noise = "one count" if self.noise is None else f"{float(self.noise):g} {unit}"
+        noise = self.with_unit("noise", motion) or "one count"
         return f"adaptive window of up to {self.longest} samples within {noise}, {self.fit} fit"
-
-
-def _samples(longest: RealLike) -> int:
-    number = positive("longest", longest, "it counts samples").fraction
-    if number.denominator != 1 or number > LARGEST_WINDOW:
-        raise InputError(
-            f"longest is a whole number of samples from 1 to {LARGEST_WINDOW}, got {longest}: a window "
-            "longer than that lags behind every hand"
-        )
-    return int(number)
 
 
 @compiled

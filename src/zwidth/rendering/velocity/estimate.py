@@ -6,6 +6,7 @@ from typing import Any
 
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
+from zwidth.quantity.parameter import part
 from zwidth.rendering.stage import Surroundings
 from zwidth.rendering.velocity import adaptive_window, kalman, tick_time
 from zwidth.rendering.velocity.adaptive_window import ADAPTIVE_WINDOW, AdaptiveWindow
@@ -31,6 +32,16 @@ def as_estimator(velocity: Estimator | None) -> Estimator:
             "ones are a wall's velocity_filter, and AdaptiveWindow(longest=1) is the backward difference"
         )
     return chosen
+
+
+def estimated() -> Any:
+    """The field `velocity` of a law that needs one."""
+    return part(
+        "velocity",
+        lambda given, _: as_estimator(given),
+        None,
+        meaning="adaptive-window (default), tick-time, kalman, or a table of one of them",
+    )
 
 
 def packed(estimator: Estimator, at: Surroundings) -> list[float]:

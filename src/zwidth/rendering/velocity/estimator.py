@@ -10,11 +10,12 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
+from zwidth.quantity.parameter import Parametric
 from zwidth.rendering.stage import Surroundings
 
 
 @dataclass(frozen=True, kw_only=True)
-class Estimator(ABC):
+class Estimator(Parametric, ABC):
     """A law v̂(x_k, x_{k−1}, …) for the laws that need a velocity."""
 
     kind: ClassVar[float]

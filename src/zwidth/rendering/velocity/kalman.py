@@ -21,9 +21,10 @@ from math import sqrt
 from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.parameter import CertainOrNone, parameter, plain
 from zwidth.rendering.defaults import known
-from zwidth.rendering.stage import Surroundings, positive
+from zwidth.rendering.stage import Surroundings
 from zwidth.rendering.velocity.estimator import Estimator
 
 KALMAN = 3.0
@@ -35,7 +36,7 @@ _WANDERING = 10
 """Samples in which a hand at rest wanders by a count, if nothing else is said."""
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
+@dataclass(frozen=True)
 class Kalman(Estimator):
     """Steady-state Kalman filter of position and velocity with constant gains.
 
@@ -54,12 +55,13 @@ class Kalman(Estimator):
 
     kind: ClassVar[float] = KALMAN
 
-    acceleration: Exact | None
-
-    def __init__(self, acceleration: RealLike | None = None) -> None:
-        why = "a hand that never accelerates has no velocity to estimate"
-        given = None if acceleration is None else positive("acceleration", acceleration, why)
-        object.__setattr__(self, "acceleration", given)
+    acceleration: CertainOrNone = parameter(
+        plain("acceleration", "√q in (m/s²)/√Hz or (rad/s²)/√Hz, a plain number"),
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="a hand that never accelerates has no velocity to estimate",
+    )
 
     @property
     def slots(self) -> int:

@@ -27,7 +27,7 @@ def test_it_is_the_need_of_a_delayed_spring(delay, least):
 def test_the_closed_form_is_the_best_of_the_form(delay):
     """At slopes −μ within (1 + 1/d) L the searched multiplier finds no less and no more."""
     for least in (-470, -333, 0, 200):
-        slopes = zw.Slopes(least, 470, bounded_below=True)
+        slopes = zw.SlopeBounds(least, 470, bounded_below=True)
         searched, _ = largest_need(best_form(slopes, DIRECT, delay), T)
         assert searched == pytest.approx(
             float(zw.required_damping_by_slopes(least, 470, T, delay * T)), rel=1e-7
@@ -49,9 +49,9 @@ def test_beyond_the_closed_form_the_number_itself_is_proved(least, delay):
     """The float that is returned holds by exact arithmetic; a millionth less does not."""
     need = zw.required_damping_by_slopes(least, 500, T, delay * T)
     there = zw.Device(damping=need, sample_period=T, delay=delay * T)
-    assert zw.transformed_condition(there, zw.Slopes(least, 500, bounded_below=True)).holds
+    assert zw.transformed_condition(there, zw.SlopeBounds(least, 500, bounded_below=True)).holds
     short = there.replace(damping=need * (1 - 1e-6))
-    assert not zw.transformed_condition(short, zw.Slopes(least, 500, bounded_below=True)).holds
+    assert not zw.transformed_condition(short, zw.SlopeBounds(least, 500, bounded_below=True)).holds
 
 
 def wavy(random, slopes):
@@ -151,7 +151,7 @@ def test_the_trapezoid_lies_within_the_parallelogram():
 def test_any_multiplier_is_sound():
     """Whatever g, the form asks for no less than the best one."""
     slopes, best = (
-        zw.Slopes(-100, 300, bounded_below=True),
+        zw.SlopeBounds(-100, 300, bounded_below=True),
         float(zw.required_damping_by_slopes(-100, 300, T, T)),
     )
     for more in (0, Fraction(1, 900), Fraction(1, 100)):
@@ -161,11 +161,11 @@ def test_any_multiplier_is_sound():
 
 def test_the_slopes_of_a_spring_given_by_points():
     """Detents have ±4F/p; a magnet that lets go on one side has the steeper fall as its least slope."""
-    detents = zw.Slopes.of(zw.NonlinearSpring.detents(3, "0.01", 2))
+    detents = zw.SlopeBounds.of(zw.NonlinearSpring.detents(3, "0.01", 2))
     assert (detents.least, detents.greatest) == (-800, 800)
-    magnet = zw.Slopes.of(zw.NonlinearSpring(["-0.01", 0, "0.002"], [-3, "0.5", 0]))
+    magnet = zw.SlopeBounds.of(zw.NonlinearSpring(["-0.01", 0, "0.002"], [-3, "0.5", 0]))
     assert (magnet.least, magnet.greatest) == (-250, 350)
-    assert zw.Slopes.of(zw.NonlinearSpring([0, 1], [-1, 2])).least == 0
+    assert zw.SlopeBounds.of(zw.NonlinearSpring([0, 1], [-1, 2])).least == 0
 
 
 @pytest.mark.parametrize(
@@ -175,7 +175,7 @@ def test_the_slopes_of_a_spring_given_by_points():
 def test_a_spring_that_leads_away_has_no_such_slopes(spring):
     """Its potential has no least value: refused, as is what is no spring by points."""
     with pytest.raises(InputError):
-        zw.Slopes.of(spring)
+        zw.SlopeBounds.of(spring)
 
 
 @pytest.mark.parametrize(
@@ -197,18 +197,18 @@ def test_a_class_states_that_its_potentials_are_bounded_below():
     """Where slopes do not force it, from 0 down; above 0 it is so by itself, and False is nobody's class."""
     for least in (-100, 0):
         with pytest.raises(InputError, match="bounded_below=True"):
-            zw.Slopes(least, 250)
-        assert zw.Slopes(least, 250, bounded_below=True).bounded_below
-    assert zw.Slopes("0.1", 250).bounded_below
+            zw.SlopeBounds(least, 250)
+        assert zw.SlopeBounds(least, 250, bounded_below=True).bounded_below
+    assert zw.SlopeBounds("0.1", 250).bounded_below
     with pytest.raises(InputError, match="no device is passive"):
-        zw.Slopes(1, 250, bounded_below=False)
+        zw.SlopeBounds(1, 250, bounded_below=False)
 
 
 def test_the_spring_that_refutes_the_class_without_it():
     """−100 N/m has slopes from −100 to 250; before it the device is active, and the claim leaves it out."""
     paddle = zw.catalogue.device("haptic-paddle").replace(coulomb_friction=0, resolution=0)
     assert zw.check(paddle, zw.PulseTransferFunction([-100], [1])).outcome == "active"
-    found = zw.transformed_condition(paddle, zw.Slopes(-100, 250, bounded_below=True))
+    found = zw.transformed_condition(paddle, zw.SlopeBounds(-100, 250, bounded_below=True))
     assert found.holds
     assert "slopes from -100 to 250 N/m whose potential is bounded below" in found.claim
     assert found.claim in repr(found)
@@ -219,12 +219,16 @@ def test_the_spring_that_refutes_the_class_without_it():
 def test_what_it_covers_is_data(count, encoder):
     """Contact made and broken; an encoder with counts is not in it, in the claim too."""
     device = zw.Device(damping=1, rate=1000, resolution=count)
-    found = zw.transformed_condition(device, zw.Slopes(0, 500, bounded_below=True))
+    found = zw.transformed_condition(device, zw.SlopeBounds(0, 500, bounded_below=True))
     assert (found.scope.contact, found.scope.encoder) == ("made and broken", encoder)
     assert ("counts of the encoder are not in it" in found.claim) == bool(float(count))
-    short = zw.transformed_condition(device.replace(damping="0.1"), zw.Slopes(0, 500, bounded_below=True))
+    short = zw.transformed_condition(
+        device.replace(damping="0.1"), zw.SlopeBounds(0, 500, bounded_below=True)
+    )
     assert short.claim.startswith("No promise for every static spring")
-    assert zw.transformed_condition(device, zw.Indices(0, 1)).scope.law == ("energy at first bounded",)
+    assert zw.transformed_condition(device, zw.PassivityExcess(0, 1)).scope.law == (
+        "energy at first bounded",
+    )
 
 
 def slow_gain(points, forces, start, end, damping, samples=4000):
@@ -248,11 +252,11 @@ def test_slow_motions_tell_potentials_that_have_no_lower_bound():
         far = 10 * (stored + 40) / max(abs(forces[0]), abs(forces[-1]), 0.1)
         best = max(slow_gain(points, forces, 0.0, side * far, need) for side in (-1, 1))
         if kept:
-            assert zw.Slopes.of(spring).bounded_below
+            assert zw.SlopeBounds.of(spring).bounded_below
             assert max(slow_gain(points, forces, 0.0, x, need) for x in grid[::100]) <= stored
             assert best <= stored
         else:
             with pytest.raises(InputError, match="leads away"):
-                zw.Slopes.of(spring)
+                zw.SlopeBounds.of(spring)
             refuted += best > 3 * stored
     assert refuted >= 10

@@ -5,13 +5,13 @@ from zwidth.passivity.coupling.loop_transformation.condition import (
     TransformedCondition,
     transformed_condition,
 )
-from zwidth.passivity.coupling.loop_transformation.environment_class import Indices, Slopes
+from zwidth.passivity.coupling.loop_transformation.environment_class import PassivityExcess, SlopeBounds
 from zwidth.passivity.coupling.loop_transformation.slopes import required_damping_by_slopes
 from zwidth.passivity.coupling.loop_transformation.storage import loop_storage
 
 __all__ = [
-    "Indices",
-    "Slopes",
+    "PassivityExcess",
+    "SlopeBounds",
     "TransformedCondition",
     "delay_sum",
     "loop_storage",

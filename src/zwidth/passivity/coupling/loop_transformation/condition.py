@@ -24,8 +24,8 @@ from typing import Any, Literal
 
 from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.passivity.coupling.loop_transformation.environment_class import Indices, Slopes
-from zwidth.passivity.coupling.loop_transformation.forms import DIRECT, Connection, coupled, indices_form
+from zwidth.passivity.coupling.loop_transformation.environment_class import PassivityExcess, SlopeBounds
+from zwidth.passivity.coupling.loop_transformation.forms import DIRECT, Connection, coupled, excess_form
 from zwidth.passivity.coupling.loop_transformation.least_damping import best_form, largest_need
 from zwidth.passivity.coupling.loop_transformation.slopes import exact_need, whole_delay
 from zwidth.passivity.document import unit_key
@@ -62,9 +62,11 @@ class TransformedCondition(Answer):
 
     FORMAT = "zwidth transformed condition 1"
     YES = "holds"
+    certificate = None  # the proof is on paper
+    witness = None
 
     device: Device
-    environment: Slopes | Indices
+    environment: SlopeBounds | PassivityExcess
     holds: bool
     required_damping: float | None
     binding: Binding
@@ -87,9 +89,9 @@ class TransformedCondition(Answer):
         """What it is about.
 
         Springs may be one-sided, and what the environments keep holds wherever they are; the theorem knows
-        exact positions; `law` says what the environments must keep besides slopes or indices.
+        exact positions; `law` says what the environments must keep besides slopes or excess.
         """
-        slopes = isinstance(self.environment, Slopes)
+        slopes = isinstance(self.environment, SlopeBounds)
         return Scope(
             contact="made and broken",
             encoder="not counted" if self.device.exact("resolution") else "ideal",
@@ -135,21 +137,21 @@ class TransformedCondition(Answer):
 
 def transformed_condition(
     device: Device,
-    environment: Slopes | Indices,
+    environment: SlopeBounds | PassivityExcess,
     stiffness: RealLike | None = None,
     damping: RealLike = 0,
 ) -> TransformedCondition:
     """Is the loop passive for every environment of a class, felt as it is or behind a virtual coupling?
 
-    Of springs: for those whose potential is bounded below, as `Slopes` states.  A sufficient condition; where
-    it is exact, the documentation says so.
+    Of springs: for those whose potential is bounded below, as `SlopeBounds` states.  A sufficient condition;
+    where it is exact, the documentation says so.
 
     Parameters
     ----------
     device
         Certain b and T, and a delay of whole samples.
     environment
-        `Slopes` or `Indices`.
+        `SlopeBounds` or `PassivityExcess`.
     stiffness
         K_c ≥ 0 of the coupling [N/m; N·m/rad]. None: there is none.
     damping
@@ -174,23 +176,23 @@ def transformed_condition(
             raise InputError(
                 "damping is that of a coupling, and there is none: give its stiffness, 0 if need be"
             )
-        if isinstance(environment, Slopes):
+        if isinstance(environment, SlopeBounds):
             return _condition(device, environment, *_bare_spring(environment, d, b, period))
-        return _condition(device, environment, *_bare_indices(environment, b))
+        return _condition(device, environment, *_bare_excess(environment, b))
     connection = _connection(stiffness, damping, period)
-    if isinstance(environment, Slopes):
+    if isinstance(environment, SlopeBounds):
         form = best_form(environment, connection, d)
     else:
-        form = indices_form(environment, connection, d, period)
+        form = excess_form(environment, connection, d, period)
     return _condition(device, environment, form.is_nonnegative(b / period), *largest_need(form, period))
 
 
-def _check_kinds(device: Device, environment: Slopes | Indices) -> None:
+def _check_kinds(device: Device, environment: SlopeBounds | PassivityExcess) -> None:
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
-    if not isinstance(environment, (Slopes, Indices)):
+    if not isinstance(environment, (SlopeBounds, PassivityExcess)):
         raise InputError(
-            f"the environment is Slopes or Indices, got {type(environment).__name__}. "
+            f"the environment is SlopeBounds or PassivityExcess, got {type(environment).__name__}. "
             "Where the law is known, the transformation adds nothing: use check"
         )
 
@@ -205,7 +207,7 @@ def _connection(stiffness: RealLike, damping: RealLike, period: Fraction) -> Con
 
 
 def _condition(
-    device: Device, environment: Slopes | Indices, holds: bool, need: float, hertz: float | None
+    device: Device, environment: SlopeBounds | PassivityExcess, holds: bool, need: float, hertz: float | None
 ) -> TransformedCondition:
     finite = isfinite(need)
     return TransformedCondition(
@@ -218,7 +220,9 @@ def _condition(
     )
 
 
-def _bare_spring(slopes: Slopes, d: int, b: Fraction, period: Fraction) -> tuple[bool, float, float | None]:
+def _bare_spring(
+    slopes: SlopeBounds, d: int, b: Fraction, period: Fraction
+) -> tuple[bool, float, float | None]:
     """Whether it is proved, the damping that is enough, and where."""
     exact = exact_need(slopes, d)
     if exact is not None:
@@ -227,9 +231,9 @@ def _bare_spring(slopes: Slopes, d: int, b: Fraction, period: Fraction) -> tuple
     return form.is_nonnegative(b / period), *largest_need(form, period)
 
 
-def _bare_indices(indices: Indices, b: Fraction) -> tuple[bool, float, float | None]:
+def _bare_excess(excess: PassivityExcess, b: Fraction) -> tuple[bool, float, float | None]:
     """b ≥ [1 + √(1 − 4 ι ο)]/(2 ο), whatever the delay: the force may have come from any sample."""
-    iota, omicron = indices.input.fraction, indices.output.fraction
+    iota, omicron = excess.input.fraction, excess.output.fraction
     if omicron <= 0:
         return False, inf, None
     need = (1 + sqrt(1 - 4 * iota * omicron)) / (2 * float(omicron))

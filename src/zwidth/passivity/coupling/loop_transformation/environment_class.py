@@ -30,7 +30,7 @@ from zwidth.quantity.glossary import GLOSSARY
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
-class Slopes:
+class SlopeBounds:
     """Static springs, nonlinear or one-sided, with slopes μ ≤ f′ ≤ L and a potential Φ ≥ Φ_min > −∞.
 
     Without the bound on Φ the hand may travel downhill for ever and gain, though nothing is gained on any
@@ -65,7 +65,7 @@ class Slopes:
         object.__setattr__(self, "bounded_below", _stated(low, bounded_below))
 
     @classmethod
-    def of(cls, spring: NonlinearSpring) -> Slopes:
+    def of(cls, spring: NonlinearSpring) -> SlopeBounds:
         """The slopes of a spring given by points, and 0, for beyond the points its force is constant.
 
         Raises
@@ -88,7 +88,7 @@ class Slopes:
         """ι = μT/2 [N·s/m; N·m·s/rad]: f(k) e ≥ ΔΦ + ½ μ e²."""
         return Exact(self.least.fraction * number("sample_period", sample_period) / 2)
 
-    def behind_a_spring(self, stiffness: RealLike) -> Slopes:
+    def behind_a_spring(self, stiffness: RealLike) -> SlopeBounds:
         """The same springs felt through another, K_c: slopes K_c s/(K_c + s), for K_c + μ > 0.
 
         Raises
@@ -103,7 +103,7 @@ class Slopes:
                 f"got {stiffness}: softer, its far end snaps through"
             )
         ends = (k * s.fraction / (k + s.fraction) for s in (self.least, self.greatest))
-        return Slopes(*ends, bounded_below=True)
+        return SlopeBounds(*ends, bounded_below=True)
 
     def describe(self, motion: str = "linear") -> str:
         """The class in words, with the hypothesis on Φ."""
@@ -122,8 +122,8 @@ def _stated(least: Fraction, bounded_below: bool | None) -> bool:
         raise InputError(
             f"a spring with slopes down to {float(least):g} may lead away for ever, as a constant force "
             "does, and give out energy without end: say bounded_below=True if the potential of every spring "
-            "of the class is bounded below, as of a wall that is touched and left; Slopes.of reads it off a "
-            "spring"
+            "of the class is bounded below, as of a wall that is touched and left; SlopeBounds.of reads it "
+            "off a spring"
         )
     raise InputError(
         f"bounded_below is True or left out, got {bounded_below!r}: before springs that lead away for ever "
@@ -132,8 +132,8 @@ def _stated(least: Fraction, bounded_below: bool | None) -> bool:
 
 
 @dataclass(frozen=True, init=False, kw_only=True)
-class Indices:
-    """Environments whose excess or shortage of passivity is known, static or not, linear or not.
+class PassivityExcess:
+    """Environments whose excess of passivity is known, static or not, linear or not; below 0 a shortage.
 
     Both 0 are the passive ones.  A damper, however nonlinear, with gains g to G [N·s/m], g + G > 0, has
     ι = gG/(g + G) and ο = 1/(g + G).
@@ -174,7 +174,7 @@ class Indices:
         )
 
     @classmethod
-    def of_damper(cls, least: RealLike, greatest: RealLike) -> Indices:
+    def of_damper(cls, least: RealLike, greatest: RealLike) -> PassivityExcess:
         """Of a memoryless damper with gains f/v between two bounds, g + G > 0 [N·s/m; N·m·s/rad].
 
         From (f − g v)(G v − f) ≥ 0.

@@ -7,7 +7,7 @@ With D the move of the handle, a that of the coupling, e = D − a that of the e
 is what a hand without inertia puts in.  Taking off Σ f e − ΔΦ − … ≥ 0, which the environment keeps, leaves
 
     slopes      f a + (z^{−d−1}f − f) D + ½ Δf e − g (Δf − μ e)(L e − Δf),    g ≥ 1/(2 (L − μ))
-    indices     f a + (z^{−d−1}f − f) D + ι e²/T + ο T f²
+    excess      f a + (z^{−d−1}f − f) D + ι e²/T + ο T f²
 
 besides (b/T) D².  In w = x − y, the length of the coupling: f = K_c w + B_c a/T, a = w(k) − w(k − 1); without
 a coupling w = f and a = 0.
@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from zwidth.passivity.coupling.loop_transformation.environment_class import Indices, Slopes
+from zwidth.passivity.coupling.loop_transformation.environment_class import PassivityExcess, SlopeBounds
 from zwidth.passivity.coupling.loop_transformation.two_signals import Polynomial, Signal, Term, TwoSignalForm
 
 _NONE: Polynomial = (Fraction(0),)
@@ -37,7 +37,7 @@ def coupled(stiffness: Fraction, damping: Fraction, period: Fraction) -> Connect
     return (stiffness + damping / period, -damping / period), _STEP
 
 
-def slopes_form(slopes: Slopes, g: Fraction, connection: Connection, d: int) -> TwoSignalForm:
+def slopes_form(slopes: SlopeBounds, g: Fraction, connection: Connection, d: int) -> TwoSignalForm:
     """Of static springs between two slopes."""
     low, high = slopes.least.fraction, slopes.greatest.fraction
     change: Signal = (_times(connection[0], _STEP), _NONE)
@@ -53,20 +53,20 @@ def slopes_form(slopes: Slopes, g: Fraction, connection: Connection, d: int) -> 
     )
 
 
-def indices_form(indices: Indices, connection: Connection, d: int, period: Fraction) -> TwoSignalForm:
+def excess_form(excess: PassivityExcess, connection: Connection, d: int, period: Fraction) -> TwoSignalForm:
     """Of environments with excess or shortage."""
     force: Signal = (connection[0], _NONE)
     move = _move(connection)
     return TwoSignalForm.of(
         [
             *_supply(connection, d),
-            (indices.input.fraction / period, move, move),
-            (indices.output.fraction * period, force, force),
+            (excess.input.fraction / period, move, move),
+            (excess.output.fraction * period, force, force),
         ]
     )
 
 
-def least_multiplier(slopes: Slopes) -> Fraction:
+def least_multiplier(slopes: SlopeBounds) -> Fraction:
     """1/(2 (L − μ)); 0 for a linear spring, where the chord is the curve."""
     width = slopes.greatest.fraction - slopes.least.fraction
     return 1 / (2 * width) if width else Fraction(0)

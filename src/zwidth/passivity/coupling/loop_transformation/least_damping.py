@@ -11,7 +11,7 @@ from math import inf, isfinite, pi
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from zwidth.passivity.coupling.loop_transformation.environment_class import Slopes
+from zwidth.passivity.coupling.loop_transformation.environment_class import SlopeBounds
 from zwidth.passivity.coupling.loop_transformation.forms import Connection, least_multiplier, slopes_form
 from zwidth.passivity.coupling.loop_transformation.two_signals import TwoSignalForm
 
@@ -21,7 +21,7 @@ _DECADES = np.linspace(-5, 4, 46)
 """Of g above its least value, in units of 1/(the greatest stiffness that occurs)."""
 
 
-def best_form(slopes: Slopes, connection: Connection, d: int) -> TwoSignalForm:
+def best_form(slopes: SlopeBounds, connection: Connection, d: int) -> TwoSignalForm:
     """The form of `slopes_form` with the multiplier g that asks for the least damping.
 
     The need is convex in g: b and g enter the Hermitian form linearly.

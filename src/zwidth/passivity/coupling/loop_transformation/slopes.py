@@ -1,6 +1,6 @@
 """A static spring known by its slopes alone, its force d samples late: the damping it needs.
 
-Slopes between μ and L > 0, of which one may be negative, and a potential that is bounded below:
+SlopeBounds between μ and L > 0, of which one may be negative, and a potential that is bounded below:
 
     b ≥ (2d + 1) L T/2                 d |μ| ≤ (d + 1) L  or  μ ≥ 0
 
@@ -14,7 +14,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from zwidth.errors import InputError
-from zwidth.passivity.coupling.loop_transformation.environment_class import Slopes
+from zwidth.passivity.coupling.loop_transformation.environment_class import SlopeBounds
 from zwidth.passivity.coupling.loop_transformation.forms import DIRECT
 from zwidth.passivity.coupling.loop_transformation.least_damping import best_form, largest_need
 from zwidth.passivity.formulas.hypotheses import NO_CLOCK, nonnegative, positive
@@ -53,14 +53,14 @@ def required_damping_by_slopes(
     -----
     Derived for this project.
     """
-    slopes = Slopes(least=least, greatest=greatest, bounded_below=True)  # as the docstring says
+    slopes = SlopeBounds(least=least, greatest=greatest, bounded_below=True)  # as the docstring says
     t = positive("sample_period", sample_period, NO_CLOCK)
     d = whole_delay(delay, t)
     exact = exact_need(slopes, d)
     return largest_need(best_form(slopes, DIRECT, d), t)[0] if exact is None else Exact(t * exact)
 
 
-def exact_need(slopes: Slopes, d: int) -> Fraction | None:
+def exact_need(slopes: SlopeBounds, d: int) -> Fraction | None:
     """b/T = (d + ½) L where that is the need [N/m; N·m/rad]; None for deeper negative slopes."""
     high = max(slopes.greatest.fraction, Fraction(0))
     return (d + Fraction(1, 2)) * high if -d * slopes.least.fraction <= (d + 1) * high else None

@@ -19,6 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zwidth.errors import InputError
+from zwidth.passivity.coupling.loop_transformation.slopes import whole_delay
+from zwidth.passivity.formulas.hypotheses import NO_CLOCK, positive
+from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,8 +35,8 @@ def loop_storage(
     positions: ArrayLike,
     energies: ArrayLike,
     damping: ArrayLike,
-    sample_period: float,
-    delay: int = 0,
+    sample_period: RealLike,
+    delay: RealLike = 0,
     hand_work: ArrayLike | None = None,
 ) -> xr.Dataset:
     """W of Lemma 2 along a motion of any device, and what enters and leaves in each sample.
@@ -52,7 +55,7 @@ def loop_storage(
     sample_period
         T > 0 [s].
     delay
-        d ≥ 0 samples: u(k) is held over the sample k + d + 1.
+        dT ≥ 0, a whole number of samples, fewer than there are [s]: u(k) is held over the sample k + d + 1.
     hand_work
         What a hand outside puts in during each sample, ∫ f_hᵀ v dt [J]. Default 0.
 
@@ -65,24 +68,32 @@ def loop_storage(
     Raises
     ------
     InputError
-        If the shapes do not match, T ≤ 0, d is no whole number ≥ 0, or Λ is not positive definite.
+        If the shapes do not match, T ≤ 0, the delay has a part of a sample or is longer than the motion,
+        or Λ is not positive definite.
     """
     u, x, v = _arrays(inputs, positions, energies)
     inverse = np.linalg.inv(matrix := _matrix(damping, u.shape[1]))
-    if not sample_period > 0 or not isinstance(delay, int) or delay < 0:
-        raise InputError(
-            f"sample_period must be > 0 and delay a whole number of samples ≥ 0, got {sample_period} "
-            f"and {delay}: the storage holds one force for each sample it waits"
-        )
-    hand = np.zeros(len(u)) if hand_work is None else np.asarray(hand_work, dtype=np.float64) / sample_period
+    exact = positive("sample_period", sample_period, NO_CLOCK)
+    period, d = float(exact), _shorter(whole_delay(delay, exact), len(u))
+    hand = np.zeros(len(u)) if hand_work is None else np.asarray(hand_work, dtype=np.float64) / period
     if hand.shape != (len(u),):
         raise InputError(f"hand_work has one number for each of {len(u)} samples, got shape {hand.shape}")
-    past = np.vstack([np.zeros((delay + 1, u.shape[1])), u])
+    past = np.vstack([np.zeros((d + 1, u.shape[1])), u])
     waiting = np.einsum("ki,ij,kj->k", past, inverse, past) / 4
-    storage = np.convolve(waiting, np.ones(delay + 1), "valid") + v / sample_period
-    y = np.diff(x, axis=0) / sample_period + (u - past[: len(u)]) @ inverse / 2
+    storage = np.convolve(waiting, np.ones(d + 1), "valid") + v / period
+    y = np.diff(x, axis=0) / period + (u - past[: len(u)]) @ inverse / 2
     supply, loss = np.einsum("ki,ki->k", y, u), np.einsum("ki,ij,kj->k", y, matrix, y)
     return _dataset(storage, supply, loss, hand)
+
+
+def _shorter(d: int, samples: int) -> int:
+    """A delay of fewer samples than the motion has."""
+    if d >= samples:
+        raise InputError(
+            f"the delay is {d} samples and the motion has {samples}: none of its forces would act; "
+            "delay is in seconds"
+        )
+    return d
 
 
 def _arrays(inputs: ArrayLike, positions: ArrayLike, energies: ArrayLike) -> tuple[Floats, Floats, Floats]:

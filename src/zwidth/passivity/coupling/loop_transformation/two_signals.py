@@ -14,14 +14,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate
-from math import lcm
 
 import numpy as np
-from flint import fmpq_poly, fmpz_poly
+from flint import fmpq_poly
 from numpy.typing import NDArray
 
+from zwidth.passivity.linear.cosines import from_cosines
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
-from zwidth.quantity.balls import as_fmpq, as_fraction
+from zwidth.quantity.balls import as_fmpq
 
 Polynomial = Sequence[Fraction]
 Signal = tuple[Polynomial, Polynomial]
@@ -105,18 +105,12 @@ def _reduced(cosines: Cosines) -> Cosines:
 
 def _polynomial(cosines: Cosines) -> fmpq_poly:
     """Σ a_n cos nθ as a polynomial in cos θ."""
-    total, chebyshev, following = fmpq_poly([0]), fmpq_poly([1]), fmpq_poly([0, 1])
-    for a in cosines:
-        total += chebyshev * as_fmpq(a)
-        chebyshev, following = following, fmpq_poly([0, 2]) * following - chebyshev
-    return total
+    return from_cosines([as_fmpq(a) for a in cosines])
 
 
 def _holds(p: fmpq_poly) -> bool:
     """p ≥ 0 on [−1, 1]."""
-    coefficients = [as_fraction(c) for c in p.coeffs()]
-    scale = lcm(*(c.denominator for c in coefficients)) if coefficients else 1
-    return isinstance(prove_nonnegative(fmpz_poly([int(c * scale) for c in coefficients])), Positivity)
+    return isinstance(prove_nonnegative(p.numer()), Positivity)
 
 
 def _evaluate(cosines: Cosines, x: NDArray[np.float64]) -> NDArray[np.float64]:

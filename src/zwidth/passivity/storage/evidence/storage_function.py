@@ -18,6 +18,7 @@ from zwidth.passivity.document import unit_key
 from zwidth.passivity.storage.grid.grid import Grid
 from zwidth.passivity.storage.losses import Integers, Losses
 from zwidth.passivity.storage.solve.value_iteration import ValueIteration
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ class StorageFunction:
         cells = np.arange(grid.domain.lowest, grid.domain.highest + 1)
         x = (cells[:, None] + grid.nodes[None, :] / grid.steps) * float(grid.losses.resolution)
         counted = {} if isinstance(remembered, list) else {"units": "counts"}
-        unit = "rad" if self.motion == "rotary" else "m"
+        unit = GLOSSARY["position"].unit_for(self.motion)
         return xr.DataArray(
             value.reshape(len(remembered), -1) * float(grid.energy_unit),
             dims=(name, "position"),
@@ -110,7 +111,7 @@ def loop_document(losses: Losses, motion: str) -> dict[str, Any]:
         unit_key(name, motion): exact_text(value) for name, value in quantities.items()
     }
     if losses.curve is not None:
-        speed, force = ("rad_per_s", "N_m") if motion == "rotary" else ("m_per_s", "N")
+        speed, force = (unit_suffix(GLOSSARY[name].unit_for(motion)) for name in ("velocity", "force"))
         drag = unit_key("damping", motion).removeprefix("damping_")
         points = zip(losses.curve.speeds, losses.curve.forces, strict=True)
         document[f"friction_curve_{speed}_{force}"] = [

@@ -23,7 +23,7 @@ _FEW = 24
 _NEAR = 12
 """Counts a sample of a hand that stays near an edge, where there are too many for all of them."""
 
-_DEEPEST = 64
+_MAX_DEPTH = 64
 """Cells that are looked at: for a law that is linear inside, depth by itself is of no use."""
 
 _MOST_WORK = 60_000
@@ -42,8 +42,8 @@ def grids(law: FiniteLaw, losses: Losses, domain: Domain) -> list[tuple[int, Dom
         cells = domain.every(counts, remembered, _two_sided(law)) if counts > 1 else None
         if cells is not None:
             found.append((counts, _shallow(law, cells)))
-    grids = within, _shallow(law, within), _near(law, within, remembered)
-    chosen = next((d for d in grids if _work(law, losses, d) <= _MOST_WORK), grids[-1])
+    here = within, _shallow(law, within), _near(law, within, remembered)
+    chosen = next((d for d in here if _work(law, losses, d) <= _MOST_WORK), here[-1])
     whole = [] if chosen == within or too_large(law, losses, within) else [(1, within)]  # last, as it is slow
     return [*found, (1, chosen), *whole]
 
@@ -68,8 +68,8 @@ def _shallow(law: FiniteLaw, domain: Domain) -> Domain:
     """Only some cells deep, where the law is linear inside."""
     if law.is_curve or law.relaxing is not None:
         return domain
-    lowest = max(domain.lowest, -_DEEPEST) if law.surface == "none" else domain.lowest
-    return replace(domain, lowest=lowest, highest=min(domain.highest, max(_DEEPEST, 3 * domain.reach)))
+    lowest = max(domain.lowest, -_MAX_DEPTH) if law.surface == "none" else domain.lowest
+    return replace(domain, lowest=lowest, highest=min(domain.highest, max(_MAX_DEPTH, 3 * domain.reach)))
 
 
 def _near(law: FiniteLaw, domain: Domain, remembered: int) -> Domain:

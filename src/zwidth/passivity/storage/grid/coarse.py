@@ -5,8 +5,8 @@ y = x − Δ; the law acts inside where y ≥ 0.  A reading is y + Δ/2 but for 
 
     a move over D cells costs  φ D,  φ − κ,  φ D + β D² − (β + κ)/4     for D = 0, D = 1, D ≥ 2
 
-κ = max(Σ c⁺, Σ c⁻): a hand that cannot win at the cells' ends cannot win in between (see the documentation).
-At y = 0 there are two ends, the outer and the inner one.
+κ = max(Σ c⁺, Σ c⁻): a hand that gains nothing at the cells' ends gains nothing in between (see the
+documentation).  At y = 0 there are two ends, the outer and the inner one.
 """
 
 from __future__ import annotations

@@ -114,6 +114,13 @@ class Grid:
         return int(self.width**self.memory)
 
     @cached_property
+    def differences(self) -> Integers:
+        """Of each history (rows) the last differences of readings, the newest first."""
+        one = range(-self.domain.reach, self.domain.reach + 1)
+        every = np.array(list(product(one, repeat=self.memory)), dtype=np.int64)
+        return every.reshape(self.histories, self.memory)
+
+    @cached_property
     def force_unit(self) -> Fraction:
         """A power of two, so small that rounding does not matter and so large that sums are exact."""
         span = 4 * self.domain.cells * self.steps
@@ -223,10 +230,7 @@ class Grid:
     def _forces(self, age: int) -> Integers:
         low, high = self.domain.lowest, self.domain.highest
         cells = np.arange(low, high + 1, dtype=np.int64)[:, None]
-        differences = np.arange(-self.domain.reach, self.domain.reach + 1, dtype=np.int64)
-        columns = np.array(list(product(differences, repeat=self.memory)), dtype=np.int64)
-        columns = columns.reshape(self.histories, self.memory)
-        readings = [cells + columns[:, :i].sum(axis=1)[None, :] for i in range(self.memory + 1)]
+        readings = [cells + self.differences[:, :i].sum(axis=1)[None, :] for i in range(self.memory + 1)]
         on_grid = np.ones((len(cells), self.histories), dtype=bool)
         for reading in readings:
             on_grid &= (reading >= low) & (reading <= high)
@@ -387,14 +391,10 @@ class Grid:
 
     def _least_moves(self) -> list[NDArray[np.float64]]:
         """How far the hand has at least moved in each remembered interval, in counts."""
-        differences = np.arange(-self.domain.reach, self.domain.reach + 1)
-        columns = np.array(list(product(differences, repeat=self.memory))).reshape(
-            self.histories, self.memory
-        )
         xi = self.nodes / self.steps
         moves: list[NDArray[np.float64]] = []
         for lag in range(self.memory):
-            e = columns[:, lag][None, :, None]
+            e = self.differences[:, lag][None, :, None]
             if lag == 0:  # from the edge of the cell before to where in its cell the hand is now
                 moves.append(np.maximum(np.maximum(xi - (e + 1), e - xi), 0.0))
             else:

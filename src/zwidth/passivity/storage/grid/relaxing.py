@@ -19,7 +19,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import product
 from math import ceil, floor
 from typing import Any
 
@@ -100,10 +99,8 @@ class RelaxingGrid(Grid):
     def rows(self) -> Integers:
         """Which cell the hand was in when the force was computed, as a row; −1 off the grid."""
         cells = np.arange(self.domain.cells, dtype=np.int64)[:, None]
-        differences = np.arange(-self.domain.reach, self.domain.reach + 1, dtype=np.int64)
-        columns = np.array(list(product(differences, repeat=self.memory)), dtype=np.int64)
-        columns = columns.reshape(self.histories, self.memory)
-        out: Integers = np.where(self.forces == NOWHERE, -1, cells + columns.sum(axis=1)[None, :])
+        acting = cells + self.differences.sum(axis=1)[None, :]
+        out: Integers = np.where(self.forces == NOWHERE, -1, acting)
         return out
 
     @cached_property
@@ -181,7 +178,7 @@ class RelaxingSweep(Sweep):
         super().__init__(grid.first_guess, THREADS, _MAX_ROUNDS[grid.approximation])
         self.grid = grid
         self._blocks = slices(grid.domain.cells, _BLOCKS)
-        self._tables = (
+        self._tables: tuple[Any, ...] = (
             *(grid.rows, *grid.all_forces, *grid.images, grid.costs, grid.nodes),
             *(grid.steps, grid.domain.reach, grid.approximation == "outer"),
         )

@@ -47,7 +47,7 @@ def _raw(value: Any) -> Any:
 
 
 def law_document(law: RowLaw) -> dict[str, Any]:
-    """What is in the game, in words and parameters: the table and the forces are its data."""
+    """What the law is, in words and parameters: the table and the forces are its data."""
     return {
         "description": law.description,
         **({"specification": law.specification} if law.specification else {}),

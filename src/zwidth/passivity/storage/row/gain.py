@@ -66,7 +66,7 @@ def row_gain(
             per_round,
             NO_LAW,
             grid.losses,
-            "rad" if device.motion == "rotary" else "m",
+            device.unit("position"),
         )
         if same_law(found.document, device, environment) and _simulated(path, law, device, environment):
             return found

@@ -92,7 +92,7 @@ def row_law(
     delay = device.exact("delay") / device.exact("sample_period")
     if delay.denominator != 1:
         raise InputError(
-            f"laws in a row are played with delays of whole samples; this one is {float(delay):.6g}: the "
+            f"laws in a row are looked at with delays of whole samples; this one is {float(delay):.6g}: the "
             "force would change within a sample"
         )
     first = min(lowest, 0) if environment.unilateral else 0

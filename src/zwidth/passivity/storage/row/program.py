@@ -10,6 +10,7 @@ from math import ceil, inf
 
 from zwidth.device.device import Device
 from zwidth.device.friction import FrictionCurve
+from zwidth.environment.environment import Environment
 from zwidth.passivity.scope import Contact, Hands, Law
 from zwidth.passivity.storage.domain import Domain, counts_of, losses_of
 from zwidth.passivity.storage.evidence.gain import Gain
@@ -22,7 +23,6 @@ from zwidth.passivity.storage.row.storage_function import RowStorage
 from zwidth.passivity.storage.row.table import MOST_STATES, DoesNotClose, Table, tabulate
 from zwidth.passivity.storage.solve.value_iteration import Progress, value_iteration
 from zwidth.quantity.exact import RealLike
-from zwidth.rendering.rendered import Rendered
 
 COUNTS = ((32, 16), (16, 8), (8, 4), (4, 2))
 """Counts on either side and counts a sample that are tried by default, until the law closes."""
@@ -36,7 +36,7 @@ class RowProgram:
     """Laws in a row and one domain, on tables of either approximation; as `DynamicProgram`."""
 
     device: Device
-    environment: Rendered
+    environment: Environment
     law: RowLaw
     losses: Losses
     domain: Domain
@@ -129,7 +129,7 @@ class RowProgram:
 
 def row_program(
     device: Device,
-    environment: Rendered,
+    environment: Environment,
     penetration: RealLike | None = None,
     speed: RealLike | None = None,
     force_limit: bool = False,

@@ -131,11 +131,11 @@ def tabulate(law: RowLaw, domain: Domain, most: int = MOST_STATES) -> Table:
         if len(found.rows) > most:
             raise DoesNotClose(
                 f"the law does not close within {most:,} states on {domain.cells} counts with moves of up to "
-                f"{domain.reach}: it remembers too much for the game; give a smaller penetration or speed"
+                f"{domain.reach}: it remembers too much to be tabulated; give a smaller penetration or speed"
             )
     forces = np.array(found.rows)[:, -law.waiting]
     if not np.isfinite(forces).all():
-        raise InputError("the law gives a force that is no number: the game needs one in every state")
+        raise InputError("the law gives a force that is no number: value iteration needs one in every state")
     counts = np.array(found.counts, np.int64)
     starts = np.array(begun, np.int64)
     return Table(

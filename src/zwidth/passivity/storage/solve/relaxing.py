@@ -47,6 +47,7 @@ def sweep_relaxing(
                 continue
             newer = h // (2 * reach + 1)
             for i in range(levels):
+                # what can still be taken out there, the average between the levels m and m + 1; from above
                 m = at[row, i]
                 for n2 in range(low, high + 1):
                     h2 = (n - n2 + reach) * older + newer if histories > 1 else 0
@@ -56,6 +57,7 @@ def sweep_relaxing(
                         step = goals[m + 1, j2] - a
                         weight = above[row, i] if step > 0 else below[row, i]
                         there[n2, j2] = a - ((-step * weight) >> 16)
+                # the best move from each node, at this level
                 for j in range(edges):
                     best = value[n, h, i, j]
                     for n2 in range(low, high + 1):
@@ -71,12 +73,13 @@ def sweep_relaxing(
                         improved += 1
                 if not kinks or i == 0:
                     continue
-                # between the levels i − 1 and i: where the image passes a level
+                # between the levels i − 1 and i: where a' passes a level, V(s', a') has a kink
                 m = at[row, i - 1] + 1
                 if m > at[row, i] or (m == at[row, i] and above[row, i] == 0):
                     continue
                 span = (at[row, i] - at[row, i - 1]) * (1 << 16) + above[row, i] - below[row, i - 1]
                 part = (1 << 16) - above[row, i - 1]
+                # after which part of the way from level to level, in 2⁻¹⁶, at the earliest and at the latest
                 early = (part << 16) // span
                 late = -((-(part + 1) << 16) // max(span - 2, 1))
                 late = min(late, 1 << 16)
@@ -91,6 +94,7 @@ def sweep_relaxing(
                                 continue
                             f0 = inwards[row, i - 1] if d > 0 else outwards[row, i - 1]
                             f1 = inwards[row, i] if d > 0 else outwards[row, i]
+                            # V(s, a) + f(a) d is linear on that way; what it lacks is added at both ends
                             start = value[n, h, i - 1, j] + f0 * d
                             rise = value[n, h, i, j] + f1 * d - start
                             least = start + min((rise * early) >> 16, (rise * late) >> 16)

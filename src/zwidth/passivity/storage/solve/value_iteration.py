@@ -131,7 +131,7 @@ class Sweepable(Protocol):
         """V at the start and what improves it, on the "cpu" or the "gpu"; InputError if not there."""
 
 
-G = TypeVar("G", bound=Sweepable, covariant=True)
+G = TypeVar("G", bound=Sweepable)
 
 
 @dataclass(frozen=True)

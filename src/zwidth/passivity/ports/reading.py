@@ -1,37 +1,86 @@
-"""A port of several axes from a system: one integer denominator, and the hidden modes decided."""
+"""A port from a system or an environment: integer polynomials, and the hidden modes decided."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from math import lcm
-from typing import Any
+from typing import Any, Literal
 
-from flint import fmpq, fmpq_poly
+from flint import fmpq, fmpq_poly, fmpz_poly
 
+from zwidth.environment.environment import Environment
 from zwidth.environment.matrix_system import MatrixSystem, hidden_modes, read_matrix_system, size_of
-from zwidth.environment.system import Polynomial
+from zwidth.environment.system import Polynomial, is_system, read_system
 from zwidth.errors import InputError
-from zwidth.passivity.ports.multiport.port import MatrixPort
-from zwidth.passivity.ports.port import Time, decays, said_time
+from zwidth.passivity.linear.loop import LARGEST_DEGREE
+from zwidth.passivity.ports.circle import Time
+from zwidth.passivity.ports.poles import decays
+from zwidth.passivity.ports.port import Port
 
 MOST_AXES = 6
 LARGEST_SIZE = 120
 """Axes times the order of the common denominator: the degree of a determinant."""
 
+_NOT_CAUSAL = "G(z) has more zeros than poles: it would need samples that are still to come"
 
-def read_matrix_port(system: Any) -> MatrixPort:
-    """The port of a square system of python-control or scipy.signal.
+
+def read_port(thing: Environment | Any, period: Fraction | None = None) -> Port:
+    """A port from a square system of python-control or scipy.signal, or from an environment's H(z).
 
     Raises
     ------
     InputError
-        If it has not as many inputs as outputs, is not causal in discrete time, too large, or
-        does not say whether its time is continuous.
+        If it is neither, has not as many inputs as outputs, is not causal in discrete time, of too high
+        an order or too large, or does not say whether its time is continuous.
     """
+    if isinstance(thing, Environment):
+        if period is None:
+            raise InputError("an environment has an H(z) at a sample period only; give the device it runs on")
+        h = thing.pulse_transfer_function(period)
+        return _of_one_axis(h.numerator, h.denominator, "discrete", period)
+    if not is_system(thing):
+        raise InputError(
+            f"a port is a system of python-control or scipy.signal, or an environment; got {thing!r}"
+        )
+    if size_of(thing) != (1, 1):
+        return _of_several_axes(thing)
+    system = read_system(thing)
+    time = _said_time(system.time, (system.numerator, system.denominator))
+    return _of_one_axis(system.numerator, system.denominator, time, system.sample_period or Fraction(1))
+
+
+def _of_one_axis(numerator: Polynomial, denominator: Polynomial, time: Time, period: Fraction) -> Port:
+    """The port of two polynomials in descending powers, in lowest terms."""
+    scale = lcm(*(c.denominator for c in (*numerator, *denominator)))
+    n, d = (fmpz_poly([int(c * scale) for c in reversed(p)]) for p in (numerator, denominator))
+    if d.degree() < 0:
+        raise InputError("the denominator of the transfer function is zero")
+    if time == "discrete" and n.degree() > d.degree():
+        raise InputError(_NOT_CAUSAL)
+    order = max(n.degree(), d.degree())
+    if order > LARGEST_DEGREE:
+        raise InputError(f"the system has order {order}; at most {LARGEST_DEGREE} is decided")
+    common = n.gcd(d)
+    decay = n.degree() < 0 or decays([int(c) for c in common.coeffs()], time)
+    own, below = (tuple(int(c) for c in (p // common).coeffs()) or (0,) for p in (n, d))
+    return Port(((own,),), ((below,),), below, time, period, decay)
+
+
+def _said_time(time: Time | Literal["unsaid"], polynomials: Iterable[Polynomial]) -> Time:
+    """The time that a system says, or any of a constant one."""
+    if time == "unsaid" and any(any(p[:-1]) for p in polynomials):
+        raise InputError(
+            "the system has dt=None and so does not say whether it is G(s) or G(z); give it a dt: 0 for "
+            "continuous time, the sample period or True for discrete time"
+        )
+    return "discrete" if time == "discrete" else "continuous"
+
+
+def _of_several_axes(system: Any) -> Port:
     _bounded(size_of(system)[0], len(getattr(system, "A", ())))
     read = read_matrix_system(system)
-    time = said_time(read.time, [p for row in read.entries for entry in row for p in entry])
+    time = _said_time(read.time, [p for row in read.entries for entry in row for p in entry])
     entries = [[_fraction(*entry, time) for entry in row] for row in read.entries]
     common = fmpq_poly([1])
     for row in entries:
@@ -50,7 +99,7 @@ def from_polynomials(
     time: Time,
     period: Fraction,
     hidden_modes_decay: bool = True,
-) -> MatrixPort:
+) -> Port:
     """The port N/d."""
     scale = lcm(*(int(p.denom()) for p in (denominator, *(n for row in numerators for n in row))))
 
@@ -60,7 +109,7 @@ def from_polynomials(
     size, d = range(len(numerators)), whole(denominator)
     inputs = tuple(tuple(d if i == j else (0,) for j in size) for i in size)
     outputs = tuple(tuple(whole(n) for n in row) for row in numerators)
-    return MatrixPort(outputs, inputs, d, time, period, hidden_modes_decay)
+    return Port(outputs, inputs, d, time, period, hidden_modes_decay)
 
 
 def _bounded(axes: int, order: int) -> None:
@@ -82,7 +131,7 @@ def _fraction(numerator: Polynomial, denominator: Polynomial, time: Time) -> tup
     if d.degree() < 0:
         raise InputError("the denominator of an entry of the system is zero")
     if time == "discrete" and n.degree() > d.degree():
-        raise InputError("G(z) has more zeros than poles: it would need samples that are still to come")
+        raise InputError(_NOT_CAUSAL)
     common = fmpq_poly(n.numer().gcd(d.numer()))
     return n // common, d // common
 

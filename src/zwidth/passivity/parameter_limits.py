@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import fields
 from fractions import Fraction
 from math import inf
-from typing import Any
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
@@ -93,10 +92,15 @@ def _stiffer(stiffness: float) -> list[float]:
 
 def max_gain(device: Device, environment: Environment, contact: bool = False) -> float | None:
     """The largest factor on H(z) that stays passive, None where none does; `contact` as for `provable`."""
-    scaled: Any = getattr(environment, "scaled", None)
-    if scaled is None:
+    if environment.scaled(Fraction(1)) is None:
         return None
-    holds: Holds = lambda g: provable(lambda f: (device, scaled(f)), g, contact)  # noqa: E731
+
+    def change(factor: Fraction) -> tuple[Device, Environment]:
+        law = environment.scaled(factor)
+        assert law is not None
+        return device, law
+
+    holds: Holds = lambda factor: provable(change, factor, contact)  # noqa: E731
     return largest_holding(holds, _likely_gain(decide(device, environment)))
 
 

@@ -1,9 +1,9 @@
 """A storage function re-checked: no move of the hand takes out more energy than V falls.
 
-The document gives V on a board: cells of one encoder count, M steps in each,
+The document gives V on a grid: cells of one encoder count, M steps in each,
 and every remembered reading.  Whole numbers throughout: forces in multiples of
-a unit, energies in multiples of unit × step.  Between two neighbouring knots V is
-meant to be linear.  If for all knots x, x' that are D steps apart
+a unit, energies in multiples of unit × step.  Between two neighbouring nodes V is
+meant to be linear.  If for all nodes x, x' that are D steps apart
 
     V(s, x) ≥ −f (x' − x) − φ D − β (D² − ¼) [D ≥ 2] + V(s', x')
 
@@ -56,28 +56,28 @@ def storage(told: Read) -> str:
             raise Invalid("laws that relax are checked for delays of whole samples and one friction model")
         return storage_of_relaxing(told, losses, law)
     low, high = domain.lowest_count, domain.highest_count
-    fastest, steps, unit = domain.largest_move_counts, domain.steps_per_count, told.force_unit
-    reach = ceil(fastest)
+    max_move, steps, unit = domain.largest_move_counts, domain.steps_per_count, told.force_unit
+    reach = ceil(max_move)
     memory = law.memory + losses.delay
     width, cells = 2 * reach + 1, high - low + 1
     if cells < 1 or reach * steps > MOST_MOVES:
-        raise Invalid("the board is empty, or its moves are longer than can be checked")
+        raise Invalid("the grid is empty, or its moves are longer than can be checked")
     states = cells * width**memory
     if states * (steps + 1) > MOST_VALUES:
-        raise Invalid("the board is larger than can be checked")
+        raise Invalid("the grid is larger than can be checked")
     reserve(16 * states * (steps + 1) + 8 * (states + width**memory) * (memory + 3))
     spend(0.05 * states * (memory + 2))
     spend(PAIR * states * width * (steps + 1) ** 2 * (2 if losses.part < 1 else 1))
     _require_small(law, losses, unit, max(abs(low), abs(high)), reach)
     if law.surface != "none" and low > 1 - (memory + 1) * reach:
-        raise Invalid("the board must reach so far out that a hand beyond it has been forgotten")
+        raise Invalid("the grid must reach so far out that a hand beyond it has been forgotten")
     shape = (cells, width**memory, steps + 1)
     value = storage_of(told.storage, shape)
     moves = []  # of one interval: the forces, and what a move costs
     for age, part in ((losses.delay, losses.part), (losses.delay - 1, 1 - losses.part)):
         if part > 0:
             forces, off = _forces(law, losses, unit, low, high, reach, memory, age)
-            moves.append((forces, costs_of(losses, unit, off, part, fastest, steps)))
+            moves.append((forces, costs_of(losses, unit, off, part, max_move, steps)))
     largest = int(value.max())
     for forces, costs in moves:
         largest += int(abs(costs).max()) + int(np.abs(forces).max()) * (len(costs) + 1)
@@ -104,7 +104,7 @@ def _require_small(law: Law, losses: Losses, unit: Fraction, farthest: int, reac
 
 
 def _exists(low: int, high: int, reach: int, memory: int) -> Any:
-    """Which states there are: all remembered readings on the board."""
+    """Which states there are: all remembered readings on the grid."""
     import numpy as np
 
     out = np.ones((high - low + 1, (2 * reach + 1) ** memory), dtype=np.bool_)

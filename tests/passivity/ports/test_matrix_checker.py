@@ -16,8 +16,8 @@ from tampered import tampered
 import zwidth as zw
 from zwidth import checker
 from zwidth.checker.port.matrix import _principal_sums
-from zwidth.passivity.ports.multiport.circle import product
-from zwidth.passivity.ports.multiport.leverrier import leverrier, multiplied
+from zwidth.passivity.ports.circle import product
+from zwidth.passivity.ports.leverrier import leverrier, multiplied
 
 
 def proved():

@@ -1,24 +1,24 @@
-"""Do the worst hand and the closed forms ever contradict each other?  Random walls near their limits.
+"""Do available storage and the closed forms ever contradict each other?  Random walls near their limits.
 
 Springs, damped walls, windows of two and finite filters of velocity, clamped or not,
 no delay or one sample, stiffness, damping and friction within a third of what is
-needed.  Each loop is decided twice: by the closed forms of `zw.check`, and by the game of
-the worst hand on a small grid of a dozen counts.  What may not be:
+needed.  Each loop is decided twice: by the closed forms of `zw.check`, and by value
+iteration on a small grid of a dozen counts.  What may not be:
 
-  proof against motion     a certificate of kind "spring" or "contact", and a motion of
-                           the game that gains
-  in contact               a certificate for sustained contact, and a motion of the
-                           game that gains without ever leaving the wall
+  proof against motion     a certificate of kind "spring" or "contact", and a cycle of
+                           moves that gains
+  in contact               a certificate for sustained contact, and a cycle of
+                           moves that gains without ever leaving the wall
   motion against proof     a storage function, and the witness of the check stays
                            within its bounds and takes out more than was stored
-  witness                  a motion of the game that the checker does not accept, or
+  witness                  a cycle of moves that the checker does not accept, or
                            that has another energy in `zw.simulate`, or from which a
                            stiff hand and the mass of the device get nothing
 
 A certificate for sustained contact that a motion through the surface defeats is no
 contradiction, as such a certificate does not speak of it; these are counted apart.
 
-    python benchmarks/random_games.py [--loops 10000] [--seed 0] [--replays 20]
+    python benchmarks/random_walls.py [--loops 10000] [--seed 0] [--replays 20]
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from zwidth.passivity.storage.law import finite_law
 from zwidth.passivity.storage.program import DynamicProgram
 
 COUNTS = {0: 12, 1: 12, 2: 6, 3: 3, 4: 2}
-"""How deep and how fast the hand of the game is, in counts, by readings remembered."""
+"""How deep and how fast the hand is, in counts, by readings remembered."""
 
 COVERS_CONTACT = ("spring", "contact")
 
@@ -55,7 +55,7 @@ class Loop:
     device: zw.Device
     wall: zw.Wall
     name: str
-    game: DynamicProgram
+    program: DynamicProgram
 
 
 @dataclass
@@ -117,22 +117,22 @@ def random_loop(random: Random) -> Loop:
 
 def described(loop: Loop) -> str:
     """The numbers of a loop on one line."""
-    d, losses = loop.device, loop.game.losses
+    d, losses = loop.device, loop.program.losses
     return (
         f"[{loop.name}] K {float(loop.wall.stiffness):g} B {float(loop.wall.damping):g} "
-        f"taps {[float(c) for c in loop.game.law.taps]} T {float(losses.period):g} "
+        f"taps {[float(c) for c in loop.program.law.taps]} T {float(losses.period):g} "
         f"step {float(losses.resolution):g} b {float(d.damping):g} f_c {float(d.coulomb_friction):g} "
-        f"grid {loop.game.domain.highest}/{loop.game.domain.reach}"
+        f"grid {loop.program.domain.highest}/{loop.program.domain.reach}"
     )
 
 
 def decide(loop: Loop) -> tuple[str, Any]:
-    """ "passive" and a storage function, "active" and a motion, or "undecided", by the game alone."""
+    """ "passive" and a storage function, "active" and a motion, or "undecided", by value iteration alone."""
     for steps, fine in ((8, 1024), (32, None)):
-        storage = loop.game.prove(steps)
+        storage = loop.program.prove(steps)
         if storage is not None:
             return "passive", storage
-        motion = None if fine is None else loop.game.refute(fine)
+        motion = None if fine is None else loop.program.refute(fine)
         if motion is not None:
             return "active", motion
     return "undecided", None
@@ -140,7 +140,7 @@ def decide(loop: Loop) -> tuple[str, Any]:
 
 def readings(loop: Loop, positions: tuple[float, ...] | tuple[Fraction, ...]) -> list[int]:
     """Encoder counts at the samples."""
-    return [floor(Fraction(x) / loop.game.losses.resolution) for x in positions]
+    return [floor(Fraction(x) / loop.program.losses.resolution) for x in positions]
 
 
 def stays_in_contact(loop: Loop, motion: Any) -> bool:
@@ -150,9 +150,9 @@ def stays_in_contact(loop: Loop, motion: Any) -> bool:
     return not loop.wall.clamped and min(readings(loop, exact)) > 0
 
 
-def energy_in_game(loop: Loop, positions: tuple[Fraction, ...]) -> Fraction:
+def exact_energy(loop: Loop, positions: tuple[Fraction, ...]) -> Fraction:
     """What a motion from rest takes out of the wall with its surface, by the law's definition [J]."""
-    law, losses = loop.game.law, loop.game.losses
+    law, losses = loop.program.law, loop.program.losses
     seen = [losses.resolution * n for n in readings(loop, positions)]
     taps, out = max(len(law.taps), 1), Fraction(0)
     for k, (here, there) in enumerate(pairwise(positions)):
@@ -164,8 +164,8 @@ def energy_in_game(loop: Loop, positions: tuple[Fraction, ...]) -> Fraction:
 
 
 def within(loop: Loop, positions: tuple[Fraction, ...]) -> bool:
-    """True when a motion keeps to the bounds of the game."""
-    domain, step = loop.game.domain, loop.game.losses.resolution
+    """True when a motion keeps to the bounds."""
+    domain, step = loop.program.domain, loop.program.losses.resolution
     fast = max(abs(b - a) for a, b in pairwise(positions))
     return max(positions) < (domain.highest + 1) * step and fast <= domain.reach * step
 
@@ -173,7 +173,7 @@ def within(loop: Loop, positions: tuple[Fraction, ...]) -> bool:
 def stored_at(loop: Loop, storage: Any, position: Fraction) -> Fraction:
     """V of a hand that rests outside, at most [J]."""
     grid = storage.grid
-    cell = max(floor(position / loop.game.losses.resolution), grid.domain.lowest)
+    cell = max(floor(position / loop.program.losses.resolution), grid.domain.lowest)
     row = storage.value[cell - grid.domain.lowest, grid.histories // 2]
     return Fraction(int(row.max())) * grid.energy_unit
 
@@ -183,17 +183,17 @@ def simulated(loop: Loop, motion: Any) -> tuple[float, float]:
     listed = motion.motion.repeated(25).listed().positions
     positions = [float(x) for x in listed]
     for k, n in enumerate(readings(loop, listed)):  # rounded to a double, the hand may be over an edge
-        step = float(loop.game.losses.resolution)
+        step = float(loop.program.losses.resolution)
         while floor(positions[k] / step) != n:
             positions[k] = float(
                 np.nextafter(positions[k], np.inf if floor(positions[k] / step) < n else -np.inf)
             )
     hand = zw.operators.PrescribedMotion([*positions, positions[-1]])
-    duration = len(positions) * loop.game.losses.period
+    duration = len(positions) * loop.program.losses.period
     trace = zw.simulate(
         loop.device, loop.wall, hand, duration, amplifier=zw.amplifiers.Ideal(), encoder_phase=0
     )
-    return float(energy_in_game(loop, listed)), -float(trace.hand_work[-1])
+    return float(exact_energy(loop, listed)), -float(trace.hand_work[-1])
 
 
 def tracked(loop: Loop, motion: Any) -> bool:
@@ -208,16 +208,16 @@ def tracked(loop: Loop, motion: Any) -> bool:
 
 def _got_by_tracking(loop: Loop, motion: Any, rounds: int, off_the_edge: float) -> list[float]:
     """Energy out by hands of rising stiffness [J]."""
-    step = float(loop.game.losses.resolution)
+    step = float(loop.program.losses.resolution)
     listed = motion.motion.repeated(rounds).listed().positions
     cells = [n * step for n in readings(loop, listed)]
     positions = [max(float(x), edge + off_the_edge * step) for x, edge in zip(listed, cells, strict=True)]
-    mass, period = float(loop.device.mass), float(loop.game.losses.period)
+    mass, period = float(loop.device.mass), float(loop.program.losses.period)
     out = []
     for samples in (0.1, 0.03, 0.01, 0.003):  # time in which the hand follows
         stiffness = mass / (samples * period) ** 2
         hand = zw.operators.Tracking(positions, stiffness=stiffness, damping=2 * (stiffness * mass) ** 0.5)
-        duration = len(positions) * loop.game.losses.period
+        duration = len(positions) * loop.program.losses.period
         trace = zw.simulate(loop.device, loop.wall, hand, duration, amplifier=zw.amplifiers.Ideal())
         out.append(-float(trace.hand_work[-1]))
     return out
@@ -228,7 +228,7 @@ def compare(loop: Loop, tally: Tally, replay: bool) -> None:
     verdict = check_by_closed_forms(loop.device, loop.wall)
     kind = verdict.certificate.kind if verdict.certificate is not None else ""
     outcome, evidence = decide(loop)
-    tally.outcomes[f"check {verdict.outcome} {kind}".strip() + f", game {outcome}"] += 1
+    tally.outcomes[f"check {verdict.outcome} {kind}".strip() + f", storage {outcome}"] += 1
     if outcome == "active":
         if not evidence.verify():
             tally.found("witness: rejected by the checker", loop)
@@ -255,10 +255,10 @@ def _against_proof(loop: Loop, witness: Any, storage: Any, tally: Tally) -> None
     motion = witness.motion.listed() if witness.motion.samples < 20_000 else witness.motion
     positions = motion.positions
     if not within(loop, positions):
-        tally.rounds["check active by a hand beyond the grid, game passive"] += 1
+        tally.rounds["check active by a hand beyond the grid, storage passive"] += 1
         return
-    tally.rounds["check active by a hand on the grid, game passive"] += 1
-    out = energy_in_game(loop, positions)
+    tally.rounds["check active by a hand on the grid, storage passive"] += 1
+    out = exact_energy(loop, positions)
     if out > stored_at(loop, storage, positions[0]):
         tally.found("motion against proof", loop, witness.describe())
 
@@ -266,7 +266,7 @@ def _against_proof(loop: Loop, witness: Any, storage: Any, tally: Tally) -> None
 def _replay(loop: Loop, motion: Any, tally: Tally) -> None:
     tally.rounds["motions replayed in the simulator"] += 1
     exact, seen = simulated(loop, motion)
-    losses, listed = loop.game.losses, motion.motion.repeated(25).listed().positions
+    losses, listed = loop.program.losses, motion.motion.repeated(25).listed().positions
     scale = float(losses.coulomb_friction * sum(abs(b - a) for a, b in pairwise(listed)))
     if abs(exact - seen) > 1e-9 * scale:
         tally.found("witness: another energy in the simulator", loop, f"{exact:g} J, simulated {seen:g} J")
@@ -282,7 +282,7 @@ def _replay(loop: Loop, motion: Any, tally: Tally) -> None:
 
 def main() -> None:
     """Run all and print what was noticed."""
-    parser = argparse.ArgumentParser(description="The worst hand against the closed forms on random walls.")
+    parser = argparse.ArgumentParser(description="Available storage and the closed forms on random walls.")
     parser.add_argument("--loops", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--replays", type=int, default=20, help="replay every so many-th loop")

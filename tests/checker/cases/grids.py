@@ -1,4 +1,4 @@
-"""Forces, averages and costs on a board, state by state, beside the law itself.
+"""Forces, averages and costs on a grid, state by state, beside the law itself.
 
 A table of forces is rounded by some units, and says by how many at most.
 """
@@ -61,13 +61,13 @@ def laws() -> Iterator[Any]:
         yield law(surface, taps=[], points=points, rate=Fraction(9, 5), clamped=True, step=Fraction(1, 8))
 
 
-def forces_on_a_board_are_those_of_the_law() -> str:
+def forces_on_a_grid_are_those_of_the_law() -> str:
     """For every reading that is remembered, of every age."""
-    board = storage("board")
+    grid = storage("grid")
     for told, delay, reach in product(laws(), (0, 1), (1, 2)):
         memory = told.memory + delay
         for age in {delay, max(delay - 1, 0)}:
-            found, off = board._forces(told, losses(delay), UNIT, LOW, HIGH, reach, memory, age)
+            found, off = grid._forces(told, losses(delay), UNIT, LOW, HIGH, reach, memory, age)
             states = product(range(LOW, HIGH + 1), product(range(-reach, reach + 1), repeat=memory))
             for force, (n, moves) in zip(found.ravel(), states, strict=True):
                 readings = [n + sum(moves[:a]) for a in range(memory + 1)][age : age + told.memory + 1]
@@ -83,22 +83,22 @@ def forces_on_a_board_are_those_of_the_law() -> str:
 
 def many_forces_are_computed_in_parts() -> str:
     """However many at once."""
-    board = storage("board")
+    grid = storage("grid")
     told = law(taps=[Fraction(7, 3), Fraction(-5, 7)], step=Fraction(3, 25))
-    whole, _ = board._forces(told, losses(), UNIT, LOW, HIGH, 2, 1, 0)
-    most, board.AT_ONCE = board.AT_ONCE, 11
+    whole, _ = grid._forces(told, losses(), UNIT, LOW, HIGH, 2, 1, 0)
+    most, grid.AT_ONCE = grid.AT_ONCE, 11
     try:
-        parts, _ = board._forces(told, losses(), UNIT, LOW, HIGH, 2, 1, 0)
+        parts, _ = grid._forces(told, losses(), UNIT, LOW, HIGH, 2, 1, 0)
     finally:
-        board.AT_ONCE = most
+        grid.AT_ONCE = most
     return "" if (whole == parts).all() else "other forces in parts"
 
 
-def states_are_those_with_all_readings_on_the_board() -> str:
-    """Of a board of counts, and of cells."""
-    board, coarse, domain = storage("board"), storage("coarse"), storage("domain")
+def states_are_those_with_all_readings_on_the_grid() -> str:
+    """Of a grid of counts, and of cells."""
+    grid, coarse, domain = storage("grid"), storage("coarse"), storage("domain")
     for reach, memory in product((1, 2), (0, 1, 2)):
-        found = board._exists(LOW, HIGH, reach, memory).ravel()
+        found = grid._exists(LOW, HIGH, reach, memory).ravel()
         moves = list(product(range(-reach, reach + 1), repeat=memory))
         if moves != domain.histories_of(reach, memory):
             return "other histories"
@@ -115,10 +115,12 @@ def states_are_those_with_all_readings_on_the_board() -> str:
 def costs_are_below_what_is_lost() -> str:
     """φ D + β (D² − ¼) for D ≥ 2, by some units less; of two models the larger between any two steps."""
     domain = storage("domain")
-    for fastest, steps, part in product((Fraction(2), Fraction(5, 2)), (1, 3), (Fraction(1), Fraction(2, 5))):
+    for max_move, steps, part in product(
+        (Fraction(2), Fraction(5, 2)), (1, 3), (Fraction(1), Fraction(2, 5))
+    ):
         told, off = losses(0, part), 4
-        found = domain.costs_of(told, UNIT, off, part, fastest, steps)
-        if len(found) != ceil(fastest * steps * part) + 1:
+        found = domain.costs_of(told, UNIT, off, part, max_move, steps)
+        if len(found) != ceil(max_move * steps * part) + 1:
             return f"{len(found)} costs"
         friction, damping = told.models[0]
         for d, cost in enumerate(found):
@@ -212,15 +214,15 @@ def forces_at_corners_are_those_of_the_law() -> str:
 def costs_of_cells_are_below_what_is_lost() -> str:
     """φ D + L(D), where the friction has paid for half a count."""
     coarse = storage("coarse")
-    for taps, part, fastest in product(
+    for taps, part, max_move in product(
         ([5], [5, -2], [-5, 2]), (Fraction(1), Fraction(2, 5)), (Fraction(3), Fraction(7, 2))
     ):
         told = law(taps=[Fraction(c, 3) for c in taps])
-        line = coarse._Line(Fraction(3, 2), fastest, 4, 0, [], [])
+        line = coarse._Line(Fraction(3, 2), max_move, 4, 0, [], [])
         kappa = Fraction(max(sum(c for c in taps if c > 0), -sum(c for c in taps if c < 0)), 3)
         device = losses(0, part, (Fraction(9), Fraction(2)))
         found = coarse._costs(told, device, line, UNIT, 4, part)
-        if len(found) != ceil(fastest * part) + 1:
+        if len(found) != ceil(max_move * part) + 1:
             return f"{len(found)} costs"
         friction = 9 - sum(abs(c) for c in told.taps) * STEP / 2
         drag = 2 / (part * PERIOD) * line.length
@@ -252,9 +254,9 @@ def without_numba_the_twin_checks() -> str:
 
 
 CHECKS = (
-    forces_on_a_board_are_those_of_the_law,
+    forces_on_a_grid_are_those_of_the_law,
     many_forces_are_computed_in_parts,
-    states_are_those_with_all_readings_on_the_board,
+    states_are_those_with_all_readings_on_the_grid,
     costs_are_below_what_is_lost,
     averages_go_where_the_law_sends_them,
     forces_at_corners_are_those_of_the_law,

@@ -1,6 +1,12 @@
-"""Numbers a(c) + j sin θ · b(c) on the unit circle, ζ = e^{−jθ}, c = cos θ.
+"""Continuous and discrete time on one circle, and the numbers a(c) + j sin θ · b(c) on it.
 
-    sin²θ = 1 − c²   makes them a ring; the conjugate is a − j sin θ · b
+    s = (1 − ζ)/(1 + ζ)   continuous: Re s > 0 is |ζ| < 1, ω = tan(θ/2)
+    z = 1/ζ               discrete:   |z| > 1 is |ζ| < 1, ωT = θ
+
+On the circle ζ = e^{−jθ}, with c = cos θ: ω² = (1 − c)/(1 + c), and c = −1 is ω = ∞ or the
+Nyquist frequency.
+
+    sin²θ = 1 − c²   makes the numbers a ring; the conjugate is a − j sin θ · b
 
 Every product a(ζ) b̄(ζ) of real polynomials is one.
 """
@@ -9,13 +15,39 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from math import acos, inf, pi, sqrt
+from typing import Literal
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
 from zwidth.passivity.linear.cosines import from_cosines
 
+Time = Literal["continuous", "discrete"]
+
 _SINE_SQUARED = fmpq_poly([1, 0, -1])
 _ZERO = fmpq_poly([])
+
+
+def in_zeta(ascending: Sequence[int], order: int, time: Time) -> tuple[int, ...]:
+    """p(z) ζⁿ, or p(s) (1 + ζ)ⁿ, as a polynomial in ζ with n = order."""
+    if time == "discrete":
+        padded = [*ascending, *[0] * (order + 1 - len(ascending))]
+        return tuple(padded[::-1])
+    total, minus, plus = fmpz_poly([]), fmpz_poly([1, -1]), fmpz_poly([1, 1])
+    for power, coefficient in enumerate(ascending):
+        if coefficient:
+            total += coefficient * minus**power * plus ** (order - power)
+    return tuple(int(total[i]) for i in range(order + 1))
+
+
+def frequency_of(cosine: Fraction, time: Time, period: Fraction) -> float:
+    """ω/2π [Hz] of c = cos θ; inf in continuous time at c = −1."""
+    if time == "discrete":
+        return acos(max(-1.0, min(1.0, float(cosine)))) / (2 * pi * float(period))
+    if cosine == -1:
+        return inf
+    return sqrt((1 - cosine) / (1 + cosine)) / (2 * pi)
 
 
 @dataclass(frozen=True)

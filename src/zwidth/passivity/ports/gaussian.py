@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from zwidth.passivity.ports.multiport.port import MatrixPort, Polynomials
+from zwidth.passivity.ports.port import Polynomials, Port
+from zwidth.quantity.balls import as_fmpq, as_fraction
 
 
 class Gaussian(NamedTuple):
@@ -22,9 +23,9 @@ Vector = Sequence[Gaussian]
 ZERO = Gaussian(fmpq(0), fmpq(0))
 
 
-def place(port: MatrixPort, tangent: Fraction) -> Gaussian:
+def place(port: Port, tangent: Fraction) -> Gaussian:
     """s = jω, ω = tangent; or z = e^{jθ}, tan θ/2 = tangent: rational on the unit circle."""
-    t = fmpq(tangent.numerator, tangent.denominator)
+    t = as_fmpq(tangent)
     if port.time == "continuous":
         return Gaussian(fmpq(0), t)
     return Gaussian((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t))
@@ -44,18 +45,18 @@ def value(ascending: Sequence[int], at: Gaussian) -> Gaussian:
     return total
 
 
-def absorbed_at(port: MatrixPort, level: Fraction, at: Gaussian, latent: Vector) -> fmpq:
+def absorbed_at(port: Port, level: Fraction, at: Gaussian, latent: Vector) -> fmpq:
     """φᴴ Π_σ φ: what a line of the latent φ absorbs above the level."""
     u, y = (answer(side, at, latent) for side in (port.inputs, port.outputs))
-    sigma, total = fmpq(level.numerator, level.denominator), fmpq(0)
+    sigma, total = as_fmpq(level), fmpq(0)
     for a, b in zip(u, y, strict=True):
         total += a.real * b.real + a.imaginary * b.imaginary - sigma * (a.real**2 + a.imaginary**2)
     return total
 
 
-def form_at(port: MatrixPort, level: Fraction, at: Gaussian) -> list[list[Gaussian]]:
+def form_at(port: Port, level: Fraction, at: Gaussian) -> list[list[Gaussian]]:
     """Π_σ at a point, by polarization of its columns."""
-    sigma, size = fmpq(level.numerator, level.denominator), range(port.axes)
+    sigma, size = as_fmpq(level), range(port.axes)
     u, y = ([[value(side[k][j], at) for k in size] for j in size] for side in (port.inputs, port.outputs))
     above = [
         [
@@ -75,7 +76,7 @@ def form_at(port: MatrixPort, level: Fraction, at: Gaussian) -> list[list[Gaussi
 
 def to_float(value: fmpq) -> float:
     """The nearest double."""
-    return float(Fraction(int(value.p), int(value.q)))
+    return float(as_fraction(value))
 
 
 def _dot(row: Vector, column: Vector) -> Gaussian:

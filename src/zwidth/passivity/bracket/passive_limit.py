@@ -1,0 +1,116 @@
+"""How far one parameter may go: a bracket, proved passive below and refuted above."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from zwidth.device.device import Device
+from zwidth.device.friction import FrictionCurve
+from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.errors import InputError
+from zwidth.passivity.bracket.bounded import BoundedSearch
+from zwidth.passivity.bracket.bracket import Bracket
+from zwidth.passivity.bracket.parameter import parameter_of, refuse_without_part
+from zwidth.passivity.bracket.search import NOTHING, Search
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.storage.program import DynamicProgram, program_of
+from zwidth.passivity.storage.row.program import RowProgram, row_program
+from zwidth.passivity.storage.slow_hands import slow_hands
+from zwidth.passivity.storage.solution import patience
+from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.rendering.rendered import stages_of
+
+
+def passive_limit(
+    device: Device,
+    environment: Environment | Any,
+    parameter: str = "stiffness",
+    *,
+    penetration: RealLike | None = None,
+    speed: RealLike | None = None,
+    force_limit: bool = False,
+    force_resolution: bool = False,
+    friction: FrictionCurve | None = None,
+    tolerance: float = 0.01,
+    seconds: float = 60.0,
+    progress: Callable[[int, int], None] | None = None,
+) -> Bracket:
+    """How far a parameter may go: proved passive on one side, refuted by a motion on the other.
+
+    Contact is made and broken at will.  Without bounds on the hand the closed
+    conditions are tried first, which cover every hand; where they end, and always
+    where the hand is bounded, the game of `worst_hand` is played.
+
+    Parameters
+    ----------
+    device, environment
+        The loop, without intervals.
+    parameter
+        A parameter of the environment ("stiffness", "damping") or of the device
+        ("coulomb_friction", "device.damping", "sample_period", "resolution", …);
+        of a `NonlinearSpring` or a transfer function "gain", a factor on its force; of a
+        `HuntCrossley` contact "stiffness" or "dissipation".  Of laws in a row one of the
+        environment that they render.
+    penetration, speed
+        Bounds on the hand [m; rad], [m/s; rad/s], as for `worst_hand`.
+    force_limit, force_resolution
+        True to count in the device's force limit, the steps of its converter.
+    friction
+        Friction measured at several speeds, in place of the device's b and f_c.
+    tolerance
+        Relative width of the bracket that is wanted.
+    seconds
+        Time after which the bracket so far is returned; that of compiling, once, is not counted.
+    progress
+        Told (loops decided, about how many there will be).
+
+    Raises
+    ------
+    InputError
+        If there is no such parameter, or the game cannot be played (see `worst_hand`).
+    """
+    if not isinstance(device, Device):
+        raise InputError(f"the first argument is a Device, got {type(device).__name__}")
+    if not isinstance(tolerance, int | float) or not 1e-6 <= tolerance < 1:
+        raise InputError(
+            f"tolerance must be a number from 1e-6 to 1, got {tolerance!r}: it is the relative width wanted"
+        )
+    if not isinstance(parameter, str):
+        raise InputError(f"parameter is the name of one, such as 'stiffness', got {parameter!r}")
+    law = as_environment(environment)
+    refuse_without_part(parameter.removeprefix("device."), force_limit, force_resolution)
+    asked = parameter_of(device, law, parameter)
+    patience(seconds)
+    counted = penetration, speed, force_limit, force_resolution, friction
+    ideal = ends(device.resolution)[1] == 0
+    in_a_row = bool(stages_of(law))
+    if not (ideal or in_a_row) and isinstance(first := program_of(device, law, *counted), DynamicProgram):
+        first.warm_up()
+    search = Search(asked, tolerance, time.monotonic(), patience(seconds), progress)
+    if friction is not None and asked.name in ("device.damping", "device.coulomb_friction"):
+        raise InputError(f"{parameter} plays no part beside a friction curve: leave out one of the two")
+    closed = not (force_limit or force_resolution or friction is not None)
+    every = (search.by_closed_forms() if closed else None) or NOTHING
+    bounded = penetration is not None or speed is not None
+    settled = every.passive is not None or every.active is not None
+    if not bounded and (search.is_close(every.passive, every.active) or (settled and ideal)):
+        return search.bracket(every, (every.passive, every.active))  # no game narrows an ideal encoder's
+
+    # laws in a row have one grid for all values: that on which they close as they are given
+    boards = (row_program(device, law, *counted).counts,) if in_a_row else ()
+
+    def program(value: Exact) -> DynamicProgram | RowProgram:
+        changed, rendered = asked.change(value)
+        if in_a_row:
+            return row_program(changed, rendered, *counted, boards)
+        return program_of(changed, rendered, *counted)
+
+    def slow(value: Exact) -> Certificate | None:
+        if not closed or in_a_row:
+            return None
+        return slow_hands(*asked.change(value), program(value).bounds.speed)
+
+    return BoundedSearch(search, program, slow, every).bracket()

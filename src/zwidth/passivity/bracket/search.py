@@ -1,0 +1,140 @@
+"""The two values of a bracket, sought by closed forms; loops and time are counted."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from zwidth.errors import InputError
+from zwidth.passivity.bracket.bracket import Bracket
+from zwidth.passivity.bracket.parameter import Parameter
+from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.scope import Scope
+from zwidth.passivity.storage.evidence.gain import Gain
+from zwidth.passivity.storage.evidence.storage_function import StorageFunction
+from zwidth.passivity.storage.hand_bounds import HandBounds
+from zwidth.passivity.storage.row.storage_function import RowStorage
+from zwidth.passivity.storage.two_sides import Side, approach
+from zwidth.passivity.witness.violation import Violation
+from zwidth.passivity.witness.witness import Witness
+from zwidth.quantity.exact import Exact
+
+Holds = Callable[[Exact, float], bool]
+"""Whether a claim is shown at a value by a time."""
+
+
+class Found(NamedTuple):
+    """Two values and their evidence."""
+
+    passive: Exact | None
+    active: Exact | None
+    certificate: Certificate | None
+    witness: Gain | Witness | None
+    scope: Scope
+    violation: Violation | None = None
+
+
+NOTHING = Found(None, None, None, None, Scope())
+
+
+class Search:
+    """Looks for the two values, counting loops and time."""
+
+    def __init__(
+        self,
+        parameter: Parameter,
+        tolerance: float,
+        start: float,
+        seconds: float,
+        progress: Callable[[int, int], None] | None,
+    ) -> None:
+        self.parameter, self.tolerance = parameter, tolerance
+        self.start, self.deadline, self.progress = start, start + seconds, progress
+        self.evaluations = 0
+        self.first = Exact(parameter.now or 1.0)
+
+    def by_closed_forms(self) -> Found | None:
+        """What certificates and motions show of every hand; None for a law that has none."""
+        verdicts: dict[Exact, Any] = {}
+
+        def verdict(value: Exact) -> Any:
+            if value not in verdicts:
+                self.count()
+                verdicts[value] = check_by_closed_forms(*self.parameter.change(value))
+            return verdicts[value]
+
+        def proved(value: Exact, _: float) -> bool:
+            return bool(verdict(value).outcome == "passive")
+
+        def refuted(value: Exact, _: float) -> bool:
+            return bool(verdict(value).outcome == "active")
+
+        try:
+            verdict(self.first)
+        except InputError:  # a law without H(z), which only value iteration can decide
+            return None
+        sides = self.sides(proved, refuted)
+        approach(*sides, self.tolerance / 4, self.deadline)
+        passive, active = (side.good for side in sides)
+        good = None if passive is None else verdict(passive)
+        bad = None if active is None else verdict(active)
+        known = next((each for each in (good, bad) if each is not None), verdict(self.first))
+        proof = None if good is None else good.certificate
+        motion, violation = (None, None) if bad is None else (bad.witness, bad.violation)
+        return Found(passive, active, proof, motion, known.scope, violation)
+
+    def bracket(
+        self,
+        found: Found,
+        every_hand: tuple[Exact | None, Exact | None],
+        bounds: HandBounds | None = None,
+        storage: StorageFunction | RowStorage | None = None,
+    ) -> Bracket:
+        """What was found, as it is given back."""
+        return Bracket(
+            self.parameter.name,
+            self.parameter.unit,
+            _plain(found.passive),
+            _plain(found.active),
+            found.certificate,
+            found.witness,
+            found.scope,
+            (_plain(every_hand[0]), _plain(every_hand[1])),
+            self.evaluations,
+            time.monotonic() - self.start,
+            storage,
+            bounds,
+            found.violation,
+        )
+
+    def sides(self, proved: Holds, refuted: Holds) -> tuple[Side, Side]:
+        """What is sought on either side: a proof as far as it goes, and a motion from beyond."""
+        onward = -1 if self.parameter.more_is_safer else 1
+        return Side(proved, onward, self.first), Side(refuted, -onward, self.first)
+
+    def is_close(self, passive: Exact | None, active: Exact | None) -> bool:
+        """True where the two are as near to each other as is wanted."""
+        if passive is None or active is None:
+            return False
+        return abs(active - passive) <= self.tolerance * max(active, passive)
+
+    def share(self, part: float) -> float:
+        """When a part of the time that is left will be over."""
+        now = time.monotonic()
+        return now + part * max(self.deadline - now, 0.0)
+
+    def count(self) -> None:
+        """One loop more is looked at."""
+        self.evaluations += 1
+        self.tell(0)
+
+    def tell(self, _: int) -> None:
+        """Say how far it is; a round of values has passed."""
+        if self.progress is not None:
+            self.progress(self.evaluations, max(30, self.evaluations + 1))
+
+
+def _plain(value: float | None) -> float | None:
+    return None if value is None else float(value)

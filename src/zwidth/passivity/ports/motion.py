@@ -1,0 +1,184 @@
+"""An input that takes more out of a port than a level allows, with its exact energy.
+
+With φ a signal for each axis that begins at rest, u = D φ and y = N φ answer each other through
+the port (D and N as differential operators, or of shifts), and what the port absorbs above the
+level σ is a quadratic form of φ:
+
+    W = ∫ uᵀy − σ uᵀu dt,   discrete  W = Σ uᵀy − σ uᵀu
+
+burst
+    φ_i = (1 − cos Ωt)ᵏ (α_i cos mΩt + β_i sin mΩt) over one period 2π/Ω: a sinusoid that fades in and
+    out, every axis with an amplitude and a phase of its own.  It has lines at (m + j)Ω, |j| ≤ k, with
+    b_j = (−1)ʲ C(2k, k + j)/2ᵏ, so that with a_i = α_i − jβ_i
+    W = (π/Ω) Σ b_j² aᴴ Π_σ a, Π_σ at each line: rational but for π.
+polynomial
+    φ_i = Σ a_ij xʳ⁺ʲ, x = t/τ, on 0 ≤ t ≤ τ, which may end away from rest: for what grows.
+sequence
+    φ_i as a list of numbers, for discrete ports; it too may end away from rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from math import comb, cos, pi, sin
+from typing import Literal
+
+from flint import fmpq, fmpq_poly, fmpz
+
+from zwidth.passivity.ports.gaussian import Gaussian, absorbed_at, answer, to_float
+from zwidth.passivity.ports.port import Polynomials, Port
+from zwidth.quantity.balls import as_fmpq, as_fraction
+
+Played = list[list[float]]
+Signals = list[fmpq_poly]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """φ, see the module.
+
+    Parameters
+    ----------
+    kind
+        "burst", "polynomial" or "sequence".
+    numbers
+        burst: Ω [rad/s], m, k.  polynomial: τ [s], r.  sequence: none.
+    axes
+        For each axis: burst α_i, β_i; polynomial a_i0, a_i1 …; sequence φ_i(0), φ_i(1) …
+    """
+
+    kind: Literal["burst", "polynomial", "sequence"]
+    numbers: tuple[Fraction, ...]
+    axes: tuple[tuple[Fraction, ...], ...]
+
+    @property
+    def latent(self) -> list[Gaussian]:
+        """a_i = α_i − jβ_i of a burst."""
+        return [Gaussian(as_fmpq(alpha), -as_fmpq(beta)) for alpha, beta in self.axes]
+
+
+def absorbed(port: Port, level: Fraction, motion: Motion) -> Fraction:
+    """W of a motion, exactly; of a burst W/π."""
+    if motion.kind == "burst":
+        return _burst_energy(port, level, motion)
+    pairing, unit = (_dotted, Fraction(1)) if motion.kind == "sequence" else (_integral, motion.numbers[0])
+    return unit * _paired(answers(port, motion), level, pairing)
+
+
+def absorbed_in_samples(port: Port, level: Fraction, rows: Sequence[Sequence[int]]) -> Fraction:
+    """W of a sequence of whole numbers, a row for each axis."""
+    return _paired(_in_samples(port, [fmpq_poly(list(row)) for row in rows], len(rows[0])), level, _dotted)
+
+
+def _paired(
+    sides: tuple[Signals, Signals], level: Fraction, pairing: Callable[[fmpq_poly, fmpq_poly], fmpq]
+) -> Fraction:
+    sigma, total = as_fmpq(level), fmpq(0)
+    for u, y in zip(*sides, strict=True):
+        total += pairing(u, y - sigma * u)
+    return as_fraction(total)
+
+
+def _dotted(p: fmpq_poly, q: fmpq_poly) -> fmpq:
+    """Σ p_k q_k."""
+    both = zip(p.numer().coeffs(), q.numer().coeffs(), strict=False)
+    return fmpq(sum((a * b for a, b in both), fmpz(0)), p.denom() * q.denom())
+
+
+def _integral(p: fmpq_poly, q: fmpq_poly) -> fmpq:
+    """∫ p q dx over [0, 1]."""
+    return (p * q).integral()(1)
+
+
+def _burst_energy(port: Port, level: Fraction, motion: Motion) -> Fraction:
+    """W/π, line by line."""
+    step, cycles, power = motion.numbers
+    total, latent = fmpq(0), motion.latent
+    for j, b in _lines(int(power)):
+        at = Gaussian(fmpq(0), as_fmpq((cycles + j) * step))
+        total += as_fmpq(b * b) * absorbed_at(port, level, at, latent)
+    return as_fraction(total) / step
+
+
+def answers(port: Port, motion: Motion) -> tuple[Signals, Signals]:
+    """u and y of a polynomial in x = t/τ, or of a sequence Σ u(k) xᵏ; axis by axis."""
+    rows = [[as_fmpq(a) for a in row] for row in motion.axes]
+    if motion.kind == "sequence":
+        return _in_samples(port, [fmpq_poly(row) for row in rows], len(rows[0]))
+    tau, lowest = motion.numbers
+    latent = [fmpq_poly([fmpq(0)] * int(lowest) + row) for row in rows]
+    return _both_sides(port, latent, partial(_differentiated, pace=1 / as_fmpq(tau)))
+
+
+def _in_samples(port: Port, latent: Signals, length: int) -> tuple[Signals, Signals]:
+    return _both_sides(port, latent, partial(_shifted, order=port.order, length=length))
+
+
+def _both_sides(
+    port: Port, latent: Signals, apply: Callable[[fmpq_poly, Sequence[int]], fmpq_poly]
+) -> tuple[Signals, Signals]:
+    """D φ and N φ."""
+
+    def answer_of(side: Polynomials) -> Signals:
+        return [
+            sum((apply(phi, p) for phi, p in zip(latent, row, strict=True)), fmpq_poly([])) for row in side
+        ]
+
+    return answer_of(port.inputs), answer_of(port.outputs)
+
+
+def _shifted(phi: fmpq_poly, ascending: Sequence[int], order: int, length: int) -> fmpq_poly:
+    """Σ a_i φ(k + i − order) while φ is given, φ = 0 before."""
+    lags = [0] * (order + 1 - len(ascending)) + list(ascending[::-1])
+    return fmpq_poly((phi * fmpq_poly(lags)).coeffs()[:length])
+
+
+def _differentiated(phi: fmpq_poly, ascending: Sequence[int], pace: fmpq) -> fmpq_poly:
+    """Σ c_i φ⁽ⁱ⁾ paceⁱ, in x = t·pace."""
+    total = fmpq_poly([])
+    for c in ascending:
+        total += c * phi
+        phi = phi.derivative() * pace
+    return total
+
+
+def played(port: Port, motion: Motion, points: int) -> tuple[list[float], Played, Played]:
+    """(t, u, y) to rounding: the samples, or so many points from beginning to end."""
+    if motion.kind == "burst":
+        return _played_burst(port, motion, points)
+    sides = answers(port, motion)
+    if motion.kind == "sequence":
+        length = range(len(motion.axes[0]))
+        u, y = ([[to_float(p[k]) for k in length] for p in side] for side in sides)
+        return [k * float(port.period) for k in length], u, y
+    x = [Fraction(k, points - 1) for k in range(points)]
+    u, y = ([[to_float(p(as_fmpq(at))) for at in x] for p in side] for side in sides)
+    return [float(motion.numbers[0] * at) for at in x], u, y
+
+
+def _played_burst(port: Port, motion: Motion, points: int) -> tuple[list[float], Played, Played]:
+    """The sum of the lines, each turned and scaled by D or N."""
+    step, cycles, power = motion.numbers
+    x = [k / (points - 1) for k in range(points)]
+    sides: list[Played] = []
+    for entries in (port.inputs, port.outputs):
+        total = [[0.0] * points for _ in range(port.axes)]
+        for j, b in _lines(int(power)):
+            turn, at = 2 * pi * float(cycles + j), Gaussian(fmpq(0), as_fmpq((cycles + j) * step))
+            for axis, line in enumerate(answer(entries, at, motion.latent)):
+                real, imaginary = (float(as_fraction(v) * b) for v in line)
+                total[axis] = [
+                    t + real * cos(turn * at) - imaginary * sin(turn * at)
+                    for t, at in zip(total[axis], x, strict=True)
+                ]
+        sides.append(total)
+    return [2 * pi / float(step) * at for at in x], sides[0], sides[1]
+
+
+def _lines(power: int) -> Iterator[tuple[int, Fraction]]:
+    """(j, b_j) of (1 − cos x)ᵏ = Σ b_j cos jx."""
+    for j in range(-power, power + 1):
+        yield j, (-1) ** (j % 2) * Fraction(comb(2 * power, power + j), 2**power)

@@ -1,0 +1,206 @@
+"""The search for an input that takes more out of a port than a level allows.
+
+Where Π_σ has a negative eigenvalue, a burst at that frequency with the amplitudes and phases of its
+eigenvector does, if it is long enough.  Where it has none and a pole lies where it may not, energy
+comes out of what grows: the form W of polynomials (or short sequences) is then not ≥ 0, and
+elimination says where.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from math import acos, log10, pi, sin, sqrt
+from typing import Literal
+
+import numpy as np
+from flint import fmpq, fmpq_mat, fmpz_poly
+
+from zwidth.passivity.linear.elimination import negative_direction
+from zwidth.passivity.ports.gaussian import Gaussian, absorbed_at, form_at, place, to_float
+from zwidth.passivity.ports.motion import Motion, absorbed, absorbed_in_samples, answers
+from zwidth.passivity.ports.poles import places_of
+from zwidth.passivity.ports.port import Port
+from zwidth.passivity.ports.positive_real import prove_minors
+from zwidth.quantity.balls import as_fmpq, as_fraction
+
+_MOST_CYCLES = 1 << 22
+_LONGEST_SEQUENCE = 1 << 17
+_TERMS = 24
+_LENGTHS = (2, 4, 8, 16, 32, 48)
+_LARGEST_ORDER = 24
+
+Axes = tuple[tuple[Fraction, ...], ...]
+Kind = Literal["polynomial", "sequence"]
+
+_ALONE: Axes = ((Fraction(1), Fraction(0)),)
+"""One axis: its amplitude and phase only scale and shift a burst."""
+
+
+def find_motion(port: Port, level: Fraction, cosine: Fraction | None) -> Motion | None:
+    """A motion with W < 0 at the level, looked for at `cosine` first; None if none is found."""
+    continuous = port.time == "continuous"
+    for c in _frequencies(port, level, cosine):
+        burst = _burst(port, level, c) if continuous else _discrete_burst(port, level, c)
+        if burst is not None:
+            return burst
+    return _polynomial(port, level) if continuous else _sequence(port, level)
+
+
+def _frequencies(port: Port, level: Fraction, cosine: Fraction | None) -> Iterator[Fraction]:
+    """c at which Π_σ may be negative: the given one, and one where it is."""
+    if cosine is not None and -1 < cosine < 1:
+        yield cosine
+    found = prove_minors(port, level)
+    if isinstance(found, Fraction):
+        yield found
+
+
+def _burst(port: Port, level: Fraction, cosine: Fraction) -> Motion | None:
+    """As few cycles as are enough; smooth enough for u and y to be without jumps."""
+    omega, power = sqrt((1 - cosine) / (1 + cosine)), port.order // 2 + 1
+    for axes in _directions(port, level, Fraction(omega)):
+        cycles = power + 1
+        while cycles <= _MOST_CYCLES:
+            step = Fraction(f"{omega / cycles:.9g}")
+            motion = Motion("burst", (step, Fraction(cycles), Fraction(power)), axes)
+            if absorbed(port, level, motion) < 0:
+                return motion
+            cycles *= 2
+    return None
+
+
+def _discrete_burst(port: Port, level: Fraction, cosine: Fraction) -> Motion | None:
+    """Windowed sinusoids in whole numbers and then rest, doubled in length until it is enough."""
+    angle, tangent = acos(float(cosine)), Fraction(sqrt((1 - cosine) / (1 + cosine)))
+    for axes in _directions(port, level, tangent):
+        latent = np.array([complex(alpha, -beta) for alpha, beta in axes])
+        length = 8
+        while length * port.axes <= _LONGEST_SEQUENCE:
+            window = np.array([sin(pi * (i + 1) / (length + 1)) ** 2 for i in range(length)])
+            turns = np.exp(1j * angle * (np.arange(length) - (length - 1) / 2))
+            phi = (latent[:, None] * window * turns).real / np.abs(latent).max()
+            for scale in (10, 1000, 10**6):
+                whole = np.rint(scale * phi).astype(int)
+                rows = [[*row, *[0] * port.order] for row in whole.tolist()]
+                if whole.any() and absorbed_in_samples(port, level, rows) < 0:
+                    return Motion("sequence", (), tuple(tuple(map(Fraction, row)) for row in rows))
+            length *= 2
+    return None
+
+
+def _directions(port: Port, level: Fraction, tangent: Fraction) -> Iterator[Axes]:
+    """(α_i, β_i) with aᴴ Π_σ a < 0 at this place: the eigenvector in few digits, or one by elimination."""
+    at = place(port, tangent)
+    for axes in [_ALONE] if port.axes == 1 else _candidates(form_at(port, level, at)):
+        latent = [Gaussian(as_fmpq(alpha), -as_fmpq(beta)) for alpha, beta in axes]
+        if absorbed_at(port, level, at, latent) < 0:
+            yield axes
+            return
+
+
+def _candidates(form: list[list[Gaussian]]) -> Iterator[Axes]:
+    scale = max(max(abs(x.real), abs(x.imaginary)) for row in form for x in row)
+    if scale == 0:
+        return
+    shown = np.array(
+        [[complex(to_float(x.real / scale), to_float(x.imaginary / scale)) for x in row] for row in form]
+    )
+    vector = np.linalg.eigh(shown)[1][:, 0]
+    vector = vector / vector[np.argmax(np.abs(vector))]
+    for digits in (4, 9, 15):
+        yield tuple((_decimal(a.real, digits), _decimal(-a.imag, digits)) for a in vector)
+    exact = negative_direction(_embedded(form))
+    if exact is not None:
+        size = len(form)
+        values = [as_fraction(x) for x in exact]
+        yield tuple((values[i], -values[size + i]) for i in range(size))
+
+
+def _embedded(form: list[list[Gaussian]]) -> list[list[fmpq]]:
+    """The real symmetric matrix (Re −Im; Im Re) of twice the size with the same values."""
+    upper = [[x.real for x in row] + [-x.imaginary for x in row] for row in form]
+    return upper + [[x.imaginary for x in row] + [x.real for x in row] for row in form]
+
+
+def _polynomial(port: Port, level: Fraction) -> Motion | None:
+    """Polynomials over a few durations, of the pace at which the port grows."""
+    lowest, terms = port.order, max(2, _TERMS // port.axes)
+    if lowest > _LARGEST_ORDER:
+        return None
+    poles, width = port.poles(), range(lowest + terms)
+    known = fmpz_poly(list(port.denominator)) if poles is None else poles.numer()
+    means = fmpq_mat([[fmpq(1, i + j + 1) for j in width] for i in width])  # of xⁱ⁺ʲ over [0, 1]
+    for tau in _paces(places_of(known)):
+        found = _grown(port, level, "polynomial", (tau, Fraction(lowest)), terms, means)
+        if found is not None:
+            return found
+    return None
+
+
+def _sequence(port: Port, level: Fraction) -> Motion | None:
+    """The first of growing lengths at which the form of φ is not ≥ 0."""
+    for length in _LENGTHS:
+        if length * port.axes > 2 * max(_LENGTHS):
+            return None
+        once = fmpq_mat([[fmpq(int(i == j)) for j in range(length)] for i in range(length)])
+        found = _grown(port, level, "sequence", (), length, once)
+        if found is not None:
+            return found
+    return None
+
+
+def _grown(
+    port: Port, level: Fraction, kind: Kind, head: tuple[Fraction, ...], terms: int, weight: fmpq_mat
+) -> Motion | None:
+    """A motion of so many terms with W < 0, in few digits where these are enough."""
+    direction = negative_direction(_form(port, level, list(_units(kind, head, port.axes, terms)), weight))
+    if direction is None:
+        return None
+    exact = [as_fraction(x) for x in direction]
+    for digits in (3, 6, 12, 24):
+        motion = Motion(kind, head, _by_axis(_rounded(exact, digits), port.axes))
+        if absorbed(port, level, motion) < 0:
+            return motion
+    return Motion(kind, head, _by_axis(exact, port.axes))
+
+
+def _units(kind: Kind, head: tuple[Fraction, ...], axes: int, terms: int) -> Iterator[Motion]:
+    """Every motion of one number alone."""
+    for one in range(axes * terms):
+        numbers = [Fraction(int(k == one)) for k in range(axes * terms)]
+        yield Motion(kind, head, _by_axis(numbers, axes))
+
+
+def _form(port: Port, level: Fraction, motions: Sequence[Motion], weight: fmpq_mat) -> list[list[fmpq]]:
+    """½ (u_iᵀz_j + u_jᵀz_i), z = y − σ u, of all pairs of motions: of coefficients, with their weight."""
+    pairs, width = [answers(port, motion) for motion in motions], range(weight.ncols())
+    total = fmpq_mat(len(pairs), len(pairs))
+    for axis in range(port.axes):
+        u, y = (fmpq_mat([[pair[side][axis][k] for k in width] for pair in pairs]) for side in (0, 1))
+        total += u * weight * (y - u * as_fmpq(level)).transpose()
+    form: list[list[fmpq]] = ((total + total.transpose()) * fmpq(1, 2)).tolist()
+    return form
+
+
+def _paces(places: Sequence[complex]) -> list[Fraction]:
+    """Durations [s]: a few times 1/σ of what grows among the poles, and of the size of every one."""
+    rates = [p.real for p in places if p.real > 1e-9 * abs(p)] + [abs(p) for p in places if p] + [1.0]
+    return [Fraction(f"{factor / pace:.3g}") for factor in (2, 8, 32) for pace in rates]
+
+
+def _rounded(values: Sequence[Fraction], digits: int) -> list[Fraction]:
+    """To so many digits of the largest, as decimals."""
+    largest = max(abs(v) for v in values)
+    decade = digits - round(log10(largest)) if largest else 0
+    unit = Fraction(10) ** decade
+    return [Fraction(round(v * unit)) / unit for v in values]
+
+
+def _by_axis(values: Sequence[Fraction], axes: int) -> Axes:
+    terms = len(values) // axes
+    return tuple(tuple(values[i * terms : (i + 1) * terms]) for i in range(axes))
+
+
+def _decimal(value: float, digits: int) -> Fraction:
+    return Fraction(f"{value:.{digits}f}")

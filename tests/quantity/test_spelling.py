@@ -1,0 +1,22 @@
+"""Units as recordings spell them."""
+
+from __future__ import annotations
+
+import pytest
+
+from zwidth.quantity.dimension import unit_of
+from zwidth.quantity.spelling import spelled
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [("msec", "ms"), (" µm ", "um"), ("°", "deg"), ("Nm", "N*m"), ("mN·m", "mN*m"), ("N mm", "N*mm")],
+)
+def test_a_spelling_is_the_unit_that_is_meant(written, meant):
+    """The same scale and dimension."""
+    assert unit_of(spelled(written)) == unit_of(meant)
+
+
+def test_what_is_no_unit_is_left_as_it_is():
+    """It is for whoever reads it to refuse."""
+    assert spelled("parsec") == "parsec"

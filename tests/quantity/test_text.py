@@ -1,0 +1,53 @@
+"""Numbers and units as people read them."""
+
+from __future__ import annotations
+
+from math import inf
+
+import pytest
+
+from zwidth.quantity.text import in_a_table, in_unit, in_words, quantity_unit, shown, unit_text
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (22.4e-6, "m", "22.4 µm"),
+        (0.12, "N", "0.12 N"),
+        (0.00336, "N", "3.36 mN"),
+        (999.96e-6, "s", "1 ms"),
+        (-0.001427, "J", "-1.427 mJ"),
+        (300, "N/m", "300 N/m"),
+        (0.15, "N*m*s/rad", "0.15 N·m·s/rad"),
+        (5, "1", "5"),
+        (0, "m", "0 m"),
+        (1e30, "J", "1e+30 J"),
+        (5e-324, "J", "4.941e-324 J"),
+        (inf, "N/m", "any"),
+        (None, "N/m", "none"),
+    ],
+)
+def test_a_value_with_its_unit(value: float | None, unit: str, text: str) -> None:
+    """Four digits, a prefix where people use one."""
+    assert shown(value, unit) == text
+
+
+def test_a_value_in_a_unit_that_is_kept() -> None:
+    """Six digits without a prefix; what is no number is a word."""
+    assert in_unit(0.0123456789, "N*s/m") == "0.0123457 N·s/m"
+    assert (in_unit(None, "N/m"), in_unit(inf, "N/m")) == ("none", "any")
+
+
+def test_units_and_keys_in_words() -> None:
+    """Of a rotary device its own unit; Coulomb is a name."""
+    assert unit_text("kg*m^2") == "kg·m²"
+    assert quantity_unit("damping") == "N·s/m"
+    assert quantity_unit("stiffness", "rotary") == "N·m/rad"
+    assert in_words("coulomb_friction") == "Coulomb friction"
+
+
+def test_a_number_in_a_table() -> None:
+    """Whole where there are more digits before the point, up to a million."""
+    numbers = (1234567.0, 12345.6, 999.96, 0.00012345)
+    assert [in_a_table(number) for number in numbers] == ["1.235e+06", "12346", "1000", "0.0001234"]
+    assert in_a_table(0.98765, 3) == "0.988"
