@@ -129,9 +129,10 @@ def decided(environment, damping, friction, **implementation):
     loop = program(environment, damping, friction, **implementation)
     enough, outside = min(damping, friction) > 1, implementation["surface"] == "position"
     steps = (32, 4) if enough else (32,) if implementation["clamped"] else (4,)
-    steps = (8, 16) if loop.law.relaxing is None else steps
+    rounds = 40 if steps == (32,) else 90
+    steps, rounds = ((8, 16), 300) if loop.law.relaxing is None else (steps, rounds)
     attempts = {
-        "proved": lambda: proved(loop, steps, 300 if loop.law.relaxing is None else 90),
+        "proved": lambda: proved(loop, steps, rounds),
         "refuted": lambda: refuted(loop, (64, 256, 16) if enough and outside else (64,)),
     }
     for outcome in ("refuted", "proved") if damping < 1 or outside else ("proved", "refuted"):

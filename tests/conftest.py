@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from threading import RLock
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -12,6 +14,8 @@ from hypothesis import HealthCheck, settings
 # no window, and no settings of one's own for pictures: before anything imports matplotlib
 os.environ["MPLBACKEND"] = "agg"
 os.environ["MATPLOTLIBRC"] = str(Path(__file__).parent / "matplotlibrc")
+# matrices here are small: threads for them cost more than they save, most where several processes run
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 settings.register_profile(
     "explore",  # --hypothesis-profile=explore: other examples in every run
@@ -47,5 +51,49 @@ def _time_enough() -> Iterator[None]:
     """A game that is to be decided is decided, also on a busy machine and where it is compiled first."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("zwidth.passivity.game.SECONDS", 60.0)
-        patch.setattr("zwidth.maps.workers._PATIENCE", "600 s")
         yield
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Each process begins elsewhere, so that they seldom want the same compiled; who is done helps out."""
+    if config.getoption("dist") != "load":
+        return None
+    from xdist.scheduler import WorkStealingScheduling
+
+    return WorkStealingScheduling(config, log)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _compiled_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What one process compiles the others wait for, and read from the disk."""
+    if os.name != "posix" or "PYTEST_XDIST_WORKER" not in os.environ:
+        yield
+        return
+    from numba.core.dispatcher import Dispatcher
+
+    with pytest.MonkeyPatch.context() as patch:
+        shared = tmp_path_factory.getbasetemp().parent
+        patch.setattr(Dispatcher, "compile", _one_at_a_time(Dispatcher.compile, shared))
+        yield
+
+
+def _one_at_a_time(compiled: Callable[..., Any], folder: Path) -> Callable[..., Any]:
+    """Compiles what a function calls along with it: only the outermost waits, for others of its file."""
+    import fcntl
+
+    inside, thread = [], RLock()
+
+    def waiting(dispatcher: Any, signature: Any) -> Any:
+        with thread:
+            if inside:
+                return compiled(dispatcher, signature)
+            with open(folder / f"{dispatcher.py_func.__module__}.lock", "w") as file:
+                fcntl.flock(file, fcntl.LOCK_EX)
+                inside.append(dispatcher)
+                try:
+                    return compiled(dispatcher, signature)
+                finally:
+                    inside.clear()
+
+    return waiting

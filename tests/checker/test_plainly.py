@@ -82,15 +82,14 @@ def test_a_device_that_is_worse_is_refused_by_both(name: str) -> None:
         assert "takes out more" in fast(worse).words, key
 
 
-@pytest.mark.parametrize(
-    "case", [case for case in CASES if "a unit less" not in case.name], ids=lambda c: c.name
-)
-def test_the_twin_accepts_what_the_fast_check_accepts(case: Any) -> None:
+def test_the_twin_accepts_what_the_fast_check_accepts() -> None:
     """And what the one refuses for what it is, not for the size of its numbers, the other refuses."""
-    document = plain(case.document)
-    one, other = fast(document), plainly(document)
-    if one.valid or not any(words in one.words for words in ("takes out more", "too large to be compared")):
-        assert other.valid is one.valid, (one, other)
+    for case in (case for case in CASES if "a unit less" not in case.name):
+        document = plain(case.document)
+        one, other = fast(document), plainly(document)
+        sizes = ("takes out more", "too large to be compared")
+        if one.valid or not any(words in one.words for words in sizes):
+            assert other.valid is one.valid, (case.name, one, other)
 
 
 def tampered(rng: Random, values: list[int]) -> list[int]:

@@ -1,4 +1,4 @@
-"""The simulator against the same loops at sixty digits: every sample of one second."""
+"""The simulator against the same loops at sixty digits: every sample of a second, or of 0.4 s of a finger."""
 
 from __future__ import annotations
 
@@ -70,8 +70,8 @@ FINGER = replace(
     hand_mass=0.006,
     hand_stiffness=500.0,
     hand_damping=2.0,
-    force=pushed(1000, 0.001, 0.0, 0.1),
-    anchor=moved(1000, 0.001, 0.002, 0.004, 2.3),
+    force=pushed(400, 0.001, 0.0, 0.1),
+    anchor=moved(400, 0.001, 0.002, 0.004, 2.3),
     position=-0.0031,
 )
 BALL = replace(
@@ -159,19 +159,19 @@ def states(loop, trace):
 
 
 def moved_energy(trace):
-    """What hand and actuator did over the second, every sample counted with its size [J]."""
+    """What hand and actuator did, every sample counted with its size [J]."""
     works = (trace.energy["hand_work"], trace.energy["actuator_work"])
     return sum(float(abs(b - a)) for work in works for a, b in pairwise(work))
 
 
 @pytest.mark.parametrize("name", LOOPS)
 def test_every_sample_is_right(name):
-    """Positions to 1e-14 m, energies to 1e-12 of the work done, and every encoder count, over 1 s."""
+    """Positions to 1e-14 m, energies to 1e-12 of the work done, and every encoder count."""
     loop = LOOPS[name]
     expected, trace = simulate(loop, len(loop.force)), simulated(loop)
     counts = np.rint(trace.measured_position.values / loop.resolution)
     assert counts.tolist() == expected.count
-    assert trace.attrs["stops"] == len(expected.reversals) >= 5
+    assert trace.attrs["stops"] == len(expected.reversals) >= 2
     assert largest(trace.position.values, expected.position) <= POSITION
     assert largest(trace.velocity.values, expected.velocity) <= VELOCITY
     assert largest(trace.commanded_force.values, expected.commanded_force) <= FORCE

@@ -7,7 +7,7 @@ import pytest
 import zwidth as zw
 
 PADDLE = zw.catalogue.device("haptic-paddle")
-FINE = {"cells": (200, 200), "hands": {"none": None}}
+FINE = {"cells": (60, 60), "hands": {}}  # what is passive alone
 
 
 def test_effects_are_differences_of_mean_areas() -> None:
@@ -35,7 +35,7 @@ def test_what_colgate_and_brown_found() -> None:
     """Damping and rate enlarge what is stable; resolution leaves it as it is."""
     found = zw.z_width_factors(
         PADDLE, (0, 4000), (0, 20), rate=("100 Hz", "1 kHz"), damping=(0.15, 1.5), resolution=(2e-4, 2e-6),
-        cells=(60, 60), hands={"none": None},
+        cells=(24, 24), hands={"none": None},
     )  # fmt: skip
     effect = found["effect"].sel(region="stable_none")
     assert effect.sel(term="rate").item() > 0

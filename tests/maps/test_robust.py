@@ -13,9 +13,9 @@ BOX = zw.PassiveHand(mass=(0, 0.02), stiffness=(0, 1000), damping=(0, 3))
 
 @pytest.mark.parametrize("delay", ["0", "0.0005"])
 def test_both_sides(delay: str) -> None:
-    """Below the one no hand of 200 is shaken; just above the other the named one is."""
+    """Below the one no hand of 60 is shaken; just above the other the named one is."""
     device = PADDLE.replace(delay=delay)
-    found = zw.robust_boundary(device, BOX, (2, 20), points=4)
+    found = zw.robust_boundary(device, BOX, (2, 20), points=3)
     assert (found["guaranteed"] < found["refuted"]).all()
     assert (found["guaranteed"] > 0.995 * found["refuted"]).all()
     rng = np.random.default_rng(3)
@@ -25,7 +25,7 @@ def test_both_sides(delay: str) -> None:
         proved = zw.stability(device, wall, BOX)
         assert proved.outcome == "stable"
         assert proved.verify()
-        for m, k, c in rng.uniform((0, 0, 0), (0.02, 1000, 3), (50, 3)):
+        for m, k, c in rng.uniform((0, 0, 0), (0.02, 1000, 3), (20, 3)):
             hand = zw.PassiveHand(mass=m, stiffness=k, damping=c)
             assert zw.stability(device, wall, hand).outcome == "stable"
         bare = device.replace(mass=float(at["mass"]), damping=float(at["damping"]))

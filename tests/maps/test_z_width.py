@@ -358,8 +358,8 @@ def test_a_cluster_gives_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, scheduler_port=0
     ) as cluster:
-        there = zw.z_width(PADDLE, *WIDE, cells=(300, 300), address=cluster.scheduler_address)
-    assert same(there, zw.z_width(PADDLE, *WIDE, cells=(300, 300)))
+        there = zw.z_width(PADDLE, *WIDE, cells=(150, 150), address=cluster.scheduler_address)
+    assert same(there, zw.z_width(PADDLE, *WIDE, cells=(150, 150)))
 
 
 def test_chunks_tile_the_map() -> None:

@@ -79,11 +79,19 @@ def test_the_force_of_counts_by_another_road(found: zw.Identified) -> None:
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
-def test_a_picture_is_saved_and_not_replaced(found: zw.Identified, ending: str, tmp_path: Path) -> None:
-    """Any of three kinds; an old file only with force."""
+def test_a_picture_is_saved(found: zw.Identified, ending: str, tmp_path: Path) -> None:
+    """Any of three kinds."""
     path = tmp_path / f"fig.{ending}"
     found.plot(path)
     assert path.stat().st_size > 5000
+
+
+def test_a_picture_is_not_replaced(found: zw.Identified, tmp_path: Path) -> None:
+    """An old file only with force."""
+    path = tmp_path / "fig.png"
+    path.touch()
     with pytest.raises(zw.InputError, match="exists already"):
         found.plot(path)
+    assert not path.stat().st_size
     found.plot(path, force=True)
+    assert path.stat().st_size > 5000

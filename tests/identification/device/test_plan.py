@@ -60,12 +60,12 @@ def test_errors_fall_with_the_root_of_the_time():
 def test_the_prediction_holds_within_thirty_per_cent(changes, noise):
     """Scatter and mean half-width of b and f_c over simulated experiments are those of the plan, to 30 %.
 
-    The root mean square of 24 numbers is itself known to 15 % only; so its own bounds are wider.
+    The root mean square of 14 numbers is itself known to 19 % only; so its own bounds are wider.
     """
     device = paddle(**changes)
     plan = zw.plan_identification(device, force_noise=noise)
     errors, halves = [], []
-    for seed in range(24):
+    for seed in range(14):
         log = recorded(
             _kinds(plan, 40),
             np.random.default_rng(seed),
@@ -86,13 +86,13 @@ def test_the_prediction_holds_within_thirty_per_cent(changes, noise):
 
 
 def test_stopping_when_the_rule_says_so_keeps_what_the_interval_promises():
-    """Of 40 experiments stopped by the rule the 95 % interval holds b in nearly as many.
+    """Of 25 experiments stopped by the rule the 95 % interval holds b in nearly as many.
 
-    With 38 expected, fewer than 33 would happen once in a thousand times.
+    With 24 expected, fewer than 20 would happen once in a thousand times.
     """
     plan = zw.plan_identification(paddle(), force_noise=0.1, precision=0.06)
     held, runs = 0, []
-    for seed in range(40):
+    for seed in range(25):
         logs = []
         for run in range(6):
             logs.append(recorded(_kinds(plan, 30), np.random.default_rng([seed, run])))
@@ -104,7 +104,7 @@ def test_stopping_when_the_rule_says_so_keeps_what_the_interval_promises():
         assert high - low <= 2 * 0.06 * estimate.value
         held += low <= TRUE["damping"] <= high
         runs.append(len(logs))
-    assert held >= 33
+    assert held >= 20
     assert np.mean(runs) <= plan.runs
 
 

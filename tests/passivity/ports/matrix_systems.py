@@ -26,6 +26,12 @@ def random_system(seed, order=4, axes=2, throughput=0.5, discrete=False):
     return control.ss(*parts, 0.01 if discrete else 0)
 
 
+def responses(system, points):
+    """C (z I − A)⁻¹ B + D at every point, one matrix after another."""
+    shifted = np.asarray(points)[:, None, None] * np.eye(len(system.A)) - system.A
+    return system.C @ np.linalg.solve(shifted, system.B[None]) + system.D
+
+
 def least_eigenvalue(response):
-    """Of the Hermitian part."""
-    return np.linalg.eigvalsh((response + response.conj().T) / 2)[0]
+    """Of the Hermitian part of a matrix, or of each of several."""
+    return np.linalg.eigvalsh((response + response.conj().swapaxes(-1, -2)) / 2)[..., 0]

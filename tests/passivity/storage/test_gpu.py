@@ -17,6 +17,8 @@ from zwidth.passivity.storage.losses import Losses
 from zwidth.passivity.storage.solve.value_iteration import value_iteration
 
 _ON_CARD = """
+import itertools
+
 import zwidth as zw
 from zwidth.passivity.storage.solve import gpu
 from zwidth.passivity.storage.domain import Domain
@@ -28,12 +30,14 @@ from zwidth.passivity.storage.solve.value_iteration import value_iteration
 gpu._SCRATCH = 1  # so that threads have more than one item
 paddle = zw.catalogue.device("haptic-paddle").replace(coulomb_friction="0.004")
 ended = []
-for wall, delay, domain in (
-    (zw.Wall({0}), 0, Domain(-3, 3, 4)),
-    (zw.Wall({0}, damping=0.05), 0, Domain(-5, 3, 4)),
-    (zw.Wall({0}, damping=0.03, velocity_filter=zw.Window(2), clamped=True), 0, Domain(-2, 2, 2)),
-    (zw.Wall({0}, damping=0.02), 1, Domain(-2, 2, 2)),
-):
+window = zw.Window(2)
+for stiffness, (damping, delay, domain) in itertools.product((200, 20000), (
+    ({}, 0, Domain(-3, 3, 4)),
+    ({"damping": 0.05}, 0, Domain(-5, 3, 4)),
+    ({"damping": 0.03, "velocity_filter": window, "clamped": True}, 0, Domain(-2, 2, 2)),
+    ({"damping": 0.02}, 1, Domain(-2, 2, 2)),
+)):
+    wall = zw.Wall(stiffness, **damping)
     law = finite_law(paddle, wall)
     losses = Losses(*(paddle.exact(k) for k in ("damping", "coulomb_friction", "resolution")),
                     paddle.exact("sample_period"), delay)
@@ -55,12 +59,11 @@ def _in_simulator(code: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
 
 
-@pytest.mark.parametrize(("stiffness", "ends"), [(200, "True"), (20000, "False")])
-def test_the_card_finds_what_the_processor_finds(stiffness: int, ends: str) -> None:
+def test_the_card_finds_what_the_processor_finds() -> None:
     """The same outcome and the same V to the last bit, with none, one or two readings remembered."""
-    done = _in_simulator(_ON_CARD.replace("{0}", str(stiffness)))
+    done = _in_simulator(_ON_CARD)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.split() == [ends] * 8
+    assert done.stdout.split() == ["True"] * 8 + ["False"] * 8
 
 
 def _grid() -> Grid:

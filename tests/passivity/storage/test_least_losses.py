@@ -74,14 +74,16 @@ def test_turning_back_and_resting_cost(made, rest):
     assert loss(rested) > loss(ways)
 
 
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(400)
+
+
 @seeds(20)
 def test_smooth_motions_by_quadrature(seed):
     """Polynomials of degree 6 with random speeds at both ends: above the least by more than rounding."""
     rng = np.random.default_rng(seed)
     rate = np.polynomial.Polynomial(rng.normal(size=6))  # velocity over t/T
-    nodes, weights = np.polynomial.legendre.leggauss(400)
-    v, t = rate((nodes + 1) / 2), float(PERIOD)
-    found = t / 2 * weights @ (float(FRICTION) * np.abs(v) + float(DAMPING) * v**2)
+    v, t = rate((NODES + 1) / 2), float(PERIOD)
+    found = t / 2 * WEIGHTS @ (float(FRICTION) * np.abs(v) + float(DAMPING) * v**2)
     far = Fraction(t * (rate.integ()(1) - rate.integ()(0)))
     assert found > float(PAID.lost(far, Fraction(1))) * (1 + 1e-6)
 

@@ -11,6 +11,7 @@ from random import Random
 import numpy as np
 import pytest
 from plain_iteration import PlainIteration, exact_gain
+from strategies import seeds
 
 from zwidth.passivity.storage.domain import Domain
 from zwidth.passivity.storage.grid.grid import Grid
@@ -103,8 +104,9 @@ def column(grid, cell, before):
 
 def compared(grid, plain, zeros):
     """Play both from the same start: "passive" with equal V, or "active" with cycles that gain."""
-    guess = {} if zeros else _as_states(grid, plain, grid.first_guess)
-    value, loop = plain.solved(guess)
+    if zeros:
+        grid.__dict__["first_guess"] = np.zeros_like(grid.first_guess)
+    value, loop = plain.solved(_as_states(grid, plain, grid.first_guess))
     iteration = value_iteration(grid)
     if loop is not None:
         assert iteration.value is None
@@ -123,23 +125,19 @@ def _as_states(grid, plain, value):
     }
 
 
-@pytest.mark.parametrize("zeros", [False, True])
 @pytest.mark.parametrize("approximation", ["outer", "inner"])
 @pytest.mark.parametrize("name", LAWS)
-def test_the_same_value_in_every_state(name, approximation, zeros, monkeypatch):
+def test_the_same_value_in_every_state(name, approximation):
     """From the first guess and from nothing, passive and active."""
-    if zeros:
-        shape = property(lambda b: np.zeros((b.domain.cells, b.histories, len(b.nodes)), np.int64))
-        monkeypatch.setattr(Grid, "first_guess", shape)
     seen = []
-    for seed, easier in product(range(12), (Fraction(1, 8), Fraction(1, 3), 1, 2)):
+    for seed, easier in product(range(5), (Fraction(1, 8), Fraction(1, 3), 1, 2)):
         random = Random(f"{name} {seed}")
         law, losses = drawn(random, name, easier)
         domain = domain_of(random, law, losses.delay)
         grid = Grid(law, losses, domain, random.choice([2, 3, 4]), approximation)
         nodes = grid.nodes.tolist() if approximation == "inner" else list(range(grid.steps + 1))
         plain = PlainIteration(law, losses, domain, grid.steps, nodes, approximation, grid.force_unit)
-        outcome, iteration = compared(grid, plain, zeros)
+        outcome, iteration = compared(grid, plain, zeros=seed % 2 == 1)
         seen.append(outcome)
         if approximation == "inner" and outcome == "active":
             positions = [Fraction(node, grid.steps) for node, _ in iteration.cycle]
@@ -152,7 +150,7 @@ def test_the_same_value_in_every_state(name, approximation, zeros, monkeypatch):
     assert set(seen) == {"passive", "active"}
 
 
-@pytest.mark.parametrize("seed", range(40))
+@seeds(30)
 def test_what_gains_by_the_inner_costs_gains_by_the_outer_ones(seed):
     """A motion that gains in the inner approximation gains in the outer one on the same nodes."""
     random = Random(seed)
