@@ -5,7 +5,7 @@
 The loop is the haptic paddle of the catalogue and a damped wall, 0.05 N·s/m, at most 100
 counts deep and 100 counts per sample where nothing else is said.
 
-* A bracket of stiffness by `zw.passive_limit`, the whole call.
+* A bracket of stiffness by `zw.limit`, the whole call.
 * One sweep over the grid from V = 0, on one thread: the hull, a plain loop over all moves
   compiled by numba, and NumPy over all readings and targets at once.  V and the best
   moves must be the same to the last bit.
@@ -41,8 +41,8 @@ FIGURE = Path(__file__).resolve().parent.parent / "docs" / "_static" / "availabl
 WALLS = {
     0: zw.Wall(250),
     1: zw.Wall(250, damping=0.05),
-    2: zw.Wall(250, damping=0.05, velocity_filter=zw.Window(2)),
-    3: zw.Wall(250, damping=0.05, velocity_filter=zw.Window(3)),
+    2: zw.Wall(250, damping=0.05, velocity_filter=zw.rendering.Window(2)),
+    3: zw.Wall(250, damping=0.05, velocity_filter=zw.rendering.Window(3)),
 }
 """By readings remembered; all passive for the paddle."""
 
@@ -71,7 +71,7 @@ def bracket() -> dict:
     penetration, speed = bounds(100)
 
     def call() -> object:
-        return zw.passive_limit(PADDLE, WALLS[1], penetration=penetration, speed=speed)
+        return zw.limit(PADDLE, WALLS[1], penetration=penetration, speed=speed)
 
     first = least_time(call, 1)
     found = call()

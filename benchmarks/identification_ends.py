@@ -256,7 +256,7 @@ def of_finger(name: str, way: str, seed: int) -> Outcome:
     try:
         resolution = None if name.startswith("position") else 22.4e-6
         log = zw.Log.from_arrays(resolution=resolution, **kept)
-        found = zw.identify_finger(log, paddle() if known else None)
+        found = zw.identification.identify_finger(log, paddle() if known else None)
     except zw.InputError as error:
         return Outcome(str(error))
     intervals = [found.estimates[n].interval() for n in NAMES["finger"]]
@@ -269,7 +269,7 @@ def of_tissue(name: str, way: str, seed: int) -> Outcome:
     r, true = tissue(rng)
     r = faulty(name, rng, r, 0.01 * float(r["force"].std()), FINE)
     try:
-        fit = zw.fit_tissue(r["time"], r["position"], r["force"])
+        fit = zw.tissue.fit_tissue(r["time"], r["position"], r["force"])
     except zw.InputError as error:
         return Outcome(str(error))
     said = [*fit.remarks, *(f.kind for f in getattr(fit, "findings", ()))]

@@ -2,7 +2,7 @@
 
 For random stable systems of one axis, order 4 and 10, two axes of order 4 and three of order 6:
 
-* `zw.passivity_indices`: both indices with their frequencies, exact;
+* `zw.ports.passivity_indices`: both indices with their frequencies, exact;
 * the same, and the proofs of both written and accepted by the independent checker;
 * python-control's `get_input_ff_index` and `get_output_fb_index`, by cvxopt; nothing proved.
 
@@ -56,7 +56,7 @@ def timed(action: Callable[[], object]) -> tuple[float, object]:
 
 def proved(system: control.StateSpace) -> bool:
     """Both indices, with proofs that the checker accepts."""
-    found = zw.passivity_indices(system)
+    found = zw.ports.passivity_indices(system)
     return all(index.certificate().verify() for index in (found.input, found.output))
 
 
@@ -81,7 +81,7 @@ def print_known() -> None:
     print(f"{'system':<24} {'ispassive':<14} {'input index':<14} {'output index':<14} zwidth: passive, ν, ρ")
     for name, system in KNOWN.items():
         theirs = (answer(q, system) for q in (control.ispassive, get_input_ff_index, get_output_fb_index))
-        ours = zw.passivity_indices(system)
+        ours = zw.ports.passivity_indices(system)
         said = " ".join(f"{text:<14}" for text in theirs)
         print(f"{name:<24} {said} {ours.passive}, {ours.input.value:.4g}, {ours.output.value:.4g}")
 
@@ -97,7 +97,7 @@ def print_times() -> None:
         accepted = near = 0
         for _ in range(SYSTEMS):
             system = random_system(rng, axes, order)
-            spent, found = timed(lambda g=system: zw.passivity_indices(g))
+            spent, found = timed(lambda g=system: zw.ports.passivity_indices(g))
             times["zwidth"].append(spent)
             spent, good = timed(lambda g=system: proved(g))
             times["proved"].append(spent)

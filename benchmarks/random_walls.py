@@ -84,13 +84,13 @@ def random_loop(random: Random) -> Loop:
     kind = random.choice(["spring", "backward difference", "backward difference", "window", "filter"])
     share = Fraction(0) if kind == "spring" else digits(random.choice([-1, 1, 1]) * random.uniform(0.02, 2))
     b = digits(share * k * period / 2)
-    velocity: Any = zw.BackwardDifference()
+    velocity: Any = zw.rendering.BackwardDifference()
     weights, gain = [Fraction(1)], Fraction(1)
     if kind == "window":
-        velocity, weights = zw.Window(2), [Fraction(1, 2)] * 2
+        velocity, weights = zw.rendering.Window(2), [Fraction(1, 2)] * 2
     elif kind == "filter":
         first = Fraction(random.randint(-5, 15), 10)
-        velocity, weights = zw.VelocityFilter([first, 1 - first], [1, 0]), [first, 1 - first]
+        velocity, weights = zw.rendering.VelocityFilter([first, 1 - first], [1, 0]), [first, 1 - first]
         gain = sum((abs(w) for w in weights), Fraction(0))
     delay = random.choice([0, 0, 1])
     variation = sum((abs(p - q) for p, q in pairwise([Fraction(0), *weights, Fraction(0)])), Fraction(0))

@@ -48,8 +48,16 @@ class Rival:
 ROWS = (
     Rival("zwidth: `zw.simulate`, the whole call", ("by_zwidth", "call"), ours=True),
     Rival("zwidth: its compiled kernel alone", ("by_zwidth", "kernel"), ours=True),
-    Rival("zwidth: `zw.simulate_batch`, the whole call, 1 thread", ("by_zwidth", "batch", "1"), ours=True),
-    Rival("zwidth: `zw.simulate_batch`, the whole call, 2 threads", ("by_zwidth", "batch", "2"), ours=True),
+    Rival(
+        "zwidth: `zw.simulation.simulate_batch`, the whole call, 1 thread",
+        ("by_zwidth", "batch", "1"),
+        ours=True,
+    ),
+    Rival(
+        "zwidth: `zw.simulation.simulate_batch`, the whole call, 2 threads",
+        ("by_zwidth", "batch", "2"),
+        ours=True,
+    ),
     Rival("zwidth: its compiled loops side by side, 1 thread", ("by_zwidth", "lanes", "1"), ours=True),
     Rival("zwidth: its compiled loops side by side, 2 threads", ("by_zwidth", "lanes", "2"), ours=True),
     Rival("exact step in C, positions and four energies", ("exact_c", "simulate")),

@@ -37,7 +37,7 @@ def formula(speed):
 def bracket(depth, counts):
     """The bracket for hands of so much depth [m] that move so many counts in a sample."""
     start = zw.Wall(stiffness=formula(counts * count / period))
-    return zw.passive_limit(paddle, start, penetration=depth, speed=counts * count / period)
+    return zw.limit(paddle, start, penetration=depth, speed=counts * count / period)
 
 
 # %%

@@ -152,10 +152,10 @@ def decided(environment, damping, friction, **implementation):
 # worst.  A law that never pulls needs less damping against hands that go no deeper than these.
 
 LAWS = {
-    "difference": wall(zw.BackwardDifference()),
-    "window of 2": wall(zw.Window(2)),
-    "one pole, τ = T": wall(zw.OnePole(1)),
-    "one pole, τ = 9T": wall(zw.OnePole(9)),
+    "difference": wall(zw.rendering.BackwardDifference()),
+    "window of 2": wall(zw.rendering.Window(2)),
+    "one pole, τ = T": wall(zw.rendering.OnePole(1)),
+    "one pole, τ = 9T": wall(zw.rendering.OnePole(9)),
     "the same, K = 0": zw.Maxwell(stiffness=Fraction(10, 9), damping=10),
 }
 WAYS = {
@@ -173,7 +173,7 @@ figure, (table, needed) = plt.subplots(1, 2, figsize=(10.4, 4.6), width_ratios=(
 outcomes = {}
 for row, (name, law) in enumerate(LAWS.items()):
     for column, (way, implementation) in enumerate(WAYS.items()):
-        relaxes = isinstance(law, zw.Maxwell) or isinstance(law.velocity_filter, zw.OnePole)
+        relaxes = isinstance(law, zw.Maxwell) or isinstance(law.velocity_filter, zw.rendering.OnePole)
         if implementation["resets"] and not relaxes:
             continue  # a memory of a sample or two is forgotten outside anyway
         for clamped in (False, True):
@@ -250,7 +250,7 @@ BRACKETS = {  # refuted at and proved at, in parts of what the linear criterion 
     ("position", 9): ("1.04", "1.25"),
 }
 for (surface, at), ends in BRACKETS.items():
-    filtered = wall(zw.OnePole(at))
+    filtered = wall(zw.rendering.OnePole(at))
     low, high = (program(filtered, end, "1.02", COUNTS, COUNTS, surface=surface) for end in ends)
     assert refuted(low, (64, 256, 16)), (surface, at)
     assert proved(high, (32, 64)), (surface, at)
@@ -259,21 +259,22 @@ for (surface, at), ends in BRACKETS.items():
     needed.plot([place, place], [float(end) * b for end in ends], color=colour, lw=1.2)
     needed.plot(place, b * sum(map(float, ends)) / 2, "o", color=colour, mfc="white", ms=5.5, zorder=5)
 few, many = (
-    program(wall(zw.OnePole(9)), "1.02", f, COUNTS, COUNTS, surface="position") for f in ("1.2", "2.1")
+    program(wall(zw.rendering.OnePole(9)), "1.02", f, COUNTS, COUNTS, surface="position")
+    for f in ("1.2", "2.1")
 )
 assert refuted(few, (64, 256, 16))
 assert proved(many, (32, 64))
 
 active = {}
 for at in (9, 19, 39):
-    filtered = wall(zw.OnePole(at))
+    filtered = wall(zw.rendering.OnePole(at))
     b = Fraction(0.9 * float(np.interp(at, tau, run))).limit_denominator(1000)
     active[at] = b / needs(filtered)[0]
     assert accepted(running_start(filtered, active[at])), at
     needed.plot(at, float(b), "x", color=RED, ms=7, mew=2)
 nearly = {}
 for at in (9, 19, 39):
-    filtered = wall(zw.OnePole(at))
+    filtered = wall(zw.rendering.OnePole(at))
     proof = float(decide(zw.Device(damping=1, sample_period=1), filtered).contact_damping)
     assert np.isclose(proof, np.interp(at, tau, enough), rtol=1e-3)
     for part, outcome in ((0.7, "active"), (1.001, "passive")):

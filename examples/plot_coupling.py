@@ -33,7 +33,7 @@ def edge(need):
 
 
 def every(device):
-    return lambda k, d: zw.coupling_condition(device, k, d).required_damping
+    return lambda k, d: zw.coupling.coupling_condition(device, k, d).required_damping
 
 
 def rigid(device):
@@ -41,7 +41,7 @@ def rigid(device):
 
 
 def llewellyn(k, d):
-    return zw.two_port.llewellyn_damping(k, d, T)
+    return zw.coupling.two_port.llewellyn_damping(k, d, T)
 
 
 # %%
@@ -49,7 +49,10 @@ def llewellyn(k, d):
 
 wanted = zw.Wall(200, "0.2")
 designs = {
-    device: (zw.design_coupling(device, margin=0), zw.design_coupling(device, wanted, margin=0))
+    device: (
+        zw.coupling.design_coupling(device, margin=0),
+        zw.coupling.design_coupling(device, wanted, margin=0),
+    )
     for device in (paddle, late)
 }
 spring = b / every(late)(1.0, 0.0)
@@ -58,8 +61,8 @@ spring = b / every(late)(1.0, 0.0)
 # One coupling that Llewellyn's conditions call unconditionally stable, and the motion that takes energy out.
 
 between = (700, "0.1")
-stable = zw.two_port.impedance_display(paddle, *between).unconditionally_stable
-motion = zw.coupling_condition(paddle, *between).counterexample.witness
+stable = zw.coupling.two_port.impedance_display(paddle, *between).unconditionally_stable
+motion = zw.coupling.coupling_condition(paddle, *between).counterexample.witness
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 4), layout="constrained")
 left.fill(*np.hstack((edge(llewellyn), [[0], [0]])), color="#E69F00", alpha=0.25)

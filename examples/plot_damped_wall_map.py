@@ -40,7 +40,7 @@ def device(friction, damping=1):
 def largest_stiffness(friction, damping, start, depth, reach, **law):
     """Bracket of y = KT/(2b) for hands of so many counts of depth and counts per sample."""
     wall = zw.Wall(stiffness=2 * start, damping=damping, **law)
-    found = zw.passive_limit(device(friction), wall, penetration=depth, speed=reach)
+    found = zw.limit(device(friction), wall, penetration=depth, speed=reach)
     return found.proved_passive / 2, found.proved_active / 2
 
 
@@ -91,7 +91,7 @@ friction_brackets = []
 for beta_v in (Fraction(k, 4) for k in (0, 1, 2, 4, 6, 8, 12, 16)):
     wall = zw.Wall(stiffness=1, damping=beta_v)
     enough = Fraction(1, 2) + beta_v
-    found = zw.passive_limit(
+    found = zw.limit(
         device(enough, enough), wall, "coulomb_friction", penetration=24, speed=2, tolerance=0.005
     )
     friction_brackets.append((float(enough), (found.proved_active, found.proved_passive)))
@@ -147,7 +147,7 @@ windows.plot(ends, needed, "--", color=GREY, label="linear criterion: active abo
 for reach, marker, colour in ((2, "D", RED), (8, "o", BLUE)):
     for x in (Fraction(k, 5) for k in range(1, 5)):
         linear = 1 - window_damping(0, x, 2, 1).fraction
-        law = zw.Window(2)
+        law = zw.rendering.Window(2)
         bracket = largest_stiffness(1, x, linear, 16, reach, velocity_filter=law)
         window_brackets.append((reach, float(linear), bracket))
         draw_bracket(windows, float(x), bracket, marker, colour)

@@ -26,8 +26,8 @@ hands = {
 # Nobody's hand is one set of numbers.  These walls are proved for every hand of up to 20 g, 1000 N/m and
 # 3 N·s/m, without delay; 0.4 % above them one of these hands is shaken.
 
-person = zw.PassiveHand(mass=(0, 0.02), stiffness=(0, 1000), damping=(0, 3))
-robust = zw.robust_boundary(device, person, (3, 69), points=12)
+person = zw.stability.HandImpedance(mass=(0, 0.02), stiffness=(0, 1000), damping=(0, 3))
+robust = zw.maps.robust_boundary(device, person, (3, 69), points=12)
 
 # %%
 # Each curve holds the walls with poles on the unit circle; below it all disturbances die out.
@@ -36,7 +36,7 @@ robust = zw.robust_boundary(device, person, (3, 69), points=12)
 figure, axes = plt.subplots(figsize=(6.2, 4.4), layout="constrained")
 for name, (hand, colour) in hands.items():
     for delay, style in ((0, "-"), (0.001, "--")):
-        found = zw.stability_boundary(device, hand, delay, points=2000)
+        found = zw.maps.stability_boundary(device, hand, delay, points=2000)
         edge = found.isel(point=found["bounds"].values & (found["stiffness"].values > 0))
         text = name if delay == 0 else None
         axes.plot(edge["virtual_damping"], edge["stiffness"] / 1000, style, color=colour, label=text)
@@ -52,7 +52,7 @@ axes.legend(loc="upper right")
 # the device lacks; the dowel, which has none, allows next to nothing more than an empty handle.
 
 limits = [
-    f"{name} {zw.stability(device, zw.Wall(100, 0.5), hand).max_stiffness:.0f} N/m"
+    f"{name} {zw.stability.coupled_stability(device, zw.Wall(100, 0.5), hand).max_stiffness:.0f} N/m"
     for name, (hand, _) in hands.items()
 ]
 print(f"with B = 0.5 N·s/m: {', '.join(limits)}")

@@ -51,7 +51,7 @@ def largest_stable(wall, period):
     samples = round(DURATION / period)
     path = np.minimum(SPEED * np.arange(samples + 1) * period - 0.002, DEPTH)
     guide = zw.operators.Tracking(path, stiffness=GUIDE, damping=GUIDE_DAMPING)
-    batch = zw.simulate_batch(
+    batch = zw.simulation.simulate_batch(
         phantom(period), wall, guide, samples * period, vary={"environment.stiffness": STIFFNESS}
     )
     moved = path[-1] - path[samples - samples // 4]

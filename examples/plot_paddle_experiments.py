@@ -27,7 +27,7 @@ def touch(device, stiffness, hand, duration=2.0):
 
 
 def measured(trace):
-    return zw.compare_traces(trace).rows.popitem()[1]
+    return zw.traces.compare_traces(trace).rows.popitem()[1]
 
 
 # %%
@@ -42,7 +42,7 @@ first = {
     "malicious, 770 N/m": touch(paddle, 770, malicious),
     "dowel, 770 N/m": touch(paddle, 770, dowel),
 }
-print(zw.compare_traces(first))
+print(zw.traces.compare_traces(first))
 
 # %%
 # The second mode: 2f_c/Δ = 107 N/m with the coarse encoder.  The malicious touch
@@ -74,14 +74,16 @@ stiffness = np.arange(250.0, 801.0, 10.0)
 
 
 def dowel_limit(device):
-    batch = zw.simulate_batch(device, zw.Wall(1), dowel, 4.0, vary={"environment.stiffness": stiffness})
+    batch = zw.simulation.simulate_batch(
+        device, zw.Wall(1), dowel, 4.0, vary={"environment.stiffness": stiffness}
+    )
     return stiffness[np.argmax(batch.swing.values > 1e-3)]
 
 
 def soft_limit(device, force):
     k = np.arange(80.0, 161.0, 1.0)
     hand = hands.SoftTouch(force=force)
-    batch = zw.simulate_batch(device, zw.Wall(1), hand, 3.0, vary={"environment.stiffness": k})
+    batch = zw.simulation.simulate_batch(device, zw.Wall(1), hand, 3.0, vary={"environment.stiffness": k})
     return k[np.argmax(batch.stops.values > 60)]
 
 
@@ -200,7 +202,7 @@ changes = {
 
 def begins(device, hand, swing):
     """The softest wall on which the last second still swings by so much [N/m]."""
-    batch = zw.simulate_batch(device, zw.Wall(1), hand, 3.0, vary={"environment.stiffness": step})
+    batch = zw.simulation.simulate_batch(device, zw.Wall(1), hand, 3.0, vary={"environment.stiffness": step})
     found = batch.swing.values > swing
     return step[np.argmax(found)] if found.any() else np.nan
 

@@ -19,7 +19,9 @@ hand = zw.operators.Tracking(np.minimum(np.arange(4000) * 2e-5, 0.02), stiffness
 
 
 def touch(mass, controller=None):
-    return zw.simulate_admittance(zw.VirtualBody(mass), hand, 4, sample_period="0.001", controller=controller)
+    return zw.simulation.simulate_admittance(
+        zw.simulation.VirtualBody(mass), hand, 4, sample_period="0.001", controller=controller
+    )
 
 
 traces = {
@@ -61,7 +63,7 @@ for name, controller in {
     print(
         f"10 g, {name}: {fastest:.2g} m/s at most, after {end:g} s {float(abs(light.velocity[-1])):.2g} m/s"
     )
-print(f"stable masses: {zw.stable_virtual_masses(2000, '0.2', '0.001')}")
-point = zw.stable_virtual_masses(2000, "0.2", "0.001", sensor="point")
+print(f"stable masses: {zw.stability.stable_virtual_masses(2000, '0.2', '0.001')}")
+point = zw.stability.stable_virtual_masses(2000, "0.2", "0.001", sensor="point")
 print(f"with a point sensor: above {1e3 * point[0]:g} g")
 plt.show()

@@ -25,7 +25,7 @@ at_motor = TransferFunction(np.polyadd(np.polymul(rate, handle), joint), both)
 at_handle = TransferFunction(joint, both)
 
 found = {"encoder at the motor": at_motor, "encoder at the handle": at_handle}
-found = {name: zw.passivity_indices(system) for name, system in found.items()}
+found = {name: zw.ports.passivity_indices(system) for name, system in found.items()}
 for name, indices in found.items():
     print(f"{name}: {'passive' if indices.passive else 'not passive'}")
     for row in indices.rows():

@@ -48,7 +48,7 @@ energy = np.array([s[2:] @ inertia(s[1]) @ s[2:] / 2 for s in states])
 # %%
 # W never grows by more than yᵀu − yᵀΛy.  What it stays below is the change of velocity within the samples.
 
-stored = zw.loop_storage(torques, states[:, :2], energy, damping, T, delay * T)
+stored = zw.coupling.loop_storage(torques, states[:, :2], energy, damping, T, delay * T)
 allowed = float(stored["storage"][0]) + (stored["supply"] - stored["dissipation"]).cumsum()
 lost = float(stored["slack"].sum()) * T
 mean = np.diff(states[:, :2], axis=0) / T

@@ -23,7 +23,7 @@ device = zw.Device(damping=2, coulomb_friction=0, resolution=0, rate=1000, delay
 figure, axes = plt.subplots(figsize=(6.4, 4), layout="constrained")
 found = []
 for samples, colour, style in ((1, "#0072B2", "-"), (5, "#D55E00", "--"), (20, "#009E73", "-.")):
-    damper = zw.Wall(stiffness=0, damping=1, velocity_filter=zw.Window(samples))
+    damper = zw.Wall(stiffness=0, damping=1, velocity_filter=zw.rendering.Window(samples))
     verdict = zw.check(device, damper, contact="kept")
     need, frequency = verdict.required_damping, verdict.critical_frequency
     found.append((samples, need, frequency))

@@ -184,7 +184,7 @@ def test_the_readme_table_is_what_comes_out() -> None:
     )
     assert len(table) == 4
     device = zw.Device(mass=0.1, damping=0.1, sample_period=0.001)
-    assert zw.passivity_indices(TransferFunction([1], [0.1, 0.1])).passive
+    assert zw.ports.passivity_indices(TransferFunction([1], [0.1, 0.1])).passive
     for k, b, needed, outcome, pole, remark in table:
         verdict = zw.check(device, zw.Wall(stiffness=k, damping=b))
         assert verdict.outcome == outcome
@@ -192,7 +192,7 @@ def test_the_readme_table_is_what_comes_out() -> None:
         assert _pole_of_the_readme(float(k), float(b)) == pytest.approx(float(pole), abs=6e-7)
         assert (", unstable" in remark) == (float(pole) > 1)
         wall = TransferFunction([float(k) + 1000 * float(b), -1000 * float(b)], [1, 0], dt=0.001)
-        assert zw.passivity_indices(wall).passive
+        assert zw.ports.passivity_indices(wall).passive
 
 
 def _bounds() -> dict[str, set[str]]:
@@ -351,7 +351,7 @@ def test_every_key_of_the_json_is_on_its_page() -> None:
         (paddle.replace(damping=(0.2, 0.3)), solid),
         (paddle, zw.Wall(stiffness=250, damping=0.05, clamped=True)),
     ]
-    keys = _keys(zw.passive_limit(paddle, zw.Wall(100, 0.05), speed="0.2", penetration="0.0005").to_dict())
+    keys = _keys(zw.limit(paddle, zw.Wall(100, 0.05), speed="0.2", penetration="0.0005").to_dict())
     for device, environment in loops:
         keys |= _keys(zw.check(device, environment).to_dict())
     assert not [key for key in sorted(keys) if f"`{key}`" not in page]

@@ -115,7 +115,7 @@ def test_names_are_escaped_in_notebooks(trace: Any) -> None:
     active = zw.check(DEVICE, zw.Wall(2000))
     shown = (
         DEVICE, verdict, verdict.certificate, active, active.witness, zw.replay(active), trace.zwidth.energy,
-        zw.compare_traces({HOSTILE: trace}),
+        zw.traces.compare_traces({HOSTILE: trace}),
     )  # fmt: skip
     for page in (one._repr_html_() for one in shown):
         assert isinstance(page, Html)
@@ -132,7 +132,7 @@ def test_names_are_drawn_as_they_are(draw: str, trace: Any, tmp_path: Path) -> N
     if draw == "trace":
         trace.zwidth.plot(path)
     elif draw == "traces":
-        zw.compare_traces({HOSTILE: trace}).plot(path)
+        zw.traces.compare_traces({HOSTILE: trace}).plot(path)
     elif draw == "verdict":
         zw.check(DEVICE, zw.Wall(200)).plot(path)
     else:

@@ -174,8 +174,8 @@ FORMATS: dict[str, Callable[[Any, Path], None]] = {
     "touch.wav": lambda trace, path: trace.zwidth.sound(path, force=True),
     "touch.png": lambda trace, path: trace.zwidth.plot(path),
     "touch.svg": lambda trace, path: trace.zwidth.plot(path),
-    "both.pdf": lambda trace, path: zw.compare_traces(trace, trace).plot(path),
-    "measures.json": lambda trace, path: save_json(path, zw.compare_traces(trace).to_dict()),
+    "both.pdf": lambda trace, path: zw.traces.compare_traces(trace, trace).plot(path),
+    "measures.json": lambda trace, path: save_json(path, zw.traces.compare_traces(trace).to_dict()),
 }
 
 

@@ -139,20 +139,20 @@ def _velocity(
     """((Σ|w|, T ‖h_v‖₁), v/q as (numerator, denominator), the estimator)."""
     one, way = Fraction(1), rng.random()
     if way < 0.2:
-        return (one, Fraction(2)), ([1 / period, -1 / period], [one]), zw.BackwardDifference()
+        return (one, Fraction(2)), ([1 / period, -1 / period], [one]), zw.rendering.BackwardDifference()
     if way < 0.35:
         n = int(rng.integers(2, 9))
         taps = [one, *[Fraction(0)] * (n - 1), -one]
-        return (one, Fraction(2, n)), ([c / (n * period) for c in taps], [one]), zw.Window(n)
+        return (one, Fraction(2, n)), ([c / (n * period) for c in taps], [one]), zw.rendering.Window(n)
     if way < 0.85:
         tau = typed(float(period) * decades(rng, -2, 3))
         both = (one, 2 * period / (period + tau))
-        return both, ([one, -one], [period + tau, -tau]), zw.OnePole(tau)
+        return both, ([one, -one], [period + tau, -tau]), zw.rendering.OnePole(tau)
     taps = [typed(c, 2) for c in rng.normal(size=int(rng.integers(2, 4)))]
     difference = product(taps, [1 / period, -1 / period])
     steps = [taps[0], *(x - y for x, y in zip(taps[1:], taps, strict=False)), -taps[-1]]
     gains = sum(map(abs, taps), Fraction(0)), sum(map(abs, steps), Fraction(0))
-    estimate = zw.VelocityFilter(taps, [1, *[0] * (len(taps) - 1)])
+    estimate = zw.rendering.VelocityFilter(taps, [1, *[0] * (len(taps) - 1)])
     return gains, (difference, [one]), estimate
 
 

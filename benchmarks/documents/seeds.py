@@ -131,9 +131,9 @@ def _delays() -> Iterator[Any]:
 def _contact() -> Iterator[Any]:
     device = _device(coulomb_friction="0.2")
     yield from _proof(device, zw.Wall(100, "0.05"))
-    yield from _proof(device, zw.Wall(100, "0.05", zw.Window(3)))
+    yield from _proof(device, zw.Wall(100, "0.05", zw.rendering.Window(3)))
     yield from _proof(_device(coulomb_friction="0.2", delay="0.001", damping="0.5"), zw.Wall(100, "0.05"))
-    yield from _proof(device, zw.Wall(50, "0.05", zw.OnePole("0.0004")))
+    yield from _proof(device, zw.Wall(50, "0.05", zw.rendering.OnePole("0.0004")))
 
 
 def _relaxing() -> Iterator[Any]:
@@ -144,7 +144,7 @@ def _relaxing() -> Iterator[Any]:
 def _multiplier() -> Iterator[Any]:
     for more in ({}, _IDEAL, {"delay": "0.002"}):
         device = _device(**{"coulomb_friction": "0.2", **more})
-        yield from _proof(device.replace(damping="0.1"), zw.Wall(10, "0.3", zw.OnePole("0.01")))
+        yield from _proof(device.replace(damping="0.1"), zw.Wall(10, "0.3", zw.rendering.OnePole("0.01")))
 
 
 def _nonlinear() -> Iterator[Any]:
@@ -164,13 +164,13 @@ def _slow() -> Iterator[Any]:
 
 def _bounding() -> Iterator[Any]:
     law = zw.render(zw.Wall(5000), rendering.ForceBounding())
-    yield from zw.check_bounding(_device(), law).certificate.documents
-    yield from zw.check_bounding(_device(force_resolution="0.01"), law).certificate.documents
+    yield from zw.formulas.check_bounding(_device(), law).certificate.documents
+    yield from zw.formulas.check_bounding(_device(force_resolution="0.01"), law).certificate.documents
 
 
 def _active_hand() -> Iterator[Any]:
     for wall in (zw.Wall(100, "0.05"), zw.Wall(20, "0.12"), zw.Wall(300)):
-        found = zw.tolerated_activity(
+        found = zw.stability.tolerated_activity(
             _device(damping="0.15", coulomb_friction="0.12", resolution="2e-5"), wall
         )
         plain = found.to_dict()
@@ -195,8 +195,8 @@ def _motions() -> Iterator[Any]:
 
 
 def _touching() -> Iterator[Any]:
-    yield from _proof(_device(**_IDEAL, damping="0.04"), zw.Wall(10, "0.3", zw.OnePole("0.01")))
-    clamped = zw.Wall(10, "0.3", zw.OnePole("0.01"), clamped=True)
+    yield from _proof(_device(**_IDEAL, damping="0.04"), zw.Wall(10, "0.3", zw.rendering.OnePole("0.01")))
+    clamped = zw.Wall(10, "0.3", zw.rendering.OnePole("0.01"), clamped=True)
     yield from _proof(_device(**_IDEAL, damping="0.03", delay="0.0004"), clamped)
 
 
@@ -204,7 +204,7 @@ _BOUNDS = {"penetration": "0.0006", "speed": "0.3"}
 
 
 def _game(device: zw.Device, law: Any, **more: Any) -> Iterator[Any]:
-    found = zw.worst_hand(device, law, **{**_BOUNDS, **more})
+    found = zw.available_storage(device, law, **{**_BOUNDS, **more})
     for part in (found.certificate, found.witness):
         if part is not None:
             yield from part.documents if hasattr(part, "documents") else (part.to_dict(),)
@@ -253,15 +253,15 @@ def _coarse() -> Iterator[Any]:
 
 
 def _known_hands() -> Iterator[Any]:
-    hand = zw.PassiveHand(mass=(0, "0.02"), stiffness=(0, 1000), damping=(0, 3))
+    hand = zw.stability.HandImpedance(mass=(0, "0.02"), stiffness=(0, 1000), damping=(0, 3))
     for wall, operator in (
         (zw.Wall(1000, 1), hand),
         (zw.Wall(3000, 1), zw.operators.Finger()),
         (zw.Wall(90_000, 1), zw.operators.Finger()),
-        (zw.Wall(1000, 1), zw.PassiveHand(mass=0, stiffness=0, damping=0)),
+        (zw.Wall(1000, 1), zw.stability.HandImpedance(mass=0, stiffness=0, damping=0)),
     ):
         for delay in ("0", "0.0005"):
-            found = zw.stability(_device(delay=delay, **_IDEAL), wall, operator)
+            found = zw.stability.coupled_stability(_device(delay=delay, **_IDEAL), wall, operator)
             if found.certificate is not None:
                 yield from found.certificate.documents
 
@@ -271,7 +271,7 @@ def _absolute() -> Iterator[Any]:
     plants = [(_device(damping="0.8", delay=delay, **_IDEAL), hand) for delay in ("0", "0.0005")]
     six = zw.PulseTransferFunction([2, "0.92"], [1, "-0.5", 0])
     for plant in (*plants, (six,)):
-        found = zw.absolute_stability(*plant, reach=2, motions=len(plant) == 1)
+        found = zw.stability.absolute_stability(*plant, reach=2, motions=len(plant) == 1)
         yield from (row.certificate.documents[0] for row in found.proved if row.certificate is not None)
         for motion in (found.pressing, found.resting):
             yield from motion.certificate.documents if motion is not None else ()
@@ -286,7 +286,7 @@ def _absolute() -> Iterator[Any]:
 
 def _ports() -> Iterator[Any]:
     for sides in (([1, 3], [1, 2]), ([1, 0.25, 1], [1, 1, 1]), ([1, 0.5], [1, -0.5], 1)):
-        yield from _indices(zw.passivity_indices(control.tf(*sides)))
+        yield from _indices(zw.ports.passivity_indices(control.tf(*sides)))
 
 
 def _matrix_ports() -> Iterator[Any]:
@@ -296,7 +296,7 @@ def _matrix_ports() -> Iterator[Any]:
             lag, cross = ([1, 0.5], [1, -0.5]), ([0.25], [1, -0.5])
         rows = [[lag, cross], [([0], [1]), lag]]
         sides = ([[entry[k] for entry in row] for row in rows] for k in (0, 1))
-        yield from _indices(zw.passivity_indices(control.tf(*sides, dt)))
+        yield from _indices(zw.ports.passivity_indices(control.tf(*sides, dt)))
 
 
 def _indices(found: Any) -> Iterator[Any]:

@@ -1,7 +1,7 @@
 """zwidth: `by_zwidth.py call`, `kernel`, `batch THREADS` or `lanes THREADS`.
 
 `call` is `zw.simulate` with its checks, trajectory, energies and dataset; `kernel` the
-compiled loop inside it, which records the same.  `batch` is `zw.simulate_batch`, `lanes`
+compiled loop inside it, which records the same.  `batch` is `zw.simulation.simulate_batch`, `lanes`
 the compiled loops inside it; the loops start at different places, the first where
 the task does, and keep their end and their energies, no trajectory.
 """
@@ -77,11 +77,13 @@ def kernel() -> None:
 
 
 def batch(threads: int) -> None:
-    """The whole of `zw.simulate_batch`."""
+    """The whole of `zw.simulation.simulate_batch`."""
 
     def ends(samples: int, starts: list[float]) -> list[float]:
         vary = {"initial_position": starts}
-        many = zw.simulate_batch(DEVICE, WALL, push(samples), samples * PERIOD, vary=vary, threads=threads)
+        many = zw.simulation.simulate_batch(
+            DEVICE, WALL, push(samples), samples * PERIOD, vary=vary, threads=threads
+        )
         return many.position.values
 
     positions = [START, *(ends(k, STARTS[:1])[0] for k in range(1, COMPARED + 1))]

@@ -96,7 +96,7 @@ def test_the_need_of_a_spring_by_sweeping_frequencies(seed: int, d: int) -> None
     """δ ⪰ (2d+1)KT/2: just above, no frequency fails; just below, low ones do."""
     rng = np.random.default_rng(seed)
     k = 500 * _symmetric(rng, 3, True)
-    wall, t = zw.MatrixWall(k), 0.001
+    wall, t = zw.arms.MatrixWall(k), 0.001
     (need,) = wall_need(wall, t, d).matrices
     thetas = np.linspace(1e-3, np.pi, 400)
     sweep = [np.linalg.eigvalsh(need - damping_at(x, wall, t, d))[0] for x in thetas]
@@ -112,7 +112,7 @@ def test_the_need_of_a_spring_and_damper_by_sweeping_frequencies(seed: int) -> N
     rng = np.random.default_rng(seed)
     k, b = 300 * _symmetric(rng, 3, True), 0.2 * _symmetric(rng, 3, False)
     delta = _symmetric(rng, 3, True) + rng.uniform(-0.5, 0.5) * np.eye(3)
-    wall, t = zw.MatrixWall(k, b), 0.001
+    wall, t = zw.arms.MatrixWall(k, b), 0.001
     need = wall_need(wall, t)
     assert need.exact
     ends = min(np.linalg.eigvalsh(delta - matrix)[0] for matrix in need.matrices)
@@ -127,7 +127,7 @@ def test_the_frequency_condition_is_that_of_sampled_motions() -> None:
     """Energy of a closed cycle, summed sample by sample, against R(θ)."""
     rng = np.random.default_rng(11)
     k, b, t = 400 * _symmetric(rng, 2, True), _symmetric(rng, 2, False), 0.001
-    wall = zw.MatrixWall(k, b)
+    wall = zw.arms.MatrixWall(k, b)
     for samples, d in ((2, 0), (7, 0), (9, 1), (12, 3)):
         theta = 2 * np.pi / samples
         w = rng.normal(size=2) + 1j * rng.normal(size=2)
@@ -226,14 +226,14 @@ def test_a_held_jacobian_costs_at_most_its_bound() -> None:
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: zw.MatrixWall([[1, 2], [0, 1]]), "symmetric"),
-        (lambda: zw.MatrixWall([[1, 2], [2, 1]]), "no negative eigenvalue"),
-        (lambda: zw.MatrixWall([[1, 0]]), "square"),
-        (lambda: zw.MatrixWall([[np.nan]]), "finite"),
-        (lambda: zw.MatrixWall(np.eye(2), np.eye(3)), "both are n × n"),
-        (lambda: wall_need(zw.MatrixWall(np.eye(2)), 0.001), "3 × 3 matrices"),
+        (lambda: zw.arms.MatrixWall([[1, 2], [0, 1]]), "symmetric"),
+        (lambda: zw.arms.MatrixWall([[1, 2], [2, 1]]), "no negative eigenvalue"),
+        (lambda: zw.arms.MatrixWall([[1, 0]]), "square"),
+        (lambda: zw.arms.MatrixWall([[np.nan]]), "finite"),
+        (lambda: zw.arms.MatrixWall(np.eye(2), np.eye(3)), "both are n × n"),
+        (lambda: wall_need(zw.arms.MatrixWall(np.eye(2)), 0.001), "3 × 3 matrices"),
         (lambda: wall_need(zw.Wall(1, 1, clamped=True), 0.001), "clamped"),
-        (lambda: wall_need(zw.Wall(1, 1, zw.Window(3)), 0.001), "backward difference"),
+        (lambda: wall_need(zw.Wall(1, 1, zw.rendering.Window(3)), 0.001), "backward difference"),
         (lambda: end_effector_damping(np.eye(2), [1, 0]), "damping > 0"),
         (lambda: sampled_jacobian_damping(-1, 1, 1), "≥ 0"),
     ],

@@ -115,12 +115,12 @@ def test_a_redundant_chain_and_a_pose_are_proved() -> None:
         arm = PlanarChain(
             links=(0.1, 0.08, 0.05), damping=random_damping(5, 3), joint_range=ranges, pose=pose
         )
-        wall = zw.MatrixWall.in_pose(100, 1, planar=True) if pose else zw.Wall(100)
+        wall = zw.arms.MatrixWall.in_pose(100, 1, planar=True) if pose else zw.Wall(100)
         factor = zw.workspace(arm, wall, rate=1 / PERIOD, points=6).stiffness_factor
         outcomes = []
         for times in (0.97, 1.03):
             scaled = (
-                zw.MatrixWall.in_pose(100 * times * factor, times * factor, planar=True)
+                zw.arms.MatrixWall.in_pose(100 * times * factor, times * factor, planar=True)
                 if pose
                 else zw.Wall(100 * times * factor)
             )

@@ -99,7 +99,7 @@ def rests(rng: np.random.Generator, arm: PlanarChain, k: Array, b: Array, q: Arr
     return np.asarray(middle - (pull[:, None] * ways) @ np.linalg.pinv(k))
 
 
-def random_chain(rng: np.random.Generator) -> tuple[PlanarChain, zw.MatrixWall, float]:
+def random_chain(rng: np.random.Generator) -> tuple[PlanarChain, zw.arms.MatrixWall, float]:
     """A chain of one or two joints that bears a random wall with a fifth to spare, a force, and friction."""
     m = int(rng.integers(1, 3))
     low = rng.uniform(-2, 2, m)
@@ -110,7 +110,7 @@ def random_chain(rng: np.random.Generator) -> tuple[PlanarChain, zw.MatrixWall, 
     }
     turn = np.linalg.qr(rng.normal(size=(2, 2)))[0]
     k = turn @ np.diag(10 ** rng.uniform(1.5, 3, 2)) @ turn.T
-    wall = zw.MatrixWall(k, rng.choice([0.0, 2e-4]) * k)
+    wall = zw.arms.MatrixWall(k, rng.choice([0.0, 2e-4]) * k)
     force = float(10 ** rng.uniform(0, 2.5))
     bare = PlanarChain(damping=(1.0,) * m, **numbers)
     jacobians = bare.sites(20).jacobians
@@ -321,7 +321,7 @@ def test_in_pose_each_block_pays_in_its_own_unit() -> None:
             links=(0.1 * scale, 0.08 * scale), damping=(0.05, 0.05), resolution=(2e-3, 2e-3),
             joint_range=((0, 1), (0.5, 1.5)), pose=True,
         )  # fmt: skip
-        wall = zw.MatrixWall(np.diag([50 / scale**2, 50 / scale**2, 0.4]), np.zeros((3, 3)), turns=1)
+        wall = zw.arms.MatrixWall(np.diag([50 / scale**2, 50 / scale**2, 0.4]), np.zeros((3, 3)), turns=1)
         steps = zw.workspace(arm, wall, rate=1000, points=20).encoder_steps
         assert steps is not None
         assert steps.friction_per_moment == (0.0, 0.0)
@@ -340,7 +340,7 @@ def test_descriptions_are_counted_with_a_certificate(pose: bool, tmp_path: Path)
     numbers: dict[str, Any] = {"resolution": (1e-4,) * 3, "coulomb_friction": (0.05, 0.04, 0.03)}
     hold = {"j0": 0.1}
     arm = read_arm(tmp_path / "arm.urdf", hold=hold, pose=pose, **numbers)
-    wall: Any = zw.MatrixWall.in_pose(40, 0.2) if pose else zw.Wall(40)
+    wall: Any = zw.arms.MatrixWall.in_pose(40, 0.2) if pose else zw.Wall(40)
     space = zw.workspace(arm, wall, rate=1000, points=10)
     assert (space.outcome, space.encoder) == ("passive", "counted"), space.claim
     assert len(space.largest_forces) == (2 if pose else 1)

@@ -139,8 +139,8 @@ def test_a_current_that_rises_slowly_withholds_every_proof():
         found = known_of(slow, law)
         assert found.status == "undecided"
         assert found.withheld
-    assert zw.check_bounding(slow, bounding).outcome == "undecided"
-    assert zw.check_bounding(device, bounding).outcome == "passive"
+    assert zw.formulas.check_bounding(slow, bounding).outcome == "undecided"
+    assert zw.formulas.check_bounding(device, bounding).outcome == "passive"
 
 
 def test_the_force_limit_counts_in_a_refutation_too():

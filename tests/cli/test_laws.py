@@ -113,7 +113,7 @@ def test_simulate_takes_laws(tmp_path, monkeypatch, capsys):
         "typed": rendering.Extrapolation(),
     }.items():
         again = zw.simulate(paddle, zw.render(WALL, law), dowel, 0.1)
-        assert zw.load_trace(tmp_path / f"{name}.nc").identical(again)
+        assert zw.traces.load_trace(tmp_path / f"{name}.nc").identical(again)
 
 
 def test_compare_puts_the_row_on_the_bench(tmp_path, monkeypatch, capsys):
@@ -139,7 +139,7 @@ def test_limit_plays_the_game_against_laws_in_a_row(tmp_path, monkeypatch, capsy
     assert main(["limit", "loop.toml", *bounds, "--json", "-o", "limit.json"]) == 0
     found = json.loads(capsys.readouterr().out)
     law = zw.render(WALL, rendering.Saturation())
-    again = zw.passive_limit(zw.catalogue.device("haptic-paddle"), law, penetration="0.0002", speed="0.1")
+    again = zw.limit(zw.catalogue.device("haptic-paddle"), law, penetration="0.0002", speed="0.1")
     assert found["proved_passive_N_per_m"] == again.proved_passive
     assert found["proved_active_N_per_m"] == again.proved_active
     assert main(["limit", "haptic-paddle", "--stiffness", "400", "--law", "saturation", *bounds]) == 0

@@ -216,7 +216,7 @@ def test_a_spring_given_by_points_has_a_gain(tmp_path: Path, run: Run) -> None:
 
 def test_python_gives_what_the_command_line_prints(run: Run) -> None:
     document = json.loads(run(*WALL, "--json").out)
-    bracket = zw.passive_limit(zw.catalogue.device("haptic-paddle"), zw.Wall(100, 0.05))
+    bracket = zw.limit(zw.catalogue.device("haptic-paddle"), zw.Wall(100, 0.05))
     assert bracket.proved_passive == document["proved_passive_N_per_m"]
     assert bracket.proved_active == document["proved_active_N_per_m"]
 
@@ -239,7 +239,7 @@ def test_the_python_of_the_page_says_what_comes_out(tmp_path: Path, monkeypatch:
     assert f"# ({bracket.every_hand[0]:g}, {bracket.every_hand[1]:g})" in PAGE
     assert found.outcome == "passive"
     for speed in ("0.1", "0.25", "0.5", "1"):
-        row = zw.passive_limit(names["paddle"], names["wall"], speed=speed, penetration="0.002")
+        row = zw.limit(names["paddle"], names["wall"], speed=speed, penetration="0.002")
         (found,) = re.findall(rf"^\| {re.escape(speed)} m/s \| (\d+) N/m \| (\d+) N/m \|$", PAGE, re.M)
         for told, value in zip(map(float, found), (row.proved_passive, row.proved_active), strict=True):
             assert told == pytest.approx(value, rel=0.015)  # the bracket may be one per cent wide

@@ -45,7 +45,7 @@ def test_options_reach_the_map(capsys: pytest.CaptureFixture[str]) -> None:
     assert document["regions"]["passive"].pop("scope")["contact"] == "made and broken"
     found = zw.z_width(
         zw.catalogue.device("haptic-paddle", damping=0.3, rate=2000), (0, 600), ("-0.1", "0.3"), (30, 20),
-        velocity_filter=zw.OnePole(0.03), hands={"finger": zw.operators.Finger()}, speed=1,
+        velocity_filter=zw.rendering.OnePole(0.03), hands={"finger": zw.operators.Finger()}, speed=1,
     )  # fmt: skip
     assert document["cells"] == 600
     assert set(document["regions"]) == {"passive", "passive_sustained", "quiet", "stable_finger"}
@@ -102,7 +102,11 @@ def test_certificates_of_the_columns(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "exists" in capsys.readouterr().err
     document = json.loads(path.read_text(encoding="utf-8"))
     found = zw.z_width(
-        zw.catalogue.device("haptic-paddle"), (0, 600), (0, "0.3"), (60, 12), velocity_filter=zw.Window(2)
+        zw.catalogue.device("haptic-paddle"),
+        (0, 600),
+        (0, "0.3"),
+        (60, 12),
+        velocity_filter=zw.rendering.Window(2),
     )
     assert len(document["corners"]) == int(found["passive"].any(dim="stiffness").sum())
     assert main(("verify", str(path))) == 0

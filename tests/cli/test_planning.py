@@ -13,7 +13,7 @@ PADDLE = ["plan", "haptic-paddle", "--force-noise", "0.1 N"]
 def test_it_prints_the_plan(capsys):
     """The same text as in Python, units on the command line converted."""
     assert main([*PADDLE, "--length", "8 cm", "--fast", "300 ms", "--precision", "0.04"]) == 0
-    plan = zw.plan_identification(
+    plan = zw.plan(
         zw.catalogue.device("haptic-paddle"), force_noise=0.1, length=0.08, fast=0.3, precision=0.04
     )
     assert capsys.readouterr().out == f"{plan}\n"

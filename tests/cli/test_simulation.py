@@ -54,7 +54,7 @@ def test_the_example_of_the_docs_in_a_process_of_its_own(tmp_path: Path) -> None
     assert done.returncode == 0, done.stderr
     assert "ACTIVE" in done.stdout
     assert {p.name for p in tmp_path.iterdir()} == {"touch.png", "touch.nc"}
-    trace = zw.load_trace(tmp_path / "touch.nc")
+    trace = zw.traces.load_trace(tmp_path / "touch.nc")
     paddle = zw.catalogue.device("haptic-paddle")
     assert trace.identical(zw.simulate(paddle, zw.Wall(770), zw.operators.Dowel(), 2.0))
 
@@ -250,7 +250,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_so(run: Run, monkeypatch) -> Non
     result = run(*DOWEL, "-o", "part.nc")
     assert result.status == 130
     assert "interrupted" in result.out
-    assert zw.load_trace("part.nc").sizes["time"] == 100
+    assert zw.traces.load_trace("part.nc").sizes["time"] == 100
 
 
 def test_every_option_of_a_touch_has_a_unit_or_needs_none() -> None:

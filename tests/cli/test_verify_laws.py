@@ -32,7 +32,7 @@ class Own(zw.Wall):
 def found(kind: str, wall: type[zw.Wall] = zw.Wall) -> dict[str, Any]:
     """A proof or a motion against hysteresis."""
     laws = rendering.Hysteresis("0.005", 150) if kind == "row storage" else rendering.Hysteresis("0.05", 900)
-    game = zw.worst_hand(DEVICE, zw.render(wall(200), laws, rendering.Saturation("5")), **BOUNDS)
+    game = zw.available_storage(DEVICE, zw.render(wall(200), laws, rendering.Saturation("5")), **BOUNDS)
     shown = game.certificate if kind == "row storage" else game.witness
     assert shown is not None
     document: dict[str, Any] = shown.to_dict()

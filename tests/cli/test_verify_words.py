@@ -102,7 +102,7 @@ def test_corners_that_differ_in_a_late_digit(tmp_path: Path, capsys: pytest.Capt
 
 def test_an_active_hand_keeps_contact_in_its_band(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A hand more active than the device is damped shakes it off the wall: contact is kept, it says."""
-    found = plain(zw.tolerated_activity(PADDLE.replace(delay=0), zw.Wall(20, 0.12)).to_dict())
+    found = plain(zw.stability.tolerated_activity(PADDLE.replace(delay=0), zw.Wall(20, 0.12)).to_dict())
     kept, broken = (found[key]["certificate"] for key in ("contact_kept", "contact_broken"))
     assert "from the loop below as long as contact is kept" in told(kept, tmp_path, capsys)
     assert "contact is kept" not in told(broken, tmp_path, capsys)
@@ -222,7 +222,7 @@ def test_another_unit_is_refused(key: str, other: str, kind: str) -> None:
 def test_what_is_said_of_a_port_needs_evidence_at_that_level() -> None:
     """Passive is an input index of 0 or more, active one below 0; nothing else is taken."""
     port = {"format": "zwidth indices 1", "outcome": "passive"}
-    saved = plain(zw.passivity_indices(zw.PulseTransferFunction([4], [1]), PADDLE).to_dict())
+    saved = plain(zw.ports.passivity_indices(zw.PulseTransferFunction([4], [1]), PADDLE).to_dict())
     assert saved["outcome"] == "passive"
     assert [part.verification.valid for part in verifications(saved)] == [True]
     for document in (

@@ -182,8 +182,8 @@ def test_where_no_bound_is_known_nothing_is_said_to_be_active():
         assert np.isnan(book.extracted)
         assert book.to_dict()["energy_extracted_J"] is None
         assert "stored_at_start_J" not in trace.attrs
-    assert "not known" in repr(zw.compare_traces({"row": trace}))
-    assert zw.compare_traces({"row": trace}).to_dict()["row"]["energy_extracted_J"] is None
+    assert "not known" in repr(zw.traces.compare_traces({"row": trace}))
+    assert zw.traces.compare_traces({"row": trace}).to_dict()["row"]["energy_extracted_J"] is None
 
 
 def test_laws_in_a_row_at_rest_hold_nothing():
@@ -218,7 +218,7 @@ def test_words_and_files_carry_the_bound(tmp_path, capsys):
     said = " ".join(capsys.readouterr().out.split())
     assert "17.1 mJ came out, 20.02 mJ were stored at the start: nothing was gained" in said
     assert "ACTIVE" not in said
-    kept = zw.load_trace(tmp_path / "t.csv")
+    kept = zw.traces.load_trace(tmp_path / "t.csv")
     assert kept.attrs["stored_at_start_J"] == pytest.approx(0.0200224, rel=1e-5)
     assert main([*run[:-2]]) == 0
     assert "got no energy out" in " ".join(capsys.readouterr().out.split())

@@ -36,10 +36,10 @@ def test_every_text_with_a_unit_is_read_where_a_number_is() -> None:
     assert zw.GeneralizedMaxwell(1, [("0.7 N/mm", "5 N*s/m")]) == zw.GeneralizedMaxwell(1, [(700, 5)])
     assert zw.HuntCrossley(3, dissipation="0.2 s/m") == zw.HuntCrossley(3, dissipation="0.2")
     assert zw.NonlinearSpring(["0", "3 mm"], [0, "2 N"]) == zw.NonlinearSpring([0, "0.003"], [0, 2])
-    assert zw.OnePole("3 ms") == zw.OnePole("0.003")
+    assert zw.rendering.OnePole("3 ms") == zw.rendering.OnePole("0.003")
     wall = zw.Wall(10)
     assert zw.VirtualCoupling("1 N/mm", "2 N*s/m", wall) == zw.VirtualCoupling(1000, 2, wall)
-    assert zw.VirtualBody("300 g", "2 N*s/m") == zw.VirtualBody("0.3", 2)
+    assert zw.simulation.VirtualBody("300 g", "2 N*s/m") == zw.simulation.VirtualBody("0.3", 2)
     assert zw.PulseTransferFunction([1], [1], "1 ms") == zw.PulseTransferFunction([1], [1], "0.001")
 
 
@@ -55,9 +55,9 @@ def test_every_text_with_a_unit_is_read_where_a_number_is() -> None:
         (lambda: zw.Wall(True), "stiffness is in N/m; got true or false where a number belongs"),
         (lambda: zw.Wall(1, "2 N/m"), r'damping is in N\*s/m; got "2 N/m", a stiffness'),
         (lambda: zw.Wall(1, 2, 3), r"velocity_filter is BackwardDifference\(\), .*, got int"),
-        (lambda: zw.OnePole(-1), "time_constant must be ≥ 0 s, got -1: a filter with a negative"),
-        (lambda: zw.OnePole(1001), "time_constant must be at most 1000 s, got 1001"),
-        (lambda: zw.VelocityFilter([1, 2, 3], [1, 2]), "cannot have more zeros"),
+        (lambda: zw.rendering.OnePole(-1), "time_constant must be ≥ 0 s, got -1: a filter with a negative"),
+        (lambda: zw.rendering.OnePole(1001), "time_constant must be at most 1000 s, got 1001"),
+        (lambda: zw.rendering.VelocityFilter([1, 2, 3], [1, 2]), "cannot have more zeros"),
     ],
 )
 def test_a_slip_is_one_clear_message(make, said) -> None:
@@ -68,7 +68,7 @@ def test_a_slip_is_one_clear_message(make, said) -> None:
 
 def test_a_wall_is_a_value() -> None:
     """Frozen, equal, hashable, rebuilt by its repr and from a pickle, changed by `replace`."""
-    wall = zw.Wall("0.3 N/mm", (1, 2), zw.Window(3), clamped=True)
+    wall = zw.Wall("0.3 N/mm", (1, 2), zw.rendering.Window(3), clamped=True)
     assert wall == eval(repr(wall), {**vars(zw)})
     assert pickle.loads(pickle.dumps(wall)) == wall
     assert hash(wall) == hash(wall.replace(stiffness=300))

@@ -91,9 +91,9 @@ def test_it_does_what_a_plain_loop_does(name, sensor, integration):
     """Position, velocities, reading and both energies, sample by sample, to rounding."""
     mp.dps = 60
     rules, period = CONTROLLERS[name], mpf("0.002")
-    body = zw.VirtualBody("0.03", "0.07", "11", integration)
+    body = zw.simulation.VirtualBody("0.03", "0.07", "11", integration)
     path = anchor_path(60)
-    trace = zw.simulate_admittance(
+    trace = zw.simulation.simulate_admittance(
         body,
         zw.operators.Tracking([float(v) for v in path], stiffness=90, damping=0.4),
         "0.12",
@@ -119,8 +119,8 @@ def test_it_does_what_a_plain_loop_does(name, sensor, integration):
 def test_the_hands_ledger_closes(path, stiffness, damping, mass, sensor, name):
     """What the muscles spent is in the port, the spring and the damper, whatever is rendered."""
     rules = CONTROLLERS[name]
-    trace = zw.simulate_admittance(
-        zw.VirtualBody(mass),
+    trace = zw.simulation.simulate_admittance(
+        zw.simulation.VirtualBody(mass),
         zw.operators.Tracking(path, stiffness=stiffness, damping=damping),
         0.04,
         sample_period=0.001,
@@ -135,8 +135,8 @@ def test_the_hands_ledger_closes(path, stiffness, damping, mass, sensor, name):
 
 def test_a_pushed_mass():
     """F on M alone: implicit, u_k = k F T/M with the reading of the interval before; W_h by hand."""
-    trace = zw.simulate_admittance(
-        zw.VirtualBody("0.4"), zw.operators.ConstantForce(3.0), "0.005", sample_period="0.001"
+    trace = zw.simulation.simulate_admittance(
+        zw.simulation.VirtualBody("0.4"), zw.operators.ConstantForce(3.0), "0.005", sample_period="0.001"
     )
     steps = np.arange(6)
     np.testing.assert_allclose(trace.velocity, steps * 3.0 * 0.001 / 0.4, rtol=1e-14)
@@ -149,8 +149,8 @@ def test_other_units_change_nothing(scale):
     """Lengths, forces and times scaled: the same motion and the same energies, scaled."""
 
     def run(le, fo, ti):
-        trace = zw.simulate_admittance(
-            zw.VirtualBody(0.05 * fo * ti**2 / le, 0.02 * fo * ti / le, 3 * fo / le),
+        trace = zw.simulation.simulate_admittance(
+            zw.simulation.VirtualBody(0.05 * fo * ti**2 / le, 0.02 * fo * ti / le, 3 * fo / le),
             zw.operators.Tracking(
                 [0.0, 0.002 * le, 0.003 * le], stiffness=700 * fo / le, damping=0.1 * fo * ti / le
             ),
@@ -166,8 +166,8 @@ def test_other_units_change_nothing(scale):
 
 def test_a_motion_without_bound_ends_the_record():
     """A light body in a stiff hand: every number of the record is finite, and it says when it ended."""
-    trace = zw.simulate_admittance(
-        zw.VirtualBody("0.001"),
+    trace = zw.simulation.simulate_admittance(
+        zw.simulation.VirtualBody("0.001"),
         zw.operators.Tracking([0, 0.001], stiffness=20_000, damping=2),
         2,
         sample_period="0.001",
@@ -176,18 +176,21 @@ def test_a_motion_without_bound_ends_the_record():
     assert all(np.isfinite(trace[key]).all() for key in trace)
 
 
-BODY = zw.VirtualBody(1)
+BODY = zw.simulation.VirtualBody(1)
 PUSH = zw.operators.ConstantForce(1.0)
 
 
 @pytest.mark.parametrize(
     ("make", "said"),
     [
-        (lambda: zw.VirtualBody(0), "mass must be > 0, got 0: a body without mass follows"),
-        (lambda: zw.VirtualBody(1, damping=-1), "damping must be ≥ 0"),
-        (lambda: zw.VirtualBody(1, stiffness="-2"), "stiffness must be ≥ 0"),
-        (lambda: zw.VirtualBody(float("nan")), "mass is in kg: expected a finite number"),
-        (lambda: zw.VirtualBody(1, integration="euler"), "integration is one of 'implicit', 'explicit'"),
+        (lambda: zw.simulation.VirtualBody(0), "mass must be > 0, got 0: a body without mass follows"),
+        (lambda: zw.simulation.VirtualBody(1, damping=-1), "damping must be ≥ 0"),
+        (lambda: zw.simulation.VirtualBody(1, stiffness="-2"), "stiffness must be ≥ 0"),
+        (lambda: zw.simulation.VirtualBody(float("nan")), "mass is in kg: expected a finite number"),
+        (
+            lambda: zw.simulation.VirtualBody(1, integration="euler"),
+            "integration is one of 'implicit', 'explicit'",
+        ),
         (lambda: run(body=zw.Wall(1)), "body is a zwidth.VirtualBody, got Wall"),
         (lambda: run(hand="finger"), "operator is a hand"),
         (lambda: run(hand=zw.operators.Finger()), "give mass=0"),
@@ -208,4 +211,4 @@ def test_what_it_refuses(make, said):
 
 def run(body=BODY, hand=PUSH, duration=1, **options):
     """A display with one argument wrong."""
-    return zw.simulate_admittance(body, hand, duration, **{"sample_period": "0.001", **options})
+    return zw.simulation.simulate_admittance(body, hand, duration, **{"sample_period": "0.001", **options})

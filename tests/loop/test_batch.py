@@ -51,7 +51,7 @@ def test_plain_loops_side_by_side_have_the_bits_of_each_alone(delay: float) -> N
     }
     hand = zw.operators.ConstantForce(1.0)
     device = PADDLE.replace(delay=delay)
-    batch = zw.simulate_batch(device, zw.Wall(1.0), hand, 0.4, vary=vary, together=True, threads=2)
+    batch = zw.simulation.simulate_batch(device, zw.Wall(1.0), hand, 0.4, vary=vary, together=True, threads=2)
     for i in range(count):
         own = {name.rpartition(".")[2]: float(values[i]) for name, values in vary.items()}
         options = {key: own.pop(key) for key in ("encoder_phase", "initial_position", "initial_velocity")}
@@ -64,7 +64,7 @@ def test_loops_of_every_other_kind_have_the_bits_of_each_alone() -> None:
     device = PADDLE.replace(delay=3e-4)
     wall, hand = zw.Wall(300.0, damping=0.2), zw.operators.Finger()
     vary = {"environment.stiffness": [200.0, 900.0], "operator.damping": [0.1, 1.0, 4.0]}
-    batch = zw.simulate_batch(device, wall, hand, 0.5, vary=vary, threads=2)
+    batch = zw.simulation.simulate_batch(device, wall, hand, 0.5, vary=vary, threads=2)
     assert batch.sizes == {"stiffness": 2, "damping": 3}
     for i, k in enumerate(vary["environment.stiffness"]):
         for j, c in enumerate(vary["operator.damping"]):
@@ -76,7 +76,7 @@ def test_threads_do_not_change_a_bit() -> None:
     """One thread or three."""
     vary = {"stiffness": np.linspace(50.0, 1500.0, 3 * LANES + 1)}
     one, three = (
-        zw.simulate_batch(PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.3, vary=vary, threads=n)
+        zw.simulation.simulate_batch(PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.3, vary=vary, threads=n)
         for n in (1, 3)
     )
     assert one.identical(three)
@@ -100,7 +100,7 @@ def test_threads_do_not_change_a_bit() -> None:
 def test_what_cannot_be_varied_is_refused(vary: dict, says: str) -> None:
     """The message names the parameter."""
     with pytest.raises(zw.InputError, match=says):
-        zw.simulate_batch(PADDLE, zw.Wall(300.0), zw.operators.Finger(), 0.1, vary=vary)
+        zw.simulation.simulate_batch(PADDLE, zw.Wall(300.0), zw.operators.Finger(), 0.1, vary=vary)
 
 
 @pytest.mark.parametrize(
@@ -114,7 +114,7 @@ def test_what_cannot_be_varied_is_refused(vary: dict, says: str) -> None:
 def test_a_parameter_that_is_a_list_is_not_varied(environment, vary: dict) -> None:
     """One message, whatever the shape."""
     with pytest.raises(zw.InputError, match="simulate each value on its own"):
-        zw.simulate_batch(PADDLE, environment, zw.operators.Finger(), 0.1, vary=vary)
+        zw.simulation.simulate_batch(PADDLE, environment, zw.operators.Finger(), 0.1, vary=vary)
 
 
 def test_plain_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> None:
@@ -126,7 +126,7 @@ def test_plain_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> No
     pushes = edge + rng.integers(-3, 4, count) * np.spacing(edge)
     vary = {"environment.stiffness": stiffness, "coulomb_friction": friction, "force": pushes}
     hand, start = zw.operators.ConstantForce(1.0), {"initial_position": 7.5 * 22.4e-6}
-    batch = zw.simulate_batch(PADDLE, zw.Wall(1.0), hand, 0.003, vary=vary, together=True, **start)
+    batch = zw.simulation.simulate_batch(PADDLE, zw.Wall(1.0), hand, 0.003, vary=vary, together=True, **start)
     assert (batch.velocity >= 0).all()
     assert 0 < (batch.velocity > 0).sum() < count
     for i in range(count):
@@ -140,7 +140,7 @@ def test_plain_loops_at_the_edge_of_friction_have_the_bits_of_each_alone() -> No
 def test_values_varied_together_are_equally_many() -> None:
     """The message counts them."""
     with pytest.raises(zw.InputError, match="stiffness 2, force 3"):
-        zw.simulate_batch(
+        zw.simulation.simulate_batch(
             PADDLE, zw.Wall(1.0), zw.operators.ConstantForce(1.0), 0.1,
             vary={"stiffness": [1, 2], "force": [1, 2, 3]}, together=True,
         )  # fmt: skip
@@ -153,7 +153,7 @@ def test_ctrl_c_keeps_the_loops_that_are_finished() -> None:
         raise KeyboardInterrupt
 
     vary = {"stiffness": np.linspace(50.0, 1500.0, 60 * LANES)}
-    batch = zw.simulate_batch(
+    batch = zw.simulation.simulate_batch(
         PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 1.0, vary=vary, threads=1, progress=stop
     )
     finished = np.isfinite(batch.position.values)
@@ -168,7 +168,7 @@ def test_without_a_card_the_message_says_so() -> None:
     if cuda.is_available():
         pytest.skip("there is a card")
     with pytest.raises(zw.InputError, match="graphics card"):
-        zw.simulate_batch(
+        zw.simulation.simulate_batch(
             PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.1, vary={"stiffness": [100.0]}, backend="gpu"
         )
 
@@ -178,8 +178,8 @@ import numpy as np, zwidth as zw
 device = zw.catalogue.device("haptic-paddle").replace(delay="1.3 ms")
 wall, hand = zw.Wall(300, damping=0.1), zw.operators.Finger(start=-0.002)
 vary = {"environment.stiffness": [100.0, 700.0], "operator.stiffness": [100.0, 500.0]}
-card = zw.simulate_batch(device, wall, hand, 0.05, vary=vary, backend="gpu")
-own = zw.simulate_batch(device, wall, hand, 0.05, vary=vary)
+card = zw.simulation.simulate_batch(device, wall, hand, 0.05, vary=vary, backend="gpu")
+own = zw.simulation.simulate_batch(device, wall, hand, 0.05, vary=vary)
 assert np.isfinite(card.position.values).all() and (card.deepest_position > 0).all()
 for name in own.data_vars:
     assert (card[name] == own[name]).all(), name

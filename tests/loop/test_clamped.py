@@ -14,9 +14,11 @@ PERIOD = 0.002
 LAWS = {
     "backward difference": zw.Wall(300.0, damping=2.0),
     "negative damping": zw.Wall(300.0, damping=-2.0),
-    "window": zw.Wall(300.0, damping=2.0, velocity_filter=zw.Window(5)),
-    "one-pole": zw.Wall(300.0, damping=2.0, velocity_filter=zw.OnePole(0.01)),
-    "gain for an estimator": zw.Wall(10.0, damping=-2.0, velocity_filter=zw.VelocityFilter([50], [1])),
+    "window": zw.Wall(300.0, damping=2.0, velocity_filter=zw.rendering.Window(5)),
+    "one-pole": zw.Wall(300.0, damping=2.0, velocity_filter=zw.rendering.OnePole(0.01)),
+    "gain for an estimator": zw.Wall(
+        10.0, damping=-2.0, velocity_filter=zw.rendering.VelocityFilter([50], [1])
+    ),
     "standard linear solid": zw.StandardLinearSolid(20.0, 500.0, 2.0),
     "Maxwell": zw.Maxwell(500.0, 2.0),
     "Prony": zw.GeneralizedMaxwell(20.0, [(500.0, 2.0), (30.0, 900.0)]),
@@ -69,7 +71,7 @@ def test_a_batch_varies_the_clamp_with_the_bits_of_single_loops() -> None:
     """With and without, springs and damped walls side by side."""
     wall, dowel = zw.Wall(500.0, 0.3), zw.operators.Dowel()
     vary = {"clamped": [False, True], "environment.damping": [0.0, 0.3]}
-    batch = zw.simulate_batch(PADDLE, wall, dowel, 0.2, vary=vary, threads=2)
+    batch = zw.simulation.simulate_batch(PADDLE, wall, dowel, 0.2, vary=vary, threads=2)
     for clamped in (False, True):
         for damping in (0.0, 0.3):
             alone = zw.simulate(PADDLE, wall.replace(clamped=clamped, damping=damping), dowel, 0.2)

@@ -56,7 +56,7 @@ def test_a_late_sample_reads_later_and_acts_later() -> None:
     """Sample 2, late by 0.4 T, reads the position of then; the others stay where they are."""
     late = np.zeros(7)
     late[2] = 0.4 * PERIOD
-    trace = _forces(INSIDE, timing=zw.Timing(lateness=late))
+    trace = _forces(INSIDE, timing=zw.simulation.Timing(lateness=late))
     assert [t for t, _ in _applied(trace)] == [0, 1, 2.4, 3, 4, 5, 6]
     assert trace.time.values[trace.sampled.values][2] == pytest.approx(2.4 * PERIOD)
 
@@ -64,7 +64,7 @@ def test_a_late_sample_reads_later_and_acts_later() -> None:
 def test_a_missed_sample_leaves_the_force_as_it_was() -> None:
     """The force of sample 2 is held through sample 3, which nobody took."""
     missed = [False, False, False, True, False, False, False]
-    trace = _forces(INSIDE, timing=zw.Timing(missed=missed))
+    trace = _forces(INSIDE, timing=zw.simulation.Timing(missed=missed))
     assert [t for t, _ in _applied(trace)] == [0, 1, 2, 4, 5, 6]
 
 
@@ -76,7 +76,7 @@ def test_lateness_of_nearly_nothing_is_no_lateness(delay: float) -> None:
     late[150] = 1e-17
     hand = zw.operators.Dowel()
     a = zw.simulate(device, zw.Wall(600.0), hand, 0.3)
-    b = zw.simulate(device, zw.Wall(600.0), hand, 0.3, timing=zw.Timing(lateness=late))
+    b = zw.simulate(device, zw.Wall(600.0), hand, 0.3, timing=zw.simulation.Timing(lateness=late))
     assert np.abs(a.position.values - b.position.values).max() < 1e-13
 
 
@@ -107,4 +107,4 @@ def test_the_encoder_counts_from_its_phase(phase: float) -> None:
 def test_a_clock_that_cannot_be_is_refused(given: dict, says: str) -> None:
     """One message: what was given and what the bound is."""
     with pytest.raises(zw.InputError, match=says):
-        _forces(INSIDE, timing=zw.Timing(**given))
+        _forces(INSIDE, timing=zw.simulation.Timing(**given))

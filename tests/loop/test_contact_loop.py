@@ -96,7 +96,7 @@ def test_a_missed_sample_leaves_the_contact_as_it_was() -> None:
     """The sample after it sees the way of two periods over one."""
     x = np.array([0.0, 1e-3, 3e-3, 4e-3, 4e-3])
     loop = zw.Device(damping=0.1, sample_period=0.001)
-    timing = zw.Timing(missed=[0, 0, 1, 0, 0])
+    timing = zw.simulation.Timing(missed=[0, 0, 1, 0, 0])
     contact = zw.HuntCrossley(100, 1, 2)
     motion = zw.operators.PrescribedMotion(x)
     trace = zw.simulate(loop, contact, motion, 0.004, timing=timing)
@@ -107,7 +107,7 @@ def test_a_batch_has_the_bits_of_single_loops() -> None:
     """Over stiffness, exponent and dissipation."""
     hand, vary = zw.operators.Dowel(), {"stiffness": [1e3, 3e4], "exponent": [1, 1.5], "dissipation": [0, 2]}
     contact = zw.HuntCrossley(1)
-    batch = zw.simulate_batch(PADDLE, contact, hand, 0.1, vary=vary, threads=2)
+    batch = zw.simulation.simulate_batch(PADDLE, contact, hand, 0.1, vary=vary, threads=2)
     for k in vary["stiffness"]:
         for n in vary["exponent"]:
             for d in vary["dissipation"]:
@@ -120,8 +120,8 @@ _ON_CARD = """
 import zwidth as zw
 device, contact = zw.catalogue.device("haptic-paddle"), zw.HuntCrossley(2e4, 1.5, 2)
 hand, vary = zw.operators.Dowel(), {"device.damping": [0.1, 0.4]}
-card = zw.simulate_batch(device, contact, hand, 0.05, vary=vary, backend="gpu")
-own = zw.simulate_batch(device, contact, hand, 0.05, vary=vary)
+card = zw.simulation.simulate_batch(device, contact, hand, 0.05, vary=vary, backend="gpu")
+own = zw.simulation.simulate_batch(device, contact, hand, 0.05, vary=vary)
 for name in own.data_vars:
     assert (card[name] == own[name]).all(), name
 assert float(own.samples_inside.max()) > 0

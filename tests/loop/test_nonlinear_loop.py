@@ -87,7 +87,9 @@ def test_a_handle_let_go_comes_to_rest_in_a_detent() -> None:
 def test_a_batch_has_the_bits_of_single_loops() -> None:
     """Over a parameter of the device."""
     hand = zw.operators.Dowel()
-    batch = zw.simulate_batch(PADDLE, SPRING, hand, 0.2, vary={"device.damping": [0.1, 0.4]}, threads=2)
+    batch = zw.simulation.simulate_batch(
+        PADDLE, SPRING, hand, 0.2, vary={"device.damping": [0.1, 0.4]}, threads=2
+    )
     for damping in (0.1, 0.4):
         alone = zw.simulate(PADDLE.replace(damping=damping), SPRING, hand, 0.2)
         assert float(batch.position.sel(damping=damping)) == float(alone.position[-1])
@@ -98,8 +100,8 @@ import zwidth as zw
 device = zw.catalogue.device("haptic-paddle")
 hand, vary = zw.operators.Dowel(), {"device.damping": [0.1, 0.4]}
 for law in (zw.NonlinearSpring([-0.01, 0, 0.001, 0.02], [-3, 0, 0.2, 7]), zw.Wall(300, 0.5, clamped=True)):
-    card = zw.simulate_batch(device, law, hand, 0.05, vary=vary, backend="gpu")
-    own = zw.simulate_batch(device, law, hand, 0.05, vary=vary)
+    card = zw.simulation.simulate_batch(device, law, hand, 0.05, vary=vary, backend="gpu")
+    own = zw.simulation.simulate_batch(device, law, hand, 0.05, vary=vary)
     for name in own.data_vars:
         assert (card[name] == own[name]).all(), name
 """

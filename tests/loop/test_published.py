@@ -66,7 +66,7 @@ def test_the_two_modes_do_not_know_of_each_other() -> None:
     limits = []
     for device in (PADDLE, COARSE):
         vary = {"environment.stiffness": k}
-        swing = zw.simulate_batch(device, zw.Wall(1), HANDS.Dowel(), 4.0, vary=vary).swing.values
+        swing = zw.simulation.simulate_batch(device, zw.Wall(1), HANDS.Dowel(), 4.0, vary=vary).swing.values
         limits.append(k[np.argmax(swing > 1e-3)])
     assert abs(limits[1] / limits[0] - 1) < 0.07
     slow = COARSE.replace(sample_period="3 ms")

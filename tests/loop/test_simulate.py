@@ -24,9 +24,11 @@ def _read(environment: object, positions: np.ndarray, **device) -> np.ndarray:
 
 LAWS = {
     "damped wall": zw.Wall(300.0, damping=0.7),
-    "window": zw.Wall(300.0, damping=0.7, velocity_filter=zw.Window(5)),
-    "one-pole": zw.Wall(300.0, damping=0.7, velocity_filter=zw.OnePole(0.01)),
-    "filter": zw.Wall(300.0, damping=0.7, velocity_filter=zw.VelocityFilter([0.3, 0.1], [1.0, -0.7, 0.1])),
+    "window": zw.Wall(300.0, damping=0.7, velocity_filter=zw.rendering.Window(5)),
+    "one-pole": zw.Wall(300.0, damping=0.7, velocity_filter=zw.rendering.OnePole(0.01)),
+    "filter": zw.Wall(
+        300.0, damping=0.7, velocity_filter=zw.rendering.VelocityFilter([0.3, 0.1], [1.0, -0.7, 0.1])
+    ),
     "standard linear solid": zw.StandardLinearSolid(200.0, 100.0, 0.6),
     "Maxwell": zw.Maxwell(100.0, 0.6),
     "Prony": zw.GeneralizedMaxwell(50.0, [(100.0, 0.6), (30.0, 900.0), (20.0, 5.0)]),

@@ -15,7 +15,7 @@ K_SCALE, B_SCALE = 1e-6 / 0.036, 1e-3 / 0.036
 
 def test_the_curve_without_delay_is_the_closed_form() -> None:
     """κ = 2β(2 − β)/(2 + β) on every point that bounds; the largest near κ = 0.68629 at β = 0.82843."""
-    found = zw.stability_boundary(BARE, points=4000)
+    found = zw.maps.stability_boundary(BARE, points=4000)
     here = found["bounds"].values & (found["stiffness"].values > 1e-3)
     kappa = found["stiffness"].values[here] * K_SCALE
     beta = found["virtual_damping"].values[here] * B_SCALE
@@ -27,7 +27,7 @@ def test_the_curve_without_delay_is_the_closed_form() -> None:
 
 def test_one_sample_of_delay_in_the_plane_of_salcudean_and_vlaar() -> None:
     """k = T²K/2m, b = TB/2m: z²(z − 1)² + (z + 1)[k z + b (z − 1)] has its outermost root on the circle."""
-    found = zw.stability_boundary(BARE, delay=0.001, points=400)
+    found = zw.maps.stability_boundary(BARE, delay=0.001, points=400)
     here = found["bounds"].values & (found["stiffness"].values > 1)
     assert here.sum() > 50
     for k, b in zip(
@@ -42,7 +42,7 @@ def test_one_sample_of_delay_in_the_plane_of_salcudean_and_vlaar() -> None:
 @pytest.mark.parametrize("hand", [None, Finger()])
 def test_both_sides_of_the_curve(delay: float, hand: object) -> None:
     """Bisection's answer: a thousandth below a bounding point is stable, a thousandth above is not."""
-    found = zw.stability_boundary(PADDLE, hand, delay, points=150)
+    found = zw.maps.stability_boundary(PADDLE, hand, delay, points=150)
     device = PADDLE.replace(delay=delay)
     curve = found.isel(point=found["frequency"].values < 499)
     here = curve["bounds"].values & (curve["stiffness"].values > 100) & (curve["virtual_damping"].values > 0)
@@ -53,16 +53,16 @@ def test_both_sides_of_the_curve(delay: float, hand: object) -> None:
         top = float(curve["virtual_damping"].values[here][curve["stiffness"].values[here].argmax()])
         inward = zw.Wall(k * 0.999, b + 0.001 * (top - b))
         outward = zw.Wall(k * 1.001, max(b - 0.001 * (top - b), 0))
-        assert zw.stability(device, inward, hand).outcome == "stable"
-        assert zw.stability(device, outward, hand).outcome == "unstable"
+        assert zw.stability.coupled_stability(device, inward, hand).outcome == "stable"
+        assert zw.stability.coupled_stability(device, outward, hand).outcome == "unstable"
 
 
 def test_frequencies_are_those_of_the_poles() -> None:
     """At a bounding point the pole nearest to the circle has the frequency that stands there."""
-    found = zw.stability_boundary(PADDLE, Finger(), points=40)
+    found = zw.maps.stability_boundary(PADDLE, Finger(), points=40)
     for n in np.flatnonzero(found["bounds"].values[:40] & (found["stiffness"].values[:40] > 100)):
         one = found.isel(point=n)
-        there = zw.stability(
+        there = zw.stability.coupled_stability(
             PADDLE, zw.Wall(one["stiffness"].item(), one["virtual_damping"].item()), Finger()
         )
         assert there.frequency == pytest.approx(one["frequency"].item(), rel=1e-6)
@@ -72,8 +72,8 @@ def test_frequencies_are_those_of_the_poles() -> None:
 def test_what_has_no_boundary() -> None:
     """An interval, no mass, one point."""
     with pytest.raises(zw.InputError, match="one device and one hand"):
-        zw.stability_boundary(PADDLE, zw.PassiveHand(mass=(0, 1)))
+        zw.maps.stability_boundary(PADDLE, zw.stability.HandImpedance(mass=(0, 1)))
     with pytest.raises(zw.InputError, match="mass of the device"):
-        zw.stability_boundary(zw.Device(damping=1, rate=1000))
+        zw.maps.stability_boundary(zw.Device(damping=1, rate=1000))
     with pytest.raises(zw.InputError, match="two ends"):
-        zw.stability_boundary(PADDLE, points=1)
+        zw.maps.stability_boundary(PADDLE, points=1)

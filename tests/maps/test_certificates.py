@@ -12,10 +12,10 @@ from zwidth.passivity.check import check_by_closed_forms
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 FILTERS = {
-    "backward difference": zw.BackwardDifference(),
-    "window": zw.Window(4),
-    "one pole": zw.OnePole("0.004"),
-    "filter": zw.VelocityFilter([3, -1], [2, 0]),
+    "backward difference": zw.rendering.BackwardDifference(),
+    "window": zw.rendering.Window(4),
+    "one pole": zw.rendering.OnePole("0.004"),
+    "filter": zw.rendering.VelocityFilter([3, -1], [2, 0]),
 }
 
 
@@ -34,7 +34,7 @@ def test_each_column_has_its_stiffest_passive_wall(name: str, delay: str) -> Non
     """K and B of the certificates are the last passive cell of each column that has one; all are accepted."""
     device, velocity = PADDLE.replace(delay=delay), FILTERS[name]
     found = zw.z_width(device, (0, 400), ("-0.1", "0.3"), (80, 12), velocity_filter=velocity, hands={})
-    certificate = zw.z_width_certificate(device, found, velocity_filter=velocity)
+    certificate = zw.maps.z_width_certificate(device, found, velocity_filter=velocity)
     assert certificate is not None
     assert certificate.verify()
     passive = found["passive"].values
@@ -65,21 +65,23 @@ def test_nothing_passive_nothing_certified() -> None:
     """None for a map without a passive wall, such as with a delay of part of a sample."""
     device = PADDLE.replace(delay="0.0005")
     found = zw.z_width(device, (0, 400), (0, "0.1"), (20, 4), hands={})
-    assert zw.z_width_certificate(device, found) is None
+    assert zw.maps.z_width_certificate(device, found) is None
 
 
 def test_a_map_of_another_device_is_refused() -> None:
     """With less damping than the map's device had its walls are not passive, and that is said."""
     found = zw.z_width(PADDLE, (0, 400), (0, "0.1"), (20, 4), hands={})
     with pytest.raises(zw.InputError, match="another device"):
-        zw.z_width_certificate(PADDLE.replace(damping="0.1"), found)
+        zw.maps.z_width_certificate(PADDLE.replace(damping="0.1"), found)
     with pytest.raises(zw.InputError, match="another device"):
-        zw.z_width_certificate(PADDLE, found, velocity_filter=zw.VelocityFilter([9, -9], [1, 0]))
+        zw.maps.z_width_certificate(
+            PADDLE, found, velocity_filter=zw.rendering.VelocityFilter([9, -9], [1, 0])
+        )
 
 
 def test_progress_is_told() -> None:
     """Once for each column with a passive cell."""
     seen: list[tuple[int, int]] = []
     found = zw.z_width(PADDLE, (0, 400), (0, "0.1"), (20, 4), hands={})
-    zw.z_width_certificate(PADDLE, found, progress=lambda done, total: seen.append((done, total)))
+    zw.maps.z_width_certificate(PADDLE, found, progress=lambda done, total: seen.append((done, total)))
     assert seen == [(k + 1, 4) for k in range(4)]

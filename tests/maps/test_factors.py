@@ -12,7 +12,7 @@ FINE = {"cells": (60, 60), "hands": {}}  # what is passive alone
 
 def test_effects_are_differences_of_mean_areas() -> None:
     """With a fine encoder the passive triangle is b²/T: its effects follow from four numbers."""
-    found = zw.z_width_factors(
+    found = zw.maps.z_width_factors(
         PADDLE, (0, 1200), (0, 0.4), rate=(1000, 2000), damping=(0.15, 0.3), resolution=(1e-6, 2e-6), **FINE
     )
     area = found["area"].sel(region="passive")
@@ -33,7 +33,7 @@ def test_effects_are_differences_of_mean_areas() -> None:
 
 def test_what_colgate_and_brown_found() -> None:
     """Damping and rate enlarge what is stable; resolution leaves it as it is."""
-    found = zw.z_width_factors(
+    found = zw.maps.z_width_factors(
         PADDLE, (0, 4000), (0, 20), rate=("100 Hz", "1 kHz"), damping=(0.15, 1.5), resolution=(2e-4, 2e-6),
         cells=(24, 24), hands={"none": None},
     )  # fmt: skip
@@ -48,4 +48,6 @@ def test_what_colgate_and_brown_found() -> None:
 def test_two_equal_levels_are_refused() -> None:
     """An effect is a difference."""
     with pytest.raises(zw.InputError, match="twice"):
-        zw.z_width_factors(PADDLE, (0, 1), (0, 1), rate=(1000, "1 kHz"), damping=(1, 2), resolution=(0, 1e-5))
+        zw.maps.z_width_factors(
+            PADDLE, (0, 1), (0, 1), rate=(1000, "1 kHz"), damping=(1, 2), resolution=(0, 1e-5)
+        )

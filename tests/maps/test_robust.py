@@ -8,49 +8,49 @@ import pytest
 import zwidth as zw
 
 PADDLE = zw.catalogue.device("haptic-paddle")
-BOX = zw.PassiveHand(mass=(0, 0.02), stiffness=(0, 1000), damping=(0, 3))
+BOX = zw.stability.HandImpedance(mass=(0, 0.02), stiffness=(0, 1000), damping=(0, 3))
 
 
 @pytest.mark.parametrize("delay", ["0", "0.0005"])
 def test_both_sides(delay: str) -> None:
     """Below the one no hand of 60 is shaken; just above the other the named one is."""
     device = PADDLE.replace(delay=delay)
-    found = zw.robust_boundary(device, BOX, (2, 20), points=3)
+    found = zw.maps.robust_boundary(device, BOX, (2, 20), points=3)
     assert (found["guaranteed"] < found["refuted"]).all()
     assert (found["guaranteed"] > 0.995 * found["refuted"]).all()
     rng = np.random.default_rng(3)
     for b in found["virtual_damping"].values:
         at = found.sel(virtual_damping=b)
         wall = zw.Wall(float(at["guaranteed"]), float(b))
-        proved = zw.stability(device, wall, BOX)
+        proved = zw.stability.coupled_stability(device, wall, BOX)
         assert proved.outcome == "stable"
         assert proved.verify()
         for m, k, c in rng.uniform((0, 0, 0), (0.02, 1000, 3), (20, 3)):
-            hand = zw.PassiveHand(mass=m, stiffness=k, damping=c)
-            assert zw.stability(device, wall, hand).outcome == "stable"
+            hand = zw.stability.HandImpedance(mass=m, stiffness=k, damping=c)
+            assert zw.stability.coupled_stability(device, wall, hand).outcome == "stable"
         bare = device.replace(mass=float(at["mass"]), damping=float(at["damping"]))
-        worst = zw.PassiveHand(stiffness=float(at["hand_stiffness"]))
+        worst = zw.stability.HandImpedance(stiffness=float(at["hand_stiffness"]))
         above = zw.Wall(float(at["refuted"]) * (1 + 1e-9), float(b))
-        assert zw.stability(bare, above, worst).outcome == "unstable"
+        assert zw.stability.coupled_stability(bare, above, worst).outcome == "unstable"
 
 
 def test_a_certain_hand_has_no_gap() -> None:
     """Then both are the largest stable stiffness."""
-    found = zw.robust_boundary(PADDLE, zw.operators.Finger(), (1, 2), points=2)
+    found = zw.maps.robust_boundary(PADDLE, zw.operators.Finger(), (1, 2), points=2)
     assert found["guaranteed"].values.tolist() == found["refuted"].values.tolist()
-    expected = zw.stability(PADDLE, zw.Wall(1, 1), zw.operators.Finger()).max_stiffness
+    expected = zw.stability.coupled_stability(PADDLE, zw.Wall(1, 1), zw.operators.Finger()).max_stiffness
     assert found["guaranteed"].values[0] == expected
 
 
 def test_nothing_is_proved_where_a_hand_is_shaken_at_any_stiffness() -> None:
     """More virtual damping than an empty handle bears."""
-    found = zw.robust_boundary(PADDLE, BOX, (70, 200), points=2)
+    found = zw.maps.robust_boundary(PADDLE, BOX, (70, 200), points=2)
     assert np.isnan(found["guaranteed"].values[-1])
 
 
 def test_bad_ranges() -> None:
     """From smaller to larger, at two points at least."""
     with pytest.raises(zw.InputError, match="smaller to its larger"):
-        zw.robust_boundary(PADDLE, BOX, (2, 1))
+        zw.maps.robust_boundary(PADDLE, BOX, (2, 1))
     with pytest.raises(zw.InputError, match="2 points"):
-        zw.robust_boundary(PADDLE, BOX, (1, 2), points=1)
+        zw.maps.robust_boundary(PADDLE, BOX, (1, 2), points=1)

@@ -55,13 +55,13 @@ def test_every_number_has_its_unit() -> None:
 
 
 def test_stable_cells_are_those_that_stability_proves() -> None:
-    """On a coarse grid every cell of every hand is as `zw.stability` says, one by one."""
+    """On a coarse grid every cell of every hand is as `zw.stability.coupled_stability` says, one by one."""
     found = zw.z_width(PADDLE, *WIDE, cells=(9, 11))
     hands = {"none": None, "finger": Finger(), "dowel": Dowel(force=1)}
     for name, hand in hands.items():
         for k in found["stiffness"].values:
             for b in found["virtual_damping"].values:
-                expected = zw.stability(PADDLE, zw.Wall(k, b), hand).outcome == "stable"
+                expected = zw.stability.coupled_stability(PADDLE, zw.Wall(k, b), hand).outcome == "stable"
                 assert bool(found[f"stable_{name}"].sel(stiffness=k, virtual_damping=b)) == expected
 
 
@@ -94,12 +94,12 @@ def test_passive_cells_are_those_that_check_proves() -> None:
 @pytest.mark.parametrize(
     ("changes", "velocity"),
     [
-        ({}, zw.OnePole(0.005)),
-        ({"delay": "0.0005"}, zw.BackwardDifference()),
-        ({"delay": "0.0005"}, zw.Window(4)),
-        ({"delay": "0.002"}, zw.BackwardDifference()),
-        ({"delay": "0.0033", "resolution": "0.0008"}, zw.OnePole(0.003)),
-        ({"resolution": "0.001"}, zw.Window(3)),
+        ({}, zw.rendering.OnePole(0.005)),
+        ({"delay": "0.0005"}, zw.rendering.BackwardDifference()),
+        ({"delay": "0.0005"}, zw.rendering.Window(4)),
+        ({"delay": "0.002"}, zw.rendering.BackwardDifference()),
+        ({"delay": "0.0033", "resolution": "0.0008"}, zw.rendering.OnePole(0.003)),
+        ({"resolution": "0.001"}, zw.rendering.Window(3)),
     ],
 )
 def test_sustained_cells_are_those_that_the_criterion_proves(changes: dict, velocity: object) -> None:
@@ -155,7 +155,7 @@ def test_the_admissible_speed_of_a_spring_is_that_of_the_plane() -> None:
     found = zw.z_width(PADDLE, (0, 20000), ("-1e-12", "1e-12"), cells=(40, 1))
     seen = set()
     for k, speed in zip(found["stiffness"].values, found["admissible_speed"].values[:, 0], strict=True):
-        exact = float(zw.quantization.admissible_speed(PADDLE, k))
+        exact = float(zw.formulas.quantization.admissible_speed(PADDLE, k))
         assert speed <= exact
         assert speed == exact or speed == pytest.approx(exact, rel=1e-11)
         seen.add("inf" if speed == np.inf else "0" if speed == 0 else "finite")
@@ -189,7 +189,7 @@ def test_the_kernel_never_believes_a_sign_that_rounding_made() -> None:
     ready = plan(request(PADDLE, *WIDE, (10, 10), None, {"finger": Finger()}))
     hand = ready.hands[0]
     for b in (1.0, 20.0, 60.0):
-        limit = zw.stability(PADDLE, zw.Wall(10, b), Finger()).max_stiffness
+        limit = zw.stability.coupled_stability(PADDLE, zw.Wall(10, b), Finger()).max_stiffness
         assert limit is not None
         answers = {
             off: decide_cell(
@@ -377,7 +377,7 @@ def test_chunks_tile_the_map() -> None:
         ({"stiffness": (-1, 5)}, "pulls the hand in"),
         ({"cells": (0, 5)}, "whole number ≥ 1"),
         ({"cells": (100000, 100000)}, "at most"),
-        ({"hands": {"soft": zw.PassiveHand(mass=(0, 1))}}, "hand soft"),
+        ({"hands": {"soft": zw.stability.HandImpedance(mass=(0, 1))}}, "hand soft"),
         ({"device": PADDLE.replace(damping=(0.1, 0.2))}, "interval"),
         ({"device": zw.Device(damping=1, rate=1000)}, "mass"),
         ({"workers": 0}, "workers"),
@@ -405,7 +405,7 @@ def test_what_no_condition_covers_is_said_and_springs_are_decided() -> None:
     for share, outcome in ((1 - 1e-9, "passive"), (1 + 1e-6, "active")):
         assert check_by_closed_forms(device, zw.Wall(limit * share)).outcome == outcome
     assert "part of a sample" in found.attrs["not_covered"]
-    assert zw.z_width_certificate(device, found) is not None
+    assert zw.maps.z_width_certificate(device, found) is not None
     coarse = zw.z_width(device.replace(coulomb_friction="0.001"), (0, 300), (0, 1), cells=(4, 4), hands={})
     assert float(coarse["spring_limit"]) == pytest.approx(2 * 0.001 / 2.24e-5)
     assert zw.z_width(PADDLE, (0, 300), (0, 1), cells=(4, 4), hands={}).attrs["not_covered"] == ""

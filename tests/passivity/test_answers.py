@@ -17,7 +17,7 @@ from zwidth.showing import Html
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 HEAVY = PADDLE.replace(mass=0.04)
-HAND = zw.PassiveHand(mass=0.1, stiffness=100, damping=1)
+HAND = zw.stability.HandImpedance(mass=0.1, stiffness=100, damping=1)
 s = control.tf("s")
 
 
@@ -29,16 +29,20 @@ def answers() -> dict[str, Answer]:
         "passive": zw.check(PADDLE, zw.Wall(250)),
         "active": zw.check(PADDLE, zw.Wall(770)),
         "spring": zw.check(PADDLE, zw.NonlinearSpring([0, 0.001, 0.002], [0, 0.1, 0.35])),
-        "bounding": zw.check_bounding(PADDLE, zw.render(zw.Wall(2000), zw.rendering.ForceBounding())),
-        "worst hand": zw.worst_hand(PADDLE, zw.Wall(250), penetration=0.001, speed=0.1),
+        "bounding": zw.formulas.check_bounding(
+            PADDLE, zw.render(zw.Wall(2000), zw.rendering.ForceBounding())
+        ),
+        "worst hand": zw.available_storage(PADDLE, zw.Wall(250), penetration=0.001, speed=0.1),
         "arm": zw.workspace(arm, zw.Wall(1), rate=1000),
-        "port": zw.passivity_indices((s + 2) / (s + 1)),
-        "active port": zw.passivity_indices((s - 2) / (s * s + s + 1)),
-        "stable": zw.stability(HEAVY, zw.Wall(500), HAND),
-        "unstable": zw.stability(HEAVY, zw.Wall(50_000, -1), HAND),
-        "coupling": zw.coupling_condition(PADDLE, 100, 0.02),
-        "poor coupling": zw.coupling_condition(PADDLE, 1000, 0.2),
-        "springs": zw.transformed_condition(PADDLE, zw.SlopeBounds(0, 100, bounded_below=True)),
+        "port": zw.ports.passivity_indices((s + 2) / (s + 1)),
+        "active port": zw.ports.passivity_indices((s - 2) / (s * s + s + 1)),
+        "stable": zw.stability.coupled_stability(HEAVY, zw.Wall(500), HAND),
+        "unstable": zw.stability.coupled_stability(HEAVY, zw.Wall(50_000, -1), HAND),
+        "coupling": zw.coupling.coupling_condition(PADDLE, 100, 0.02),
+        "poor coupling": zw.coupling.coupling_condition(PADDLE, 1000, 0.2),
+        "springs": zw.coupling.transformed_condition(
+            PADDLE, zw.coupling.SlopeBounds(0, 100, bounded_below=True)
+        ),
     }
 
 

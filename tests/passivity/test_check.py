@@ -115,9 +115,9 @@ CLASSES = {
     "spring": zw.Wall(1),
     "damped wall": zw.Wall(1, 0.05),
     "negative virtual damping": zw.Wall(1, -0.04),
-    "window": zw.Wall(1, 0.06, zw.Window(5)),
-    "one pole": zw.Wall(1, 0.01, zw.OnePole(0.01)),
-    "filter": zw.Wall(1, 0.02, zw.VelocityFilter([0.3, 0.1], [1, -0.6])),
+    "window": zw.Wall(1, 0.06, zw.rendering.Window(5)),
+    "one pole": zw.Wall(1, 0.01, zw.rendering.OnePole(0.01)),
+    "filter": zw.Wall(1, 0.02, zw.rendering.VelocityFilter([0.3, 0.1], [1, -0.6])),
     "solid, backward": zw.StandardLinearSolid(1, 20, 0.1),
     "solid, Tustin": zw.StandardLinearSolid(1, 20, 0.1, "tustin"),
     "solid, zero-order hold": zw.StandardLinearSolid(1, 20, 0.1, "zoh"),
@@ -270,7 +270,7 @@ def test_friction_bounds_of_a_damped_wall_with_an_encoder():
 def test_undecided_between_the_bounds():
     """With a one-pole filter there is a gap between the proved bounds: undecided, and both are named."""
     device = zw.Device(damping="0.6", coulomb_friction=0, resolution="0.0005", sample_period="0.001")
-    law = zw.Wall(100, "0.1", zw.OnePole("0.02"))
+    law = zw.Wall(100, "0.1", zw.rendering.OnePole("0.02"))
     decision = zw.check(device, law).decision
     low, high = decision.necessary_friction, float(decision.sufficient_friction)
     assert low < high * 0.999
@@ -295,11 +295,11 @@ INTERVALS = {
     ),
     "filter and timing": (
         PADDLE.replace(resolution=0, sample_period=(0.0005, 0.001)),
-        zw.Wall((50, 80), (0.01, 0.1), zw.OnePole((0.001, 0.004))), "passive",
+        zw.Wall((50, 80), (0.01, 0.1), zw.rendering.OnePole((0.001, 0.004))), "passive",
     ),
     "window and timing": (
         PADDLE.replace(sample_period=(0.0005, 0.001)),
-        zw.Wall((50, 80), (0.01, 0.05), zw.Window(4)), "passive",
+        zw.Wall((50, 80), (0.01, 0.05), zw.rendering.Window(4)), "passive",
     ),
     "any H(z) and timing": (
         PADDLE.replace(sample_period=(0.0005, 0.001)),
@@ -357,9 +357,12 @@ def box(device, law):
 
 UNPROVED = {
     "timing of a filter with a delay": (
-        PADDLE.replace(sample_period=(0.0005, 0.001), delay="0.0002"), zw.Wall(80, 0.02, zw.OnePole("0.003"))
+        PADDLE.replace(sample_period=(0.0005, 0.001), delay="0.0002"),
+        zw.Wall(80, 0.02, zw.rendering.OnePole("0.003")),
     ),
-    "filter with a delay": (PADDLE.replace(delay="0.0001"), zw.Wall(80, 0.02, zw.OnePole((0.001, 0.002)))),
+    "filter with a delay": (
+        PADDLE.replace(delay="0.0001"), zw.Wall(80, 0.02, zw.rendering.OnePole((0.001, 0.002)))
+    ),
     "branch with a delay": (PADDLE.replace(delay="0.0001"), zw.StandardLinearSolid(10, (20, 30), 0.1)),
     "a Prony series": (PADDLE.replace(resolution=0), zw.GeneralizedMaxwell(10, [((20, 30), 0.1), (9, 1)])),
 }  # fmt: skip
@@ -417,7 +420,7 @@ ADVISED = {
     "delayed": (PADDLE.replace(delay="0.0013"), zw.Wall(120)),
     "coarse": (COARSE, zw.Wall(150)),
     "damped": (PADDLE.replace(resolution=0), zw.Wall(200, "0.08")),
-    "filtered": (PADDLE.replace(resolution=0), zw.Wall(280, "0.08", zw.OnePole("0.001"))),
+    "filtered": (PADDLE.replace(resolution=0), zw.Wall(280, "0.08", zw.rendering.OnePole("0.001"))),
     "passive spring": (PADDLE, zw.Wall(180)),
     "passive damped": (PADDLE.replace(resolution=0, delay="0.0001"), zw.Wall(80, "0.02")),
     "passive, negative virtual damping": (PADDLE, zw.Wall(80, "-0.02")),
@@ -433,7 +436,7 @@ def turned(device, law, parameter, value):
         sign = -1 if law.damping < 0 else 1
         return device, law.replace(damping=zw.Exact(sign * value.fraction))
     if parameter == "time_constant":
-        return device, law.replace(velocity_filter=zw.OnePole(value))
+        return device, law.replace(velocity_filter=zw.rendering.OnePole(value))
     return device.replace(**{parameter: value}), law
 
 
@@ -463,11 +466,15 @@ def test_advice_on_estimators():
     assert advised
     for advice in advised:
         number = advice.to.split(" of ")[1].split()[0]
-        other = zw.Window(int(number)) if advice.to.startswith("window") else zw.OnePole(Fraction(number))
+        other = (
+            zw.rendering.Window(int(number))
+            if advice.to.startswith("window")
+            else zw.rendering.OnePole(Fraction(number))
+        )
         assert advice.current == "backward difference"
         if advice.to.startswith("window"):
             assert zw.check(device, law.replace(velocity_filter=other)).is_proved
-            fewer = zw.check(device, law.replace(velocity_filter=zw.Window(other.samples - 1)))
+            fewer = zw.check(device, law.replace(velocity_filter=zw.rendering.Window(other.samples - 1)))
             assert other.samples == 2 or not fewer.is_proved
 
 
@@ -482,7 +489,7 @@ def test_rotary_advice_has_rotary_units():
 
 def test_assumptions_name_what_was_not_given():
     """Parameters taken as zero, the ideal sensor, sustained contact, and intervals are all said."""
-    loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.44", zw.Window(2))
+    loop = zw.Device(damping="0.3", rate=1000), zw.Wall(100, "0.44", zw.rendering.Window(2))
     bare = zw.check(*loop, contact="kept")
     text = "\n".join(bare.assumptions)
     for line in ("Coulomb friction was not given", "resolution was not given", "delay was not given"):
@@ -518,7 +525,7 @@ def test_rounding_does_not_make_a_solid_active(discretization):
 def test_budget_adds_up(delay):
     """Hold, law and delay add up to what is required at the critical frequency."""
     device = PADDLE.replace(delay=delay, resolution=0)
-    verdict = zw.check(device, zw.Wall(90, "0.03", zw.OnePole("0.001")))
+    verdict = zw.check(device, zw.Wall(90, "0.03", zw.rendering.OnePole("0.001")))
     account = verdict.budget
     assert account.hold + account.dynamics + account.delay == pytest.approx(account.required, rel=1e-12)
     assert account.required == pytest.approx(verdict.required_damping, rel=1e-12)

@@ -21,7 +21,7 @@ from zwidth.passivity.wording import describe_hands
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 STIFF = zw.Wall(stiffness=1500, damping=0.05, clamped=True)
-WINDOW = zw.Wall(stiffness=120, damping=0.2, velocity_filter=zw.Window(3))
+WINDOW = zw.Wall(stiffness=120, damping=0.2, velocity_filter=zw.rendering.Window(3))
 CLAMPED = WINDOW.replace(clamped=True)
 SMOOTH = PADDLE.replace(coulomb_friction="0.002")
 SOFT = zw.Wall(stiffness=150, damping=0.05, clamped=True)
@@ -87,7 +87,7 @@ def test_no_game_where_there_is_no_gap(device: zw.Device, law: zw.Wall) -> None:
 
 def test_a_law_that_cannot_be_played_keeps_its_verdict() -> None:
     """A window of more readings than the game remembers."""
-    law = WINDOW.replace(velocity_filter=zw.Window(20), damping=0.27)
+    law = WINDOW.replace(velocity_filter=zw.rendering.Window(20), damping=0.27)
     assert has_gap(PADDLE, law, check_by_closed_forms(PADDLE, law))
     verdict = zw.check(PADDLE, law)
     assert verdict.worst_hand is None
@@ -158,7 +158,7 @@ def test_the_json_names_the_game_and_a_saved_file_holds_its_proof(
 def test_the_prescribed_motion_takes_out_what_it_claims(delay: float | str) -> None:
     """In the simulator, with an ideal amplifier and the encoder's edges where the game has them."""
     device = PADDLE.replace(delay=delay)
-    gain = zw.worst_hand(device, zw.Wall(700, 0.05), penetration="0.002", speed="0.5").witness
+    gain = zw.available_storage(device, zw.Wall(700, 0.05), penetration="0.002", speed="0.5").witness
     assert gain is not None
     hand = zw.operators.WitnessMotion(gain)
     seconds = (hand.intervals + 1) * device.exact("sample_period")
@@ -170,7 +170,7 @@ def test_the_prescribed_motion_takes_out_what_it_claims(delay: float | str) -> N
 @pytest.mark.parametrize("delay", [0, "0.001", "0.0003"])
 def test_a_settled_round_gains_what_one_more_round_does(delay: float | str) -> None:
     """The forces that are drawn are those that the checker multiplies."""
-    gain = zw.worst_hand(PADDLE.replace(delay=delay), STIFF).witness
+    gain = zw.available_storage(PADDLE.replace(delay=delay), STIFF).witness
     assert gain is not None
     once = settled_round(gain)
     assert once.energies[-1] == pytest.approx(gain.energy_per_cycle, rel=1e-9)

@@ -36,17 +36,17 @@ LOSSLESS = zw.PulseTransferFunction(["48", "-168", "120"], ["1", "-0.8", "1"])  
 
 def evidence():
     """A passive or an active loop of each kind, with its document."""
-    filtered = zw.Wall("90", "0.03", zw.OnePole("0.004"))
+    filtered = zw.Wall("90", "0.03", zw.rendering.OnePole("0.004"))
     loops = {
         "spring": (DEVICE, zw.Wall("170")),
         "linear": (IDEAL, filtered),
-        "linear without delay": (IDEAL.replace(delay=0), zw.Wall("210", "0.4", zw.Window(2))),
-        "contact": (DEVICE.replace(delay="0.001"), zw.Wall("180", "0.04", zw.Window(2))),
-        "contact, one pole": (DEVICE.replace(delay=0), zw.Wall("400", "-0.1", zw.OnePole("0.004"))),
+        "linear without delay": (IDEAL.replace(delay=0), zw.Wall("210", "0.4", zw.rendering.Window(2))),
+        "contact": (DEVICE.replace(delay="0.001"), zw.Wall("180", "0.04", zw.rendering.Window(2))),
+        "contact, one pole": (DEVICE.replace(delay=0), zw.Wall("400", "-0.1", zw.rendering.OnePole("0.004"))),
         "closed loop": (IDEAL.replace(delay=0, damping="0.2"), LOSSLESS),
         "quantized": (DEVICE, filtered),
         "press": (DEVICE, zw.Wall("900")),
-        "motion": (IDEAL, zw.Wall("480", "0.03", zw.OnePole("0.004"))),
+        "motion": (IDEAL, zw.Wall("480", "0.03", zw.rendering.OnePole("0.004"))),
         "whole delay": (DEVICE.replace(delay="0.002"), zw.Wall("230")),
         "straddle": (DEVICE.replace(coulomb_friction="0.02"), zw.Wall("150")),
     }
@@ -485,7 +485,7 @@ def test_switch_positions_are_the_best(seed):
     """Where the hand waits for a force that changes inside a sample is where a numerical search puts it."""
     random = Random(seed)
     device = zw.Device(damping="0.23", rate=1000, delay=Fraction(random.randint(1, 2999), 10**6))
-    loop = linear_loop(device, zw.Wall(410, "0.05", zw.OnePole("0.002")))
+    loop = linear_loop(device, zw.Wall(410, "0.05", zw.rendering.OnePole("0.002")))
     w = (0, *(random.randint(-9, 9) for _ in range(6)))
     motion = realize(loop, Pattern(w, ()), Fraction(1, 1000), Fraction(0), 1)
     setting = Setting(loop, Fraction(0), Fraction(0), False)

@@ -153,7 +153,7 @@ def test_an_arm_and_its_wall():
     with pytest.raises(zw.InputError, match="give rate="):
         zw.check(arm, zw.Wall(100))
     with pytest.raises(zw.InputError, match="of several coordinates"):
-        zw.check(PADDLE, zw.MatrixWall([[100.0]]))
+        zw.check(PADDLE, zw.arms.MatrixWall([[100.0]]))
     with pytest.raises(zw.InputError, match="rate: of an arm"):
         zw.check(PADDLE, zw.Wall(100), rate=1000)
     with pytest.raises(zw.InputError, match="a Device or an arm"):

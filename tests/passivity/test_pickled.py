@@ -17,7 +17,7 @@ LOOPS = {
     "active": (PADDLE, zw.Wall(770)),
     "filter": (IDEAL.replace(damping=9), FILTER),
     "active filter": (IDEAL.replace(damping="0.1"), FILTER),
-    "touched": (IDEAL.replace(damping="0.025"), zw.Wall(10, "0.3", zw.OnePole("0.01"))),
+    "touched": (IDEAL.replace(damping="0.025"), zw.Wall(10, "0.3", zw.rendering.OnePole("0.01"))),
     "part of a sample": (IDEAL.replace(delay="0.0004"), zw.Wall(100)),
     "interval": (PADDLE, zw.Wall(zw.Interval(200, 400))),
     "row": (PADDLE, zw.render(zw.Wall(770), zw.rendering.ForceBounding())),

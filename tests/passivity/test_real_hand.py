@@ -21,7 +21,7 @@ LOOPS = {
     "delay of a sample": (PADDLE.replace(delay=1e-3), zw.Wall(400)),
     "delay and damping": (PADDLE.replace(delay=1.3e-3), zw.Wall(300, damping=0.1)),
     "solid": (PADDLE, zw.StandardLinearSolid(500, 200, 0.6)),
-    "window": (PADDLE, zw.Wall(200, damping=0.3, velocity_filter=zw.Window(4))),
+    "window": (PADDLE, zw.Wall(200, damping=0.3, velocity_filter=zw.rendering.Window(4))),
     "any H(z)": (PADDLE, zw.PulseTransferFunction([500.0, -100.0], [1.0, 0.0])),
     "knob": (zw.rotary(inertia=2e-5, damping=2e-4, rate=1000), zw.Wall(1.0)),
 }

@@ -143,7 +143,7 @@ def test_random_hands_in_a_filtered_wall(seed):
     device = zw.Device(
         damping="0.4", coulomb_friction="0.05", resolution=step, sample_period=T, delay="0.0004"
     )
-    law = zw.Wall(k, b, zw.OnePole("0.003"))
+    law = zw.Wall(k, b, zw.rendering.OnePole("0.003"))
     assert zw.check(device, law, contact="kept").outcome == "passive"
     num, den = ([float(c) for c in part] for part in law.pulse_transfer_function(zw.Exact(T).fraction))
     loop = {"damping": 0.4, "friction": 0.05, "period": T, "resolution": step, "part": 0.4}

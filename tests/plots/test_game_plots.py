@@ -19,7 +19,7 @@ def _by_id(axes: Axes, name: str) -> list:
 
 def test_storage_shows_the_waiting_hand_within_the_band():
     """The line is V for reading before = reading now; the band holds it, and a tick each count."""
-    found = zw.worst_hand(PADDLE, zw.Wall(700, 0.05), penetration="0.0003", speed="0.2")
+    found = zw.available_storage(PADDLE, zw.Wall(700, 0.05), penetration="0.0003", speed="0.2")
     (axes,) = plots.storage(found).axes
     (line,) = _by_id(axes, "waiting")
     energy = found.available_storage().values
@@ -36,14 +36,14 @@ def test_storage_shows_the_waiting_hand_within_the_band():
 
 
 def test_an_active_loop_has_no_storage_to_draw():
-    found = zw.worst_hand(PADDLE, zw.Wall(1500, 0.05))
+    found = zw.available_storage(PADDLE, zw.Wall(1500, 0.05))
     with pytest.raises(zw.InputError, match="active"):
         plots.storage(found)
 
 
 def test_cycle_shows_positions_edges_forces_and_the_joules():
     """Six rounds of two samples; the energy rises by the gain in each."""
-    gain = zw.worst_hand(PADDLE, zw.Wall(950, 0.05), **BOUNDS).witness
+    gain = zw.available_storage(PADDLE, zw.Wall(950, 0.05), **BOUNDS).witness
     above, middle, below = plots.cycle(gain).axes
     x = np.asarray(above.lines[0].get_ydata()) * 1e-6
     assert set(np.round(x, 12)) == set(np.round(gain.cycle, 12))
@@ -61,7 +61,7 @@ def test_cycle_shows_positions_edges_forces_and_the_joules():
 
 def test_both_sides_of_a_limit_stand_beside_each_other():
     """The storage function at one value, the motion at the other."""
-    bracket = zw.passive_limit(PADDLE, zw.Wall(100, 0.05), **BOUNDS)
+    bracket = zw.limit(PADDLE, zw.Wall(100, 0.05), **BOUNDS)
     figure = plots.limit_figure(bracket)
     left, *right = figure.axes
     assert left.get_title(loc="left").startswith(f"{bracket.proved_passive:.4g} N/m")
@@ -70,7 +70,7 @@ def test_both_sides_of_a_limit_stand_beside_each_other():
 
 
 def test_a_closed_limit_shows_its_motion_alone():
-    figure = plots.limit_figure(zw.passive_limit(PADDLE, zw.Wall(100, 0.05)))
+    figure = plots.limit_figure(zw.limit(PADDLE, zw.Wall(100, 0.05)))
     assert len(figure.axes) == 3
     assert "every hand" in figure.get_suptitle()
 
@@ -90,7 +90,7 @@ def test_a_verdict_shows_what_the_game_found():
 
 def test_a_rotary_cycle_is_in_radians():
     wheel = zw.Device(damping=0.01, coulomb_friction=0.001, resolution=0.001, rate=1000, motion="rotary")
-    gain = zw.worst_hand(wheel, zw.Wall(200, 0.001)).witness
+    gain = zw.available_storage(wheel, zw.Wall(200, 0.001)).witness
     above, middle, _ = plots.cycle(gain).axes
     assert "rad]" in above.get_ylabel()
     assert "N·m]" in middle.get_ylabel()

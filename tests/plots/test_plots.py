@@ -35,7 +35,7 @@ def _by_id(axes: Axes, name: str) -> list:
 
 def test_criterion_shows_damping_peak_and_violation():
     """The dashed line is b, the marked top is the required damping at the critical frequency."""
-    verdict = zw.check(IDEAL, zw.Wall(stiffness=100, damping=0.5, velocity_filter=zw.Window(20)))
+    verdict = zw.check(IDEAL, zw.Wall(stiffness=100, damping=0.5, velocity_filter=zw.rendering.Window(20)))
     (axes,) = plots.criterion(verdict).axes
     assert _dashed(axes) == 0.15
     (mark,) = _by_id(axes, "critical")
@@ -55,7 +55,9 @@ def test_criterion_of_a_passive_loop_shades_nothing():
 @pytest.mark.parametrize("damping", [0.5, -0.3])
 def test_criterion_on_a_logarithmic_axis(damping):
     """A top towards 0 Hz is marked at the left end, another where it is."""
-    verdict = zw.check(IDEAL, zw.Wall(stiffness=100, damping=damping, velocity_filter=zw.Window(20)))
+    verdict = zw.check(
+        IDEAL, zw.Wall(stiffness=100, damping=damping, velocity_filter=zw.rendering.Window(20))
+    )
     (axes,) = plots.criterion(verdict, log_frequency=True).axes
     (mark,) = _by_id(axes, "critical")
     assert mark.get_xdata()[0] == max(verdict.critical_frequency, axes.get_xlim()[0])
@@ -247,7 +249,7 @@ def test_indices_mark_the_least_real_part():
     """The dashed lines are the indices, and the curve touches each at the mark."""
     from scipy.signal import TransferFunction
 
-    found = zw.passivity_indices(TransferFunction([1, 1, 5, 0.1], [1, 2, 3, 4]))
+    found = zw.ports.passivity_indices(TransferFunction([1, 1, 5, 0.1], [1, 2, 3, 4]))
     for axes, index in zip(plots.indices(found).axes, (found.input, found.output), strict=True):
         assert _dashed(axes) == index.value
         curve = next(line for line in axes.lines if len(line.get_xdata()) > 100)
@@ -260,7 +262,7 @@ def test_indices_of_several_axes_are_eigenvalues():
     """One curve for each eigenvalue, the least of them down to the index; also where G has no inverse."""
     from scipy.signal import StateSpace
 
-    found = zw.passivity_indices(
+    found = zw.ports.passivity_indices(
         StateSpace([[-1, 2], [-2, -3]], np.eye(2), [[1, 0.5], [0, 1]], 0.2 * np.eye(2))
     )
     for axes, index in zip(plots.indices(found).axes, (found.input, found.output), strict=True):
@@ -268,7 +270,7 @@ def test_indices_of_several_axes_are_eigenvalues():
         assert len(curves) == 2
         assert min(map(min, curves)) == pytest.approx(index.value, rel=1e-3)
         assert _dashed(axes) == index.value
-    one = zw.passivity_indices(StateSpace([[-1]], [[1, 1]], [[1], [1]], np.zeros((2, 2))))
+    one = zw.ports.passivity_indices(StateSpace([[-1]], [[1, 1]], [[1], [1]], np.zeros((2, 2))))
     assert one.output.curve([0.1, 1, 10]) == pytest.approx([0.5, 0.5, 0.5])
     plots.indices(one).savefig(BytesIO(), format="svg")
 
@@ -279,7 +281,7 @@ def test_indices_without_a_number_are_drawn_too(num, den):
     from scipy.signal import TransferFunction
 
     for arguments in ({}, {"dt": 0.01}):
-        found = zw.passivity_indices(TransferFunction(num, den, **arguments))
+        found = zw.ports.passivity_indices(TransferFunction(num, den, **arguments))
         left, right = plots.indices(found).axes
         plots.indices(found).savefig(BytesIO(), format="svg")
         for axes, index in ((left, found.input), (right, found.output)):

@@ -98,7 +98,7 @@ def test_three_joints_are_not_drawn() -> None:
 def test_a_hand_in_pose_is_drawn_by_its_joints() -> None:
     """Without a margin at the hand the colours are those of the joints, over the plane of the hand."""
     arm = PlanarChain(links=(0.1, 0.1), damping=(0.02, 0.02), joint_range=((0, 1), (0.5, 2)), pose=True)
-    space = zw.workspace(arm, zw.MatrixWall.in_pose(900, 0.5, planar=True), rate=1000, points=16)
+    space = zw.workspace(arm, zw.arms.MatrixWall.in_pose(900, 0.5, planar=True), rate=1000, points=16)
     figure, axes = plt.subplots()
     plots.draw_workspace(axes, space)
     drawn = np.sort(np.ma.getdata(axes.collections[0].get_array()).ravel())

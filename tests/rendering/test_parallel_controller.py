@@ -21,7 +21,7 @@ forces = st.lists(
 """Held forces, none of them 0 [N]."""
 
 bodies = st.builds(
-    zw.VirtualBody,
+    zw.simulation.VirtualBody,
     mass=st.floats(0.001, 3),
     damping=st.sampled_from([0, 0.3]),
     stiffness=st.sampled_from([0, 400]),
@@ -31,7 +31,7 @@ bodies = st.builds(
 
 def pushed(body, newtons, controller=None, **options):
     """The display under a recorded force."""
-    return zw.simulate_admittance(
+    return zw.simulation.simulate_admittance(
         body,
         zw.operators.RecordedForce(newtons),
         len(newtons) * 0.001,
@@ -69,8 +69,8 @@ def test_it_owes_one_sample_at_most(body, newtons):
 )
 def test_it_owes_one_sample_at_most_to_spring_hands(path, stiffness, damping, mass):
     """The same with a hand that yields: its mean force changes with every move of the display."""
-    trace = zw.simulate_admittance(
-        zw.VirtualBody(mass),
+    trace = zw.simulation.simulate_admittance(
+        zw.simulation.VirtualBody(mass),
         zw.operators.Tracking(path, stiffness=stiffness, damping=damping),
         0.05,
         sample_period="0.001",
@@ -86,7 +86,7 @@ def test_it_owes_one_sample_at_most_to_spring_hands(path, stiffness, damping, ma
 def test_a_hand_that_turns_doubles_its_gain_in_every_sample():
     """f̄_k = −φ_k: E_{k+1} = E_k (1 − f̄_k/φ_k) = 2 E_k without end; without a controller, a straight line."""
     turns = np.tile([1.0, -1.0], 15)
-    body = zw.VirtualBody("0.01")
+    body = zw.simulation.VirtualBody("0.01")
     work = pushed(body, turns, UNLIMITED).hand_work.values
     np.testing.assert_allclose(work[2:], -1e-4 * 2.0 ** np.arange(29), rtol=1e-12)
     assert pushed(body, turns).hand_work.values[-1] == pytest.approx(-15e-4)
@@ -99,7 +99,7 @@ def test_a_hand_that_turns_doubles_its_gain_in_every_sample():
 @given(forces, st.floats(0.001, 3), zero_or(0.001, 1), zero_or(0.01, 500), st.sampled_from(["mean", "point"]))
 def test_the_published_pairing_never_sees_an_implicit_body(newtons, mass, damping, stiffness, sensor):
     """Σ T φ_k v_k is what the body stores and loses: the controller never acts, whatever the hand."""
-    body = zw.VirtualBody(mass, damping, stiffness)
+    body = zw.simulation.VirtualBody(mass, damping, stiffness)
     controller = ParallelController(observer="published", largest_mobility="unlimited")
     watched = pushed(body, newtons, controller, sensor=sensor)
     scale = np.abs(watched.velocity).max() + 1e-12
@@ -108,8 +108,8 @@ def test_the_published_pairing_never_sees_an_implicit_body(newtons, mass, dampin
 
 def test_what_the_published_pairing_does_not_see_grows():
     """A light body diverges in a stiff hand; the observer, never below 0, sees only what it takes in."""
-    trace = zw.simulate_admittance(
-        zw.VirtualBody("0.01"),
+    trace = zw.simulation.simulate_admittance(
+        zw.simulation.VirtualBody("0.01"),
         zw.operators.Tracking([0, 0.001], stiffness=2000, damping=0.2),
         1,
         sample_period="0.001",
@@ -124,8 +124,8 @@ def test_what_the_pairings_miss_in_a_still_hand(stiffness):
     """Point sensor: published ½ k T² u² + c T u_k (u_k − u_{k−1}) too much, sampled ½ k T² u² too little."""
     counted = {}
     for observer in ("published", "sampled"):
-        trace = zw.simulate_admittance(
-            zw.VirtualBody("0.05"),
+        trace = zw.simulation.simulate_admittance(
+            zw.simulation.VirtualBody("0.05"),
             zw.operators.Tracking([0.0, 0.001], stiffness=stiffness, damping=0.3),
             0.4,
             sample_period="0.001",
@@ -144,7 +144,9 @@ def touch(mass, **options):
     """A hand of 2000 N/m and 0.2 N·s/m that goes 20 mm in a second, then rests; 4 s."""
     path = np.minimum(np.arange(4000) * 2e-5, 0.02)
     hand = zw.operators.Tracking(path, stiffness=2000, damping=0.2)
-    return zw.simulate_admittance(zw.VirtualBody(mass), hand, 4, sample_period="0.001", **options)
+    return zw.simulation.simulate_admittance(
+        zw.simulation.VirtualBody(mass), hand, 4, sample_period="0.001", **options
+    )
 
 
 def test_where_the_force_changes_slowly_it_works():
@@ -184,7 +186,7 @@ zigzags = st.lists(st.tuples(st.floats(-3, 1), st.sampled_from([1, -1])), min_si
 def test_no_zigzag_takes_out_more_than_stated(newtons, mass, damping, stiffness, times):
     """By default (T²/M) Σ f̄² at most, at every sample, for every hand: twice what the body alone may leak."""
     newtons = np.tile(newtons, times)
-    body = zw.VirtualBody(mass, damping, stiffness)
+    body = zw.simulation.VirtualBody(mass, damping, stiffness)
     for observer in ("sampled", "published"):
         work = pushed(body, newtons, ParallelController(observer=observer)).hand_work.values
         bound = T**2 / mass * np.cumsum(newtons**2)
@@ -193,7 +195,7 @@ def test_no_zigzag_takes_out_more_than_stated(newtons, mass, damping, stiffness,
 
 def test_the_same_zigzag_without_a_limit_has_no_bound():
     """Small forces, then a large one: 1 mN asks for a velocity that 1 N is held against."""
-    newtons, body = np.tile([0.001, -1.0], 20), zw.VirtualBody("0.01")
+    newtons, body = np.tile([0.001, -1.0], 20), zw.simulation.VirtualBody("0.01")
     bound = T**2 / 0.01 * np.sum(newtons**2)
     assert -pushed(body, newtons, ParallelController()).hand_work.min() < bound
     assert -pushed(body, newtons, UNLIMITED).hand_work.min() > 1e30 * bound
@@ -204,7 +206,9 @@ def test_the_same_zigzag_without_a_limit_has_no_bound():
 def test_capped_before_a_soft_damper_no_hand_gains(newtons, mass, mobility, damping, stiffness):
     """1/b_s = T/2M + β_max in series with the source: W_h + Σ T f²/b_s ≥ 0 at every sample."""
     trace = pushed(
-        zw.VirtualBody(mass, damping, stiffness), newtons, ParallelController(largest_mobility=mobility)
+        zw.simulation.VirtualBody(mass, damping, stiffness),
+        newtons,
+        ParallelController(largest_mobility=mobility),
     )
     softness = T / (2 * mass) + mobility
     total = trace.hand_work.values[1:] + softness * T * np.cumsum(newtons**2)
@@ -214,7 +218,7 @@ def test_capped_before_a_soft_damper_no_hand_gains(newtons, mass, mobility, damp
 def test_the_cap_has_its_price():
     """With 1/b_s = T/2M alone, enough without a controller, a hand gains from the capped one."""
     turns = np.tile([1.0, -1.0], 200)
-    softness, body = T / (2 * 0.01), zw.VirtualBody("0.01")
+    softness, body = T / (2 * 0.01), zw.simulation.VirtualBody("0.01")
     spent = softness * T * np.cumsum(turns**2)
     capped = ParallelController(largest_mobility="0.03")
     assert (pushed(body, turns).hand_work.values[1:] + spent >= -1e-15).all()

@@ -257,7 +257,7 @@ def test_many_loops_are_one_each():
     """simulate_batch ends where simulate does, to the last bit."""
     law = zw.render(zw.Wall(1900), HalfSamplePrediction(**FINGER), CrossingCorrection(**FINGER))
     masses = [0.31, 0.37]
-    batch = zw.simulate_batch(DEVICE, law, HAND, 0.9, vary={"device.mass": masses})
+    batch = zw.simulation.simulate_batch(DEVICE, law, HAND, 0.9, vary={"device.mass": masses})
     for mass, swing in zip(masses, batch.deepest_position.values, strict=True):
         trace = zw.simulate(DEVICE.replace(mass=mass), law, HAND, 0.9)
         assert swing == np.max(trace.position.values)

@@ -67,13 +67,15 @@ def test_a_missed_sample_leaves_the_laws_as_they_were():
     law = zw.render(zw.Wall(0), damper)
     motion = zw.operators.PrescribedMotion(np.array([0, 1e-3, 3e-3, 4e-3, 4e-3]))
     loop = zw.Device(damping=0.1, sample_period=0.001)
-    trace = zw.simulate(loop, law, motion, 0.004, timing=zw.Timing(missed=[0, 0, 1, 0, 0]))
+    trace = zw.simulate(loop, law, motion, 0.004, timing=zw.simulation.Timing(missed=[0, 0, 1, 0, 0]))
     assert trace.commanded_force.values == pytest.approx([0, 2, 2, 6, 0])
 
 
 def test_a_batch_has_the_bits_of_single_loops():
     """On two threads."""
-    batch = zw.simulate_batch(DEVICE, LAW, HAND, 0.2, vary={"device.damping": [0.1, 0.4]}, threads=2)
+    batch = zw.simulation.simulate_batch(
+        DEVICE, LAW, HAND, 0.2, vary={"device.damping": [0.1, 0.4]}, threads=2
+    )
     for damping in (0.1, 0.4):
         alone = zw.simulate(DEVICE.replace(damping=damping), LAW, HAND, 0.2)
         assert float(batch.position.sel(damping=damping)) == float(alone.position[-1])
@@ -85,8 +87,8 @@ import zwidth as zw
 from prescribed import DEVICE
 from test_row import HAND, LAW
 vary = {"device.damping": [0.1, 0.4]}
-card = zw.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary, backend="gpu")
-own = zw.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary)
+card = zw.simulation.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary, backend="gpu")
+own = zw.simulation.simulate_batch(DEVICE, LAW, HAND, 0.05, vary=vary)
 for name in own.data_vars:
     assert (card[name] == own[name]).all(), name
 assert float(own.samples_inside.max()) > 0

@@ -191,7 +191,7 @@ def test_inside_only_and_pushing_only():
     ("wrong", "message"),
     [
         (lambda: Damper(-1), "damping must be ≥ 0"),
-        (lambda: Damper(1, zw.Window(3)), "velocity is AdaptiveWindow"),
+        (lambda: Damper(1, zw.rendering.Window(3)), "velocity is AdaptiveWindow"),
         (lambda: Damper(1, clamped=1), "clamped is True for a sum"),
         (lambda: AdaptiveWindow(-1e-6), "noise must be ≥ 0"),
         (lambda: AdaptiveWindow(longest=0), "longest must be > 0"),

@@ -186,14 +186,18 @@ def test_every_other_type(read: Load, name: str) -> None:
 
 
 FILTERS: list[tuple[str, str, Any]] = [
-    ('{ type = "backward-difference" }', "backward-difference", zw.BackwardDifference()),
-    ('{ type = "window", samples = 5 }', "window 5", zw.Window(5)),
-    ('{ type = "one-pole", time_constant = "2 ms" }', "one-pole 2 ms", zw.OnePole(0.002)),
-    ('{ type = "one-pole", cutoff = "50 Hz" }', "one-pole 50 Hz", zw.OnePole(1 / (2 * math.pi * 50))),
+    ('{ type = "backward-difference" }', "backward-difference", zw.rendering.BackwardDifference()),
+    ('{ type = "window", samples = 5 }', "window 5", zw.rendering.Window(5)),
+    ('{ type = "one-pole", time_constant = "2 ms" }', "one-pole 2 ms", zw.rendering.OnePole(0.002)),
+    (
+        '{ type = "one-pole", cutoff = "50 Hz" }',
+        "one-pole 50 Hz",
+        zw.rendering.OnePole(1 / (2 * math.pi * 50)),
+    ),
     (
         '{ type = "filter", numerator = [0.2], denominator = [1, -0.8] }',
         "filter 0.2 / 1, -0.8",
-        zw.VelocityFilter([0.2], [1, -0.8]),
+        zw.rendering.VelocityFilter([0.2], [1, -0.8]),
     ),
 ]
 

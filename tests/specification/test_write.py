@@ -26,9 +26,11 @@ DEVICE = zw.Device(
 )
 ENVIRONMENTS = {
     "wall": zw.Wall(THIRD, damping=-1, clamped=True),
-    "wall, window": zw.Wall(10, damping=1, velocity_filter=zw.Window(5)),
-    "wall, one pole": zw.Wall((10, 20), damping=1, velocity_filter=zw.OnePole(("0.001", "0.002"))),
-    "wall, filter": zw.Wall(10, damping=1, velocity_filter=zw.VelocityFilter([500, 0, -500], [1, 0, 0])),
+    "wall, window": zw.Wall(10, damping=1, velocity_filter=zw.rendering.Window(5)),
+    "wall, one pole": zw.Wall((10, 20), damping=1, velocity_filter=zw.rendering.OnePole(("0.001", "0.002"))),
+    "wall, filter": zw.Wall(
+        10, damping=1, velocity_filter=zw.rendering.VelocityFilter([500, 0, -500], [1, 0, 0])
+    ),
     "maxwell": zw.Maxwell(stiffness=100, damping=THIRD, discretization="tustin"),
     "standard-linear-solid": zw.StandardLinearSolid(100, branch_stiffness=("1", "2"), branch_damping=3),
     "generalized-maxwell": zw.GeneralizedMaxwell(5, branches=[(800, 3), (THIRD, 20)]),

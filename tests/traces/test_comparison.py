@@ -10,7 +10,7 @@ import zwidth as zw
 
 def test_the_numbers_are_those_of_the_traces(dowel, finger) -> None:
     """Each measure computed here by its definition."""
-    rows = zw.compare_traces({"dowel": dowel, "finger": finger}).rows
+    rows = zw.traces.compare_traces({"dowel": dowel, "finger": finger}).rows
     assert rows["dowel"]["deepest_position"] == dowel.position.values.max()
     assert rows["finger"]["peak_actuator_force"] == finger.actuator_force.values.max()
     assert rows["dowel"]["energy_extracted"] == pytest.approx((-dowel.hand_work.values).max())
@@ -26,13 +26,13 @@ def test_chatter_is_what_is_quicker_than_30_hz() -> None:
     force = 2 + 0.3 * np.sin(2 * np.pi * 10 * t) + 0.4 * np.sin(2 * np.pi * 100 * t)
     device = zw.Device(mass=0.1, damping=0.1, rate=1000)
     trace = zw.simulate(device, zw.Wall(1000.0), zw.operators.PrescribedMotion(force / 1000), 1.0)
-    chatter = zw.compare_traces(trace).rows.popitem()[1]["chatter"]
+    chatter = zw.traces.compare_traces(trace).rows.popitem()[1]["chatter"]
     assert chatter == pytest.approx(0.4 / np.sqrt(2), rel=2e-2)
 
 
 def test_the_dowel_chatters_and_the_finger_does_not(dowel, finger) -> None:
     """What the table is for: who vibrates, who gets energy out."""
-    rows = zw.compare_traces({"dowel": dowel, "finger": finger}).rows
+    rows = zw.traces.compare_traces({"dowel": dowel, "finger": finger}).rows
     assert rows["dowel"]["energy_extracted"] > 0 >= rows["finger"]["energy_extracted"]
     assert rows["dowel"]["chatter"] > 20 * rows["finger"]["chatter"]
     assert rows["finger"]["last_swing"] < 1e-4 < rows["dowel"]["last_swing"]
@@ -40,7 +40,7 @@ def test_the_dowel_chatters_and_the_finger_does_not(dowel, finger) -> None:
 
 def test_it_shows_itself_everywhere(dowel, finger) -> None:
     """Terminal, Jupyter, xarray, dict: units with the numbers."""
-    comparison = zw.compare_traces(dowel, finger)
+    comparison = zw.traces.compare_traces(dowel, finger)
     assert "deepest [m]" in repr(comparison)
     assert comparison._repr_html_().startswith("<table>")
     assert comparison.to_xarray().deepest_position.attrs["units"] == "m"
@@ -50,14 +50,14 @@ def test_it_shows_itself_everywhere(dowel, finger) -> None:
 
 def test_a_label_is_never_shared(dowel) -> None:
     """The same trace twice keeps two rows."""
-    assert len(zw.compare_traces(dowel, dowel).rows) == 2
+    assert len(zw.traces.compare_traces(dowel, dowel).rows) == 2
 
 
 def test_what_cannot_be_compared_is_refused(dowel, knob) -> None:
     """Nothing at all; radians with metres; a Dataset that is no trace."""
     with pytest.raises(zw.InputError, match="one trace at least"):
-        zw.compare_traces()
+        zw.traces.compare_traces()
     with pytest.raises(zw.InputError, match="rotary"):
-        zw.compare_traces(dowel, knob)
+        zw.traces.compare_traces(dowel, knob)
     with pytest.raises(zw.InputError, match="lacks hand_work"):
-        zw.compare_traces(dowel.drop_vars("hand_work"))
+        zw.traces.compare_traces(dowel.drop_vars("hand_work"))

@@ -21,7 +21,7 @@ def test_a_trace_comes_back_as_it_was(which: str, suffix: str, tmp_path: Path, r
     trace = request.getfixturevalue(which)
     path = tmp_path / f"touch{suffix}"
     trace.zwidth.save(path)
-    back = zw.load_trace(path)
+    back = zw.traces.load_trace(path)
     xr.testing.assert_identical(trace, back)
     assert repr(back.zwidth.energy) == repr(trace.zwidth.energy)
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
@@ -95,7 +95,7 @@ def test_a_foreign_file_is_refused(suffix: str, content: bytes, tmp_path: Path) 
     path = tmp_path / f"foreign{suffix}"
     path.write_bytes(content)
     with pytest.raises(zw.InputError) as caught:
-        zw.load_trace(path)
+        zw.traces.load_trace(path)
     assert "\n" not in str(caught.value)
 
 
@@ -107,7 +107,7 @@ def test_a_truncated_file_is_refused(suffix: str, dowel, tmp_path: Path) -> None
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2 - 7])
     with pytest.raises(zw.InputError):
-        zw.load_trace(path)
+        zw.traces.load_trace(path)
 
 
 def test_a_dataset_that_is_no_trace_is_refused() -> None:

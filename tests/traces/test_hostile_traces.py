@@ -19,14 +19,14 @@ def saved(finger, tmp_path: Path) -> Path:
     """A trace that may be read."""
     path = tmp_path / "touch.nc"
     finger.zwidth.save(path)
-    assert zw.load_trace(path).identical(finger)
+    assert zw.traces.load_trace(path).identical(finger)
     return path
 
 
 def refused(path: Path, message: str) -> None:
     """Reading it is one line that says so."""
     with pytest.raises(zw.InputError, match=message) as caught:
-        zw.load_trace(path)
+        zw.traces.load_trace(path)
     assert "\n" not in str(caught.value)
 
 

@@ -19,9 +19,9 @@ def test_games_and_limits_tell_how_far_they_are() -> None:
     """A `progress` of one's own takes the place of the bar."""
     paddle, wall = zw.catalogue.device("haptic-paddle"), zw.Wall(500, 0.05)
     left: list[int] = []
-    zw.worst_hand(paddle, wall, penetration="0.0005", speed="0.2", progress=left.append)
+    zw.available_storage(paddle, wall, penetration="0.0005", speed="0.2", progress=left.append)
     assert left[-1] == 0
     done: list[tuple[int, int]] = []
-    zw.passive_limit(paddle, wall, progress=lambda k, total: done.append((k, total)))
+    zw.limit(paddle, wall, progress=lambda k, total: done.append((k, total)))
     assert [k for k, _ in done] == sorted(k for k, _ in done)
     assert all(k < total for k, total in done)

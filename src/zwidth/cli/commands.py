@@ -21,10 +21,10 @@ from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
-    from zwidth.coupled_stability.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
     from zwidth.passivity.verdict import Verdict
     from zwidth.specification.read import Specification
+    from zwidth.stability.active_hand import ToleratedActivity
 
 
 class Command(NamedTuple):
@@ -106,8 +106,8 @@ def _replayed(verdict: Verdict) -> RealHand:
 def _tolerated(loop: Specification, below: str | None) -> ToleratedActivity | None:
     if below is None:
         return None
-    from zwidth.coupled_stability.active_hand import tolerated_activity
     from zwidth.quantity.units import parse_number
+    from zwidth.stability.active_hand import tolerated_activity
 
     return tolerated_activity(loop.device, loop.environment, parse_number(below, "Hz", "active_below"))
 

@@ -26,8 +26,8 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown
 
 if TYPE_CHECKING:
-    from zwidth.coupled_stability.active_hand import ToleratedActivity
     from zwidth.passivity.real_hand import RealHand
+    from zwidth.stability.active_hand import ToleratedActivity
 
 _LONGEST_BAR = 34
 _ORDER = (

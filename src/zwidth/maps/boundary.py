@@ -14,16 +14,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from zwidth.coupled_stability.known_hand.characteristic import PRECISIONS, family
-from zwidth.coupled_stability.known_hand.crossing import Curve, curve, line, plain
-from zwidth.coupled_stability.known_hand.hand import as_hand
-from zwidth.coupled_stability.known_hand.stability import motion_of
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import RealLike
+from zwidth.stability.known_hand.characteristic import PRECISIONS, family
+from zwidth.stability.known_hand.coupled import motion_of
+from zwidth.stability.known_hand.crossing import Curve, curve, line, plain
+from zwidth.stability.known_hand.hand import as_hand
 
 _SLOWEST = 1e-4
 """Smallest angle ωT on the curve, as a part of π."""
@@ -46,7 +46,7 @@ def stability_boundary(
     device
         Certain values, with a mass.
     hand
-        None, a certain `PassiveHand`, or a linear operator.
+        None, a certain `HandImpedance`, or a linear operator.
     delay
         In place of the device's [s], of any length.
     velocity_filter

@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.coupled_stability.known_hand.characteristic import family
-from zwidth.coupled_stability.known_hand.decide import decided
 from zwidth.maps.kernel import STABLE, UNKNOWN, decide_block
 from zwidth.maps.plan import Contact, HandPlan, Plan
 from zwidth.maps.request import CHUNK, Array
 from zwidth.quantity.exact import Exact
+from zwidth.stability.known_hand.characteristic import family
+from zwidth.stability.known_hand.decide import decided
 
 _SHY = 1e-14
 """By how much every number of the admissible speed is taken to its safe side: more than its rounding."""

@@ -20,10 +20,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.coupled_stability.known_hand.characteristic import Family, as_floats, bilinear, family
-from zwidth.coupled_stability.known_hand.crossing import last_stable, plain
-from zwidth.coupled_stability.known_hand.plant import Coefficients, Motion
-from zwidth.coupled_stability.known_hand.stability import motion_of
 from zwidth.environment import Wall
 from zwidth.environment.environment import RationalFunction
 from zwidth.maps.request import Array, Request
@@ -33,6 +29,10 @@ from zwidth.passivity.formulas.delayed_spring import spring_stiffness
 from zwidth.passivity.linear.contact import damped_wall
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import Exact
+from zwidth.stability.known_hand.characteristic import Family, as_floats, bilinear, family
+from zwidth.stability.known_hand.coupled import motion_of
+from zwidth.stability.known_hand.crossing import last_stable, plain
+from zwidth.stability.known_hand.plant import Coefficients, Motion
 
 _BITS = 192
 """Of the coefficients before they are rounded to doubles."""

@@ -15,15 +15,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from zwidth.coupled_stability.known_hand import PassiveHand
-from zwidth.coupled_stability.known_hand.hand import as_hand
-from zwidth.coupled_stability.known_hand.stability import motion_of
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.operator import Dowel, Finger
 from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.stability.known_hand import HandImpedance
+from zwidth.stability.known_hand.coupled import motion_of
+from zwidth.stability.known_hand.hand import as_hand
 
 Array = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ class Request:
     stiffness: Axis
     virtual_damping: Axis
     velocity_filter: VelocityEstimator
-    hands: tuple[tuple[str, PassiveHand], ...]
+    hands: tuple[tuple[str, HandImpedance], ...]
 
     @property
     def chunks(self) -> tuple[int, int]:

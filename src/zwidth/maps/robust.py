@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from zwidth.coupled_stability.known_hand.decide import corners
-from zwidth.coupled_stability.known_hand.hand import PassiveHand, as_hand
-from zwidth.coupled_stability.known_hand.stability import largest_stable, motion_of
 from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
+from zwidth.stability.known_hand.coupled import largest_stable, motion_of
+from zwidth.stability.known_hand.decide import corners
+from zwidth.stability.known_hand.hand import HandImpedance, as_hand
 
 
 def robust_boundary(
@@ -38,7 +38,7 @@ def robust_boundary(
     device
         With a mass; mass and damping may be intervals.
     hand
-        A `PassiveHand` of intervals, None, or a linear operator.
+        A `HandImpedance` of intervals, None, or a linear operator.
     virtual_damping
         Ends of the range of B [N·s/m; N·m·s/rad].
     points
@@ -88,7 +88,7 @@ def robust_boundary(
     )
 
 
-def _limits(device: Device, hand: PassiveHand, wall: Wall) -> tuple[float, ...]:
+def _limits(device: Device, hand: HandImpedance, wall: Wall) -> tuple[float, ...]:
     """What is proved for all, and the corner with the smallest limit."""
     motion = motion_of(device, hand)
     found, _ = largest_stable(motion, wall, device.motion)

@@ -24,7 +24,7 @@ class WitnessMotion(Operator):
     Parameters
     ----------
     witness
-        A witness, `zw.check(device, environment).witness` or that of `zw.worst_hand`, or its motion.
+        A witness, `zw.check(device, environment).witness` or that of `zw.available_storage`, or its motion.
     rounds
         How often its repeated parts are done, ≥ 1; None as in the witness.
 

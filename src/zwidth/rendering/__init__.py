@@ -9,6 +9,10 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from zwidth.environment.velocity import BackwardDifference as BackwardDifference
+from zwidth.environment.velocity import OnePole as OnePole
+from zwidth.environment.velocity import VelocityFilter as VelocityFilter
+from zwidth.environment.velocity import Window as Window
 from zwidth.quantity.kind import Kind
 from zwidth.rendering.virtual_coupling import VirtualCoupling as VirtualCoupling
 
@@ -150,7 +154,7 @@ _LATER = {kind.class_name: kind.module for kind in (*LAWS.values(), *ESTIMATORS.
 }
 """Where they are, until they are first used: the compiler of their steps takes its time to load."""
 
-__all__ = sorted((*_LATER, "VirtualCoupling"))  # noqa: PLE0605  # what the type checker needs stands above
+__all__ = sorted((*_LATER, "BackwardDifference", "OnePole", "VelocityFilter", "VirtualCoupling", "Window"))  # noqa: PLE0605  # what the type checker needs stands above
 
 
 def __getattr__(name: str) -> Any:

@@ -48,7 +48,7 @@ LAWS = {
 
 
 @cache
-def found(name: str, seed: int) -> zw.Identified:
+def found(name: str, seed: int) -> zw.identification.Identified:
     """What a minute of a wandering hand says, with white noise of 0.05 N on the load cell."""
     rng = np.random.default_rng(seed)
     omega, phase = 2 * np.pi * rng.uniform(0.3, 3.5, 10)[:, None], rng.uniform(0, 6.28, 10)[:, None]
@@ -68,7 +68,7 @@ def found(name: str, seed: int) -> zw.Identified:
     )
 
 
-def promised(result: zw.Identified) -> tuple[float, float]:
+def promised(result: zw.identification.Identified) -> tuple[float, float]:
     """The lower ends of b and f_c, each with 95 %."""
     device = result.device(0.9)
     return float(ends(device.damping)[0]), float(ends(device.coulomb_friction)[0])
@@ -96,7 +96,7 @@ def test_a_stribeck_bump_is_not_taken_for_damping() -> None:
     assert all(result.estimates["slow"].value > 0 for result in results if "slow" in result.estimates)
 
 
-def _bent(result: zw.Identified) -> zw.Finding:
+def _bent(result: zw.identification.Identified) -> zw.Finding:
     (finding,) = [f for f in result.findings if f.kind == "bent friction"]
     return finding
 
@@ -138,9 +138,9 @@ def test_a_claim_names_the_speed_up_to_which_friction_was_seen(tmp_path) -> None
     row = zw.render(zw.Wall(2000), zw.rendering.ForceBounding())
     single = device.replace(mass="0.0357", damping="0.14", coulomb_friction="0.12")
     for answer in (
-        zw.worst_hand(single, zw.Wall(100), speed=0.3, penetration=0.0003),
-        zw.check_bounding(single, row),
-        zw.tolerated_activity(single, zw.Wall(100)),
+        zw.available_storage(single, zw.Wall(100), speed=0.3, penetration=0.0003),
+        zw.formulas.check_bounding(single, row),
+        zw.stability.tolerated_activity(single, zw.Wall(100)),
     ):
         assert f"if friction beyond {speed}" in answer.claim
     everywhere = zw.check(device.replace(friction_speed=None), zw.Wall(100))
@@ -161,12 +161,12 @@ def test_the_speed_is_that_of_the_strokes() -> None:
 @pytest.mark.parametrize("speed", [0.3, 0.6])
 def test_a_plan_reaches_the_speed_that_is_asked_for(speed: float) -> None:
     """Its strokes, as a person varies them, show friction that far; slower ones do not, and it goes on."""
-    asked = zw.plan_identification(paddle(), force_noise=0.1, speed=speed, precision=0.5)
+    asked = zw.plan(paddle(), force_noise=0.1, speed=speed, precision=0.5)
     kinds = [(s.length, s.duration, 60 * w) for s, w in zip(asked.strokes, asked.shares, strict=True)]
     result = zw.identify(recorded_strokes(kinds, np.random.default_rng(1)))
     assert result.speed > speed
     assert asked.reached(result)
-    farther = zw.plan_identification(result, speed=2 * speed, precision=0.5)
+    farther = zw.plan(result, speed=2 * speed, precision=0.5)
     assert not farther.reached(result)
     assert f"So far it was seen up to {result.speed:.3g} m/s" in repr(farther)
 

@@ -42,7 +42,7 @@ def recorded(seed: int, inward: float, outward: float, seconds: float = 60.0) ->
 
 
 @cache
-def found(seed: int, inward: float, outward: float) -> zw.Identified:
+def found(seed: int, inward: float, outward: float) -> zw.identification.Identified:
     """What a minute of it says."""
     return zw.identify(recorded(seed, inward, outward))
 

@@ -29,12 +29,12 @@ def log_of(recording: Recording) -> zw.Log:
 
 
 @pytest.fixture(scope="module")
-def found() -> zw.Identified:
+def found() -> zw.identification.Identified:
     """The device of the recording."""
     return zw.identify(log_of(paddle()))
 
 
-def test_the_numbers_are_those_of_the_device(found: zw.Identified) -> None:
+def test_the_numbers_are_those_of_the_device(found: zw.identification.Identified) -> None:
     """Each within its interval at 99.9 %, and the intervals are a few per cent wide."""
     for name, truth in (("mass", MASS), ("damping", DAMPING), ("coulomb_friction", COULOMB)):
         low, high = found.estimates[name].interval(0.999)
@@ -42,7 +42,9 @@ def test_the_numbers_are_those_of_the_device(found: zw.Identified) -> None:
         assert high - low < 0.2 * truth
 
 
-def test_a_log_a_file_and_a_dataset_give_the_same(found: zw.Identified, tmp_path: Path) -> None:
+def test_a_log_a_file_and_a_dataset_give_the_same(
+    found: zw.identification.Identified, tmp_path: Path
+) -> None:
     """The same samples, whatever holds them; arguments of reading are passed on."""
     time, position, force = paddle()
     counts = np.rint(position / STEP)
@@ -90,7 +92,7 @@ def test_progress_ends_with_every_sample() -> None:
     assert [done for done, _ in told] == sorted(done for done, _ in told)
 
 
-def test_the_table_shows_every_number(found: zw.Identified) -> None:
+def test_the_table_shows_every_number(found: zw.identification.Identified) -> None:
     """In a terminal and in a notebook: parameters, the stiffness they allow, findings."""
     text, html = repr(found), found._repr_html_()
     for part in ("best guess", "95 %", "m ", "b ", "f_c", "2b/T", "2f_c/Δ", "N·s/m", "strokes", "r² ="):
@@ -102,14 +104,14 @@ def test_the_table_shows_every_number(found: zw.Identified) -> None:
     assert max(len(line) for line in text.splitlines() if not line.startswith("·")) < 150
 
 
-def test_names_are_escaped_in_a_notebook(found: zw.Identified) -> None:
+def test_names_are_escaped_in_a_notebook(found: zw.identification.Identified) -> None:
     """A log's name is text, never markup."""
     odd = dataclasses.replace(found, source="<b>log.csv")
     assert "<b>" in repr(odd)
     assert "<b>" not in odd._repr_html_()
 
 
-def test_a_saved_device_is_read_back(found: zw.Identified, tmp_path: Path) -> None:
+def test_a_saved_device_is_read_back(found: zw.identification.Identified, tmp_path: Path) -> None:
     """The strict reader gives the intervals, rounded outwards by less than a hundredth of a per cent."""
     path = tmp_path / "mine.toml"
     found.save(path, 0.97, delay="0.0003")
@@ -128,7 +130,7 @@ def test_a_saved_device_is_read_back(found: zw.Identified, tmp_path: Path) -> No
     assert read.delay.fraction == Fraction(3, 10_000)
 
 
-def test_every_number_of_a_saved_device_says_where_it_comes_from(found: zw.Identified) -> None:
+def test_every_number_of_a_saved_device_says_where_it_comes_from(found: zw.identification.Identified) -> None:
     """The log, the strokes, the method, the confidence, r²; no date."""
     text = found.to_toml(0.99)
     assert "Identified from arrays" in text
@@ -147,7 +149,7 @@ def test_every_number_of_a_saved_device_says_where_it_comes_from(found: zw.Ident
     assert "delay" not in best
 
 
-def test_a_name_with_quotes_and_line_ends_is_still_toml(found: zw.Identified) -> None:
+def test_a_name_with_quotes_and_line_ends_is_still_toml(found: zw.identification.Identified) -> None:
     """Whatever the log or the device is called."""
     odd = dataclasses.replace(found, source='a "b"\\\n[device]\n.csv')
     device = tomllib.loads(odd.to_toml())["device"]
@@ -155,7 +157,7 @@ def test_a_name_with_quotes_and_line_ends_is_still_toml(found: zw.Identified) ->
     assert tomllib.loads(found.to_toml(name='my "wheel"\x7f'))["device"]["name"] == 'my "wheel"?'
 
 
-def test_a_file_is_not_replaced_unasked(found: zw.Identified, tmp_path: Path) -> None:
+def test_a_file_is_not_replaced_unasked(found: zw.identification.Identified, tmp_path: Path) -> None:
     """An old file stays as it is; with force it is replaced, and nothing else is left."""
     path = tmp_path / "mine.toml"
     path.write_text("old")
@@ -182,7 +184,7 @@ def test_a_rotary_device_is_saved_as_one(tmp_path: Path) -> None:
     assert "damping_N_m_s_per_rad" in found.to_dict()
 
 
-def test_an_inertia_that_may_be_nothing_is_left_out(found: zw.Identified) -> None:
+def test_an_inertia_that_may_be_nothing_is_left_out(found: zw.identification.Identified) -> None:
     """No device has mass 0; nothing that is proved depends on it."""
     wide = Estimate(0.02, 0.05, 0.0, 100, "kg")
     vague = dataclasses.replace(found, estimates={**found.estimates, "mass": wide})
@@ -191,7 +193,7 @@ def test_an_inertia_that_may_be_nothing_is_left_out(found: zw.Identified) -> Non
     assert found.device(0.99).mass is not None
 
 
-def test_the_curve_lies_below_the_friction_of_the_device(found: zw.Identified) -> None:
+def test_the_curve_lies_below_the_friction_of_the_device(found: zw.identification.Identified) -> None:
     """Bounds below the truth by a few per cent; the model below them proves nearly as stiff a wall."""
     curve = found.friction_curve(0.95)
     for speed, force in zip(curve.speeds, curve.forces, strict=True):
@@ -215,7 +217,7 @@ def test_friction_that_bends_is_bounded_below() -> None:
     assert float(curve.largest_damping) > DAMPING
 
 
-def test_the_errors_of_the_bins_are_those_of_the_strokes(found: zw.Identified) -> None:
+def test_the_errors_of_the_bins_are_those_of_the_strokes(found: zw.identification.Identified) -> None:
     """By another road: means at one speed, of whole strokes drawn with replacement, scatter as much."""
     points = found.points
     speed, friction = points["speed"].values, points["friction"].values
@@ -233,7 +235,7 @@ def test_the_errors_of_the_bins_are_those_of_the_strokes(found: zw.Identified) -
     assert error == pytest.approx(float(np.std(means)), rel=0.2)
 
 
-def test_all_bounds_share_the_risk(found: zw.Identified) -> None:
+def test_all_bounds_share_the_risk(found: zw.identification.Identified) -> None:
     """Half of 5 % is the slope's; of the other half each bin and each rest, both ways, has as much."""
     bins = friction_bins(found.points, 2)
     bounds = lower_bounds(found.points, 0.95, 2)
@@ -249,13 +251,15 @@ def test_all_bounds_share_the_risk(found: zw.Identified) -> None:
 
 
 @pytest.mark.parametrize(("confidence", "bins"), [(0.0, 8), (1.0, 8), (float("nan"), 8), (0.9, 1)])
-def test_no_curve_without_confidence_or_bins(found: zw.Identified, confidence: float, bins: int) -> None:
+def test_no_curve_without_confidence_or_bins(
+    found: zw.identification.Identified, confidence: float, bins: int
+) -> None:
     """Certainty takes no data; one bin is no curve."""
     with pytest.raises(zw.InputError, match=r"confidence must be|two bins"):
         found.friction_curve(confidence, bins)
 
 
-def test_the_limits_are_those_of_the_parameters(found: zw.Identified) -> None:
+def test_the_limits_are_those_of_the_parameters(found: zw.identification.Identified) -> None:
     """2b/T and 2f_c/Δ, at the best guess and at both ends."""
     by_damping, by_friction = limits(found)
     assert by_damping.value == pytest.approx(2 * found.estimates["damping"].value / PERIOD, rel=1e-12)
@@ -264,7 +268,7 @@ def test_the_limits_are_those_of_the_parameters(found: zw.Identified) -> None:
     assert 0.85 * COULOMB < low < found.estimates["coulomb_friction"].interval(0.9)[0]
 
 
-def test_the_check_is_at_the_limit_that_is_shown(found: zw.Identified) -> None:
+def test_the_check_is_at_the_limit_that_is_shown(found: zw.identification.Identified) -> None:
     """Passive just below the low end of 2b/T, not proved just above it."""
     low, _ = limits(found)[0].interval(0.99)
     device = found.device(0.99)
@@ -273,7 +277,7 @@ def test_the_check_is_at_the_limit_that_is_shown(found: zw.Identified) -> None:
     assert found.confidence(zw.Wall(stiffness=low)) == pytest.approx(0.99, abs=3e-4)
 
 
-def test_advice_says_how_much_longer(found: zw.Identified) -> None:
+def test_advice_says_how_much_longer(found: zw.identification.Identified) -> None:
     """The scatter falls as one over the root of the duration, the shift does not."""
 
     def told(error: float, shift: float) -> str:
@@ -289,7 +293,7 @@ def test_advice_says_how_much_longer(found: zw.Identified) -> None:
     assert "a longer log would not halve" in told(0.001, 1.01 * reach)
 
 
-def test_coulomb_friction_limits_where_the_encoder_is_coarse(found: zw.Identified) -> None:
+def test_coulomb_friction_limits_where_the_encoder_is_coarse(found: zw.identification.Identified) -> None:
     """With a coarse step, 2f_c/Δ is below 2b/T."""
     coarse = dataclasses.replace(found, resolution=2e-3)
     assert advice(coarse, 0.99)[0].startswith("Coulomb friction limits the wall: 2f_c/Δ ≥")
@@ -308,7 +312,7 @@ def test_the_wrong_model_is_said_everywhere() -> None:
             refused()
 
 
-def test_the_document_is_json(found: zw.Identified) -> None:
+def test_the_document_is_json(found: zw.identification.Identified) -> None:
     """Units in the keys; the same numbers."""
     document = json.loads(json.dumps(found.to_dict(0.9)))
     assert document["format"] == "zwidth identification 1"

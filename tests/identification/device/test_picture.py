@@ -13,13 +13,13 @@ from zwidth.identification.device.picture import expected_scatter, identificatio
 
 
 @pytest.fixture(scope="module")
-def found() -> zw.Identified:
+def found() -> zw.identification.Identified:
     """The device of the recording."""
     time, position, force = paddle()
     return zw.identify(zw.Log.from_arrays(time=time, position=position, hand_force=force, resolution=STEP))
 
 
-def test_four_pictures_and_the_numbers(found: zw.Identified) -> None:
+def test_four_pictures_and_the_numbers(found: zw.identification.Identified) -> None:
     """Friction, numbers, data, what is left; units on the axes."""
     figure = identification_figure(found)
     friction, numbers, data, left, _ = figure.axes
@@ -39,7 +39,7 @@ def test_four_pictures_and_the_numbers(found: zw.Identified) -> None:
         assert part in labels
 
 
-def test_the_line_that_is_drawn_is_the_fit(found: zw.Identified) -> None:
+def test_the_line_that_is_drawn_is_the_fit(found: zw.identification.Identified) -> None:
     """f_c + b |v|, with the numbers of the table."""
     axes = identification_figure(found).axes[0]
     line = next(li for li in axes.get_lines() if str(li.get_label()).startswith("fit"))
@@ -48,7 +48,7 @@ def test_the_line_that_is_drawn_is_the_fit(found: zw.Identified) -> None:
     assert start == pytest.approx(found.estimates["coulomb_friction"].value, rel=1e-9)
 
 
-def test_a_given_mass_and_another_model_are_drawn_too(found: zw.Identified) -> None:
+def test_a_given_mass_and_another_model_are_drawn_too(found: zw.identification.Identified) -> None:
     """The force less m a in the place of the force; no mass–damper line beside a mass–damper fit."""
     time, position, force = paddle()
     log = zw.Log.from_arrays(time=time, position=position, hand_force=force, resolution=STEP, motion="rotary")
@@ -59,14 +59,14 @@ def test_a_given_mass_and_another_model_are_drawn_too(found: zw.Identified) -> N
     assert not [text for text in labels if "mass–damper" in text.get_text()]
 
 
-def test_the_expected_scatter_is_that_of_what_is_left(found: zw.Identified) -> None:
+def test_the_expected_scatter_is_that_of_what_is_left(found: zw.identification.Identified) -> None:
     """Noise of the load cell and counts of the encoder, known here, make up what is left over."""
     counts, noise = expected_scatter(found)
     assert found.force_noise == pytest.approx(NOISE, rel=0.05)
     assert float(np.hypot(counts, noise)) == pytest.approx(float(found.points["residual"].std()), rel=0.15)
 
 
-def test_the_force_of_counts_by_another_road(found: zw.Identified) -> None:
+def test_the_force_of_counts_by_another_road(found: zw.identification.Identified) -> None:
     """A resting device whose encoder reads counts at random: m times the second difference of its means."""
     from zwidth.identification.device.pulses import PIECES, pulse
 
@@ -79,14 +79,14 @@ def test_the_force_of_counts_by_another_road(found: zw.Identified) -> None:
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
-def test_a_picture_is_saved(found: zw.Identified, ending: str, tmp_path: Path) -> None:
+def test_a_picture_is_saved(found: zw.identification.Identified, ending: str, tmp_path: Path) -> None:
     """Any of three kinds."""
     path = tmp_path / f"fig.{ending}"
     found.plot(path)
     assert path.stat().st_size > 5000
 
 
-def test_a_picture_is_not_replaced(found: zw.Identified, tmp_path: Path) -> None:
+def test_a_picture_is_not_replaced(found: zw.identification.Identified, tmp_path: Path) -> None:
     """An old file only with force."""
     path = tmp_path / "fig.png"
     path.touch()

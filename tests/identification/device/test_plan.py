@@ -47,7 +47,7 @@ def test_the_shares_are_the_best(parameter):
 
 def test_errors_fall_with_the_root_of_the_time():
     """Four times as long, half the error; twice the noise, four times the time."""
-    plan, noisy = (zw.plan_identification(paddle(), force_noise=noise) for noise in (0.1, 0.2))
+    plan, noisy = (zw.plan(paddle(), force_noise=noise) for noise in (0.1, 0.2))
     for name, error in plan.errors(120).items():
         assert error == pytest.approx(plan.errors(30)[name] / 2, rel=1e-12)
         assert noisy.errors(30)[name] == pytest.approx(2 * plan.errors(30)[name], rel=1e-12)
@@ -63,7 +63,7 @@ def test_the_prediction_holds_within_thirty_per_cent(changes, noise):
     The root mean square of 14 numbers is itself known to 19 % only; so its own bounds are wider.
     """
     device = paddle(**changes)
-    plan = zw.plan_identification(device, force_noise=noise)
+    plan = zw.plan(device, force_noise=noise)
     errors, halves = [], []
     for seed in range(14):
         log = recorded(
@@ -90,7 +90,7 @@ def test_stopping_when_the_rule_says_so_keeps_what_the_interval_promises():
 
     With 24 expected, fewer than 20 would happen once in a thousand times.
     """
-    plan = zw.plan_identification(paddle(), force_noise=0.1, precision=0.06)
+    plan = zw.plan(paddle(), force_noise=0.1, precision=0.06)
     held, runs = 0, []
     for seed in range(25):
         logs = []
@@ -110,9 +110,7 @@ def test_stopping_when_the_rule_says_so_keeps_what_the_interval_promises():
 
 def test_what_limits_is_what_is_planned_for():
     """b on a fine encoder, f_c on a coarse one: on either side of 2b/T = 2f_c/Δ, Δ = 0.8 mm."""
-    fine, coarse = (
-        zw.plan_identification(paddle(resolution=size), force_noise=0.1) for size in ("0.79 mm", "0.81 mm")
-    )
+    fine, coarse = (zw.plan(paddle(resolution=size), force_noise=0.1) for size in ("0.79 mm", "0.81 mm"))
     assert fine.limits == "damping"
     assert coarse.limits == "coulomb_friction"
     assert coarse.shares[0] > fine.shares[0]  # Coulomb friction is told by slow strokes
@@ -122,7 +120,7 @@ def test_the_rule_asks_for_strokes_and_precision():
     """Not reached with few strokes however sure, nor with many when unsure; reached with both."""
     log = recorded([(0.06, 1.0, 10), (0.06, 0.25, 20)], np.random.default_rng(3), noise=0.02)
     found = identify(log)
-    loose, tight = (zw.plan_identification(paddle(), force_noise=0.02, precision=p) for p in (0.1, 0.001))
+    loose, tight = (zw.plan(paddle(), force_noise=0.02, precision=p) for p in (0.1, 0.001))
     assert loose.reached(found)
     assert not tight.reached(found)
     few = identify(recorded([(0.06, 0.5, 20)], np.random.default_rng(3), noise=0.001))
@@ -133,14 +131,14 @@ def test_the_rule_asks_for_strokes_and_precision():
 def test_a_first_run_is_a_guess():
     """Its numbers and its noise are taken; a plan from the truth asks for nearly the same time."""
     found = identify(recorded([(0.06, 1.0, 10), (0.06, 0.25, 20)], np.random.default_rng(8)))
-    plan, true = zw.plan_identification(found), zw.plan_identification(paddle(), force_noise=0.1)
+    plan, true = zw.plan(found), zw.plan(paddle(), force_noise=0.1)
     assert plan.force_noise == found.force_noise == pytest.approx(0.1, rel=0.1)
     assert plan.seconds == pytest.approx(true.seconds, rel=0.3)
 
 
 def test_the_protocol_can_be_followed():
     """It says how many strokes, how long, how quick, how hard, and when to stop."""
-    text = repr(zw.plan_identification(paddle(), force_noise=0.1))
+    text = repr(zw.plan(paddle(), force_noise=0.1))
     assert text.splitlines()[0].startswith("To know b within ±0.05 of itself")
     assert "9 strokes of some 6 cm, 1 s each" in text
     assert "84 strokes of some 6 cm, 0.25 s each" in text
@@ -148,7 +146,7 @@ def test_the_protocol_can_be_followed():
     wheel = zw.rotary(
         inertia=2e-4, damping=1e-3, coulomb_friction=5e-3, counts_per_turn=2000, sample_period="1 ms"
     )
-    text = repr(zw.plan_identification(wheel, force_noise=1e-3, length=1.5))
+    text = repr(zw.plan(wheel, force_noise=1e-3, length=1.5))
     assert "strokes of some 1.5 rad" in text
     assert "N m will act" in text
 
@@ -169,16 +167,16 @@ def test_the_protocol_can_be_followed():
 def test_bad_input_is_refused(changes, arguments, message):
     """One message says what cannot be planned with."""
     with pytest.raises(zw.InputError, match=message):
-        zw.plan_identification(paddle(**changes), **{"force_noise": 0.1, **arguments})
+        zw.plan(paddle(**changes), **{"force_noise": 0.1, **arguments})
 
 
 def test_of_an_interval_the_middle_is_the_guess():
     """A device that was identified before is known in intervals."""
-    wide = zw.plan_identification(paddle(damping=("0.1", "0.2"), mass=("0.03", "0.042")), force_noise=0.1)
-    assert wide.seconds == pytest.approx(zw.plan_identification(paddle(), force_noise=0.1).seconds)
+    wide = zw.plan(paddle(damping=("0.1", "0.2"), mass=("0.03", "0.042")), force_noise=0.1)
+    assert wide.seconds == pytest.approx(zw.plan(paddle(), force_noise=0.1).seconds)
 
 
 def test_no_time_is_refused():
     """Errors after no time at all are not defined."""
     with pytest.raises(zw.InputError, match="seconds"):
-        zw.plan_identification(paddle(), force_noise=0.1).errors(0)
+        zw.plan(paddle(), force_noise=0.1).errors(0)

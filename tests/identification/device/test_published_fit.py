@@ -16,7 +16,7 @@ def test_without_noise_counts_and_passes_it_finds_the_truth():
     arrays = next(log.blocks())
     speed = np.gradient(arrays.position, 1e-3)
     force = 0.036 * np.gradient(speed, 1e-3) + 0.15 * speed + 0.12 * np.sign(speed)
-    found = zw.identify_published(
+    found = zw.identification.identify_published(
         zw.Log.from_arrays(time=arrays.time, position=arrays.position, hand_force=force, resolution=1e-9),
         passes=0,
     )
@@ -40,7 +40,7 @@ def test_it_is_the_normal_equations_of_smoothed_differences():
     )
     force = block.hand_force[16:-16]
     expected = np.linalg.solve(matrix.T @ matrix, matrix.T @ force)
-    found = zw.identify_published(log, passes=passes)
+    found = zw.identification.identify_published(log, passes=passes)
     assert np.allclose([found.mass, found.damping, found.coulomb_friction], expected, rtol=1e-9)
     assert found.samples == len(force)
     left = force - matrix @ expected
@@ -57,7 +57,7 @@ def test_few_passes_leave_counts_and_many_take_the_motion():
         hand_force=recording.hand_force,
         resolution=2.24e-3,
     )
-    few, many = (zw.identify_published(log, passes=passes) for passes in (2, 200))
+    few, many = (zw.identification.identify_published(log, passes=passes) for passes in (2, 200))
     assert few.mass < 0.3 * TRUE["mass"]
     assert many.damping > 1.2 * TRUE["damping"]
     assert many.coulomb_friction < 0.9 * TRUE["coulomb_friction"]
@@ -66,18 +66,18 @@ def test_few_passes_leave_counts_and_many_take_the_motion():
 def test_without_coulomb_friction_damping_is_more_than_doubled():
     """A mass and a damper call walls passive that are not: Abbott & Okamura (2005) found 0.41 for 0.15."""
     log = recorded([(0.06, 0.5, 30)], np.random.default_rng(4))
-    viscous = zw.identify_published(log, model="viscous")
+    viscous = zw.identification.identify_published(log, model="viscous")
     assert viscous.coulomb_friction is None
     assert viscous.damping > 2 * TRUE["damping"]
-    assert viscous.explained < zw.identify_published(log).explained
+    assert viscous.explained < zw.identification.identify_published(log).explained
 
 
 def test_runs_are_stacked_and_not_smoothed_across():
     """Two runs far apart give what their stacked rows give: no row mixes them."""
     rng = np.random.default_rng(5)
     logs = [recorded([(0.06, 0.5, 5)], rng) for _ in range(2)]
-    both = zw.identify_published(zw.Log.concatenate(logs), passes=5)
-    each = [zw.identify_published(log, passes=5) for log in logs]
+    both = zw.identification.identify_published(zw.Log.concatenate(logs), passes=5)
+    each = [zw.identification.identify_published(log, passes=5) for log in logs]
     assert both.samples == each[0].samples + each[1].samples
     assert min(e.mass for e in each) <= both.mass <= max(e.mass for e in each)
 
@@ -95,7 +95,7 @@ def test_bad_input_is_refused(changes, message):
     """One message says what cannot be."""
     log = recorded([(0.06, 0.5, 3)], np.random.default_rng(6))
     with pytest.raises(zw.InputError, match=message):
-        zw.identify_published(log, **changes)
+        zw.identification.identify_published(log, **changes)
 
 
 def test_a_log_without_force_or_motion_is_refused():
@@ -103,9 +103,9 @@ def test_a_log_without_force_or_motion_is_refused():
     time = np.arange(1000) * 1e-3
     moving = np.sin(time * 20) * 0.01
     with pytest.raises(zw.InputError, match="no force"):
-        zw.identify_published(zw.Log.from_arrays(time=time, position=moving, resolution=1e-5))
+        zw.identification.identify_published(zw.Log.from_arrays(time=time, position=moving, resolution=1e-5))
     even = zw.Log.from_arrays(
         time=time, position=1e-5 * np.arange(1000), hand_force=np.sin(time), resolution=1e-5
     )
     with pytest.raises(zw.InputError, match="apart"):
-        zw.identify_published(even)
+        zw.identification.identify_published(even)

@@ -27,7 +27,7 @@ def saturated(force: Array, share: float, way: Way) -> Array:
     return cut
 
 
-def logged(seed: int, share: float = 0.0, way: Way = "cut off") -> zw.Identified:
+def logged(seed: int, share: float = 0.0, way: Way = "cut off") -> zw.identification.Identified:
     """What a minute of the paddle says."""
     recording = hand_moves(paddle(), 60.0, seed)
     force = saturated(recording.hand_force, share, way) if share else recording.hand_force

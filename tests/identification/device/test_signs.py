@@ -17,7 +17,7 @@ def recording() -> Recording:
     return hand_moves(paddle(), 30.0, seed=3)
 
 
-def logged(recording: Recording, **forces: object) -> zw.Identified:
+def logged(recording: Recording, **forces: object) -> zw.identification.Identified:
     """What the recording says with these forces in place of the hand's."""
     log = zw.Log.from_arrays(
         time=recording.time,
@@ -89,7 +89,9 @@ def test_a_mass_that_is_hardly_seen_is_left_out(recording: Recording) -> None:
     """Below 0 by less than its uncertainty it is no wrong sign; a device of best guesses has no mass then."""
     found = logged(recording)
     light = found.estimates["mass"]._replace(value=-1e-4, error=1e-3)
-    device = zw.Identified(**{**vars(found), "estimates": {**found.estimates, "mass": light}}).device(None)
+    device = zw.identification.Identified(
+        **{**vars(found), "estimates": {**found.estimates, "mass": light}}
+    ).device(None)
     assert device.mass is None
     assert float(device.exact("damping")) == found.estimates["damping"].value
 

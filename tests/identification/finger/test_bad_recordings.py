@@ -26,7 +26,9 @@ def arrays():
 def identified(arrays, device=None, without=(), **others):
     """What a recording says, some columns replaced."""
     kept = {name: values for name, values in {**arrays, **others}.items() if name not in without}
-    return zw.identify_finger(zw.Log.from_arrays(resolution=22.4e-6, sample_period=1e-3, **kept), device)
+    return zw.identification.identify_finger(
+        zw.Log.from_arrays(resolution=22.4e-6, sample_period=1e-3, **kept), device
+    )
 
 
 def holds(found):
@@ -77,7 +79,7 @@ def test_the_delay_that_is_stated_tells_the_two_apart(arrays):
     """An actuator that steps just after the sample is read before its step: nothing is late then."""
     before = arrays["hand_force"] - STEP * np.diff(arrays["actuator_force"], prepend=0.0)
     log = zw.Log.from_arrays(resolution=22.4e-6, sample_period=1e-3, **{**arrays, "hand_force": before})
-    found = zw.identify_finger(log, delay=1e-6)
+    found = zw.identification.identify_finger(log, delay=1e-6)
     assert "late, or read before the step" not in kinds(found)
     assert holds(found)
 

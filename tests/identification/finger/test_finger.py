@@ -33,7 +33,7 @@ def arrays():
 
 def test_the_finger_is_found_by_the_force_of_the_hand(arrays):
     """Within 2 %, of which the 99.9 % intervals are a part."""
-    found = zw.identify_finger(_log(arrays))
+    found = zw.identification.identify_finger(_log(arrays))
     assert found.instrument == "perturbation"
     assert _near(found, FINGER, 0.02)
     for name, true in zip(NAMES, FINGER, strict=True):
@@ -44,14 +44,16 @@ def test_the_finger_is_found_by_the_force_of_the_hand(arrays):
 
 def test_the_finger_is_found_by_the_force_of_the_actuator(arrays):
     """With the device known, Coulomb friction and all, no load cell is needed."""
-    found = zw.identify_finger(_log(arrays, "hand_force"), paddle())
+    found = zw.identification.identify_finger(_log(arrays, "hand_force"), paddle())
     assert _near(found, FINGER, 0.02)
 
 
 def test_a_tenth_of_a_device_more_is_a_tenth_of_a_device_less_finger(arrays):
     """What the device is said to weigh and to brake is taken from what the actuator moves, to the digit."""
     log = _log(arrays, "hand_force")
-    true, heavy = (zw.identify_finger(log, paddle(**c)) for c in ({}, {"mass": 0.0365, "damping": 0.25}))
+    true, heavy = (
+        zw.identification.identify_finger(log, paddle(**c)) for c in ({}, {"mass": 0.0365, "damping": 0.25})
+    )
     difference = {n: true.estimates[n].value - heavy.estimates[n].value for n in NAMES}
     assert difference["mass"] == pytest.approx(0.0005, rel=1e-9)
     assert difference["damping"] == pytest.approx(0.1, rel=1e-9)
@@ -61,8 +63,8 @@ def test_a_tenth_of_a_device_more_is_a_tenth_of_a_device_less_finger(arrays):
 def test_a_device_known_in_intervals_widens_those_of_the_finger(arrays):
     """By the half-width of its own mass and damping, and by what its friction matters."""
     log = _log(arrays, "hand_force")
-    exact = zw.identify_finger(log, paddle())
-    loose = zw.identify_finger(
+    exact = zw.identification.identify_finger(log, paddle())
+    loose = zw.identification.identify_finger(
         log, paddle(mass=(0.035, 0.037), damping=(0.1, 0.2), coulomb_friction=(0.1, 0.14))
     )
     assert loose.estimates["mass"].shift > exact.estimates["mass"].shift + 0.001
@@ -82,7 +84,7 @@ def test_intervals_hold_the_truth(way):
         true = rng.uniform(0.003, 0.015), rng.uniform(0.5, 4.0), rng.uniform(150, 1200)
         arrays = shaken(paddle(), true, 15.0, seed, tremor=0.05)
         log = _log(arrays, *(() if way == "hand" else ("hand_force",)))
-        estimates = zw.identify_finger(log, paddle()).estimates
+        estimates = zw.identification.identify_finger(log, paddle()).estimates
         for name, value in zip(NAMES, true, strict=True):
             low, high = estimates[name].interval()
             held += low <= value <= high
@@ -94,7 +96,7 @@ def test_tremor_biases_positions_as_instruments_and_not_the_perturbation():
     arrays = shaken(paddle(), FINGER, 60.0, seed=3, tremor=0.2)
     log = _log(arrays)
     by_position, by_perturbation = (
-        zw.identify_finger(log, instrument=instrument).estimates["stiffness"]
+        zw.identification.identify_finger(log, instrument=instrument).estimates["stiffness"]
         for instrument in ("position", "perturbation")
     )
     assert by_position.value < 0.95 * FINGER[2]
@@ -106,8 +108,8 @@ def test_tremor_biases_positions_as_instruments_and_not_the_perturbation():
 def test_a_coarse_encoder_does_not_bias():
     """Ten times coarser, and the motion only some nine counts: still within 3 %."""
     arrays = shaken(paddle(resolution="224 um"), FINGER, 30.0, seed=4)
-    assert _near(zw.identify_finger(_log(arrays, resolution=224e-6)), FINGER, 0.03)
-    found = zw.identify_finger(_log(arrays, "hand_force", resolution=224e-6), paddle())
+    assert _near(zw.identification.identify_finger(_log(arrays, resolution=224e-6)), FINGER, 0.03)
+    found = zw.identification.identify_finger(_log(arrays, "hand_force", resolution=224e-6), paddle())
     for name, true in zip(NAMES, FINGER, strict=True):
         low, high = found.estimates[name].interval(0.999)
         assert low < true < high
@@ -115,7 +117,7 @@ def test_a_coarse_encoder_does_not_bias():
 
 def test_without_the_force_of_the_actuator_half_a_sample_is_in_the_intervals(arrays):
     """When within a sample the force stepped is not known: k T/2 for damping, c T/2 for mass."""
-    found = zw.identify_finger(_log(arrays, "actuator_force"))
+    found = zw.identification.identify_finger(_log(arrays, "actuator_force"))
     assert found.instrument == "position"
     assert found.estimates["damping"].shift > 0.95 * FINGER[2] * 1e-3 / 2
     assert found.estimates["mass"].shift > 0.95 * FINGER[1] * 1e-3 / 2
@@ -129,8 +131,8 @@ def test_a_delayed_actuator_is_known_by_its_delay():
     """1.3 samples late and said so: the same finger; not said: another one."""
     log = _late(np.random.default_rng(5))
     device = paddle(coulomb_friction=0)
-    assert _near(zw.identify_finger(log, device, delay=0.0013), FINGER, 0.02)
-    assert not _near(zw.identify_finger(log, device), FINGER, 0.2)
+    assert _near(zw.identification.identify_finger(log, device, delay=0.0013), FINGER, 0.02)
+    assert not _near(zw.identification.identify_finger(log, device), FINGER, 0.2)
 
 
 def _late(rng):
@@ -152,7 +154,7 @@ def _late(rng):
 
 def test_what_it_gives_is_what_laws_and_hands_take(arrays):
     """A finger to simulate, and the model of a law that predicts, with the numbers that were found."""
-    found = zw.identify_finger(_log(arrays))
+    found = zw.identification.identify_finger(_log(arrays))
     finger = found.finger(force=1.0)
     assert (finger.mass, finger.damping, finger.stiffness) == tuple(found.estimates[n].value for n in NAMES)
     assert finger.force == 1.0
@@ -168,7 +170,7 @@ def test_what_it_gives_is_what_laws_and_hands_take(arrays):
 
 def test_an_interval_is_of_student_t_with_the_pieces(arrays):
     """80 pieces of 0.25 s: 77 degrees of freedom."""
-    found = zw.identify_finger(_log(arrays))
+    found = zw.identification.identify_finger(_log(arrays))
     assert found.pieces == 80
     e = found.estimates["stiffness"]
     reach = stats.t.ppf(0.975, 77) * e.error + e.shift
@@ -193,11 +195,11 @@ def test_an_interval_is_of_student_t_with_the_pieces(arrays):
 def test_bad_input_is_refused(arrays, without, arguments, message):
     """One message says what cannot be identified."""
     with pytest.raises(zw.InputError, match=message):
-        zw.identify_finger(_log(arrays, *without), **arguments)
+        zw.identification.identify_finger(_log(arrays, *without), **arguments)
 
 
 def test_a_finger_that_was_not_shaken_is_refused():
     """A finger that only wanders shows nothing, or that nothing was seen."""
     arrays = shaken(paddle(), FINGER, 20.0, seed=6, push=0.0)
     with pytest.raises(zw.InputError, match="too little"):
-        zw.identify_finger(_log(arrays, "hand_force"), paddle())
+        zw.identification.identify_finger(_log(arrays, "hand_force"), paddle())

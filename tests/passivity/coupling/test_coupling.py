@@ -45,7 +45,7 @@ def need_by_definition(k, b, delay, points=200_001):
 @pytest.mark.parametrize(("k", "b"), COUPLINGS)
 def test_the_need_is_that_of_the_complex_definition(k, b, delay):
     """Polynomial and complex numbers agree."""
-    found = zw.coupling_condition(device(1, delay), k, b).required_damping
+    found = zw.coupling.coupling_condition(device(1, delay), k, b).required_damping
     assert found == pytest.approx(need_by_definition(k, float(b), delay), rel=1e-6)
 
 
@@ -53,12 +53,12 @@ def test_the_need_is_that_of_the_complex_definition(k, b, delay):
 @pytest.mark.parametrize(("k", "b"), COUPLINGS)
 def test_both_sides_of_the_need(k, b, delay):
     """Just above it is proved; just below a passive environment is there, and a motion that gains."""
-    need = zw.coupling_condition(device(1, delay), k, b).required_damping
-    over = zw.coupling_condition(device(need * 1.001, delay), k, b)
+    need = zw.coupling.coupling_condition(device(1, delay), k, b).required_damping
+    over = zw.coupling.coupling_condition(device(need * 1.001, delay), k, b)
     assert over.holds
     assert over.verdict.certificate.verify()
     assert over.counterexample is None
-    under = zw.coupling_condition(device(need * 0.99, delay), k, b)
+    under = zw.coupling.coupling_condition(device(need * 0.99, delay), k, b)
     assert not under.holds
     assert under.counterexample.outcome == "active"
     assert under.counterexample.device.damping == under.device.damping
@@ -68,8 +68,8 @@ def test_both_sides_of_the_need(k, b, delay):
 @pytest.mark.parametrize(("k", "b"), COUPLINGS)
 def test_the_worst_environment_is_passive_itself(k, b, delay):
     """Re{E z/(z − 1)} ≥ 0 on the circle: what refutes is in the class that the theorem is about."""
-    need = zw.coupling_condition(device(1, delay), k, b).required_damping
-    law = zw.coupling_condition(device(need * 0.99, delay), k, b).counterexample.environment
+    need = zw.coupling.coupling_condition(device(1, delay), k, b).required_damping
+    law = zw.coupling.coupling_condition(device(need * 0.99, delay), k, b).counterexample.environment
     if isinstance(law, zw.Wall):
         return  # a rigid environment
     z = np.exp(1j * np.linspace(0.01, 3.13, 500))
@@ -82,8 +82,8 @@ def test_the_worst_environment_is_passive_itself(k, b, delay):
 def test_without_delay_it_is_that_of_the_rigid_wall(k, b):
     """b ≥ K_c T/2 + B_c, equality included."""
     need = k * T / 2 + b
-    assert zw.coupling_condition(device(need), k, b).holds
-    assert not zw.coupling_condition(device(need * Fraction(999_999, 10**6)), k, b).holds
+    assert zw.coupling.coupling_condition(device(need), k, b).holds
+    assert not zw.coupling.coupling_condition(device(need * Fraction(999_999, 10**6)), k, b).holds
     assert zw.check(device(need), zw.Wall(k, b)).outcome == "passive"
 
 
@@ -92,12 +92,12 @@ def test_negative_damping_costs_more_than_the_wall_says():
     k, b = 290, Fraction(-1, 10)
     need = (k * T) ** 2 / (2 * (k * T + 2 * b))
     assert need > k * T / 2 - b
-    assert zw.coupling_condition(device(need), k, b).holds
-    between = zw.coupling_condition(device((need + k * T / 2 - b) / 2), k, b)
+    assert zw.coupling.coupling_condition(device(need), k, b).holds
+    between = zw.coupling.coupling_condition(device((need + k * T / 2 - b) / 2), k, b)
     assert zw.check(between.device, zw.Wall(k, b)).outcome == "passive"
     assert between.counterexample.outcome == "active"
     for hopeless in (-k * T / 2, -k * T):
-        never = zw.coupling_condition(device(1), k, hopeless)
+        never = zw.coupling.coupling_condition(device(1), k, hopeless)
         assert never.required_damping is None
         assert never.counterexample.outcome == "active"
 
@@ -106,14 +106,14 @@ def test_a_delayed_spring_costs_more_than_the_wall_says():
     """(d + 1)² K_c T/2 before every environment, (2d + 1) K_c T/2 before a rigid one."""
     k, d = 290, 2
     assert zw.check(device(5 * k * T / 2, d), zw.Wall(k)).outcome == "passive"
-    assert not zw.coupling_condition(device(9 * k * T / 2 * Fraction(999, 1000), d), k).holds
-    assert zw.coupling_condition(device(9 * k * T / 2, d), k).holds
+    assert not zw.coupling.coupling_condition(device(9 * k * T / 2 * Fraction(999, 1000), d), k).holds
+    assert zw.coupling.coupling_condition(device(9 * k * T / 2, d), k).holds
 
 
 def test_nothing_needs_nothing():
     """A coupling of no stiffness and no damping is passive on a device without damping."""
-    assert zw.coupling_condition(device(0), 0).holds
-    refuted = zw.coupling_condition(device(0), 290)
+    assert zw.coupling.coupling_condition(device(0), 0).holds
+    refuted = zw.coupling.coupling_condition(device(0), 290)
     assert refuted.counterexample.outcome == "active"
 
 
@@ -165,8 +165,8 @@ def test_a_passive_environment_is_never_refuted():
             [Fraction(0), k * T * Fraction(r.randint(1, 300), 100), -k * T * Fraction(r.randint(1, 45), 100)]
         )
         delay = r.choice([0, 0, 1, 2, Fraction(r.randint(1, 99), 100), 1 + Fraction(r.randint(1, 99), 100)])
-        need = zw.coupling_condition(device(1, delay), k, b).required_damping
-        condition = zw.coupling_condition(device(need * (1 + 1e-9), delay), k, b)
+        need = zw.coupling.coupling_condition(device(1, delay), k, b).required_damping
+        condition = zw.coupling.coupling_condition(device(need * (1 + 1e-9), delay), k, b)
         assert condition.holds
         verdict = zw.check(condition.device, condition.before(environment(network(r, 3))))
         assert verdict.outcome != "active", verdict
@@ -190,7 +190,7 @@ def test_touched_and_left_at_will(delay):
     """A one-sided spring of any stiffness behind the coupling gives out nothing, move by move as worst."""
     rng = np.random.default_rng(5)
     k, b, t = 290.0, 0.08, 1e-3
-    damping = zw.coupling_condition(device(1, Fraction(str(delay))), k, b).required_damping
+    damping = zw.coupling.coupling_condition(device(1, Fraction(str(delay))), k, b).required_damping
     whole, alpha = int(delay), delay - int(delay)
     least = np.inf
     for slope in (50.0, 2000.0, 1e7):
@@ -228,7 +228,7 @@ def behind(k, b, top, bottom):
 def test_a_mass_stepped_explicitly_is_not_covered():
     """Passive with each force on the move that follows it, it defeats couplings that the condition admits."""
     b = Fraction(15, 100)
-    condition = zw.coupling_condition(device(b), 200, 0)
+    condition = zw.coupling.coupling_condition(device(b), 200, 0)
     assert condition.holds
     for mass in (Fraction(1, 10_000), Fraction(1, 100)):
         rate = mass / T**2
@@ -280,11 +280,11 @@ def swing_with_the_tool(loop, k, count, friction, mass):
 
 def test_stiffest_without_delay():
     """K_c = 2 b (1 − margin)/T, exactly at the limit with no margin."""
-    exact = zw.design_coupling(PADDLE, margin=0)
+    exact = zw.coupling.design_coupling(PADDLE, margin=0)
     assert (exact.stiffness, exact.damping, exact.margin) == (300, 0, 0)
     assert exact.condition.holds
     assert exact.verdict.outcome == "passive"
-    usual = zw.design_coupling(PADDLE)
+    usual = zw.coupling.design_coupling(PADDLE)
     assert usual.stiffness.fraction == 270
     assert usual.margin == pytest.approx(0.1)
     assert usual.felt_slowly == usual.felt_quickly == 270
@@ -292,7 +292,7 @@ def test_stiffest_without_delay():
 
 def test_stiffest_with_one_sample_of_delay():
     """K_c = 4b/(3√3 T), B_c = (√3 − 1)/2 K_c T: virtual damping buys stiffness."""
-    found = zw.design_coupling(PADDLE.replace(delay=T), margin=0)
+    found = zw.coupling.design_coupling(PADDLE.replace(delay=T), margin=0)
     k = 4 * 0.15 / (3 * sqrt(3) * 1e-3)
     assert found.stiffness == pytest.approx(k, rel=1e-9)
     assert found.damping == pytest.approx((sqrt(3) - 1) / 2 * k * 1e-3, rel=1e-5)
@@ -303,9 +303,9 @@ def test_stiffest_with_one_sample_of_delay():
 def test_no_coupling_on_a_grid_is_better(delay):
     """Brute force over (K_c, B_c) finds nothing stiffer and nothing nearer."""
     dev = device("0.15", delay)
-    stiffest = zw.design_coupling(dev, margin=0)
+    stiffest = zw.coupling.design_coupling(dev, margin=0)
     wanted = zw.Wall(400, "0.02")
-    nearest = zw.design_coupling(dev, wanted, margin=0)
+    nearest = zw.coupling.design_coupling(dev, wanted, margin=0)
     assert stiffest.condition.holds
     assert nearest.condition.holds
 
@@ -323,21 +323,21 @@ def test_no_coupling_on_a_grid_is_better(delay):
 def test_a_wanted_coupling_that_will_do_is_kept():
     """Exactly as it was asked for, with a delay or without."""
     for delay in (0, Fraction(1, 2)):
-        found = zw.design_coupling(device("0.15", delay), zw.Wall(100, "0.02"))
+        found = zw.coupling.design_coupling(device("0.15", delay), zw.Wall(100, "0.02"))
         assert (found.stiffness.fraction, found.damping.fraction) == (100, Fraction(2, 100))
 
 
 def test_without_delay_the_stiffness_is_kept_and_the_damping_cut():
     """K_c = K, B_c = b − K T/2; beyond 2b/T the spring is cut too."""
-    found = zw.design_coupling(PADDLE, zw.Wall(200, "0.2"), margin=0)
+    found = zw.coupling.design_coupling(PADDLE, zw.Wall(200, "0.2"), margin=0)
     assert (found.stiffness.fraction, found.damping.fraction) == (200, Fraction(5, 100))
     assert found.felt_quickly == 300
-    assert zw.design_coupling(PADDLE, zw.Wall(900, "0.2"), margin=0).stiffness == 300
+    assert zw.coupling.design_coupling(PADDLE, zw.Wall(900, "0.2"), margin=0).stiffness == 300
 
 
 def test_the_report_says_what_is_felt():
     """Rows and text carry the numbers; the coupling can be put before an environment."""
-    found = zw.design_coupling(PADDLE)
+    found = zw.coupling.design_coupling(PADDLE)
     assert dict(found.rows())["felt slowly"] == "270 N/m"
     assert "passive before every passive environment" in repr(found.condition)
     assert "270 N/m" in repr(found)
@@ -351,11 +351,11 @@ def test_the_report_says_what_is_felt():
 @pytest.mark.parametrize(("k", "b"), COUPLINGS[:4])
 def test_with_the_exact_hold_it_is_the_exact_condition(k, b, delay):
     """Llewellyn's conditions with z⁻¹ for the hold decide as the sampled loop does, on both sides."""
-    need = zw.coupling_condition(device(1, delay), k, b).required_damping
-    assert zw.two_port.impedance_display(
+    need = zw.coupling.coupling_condition(device(1, delay), k, b).required_damping
+    assert zw.coupling.two_port.impedance_display(
         device(need * 1.001, delay), k, b, hold="exact"
     ).unconditionally_stable
-    under = zw.two_port.impedance_display(device(need * 0.99, delay), k, b, hold="exact")
+    under = zw.coupling.two_port.impedance_display(device(need * 0.99, delay), k, b, hold="exact")
     assert not under.unconditionally_stable
     assert float(under.needed_damping.max()) == pytest.approx(need, rel=1e-4)
 
@@ -363,10 +363,10 @@ def test_with_the_exact_hold_it_is_the_exact_condition(k, b, delay):
 @pytest.mark.parametrize(("k", "b"), [(290, 0), (290, "0.03"), (290, "0.4"), (0, "0.4")])
 def test_llewellyn_asks_for_a_quarter_to_an_eighth(k, b):
     """The closed form is the maximum over frequency; K_c T/8 for a spring, B_c/8 for a damper."""
-    need = zw.two_port.llewellyn_damping(k, b, T)
-    grid = zw.two_port.impedance_display(device(1), k, b).needed_damping
+    need = zw.coupling.two_port.llewellyn_damping(k, b, T)
+    grid = zw.coupling.two_port.impedance_display(device(1), k, b).needed_damping
     assert float(grid.max()) == pytest.approx(need, rel=1e-5)
-    exact = zw.coupling_condition(device(1), k, b).required_damping
+    exact = zw.coupling.coupling_condition(device(1), k, b).required_damping
     assert 4 * (1 - 1e-9) <= exact / need <= 8 * (1 + 1e-9)
     if not float(b):
         assert exact / need == pytest.approx(4)
@@ -376,8 +376,8 @@ def test_llewellyn_asks_for_a_quarter_to_an_eighth(k, b):
 
 def test_where_llewellyn_is_content_a_motion_takes_energy_out():
     """1000 N/m on the paddle: unconditionally stable in the model, active in the sampled loop."""
-    assert zw.two_port.impedance_display(PADDLE, 1000).unconditionally_stable
-    verdict = zw.coupling_condition(PADDLE, 1000).counterexample
+    assert zw.coupling.two_port.impedance_display(PADDLE, 1000).unconditionally_stable
+    verdict = zw.coupling.coupling_condition(PADDLE, 1000).counterexample
     assert verdict.outcome == "active"
     assert verdict.witness.energy > 0
 
@@ -395,7 +395,7 @@ def test_where_llewellyn_is_content_the_device_shakes_alone():
 def test_the_coupling_before_nothing_and_the_mass_play_no_part():
     """Re Z_d = b, whatever the mass."""
     light, heavy = (
-        zw.two_port.impedance_display(device("0.15", mass=m), 290, "0.1") for m in ("0.001", "10")
+        zw.coupling.two_port.impedance_display(device("0.15", mass=m), 290, "0.1") for m in ("0.001", "10")
     )
     assert np.allclose(light.surplus, heavy.surplus)
     assert np.allclose(light.re_p11, 0.15)
@@ -404,7 +404,7 @@ def test_the_coupling_before_nothing_and_the_mass_play_no_part():
 def test_admittance_display_by_its_definition():
     """The conditions from the matrix of the inner loop at one frequency, solved as equations."""
     dev = zw.Device(mass="0.4", damping="0.6", rate=1000)
-    data = zw.two_port.admittance_display(dev, 800, 30, 12, 150, frequencies=[37.0])
+    data = zw.coupling.two_port.admittance_display(dev, 800, 30, 12, 150, frequencies=[37.0])
     z = np.exp(2j * np.pi * 0.037)
     impedance = 0.4 * 2000 * (z - 1) / (z + 1) + 0.6
     command = (1 + 1 / z) / 2 * (12 + 150e-3 * z / (z - 1))
@@ -421,31 +421,31 @@ def test_admittance_display_by_its_definition():
 def test_admittance_wants_a_heavy_coupling():
     """C_p (2 m/T)/b at half the rate for a controller C_p ≪ 2 m/T: an average has no force there."""
     dev = zw.Device(mass="0.4", damping="0.6", rate=1000)
-    need = float(zw.two_port.admittance_display(dev, 0, 1, 12).needed_impedance.max())
+    need = float(zw.coupling.two_port.admittance_display(dev, 0, 1, 12).needed_impedance.max())
     assert need == pytest.approx(12 * 2 * 0.4 / (1e-3 * 0.6), rel=0.02)
-    assert zw.two_port.admittance_display(dev, 0, need * 1.001, 12).unconditionally_stable
-    assert not zw.two_port.admittance_display(dev, 0, need * 0.99, 12).unconditionally_stable
+    assert zw.coupling.two_port.admittance_display(dev, 0, need * 1.001, 12).unconditionally_stable
+    assert not zw.coupling.two_port.admittance_display(dev, 0, need * 0.99, 12).unconditionally_stable
 
 
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: zw.coupling_condition(3, 100), "first argument is a Device"),
-        (lambda: zw.coupling_condition(PADDLE, -1), "stiffness must be ≥ 0"),
-        (lambda: zw.coupling_condition(PADDLE.replace(damping=(1, 2)), 1), "no single value"),
-        (lambda: zw.design_coupling(3), "first argument is a Device"),
-        (lambda: zw.design_coupling(PADDLE, margin=1), "margin must be"),
-        (lambda: zw.design_coupling(PADDLE.replace(damping=0)), "without damping"),
-        (lambda: zw.design_coupling(PADDLE, "softest"), "goal is"),
-        (lambda: zw.design_coupling(PADDLE, zw.Wall(3, -1)), "must be ≥ 0"),
-        (lambda: zw.design_coupling(PADDLE, zw.Wall(3, 1, clamped=True)), "goal is"),
-        (lambda: zw.two_port.impedance_display(PADDLE, 0, 0), "both 0"),
-        (lambda: zw.two_port.impedance_display(PADDLE, 3, -1), "damping must be ≥ 0"),
-        (lambda: zw.two_port.impedance_display(PADDLE, 3, hold="zero"), "hold is"),
-        (lambda: zw.two_port.impedance_display(PADDLE, 3, frequencies=[501]), "half the rate"),
-        (lambda: zw.two_port.admittance_display(device(1), 3, 1, 1), "mass is not known"),
-        (lambda: zw.two_port.admittance_display(PADDLE.replace(delay=T), 3, 1, 1), "without delay"),
-        (lambda: zw.two_port.admittance_display(PADDLE, 3, 1, -1), "velocity_gain must be ≥ 0"),
+        (lambda: zw.coupling.coupling_condition(3, 100), "first argument is a Device"),
+        (lambda: zw.coupling.coupling_condition(PADDLE, -1), "stiffness must be ≥ 0"),
+        (lambda: zw.coupling.coupling_condition(PADDLE.replace(damping=(1, 2)), 1), "no single value"),
+        (lambda: zw.coupling.design_coupling(3), "first argument is a Device"),
+        (lambda: zw.coupling.design_coupling(PADDLE, margin=1), "margin must be"),
+        (lambda: zw.coupling.design_coupling(PADDLE.replace(damping=0)), "without damping"),
+        (lambda: zw.coupling.design_coupling(PADDLE, "softest"), "goal is"),
+        (lambda: zw.coupling.design_coupling(PADDLE, zw.Wall(3, -1)), "must be ≥ 0"),
+        (lambda: zw.coupling.design_coupling(PADDLE, zw.Wall(3, 1, clamped=True)), "goal is"),
+        (lambda: zw.coupling.two_port.impedance_display(PADDLE, 0, 0), "both 0"),
+        (lambda: zw.coupling.two_port.impedance_display(PADDLE, 3, -1), "damping must be ≥ 0"),
+        (lambda: zw.coupling.two_port.impedance_display(PADDLE, 3, hold="zero"), "hold is"),
+        (lambda: zw.coupling.two_port.impedance_display(PADDLE, 3, frequencies=[501]), "half the rate"),
+        (lambda: zw.coupling.two_port.admittance_display(device(1), 3, 1, 1), "mass is not known"),
+        (lambda: zw.coupling.two_port.admittance_display(PADDLE.replace(delay=T), 3, 1, 1), "without delay"),
+        (lambda: zw.coupling.two_port.admittance_display(PADDLE, 3, 1, -1), "velocity_gain must be ≥ 0"),
     ],
 )
 def test_bad_input_has_one_clear_message(call, message):

@@ -59,10 +59,10 @@ def test_window(seed):
     random = Random(seed)
     k, t, b = draw(random, 1, 1e5), draw(random, 1e-5, 0.1), draw(random, 1e-3, 50)
     n = random.choice([1, 2, 3])
-    wall = zw.Wall(k, b, zw.Window(n))
+    wall = zw.Wall(k, b, zw.rendering.Window(n))
     assert_boundary(wall, forms.window_damping(k, b, n, t), t)
     n = random.randint(1, 14)
-    wall = zw.Wall(k, -b, zw.Window(n))
+    wall = zw.Wall(k, -b, zw.rendering.Window(n))
     assert_boundary(wall, forms.window_damping(k, -b, n, t), t)
 
 

@@ -21,13 +21,13 @@ TINY = Fraction(1, 10**9)
 T = Fraction(1, 1000)
 
 FILTERS = {
-    "backward difference": (zw.BackwardDifference(), 1, 2),
-    "window": (zw.Window(5), 1, Fraction(2, 5)),
-    "one pole": (zw.OnePole("0.003"), 1, Fraction(1, 2)),
-    "slow pole": (zw.OnePole("0.2"), 1, Fraction(2, 201)),
-    "one pole without memory": (zw.OnePole(0), 1, 2),
-    "finite response": (zw.VelocityFilter([3, -1], [2, 0, 0]), 2, 4),  # w = 0, 3/2, −1/2
-    "finite once cancelled": (zw.VelocityFilter([1, "-0.5"], [1, "-0.5", 0]), 1, 2),
+    "backward difference": (zw.rendering.BackwardDifference(), 1, 2),
+    "window": (zw.rendering.Window(5), 1, Fraction(2, 5)),
+    "one pole": (zw.rendering.OnePole("0.003"), 1, Fraction(1, 2)),
+    "slow pole": (zw.rendering.OnePole("0.2"), 1, Fraction(2, 201)),
+    "one pole without memory": (zw.rendering.OnePole(0), 1, 2),
+    "finite response": (zw.rendering.VelocityFilter([3, -1], [2, 0, 0]), 2, 4),  # w = 0, 3/2, −1/2
+    "finite once cancelled": (zw.rendering.VelocityFilter([1, "-0.5"], [1, "-0.5", 0]), 1, 2),
 }
 """An estimate of velocity, Σ|w_j| and T ‖h_v‖₁ by hand."""
 
@@ -107,9 +107,9 @@ def test_closed_forms(seed):
     )
     delay, samples, tau = random.randint(0, 5), random.randint(1, 30), draw(random, 1e-4, 1)
     for velocity, memory in (
-        (zw.BackwardDifference(), T),
-        (zw.Window(samples), samples * T),
-        (zw.OnePole(tau), T + tau),
+        (zw.rendering.BackwardDifference(), T),
+        (zw.rendering.Window(samples), samples * T),
+        (zw.rendering.OnePole(tau), T + tau),
     ):
         decision = decide(device(1, 1, step, delay), zw.Wall(k, b, velocity))
         enough = forms.damped_wall_damping(k, b, T, delay).fraction
@@ -213,7 +213,7 @@ def touch(seed, surface):
     weights = random.choice([[Fraction(1)], [Fraction(1, 3)] * 3, [Fraction(n, 4) for n in (3, -2, 5)]])
     k, b = draw(random, 1, 500), random.choice([-1, 1]) * draw(random, 0.01, 2)
     step, delay = random.choice([Fraction(0), draw(random, 1e-4, 0.1)]), random.randint(0, 2)
-    velocity = zw.VelocityFilter(weights, [1, *[0] * (len(weights) - 1)])
+    velocity = zw.rendering.VelocityFilter(weights, [1, *[0] * (len(weights) - 1)])
     law = zw.Wall(k, b, velocity, clamped=surface.startswith("clamped"))
     decision = decide(device(1, 1, step, delay), law)
     enough = decision.wall.required_damping(decision.loop), decision.wall.required_friction(step, T)
@@ -268,8 +268,10 @@ def test_simulated_hands_take_nothing_out(seed, clamped):
 DEVICE = device("0.5", "0.2", "0.0005", 1)
 DOCUMENTS = {
     "backward difference": check_by_closed_forms(DEVICE, zw.Wall("180", "0.04")),
-    "window": check_by_closed_forms(DEVICE, zw.Wall("180", "-0.06", zw.Window(3))),
-    "one pole": check_by_closed_forms(DEVICE, zw.Wall("180", "0.07", zw.OnePole("0.004"), clamped=True)),
+    "window": check_by_closed_forms(DEVICE, zw.Wall("180", "-0.06", zw.rendering.Window(3))),
+    "one pole": check_by_closed_forms(
+        DEVICE, zw.Wall("180", "0.07", zw.rendering.OnePole("0.004"), clamped=True)
+    ),
 }
 
 
@@ -358,7 +360,10 @@ def test_rotary_certificate():
 
 STILL_SUSTAINED = {
     "a delay of part of a sample": (DEVICE.replace(delay="0.0004"), zw.Wall(180, "0.04")),
-    "a filter that needs less": (device("0.2", "0.2", "0.0005", 0), zw.Wall(180, "0.25", zw.Window(4))),
+    "a filter that needs less": (
+        device("0.2", "0.2", "0.0005", 0),
+        zw.Wall(180, "0.25", zw.rendering.Window(4)),
+    ),
     "a solid with delay": (device("0.2", "0.2", "0.0005", 1), zw.StandardLinearSolid(100, 20, "0.1")),
 }
 
@@ -412,14 +417,15 @@ INTERVALS = {
     "clamped, from no damping on": (DEVICE, zw.Wall(180, (0, "0.05"), clamped=True), "passive", True),
     "timing and all": (
         DEVICE.replace(delay=0, sample_period=("0.0005", "0.001")),
-        zw.Wall((100, 180), ("-0.02", "0.02"), zw.OnePole((0, "0.003"))), "passive", True,
+        zw.Wall((100, 180), ("-0.02", "0.02"), zw.rendering.OnePole((0, "0.003"))), "passive", True,
     ),
     "one corner in sustained contact": (
-        device("0.2", "0.2", "0.0005", 0), zw.Wall(180, ("0.01", "0.25"), zw.Window(4)),
+        device("0.2", "0.2", "0.0005", 0), zw.Wall(180, ("0.01", "0.25"), zw.rendering.Window(4)),
         "passive in contact", False,
     ),
     "one corner by the multiplier": (
-        device("0.3", "0.2", "0.0005", 0), zw.Wall(180, ("0.01", "0.25"), zw.Window(4)), "passive", True
+        device("0.3", "0.2", "0.0005", 0),
+        zw.Wall(180, ("0.01", "0.25"), zw.rendering.Window(4)), "passive", True
     ),
     "one corner too many, clamped": (
         device("0.3", "0.2", "0.0005", 0), zw.Wall(180, ("0.01", "0.25"), clamped=True), "undecided", None

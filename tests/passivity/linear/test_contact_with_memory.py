@@ -88,8 +88,8 @@ def test_the_linear_criterion_asks_for_half_the_first_force():
     ideal = zw.Device(damping=9, coulomb_friction=0, resolution=0, sample_period=1, delay=0, mass=1)
     for law, first in (
         (zw.Wall(3, damping=2), 5),
-        (zw.Wall(3, damping=2, velocity_filter=zw.Window(4)), Fraction(7, 2)),
-        (zw.Wall(3, damping=2, velocity_filter=zw.OnePole(7)), Fraction(13, 4)),
+        (zw.Wall(3, damping=2, velocity_filter=zw.rendering.Window(4)), Fraction(7, 2)),
+        (zw.Wall(3, damping=2, velocity_filter=zw.rendering.OnePole(7)), Fraction(13, 4)),
         (zw.StandardLinearSolid(3, 5, 4), 3 + Fraction(20, 9)),
     ):
         assert zw.check(ideal, law).required_damping >= first / 2
@@ -97,7 +97,7 @@ def test_the_linear_criterion_asks_for_half_the_first_force():
 
 def played(surface, damping, friction, time_constant, counts=12, clamped=False):
     """A wall of K = 1, B = 10 behind one pole, T = Δ = 1, with parts of what sustained contact asks for."""
-    wall = zw.Wall(1, damping=10, velocity_filter=zw.OnePole(time_constant))
+    wall = zw.Wall(1, damping=10, velocity_filter=zw.rendering.OnePole(time_constant))
     branch = Fraction(10, 1 + time_constant)
     need = Fraction(1, 2) + Fraction(10, 1 + 2 * time_constant), Fraction(1, 2) + branch
     device = zw.Device(
@@ -134,7 +134,7 @@ def test_a_fast_filter_fed_with_the_position_keeps_it():
 def test_the_claim_of_a_filtered_wall_says_that_contact_is_kept():
     """What is proved of sustained contact alone is claimed of it alone."""
     device = zw.Device(damping="5.2", coulomb_friction="9", resolution=1, sample_period=1)
-    filtered = check_by_closed_forms(device, zw.Wall(1, damping=10, velocity_filter=zw.Window(3)))
+    filtered = check_by_closed_forms(device, zw.Wall(1, damping=10, velocity_filter=zw.rendering.Window(3)))
     assert filtered.outcome == "passive in contact"
     assert "that keeps contact" in filtered.claim
     spring = zw.check(device, zw.Wall("0.5"))

@@ -17,8 +17,8 @@ from zwidth.passivity.linear.loop import linear_loop
 PADDLE = zw.Device(damping="0.15", coulomb_friction="0.12", resolution="22.4 um", rate="1 kHz")
 LAWS = {
     "damped": (zw.Wall(70, "0.03"), "0.0009"),
-    "filtered": (zw.Wall(40, "0.08", zw.OnePole("0.002")), "0.0021"),
-    "window": (zw.Wall(45, "0.04", zw.Window(4)), "0.0017"),
+    "filtered": (zw.Wall(40, "0.08", zw.rendering.OnePole("0.002")), "0.0021"),
+    "window": (zw.Wall(45, "0.04", zw.rendering.Window(4)), "0.0017"),
     "solid": (zw.StandardLinearSolid(50, 20, "0.3"), "0.0013"),
     "coupling": (zw.VirtualCoupling(90, "0.02", zw.Wall(300, "0.01")), "0.0006"),
     "fixed H(z)": (zw.PulseTransferFunction([40, -20], [1, "-0.3"]), "0.0013"),

@@ -50,9 +50,9 @@ def random_law(random):
     """A wall with any estimator, a solid, or a random stable H(z)."""
     k, b = draw(random, 5, 900), draw(random, -1, 1)
     filters = [
-        zw.BackwardDifference(),
-        zw.Window(random.randint(2, 9)),
-        zw.OnePole(draw(random, 0.001, 0.02)),
+        zw.rendering.BackwardDifference(),
+        zw.rendering.Window(random.randint(2, 9)),
+        zw.rendering.OnePole(draw(random, 0.001, 0.02)),
     ]
     if random.random() < 0.6:
         return zw.Wall(k, b, random.choice(filters))
@@ -101,7 +101,9 @@ def test_checker_finds_the_same_bound(seed):
     """The checker's own arithmetic gives the same rational, and any other inverse only a larger one."""
     random = Random(100 + seed)
     device = zw.Device(damping=40, rate=1000, coulomb_friction=30, resolution="0.0003")
-    law = zw.Wall(draw(random, 5, 900), draw(random, 0.001, 1), zw.OnePole(draw(random, 0.001, 0.02)))
+    law = zw.Wall(
+        draw(random, 5, 900), draw(random, 0.001, 1), zw.rendering.OnePole(draw(random, 0.001, 0.02))
+    )
     loop = linear_loop(device, law)
     decision = Decision(Setting(loop, Fraction(30), Fraction("0.0003"), True))
     document = certify(decision)
@@ -125,7 +127,9 @@ def test_every_number_of_the_norm_proof_binds(seed):
     """Modes and rest must sum to H(z): any of their numbers changed, dropped or doubled is rejected."""
     random = Random(200 + seed)
     device = zw.Device(damping=40, rate=1000, coulomb_friction=90, resolution="0.0003")
-    law = zw.Wall(draw(random, 5, 900), draw(random, 0.001, 1), zw.OnePole(draw(random, 0.01, 0.02)))
+    law = zw.Wall(
+        draw(random, 5, 900), draw(random, 0.001, 1), zw.rendering.OnePole(draw(random, 0.01, 0.02))
+    )
     decision = Decision(Setting(linear_loop(device, law), Fraction(90), Fraction("0.0003"), True))
     document = certify(decision)
     proof = document["proof"]["norm"]

@@ -68,7 +68,7 @@ def as_double(value):
 def test_closed_forms(name):
     """Indices and the frequencies where they are reached, computed by hand."""
     g, nu, nu_at, rho, rho_at = ZOO[name]
-    found = zw.passivity_indices(g)
+    found = zw.ports.passivity_indices(g)
     for index, value, at in ((found.input, nu, nu_at), (found.output, rho, rho_at)):
         assert index.value == as_double(value)
         assert index.exact == value if abs(value) < inf else index.exact is None
@@ -78,7 +78,7 @@ def test_closed_forms(name):
 
 def test_an_interior_minimum():
     """G = (s + 3)/(s + 1)²: Re G = (3 − ω²)/(1 + ω²)² is least at ω² = 7, by calculus."""
-    found = zw.passivity_indices((s + 3) / (s + 1) ** 2).input
+    found = zw.ports.passivity_indices((s + 3) / (s + 1) ** 2).input
     # Re G = (a + (2 − a) x)/(1 + x)² with x = ω²; its slope vanishes at x = (3a − 2)/(a − 2) = 7
     assert found.exact == Fraction(3 - 7, 64)
     assert isclose(found.frequency, sqrt(7) / (2 * pi), rel_tol=1e-15)
@@ -86,7 +86,7 @@ def test_an_interior_minimum():
 
 def test_a_third_order_interior_minimum():
     """An index that is not rational lies between its bounds, which mpmath's own minimum confirms."""
-    found = zw.passivity_indices(control.tf([1, 1, 5, 0.1], [1, 2, 3, 4])).output
+    found = zw.ports.passivity_indices(control.tf([1, 1, 5, 0.1], [1, 2, 3, 4])).output
     low, high = found.bounds
     with mpmath.workdps(60):
 
@@ -119,7 +119,7 @@ def random_passive(seed):
 def test_a_dense_grid_never_falls_below(seed):
     """Re G and Re 1/G on 20001 frequencies: never below, and near it somewhere."""
     g = random_passive(seed)
-    found = zw.passivity_indices(g)
+    found = zw.ports.passivity_indices(g)
     omega = np.concatenate([[0], np.geomspace(1e-4, 1e5, 20001)])
     response = np.polyval(g.num[0][0], 1j * omega) / np.polyval(g.den[0][0], 1j * omega)
     for index, values in ((found.input, response.real), (found.output, (1 / response).real)):
@@ -146,7 +146,7 @@ HARD = {
 def test_where_a_tolerance_decides_elsewhere(name):
     """Small shortages, static gains, improper and badly scaled systems are decided as any other."""
     g, nu, rho = HARD[name]
-    found = zw.passivity_indices(g)
+    found = zw.ports.passivity_indices(g)
     assert (found.input.value, found.output.value) == (as_double(nu), as_double(rho))
     assert found.passive == (nu >= 0)
     evidence = found.certificate if found.passive else found.witness
@@ -157,7 +157,7 @@ def test_where_a_tolerance_decides_elsewhere(name):
 def test_both_sides_of_an_index(name):
     """The checker accepts the proof at the index and a motion just above it; nothing proves more."""
     g = (ZOO.get(name) or HARD.get(name))[0]
-    found = zw.passivity_indices(g)
+    found = zw.ports.passivity_indices(g)
     for index in (found.input, found.output):
         if abs(index.value) < inf:
             assert index.certificate().verify()
@@ -186,7 +186,7 @@ def test_both_sides_of_an_index(name):
 )
 def test_a_motion_replayed_by_scipy(g, kind):
     """lsim answers the input with the output that the motion says, and the integral is the share."""
-    motion = zw.passivity_indices(g).witness
+    motion = zw.ports.passivity_indices(g).witness
     assert motion.kind == kind
     t, u, y = (np.array(x) for x in motion.signals(20001))
     _, replayed, _ = scipy.signal.lsim((g.num[0][0], g.den[0][0]), u, t)
@@ -207,7 +207,7 @@ def test_a_motion_replayed_by_scipy(g, kind):
 )
 def test_a_discrete_motion_replayed_by_scipy(g):
     """lfilter answers the samples; more comes out than goes in."""
-    motion = zw.passivity_indices(g).witness
+    motion = zw.ports.passivity_indices(g).witness
     _, u, y = motion.signals()
     num, den = g.num[0][0], g.den[0][0]
     replayed = scipy.signal.lfilter([0] * (len(den) - len(num)) + list(num), den, u)
@@ -218,7 +218,7 @@ def test_a_discrete_motion_replayed_by_scipy(g):
 
 def test_slow_growth_is_caught_by_a_longer_polynomial():
     """A pole pair at 0.07 ± 1.06j, with a real part on the axis that is above the level."""
-    index = zw.passivity_indices(control.tf([-4, 4], [4, 3, 4, 4])).input
+    index = zw.ports.passivity_indices(control.tf([-4, 4], [4, 3, 4, 4])).input
     assert "unstable pole at s = 0.0697809 ± 1.05796j" in index.reason
     motion = index.refute(-3)
     assert motion.kind == "polynomial"
@@ -227,7 +227,7 @@ def test_slow_growth_is_caught_by_a_longer_polynomial():
 
 def test_what_grows_slowly_has_no_motion_but_no_proof_either():
     """A pole 1e-4 outside the circle with Re G > 0 on it: not passive, and not certified either way."""
-    found = zw.passivity_indices(control.tf([-1, -1], [1, -1.0001], 0.01) + 20001)
+    found = zw.ports.passivity_indices(control.tf([-1, -1], [1, -1.0001], 0.01) + 20001)
     assert not found.passive
     assert found.certificate is None
     assert "unstable pole at z = 1.0001" in found.input.reason
@@ -246,7 +246,7 @@ def test_a_throughput_moves_the_input_index_and_no_more(num, den, eighths):
     """ν(G + c) = ν(G) + c; the coefficients are short binary fractions, so that nothing is rounded."""
     c = eighths / 8
     moved = [a + c * b for a, b in zip(num, den, strict=True)]
-    first, second = (zw.passivity_indices(control.tf(n, den)).input.bounds for n in (num, moved))
+    first, second = (zw.ports.passivity_indices(control.tf(n, den)).input.bounds for n in (num, moved))
     assert first[0] + Fraction(c) <= second[1]
     assert second[0] <= first[1] + Fraction(c)
 
@@ -255,16 +255,16 @@ def test_the_output_index_is_that_of_the_inverse():
     """ρ(G) = ν(1/G), also where G is unstable."""
     for num, den in (([1, 4, 1], [2, 1, 9]), ([3, 1], [1, -2]), ([1], [1, 1, 1])):
         g, inverse = (scipy.signal.TransferFunction(*p) for p in ((num, den), (den, num)))
-        assert zw.passivity_indices(g).output.bounds == zw.passivity_indices(inverse).input.bounds
+        assert zw.ports.passivity_indices(g).output.bounds == zw.ports.passivity_indices(inverse).input.bounds
 
 
 def test_feedback_of_the_output_index_is_at_the_limit():
     """G/(1 − ρ G) is passive at ρ and not just above it."""
     g = control.tf([1, 4], [1, 2])
-    rho = zw.passivity_indices(g).output.exact
+    rho = zw.ports.passivity_indices(g).output.exact
     assert rho == Fraction(1, 2)
-    assert zw.passivity_indices(control.feedback(g, 0.5, sign=1)).passive
-    assert not zw.passivity_indices(control.feedback(g, 0.5 + 1e-7, sign=1)).passive
+    assert zw.ports.passivity_indices(control.feedback(g, 0.5, sign=1)).passive
+    assert not zw.ports.passivity_indices(control.feedback(g, 0.5 + 1e-7, sign=1)).passive
 
 
 def test_every_kind_of_system_is_read():
@@ -277,30 +277,32 @@ def test_every_kind_of_system_is_read():
         scipy.signal.StateSpace([[0, 1], [-2, -3]], [[0], [1]], [[3, 1]], [[0]]),
         scipy.signal.ZerosPolesGain([-3], [-1, -2], 1),
     ]
-    found = [zw.passivity_indices(g) for g in same]
+    found = [zw.ports.passivity_indices(g) for g in same]
     assert {f.input.exact for f in found} == {Fraction(0)}
     assert {f.output.exact for f in found} == {Fraction(0)}
 
 
 def test_a_hidden_mode_is_told():
     """What cancels is not in the index; that it does not decay is said."""
-    found = zw.passivity_indices(control.tf([1, -1], [1, 0, -1]))
+    found = zw.ports.passivity_indices(control.tf([1, -1], [1, 0, -1]))
     assert found.output.exact == 1
     assert not found.hidden_modes_decay
     assert "cancelled mode" in repr(found)
-    assert zw.passivity_indices(control.tf([1, 1], [1, 3, 2])).hidden_modes_decay
+    assert zw.ports.passivity_indices(control.tf([1, 1], [1, 3, 2])).hidden_modes_decay
 
 
 def test_sampled_damping_is_that_of_the_criterion():
     """H(z) = K + B (z − 1)/(T z) needs K T/2 + B; its own indices call it passive."""
     wall = control.tf([150 + 200, -200], [1, 0], 0.001)
-    found = zw.passivity_indices(wall)
+    found = zw.ports.passivity_indices(wall)
     assert found.passive
-    assert found.sampled_damping.required == float(zw.closed_forms.kelvin_voigt_damping(150, "0.2", "0.001"))
+    assert found.sampled_damping.required == float(
+        zw.formulas.closed_forms.kelvin_voigt_damping(150, "0.2", "0.001")
+    )
     assert isclose(found.sampled_damping.frequency, 500)
     assert found.sampled_damping.margin == -0.275
     device = zw.Device(damping="0.3", sample_period="0.001", delay="0.001")
-    late = zw.passivity_indices(wall, device)
+    late = zw.ports.passivity_indices(wall, device)
     assert late.sampled_damping.required == zw.check(device, wall).required_damping
     assert late.sampled_damping.margin == 0.3 - late.sampled_damping.required
 
@@ -311,10 +313,10 @@ def test_sampled_damping_is_an_input_index(delay):
     num, den = [90, -60, 5], [1, -0.5, 0.25, 0]
     device = zw.Device(damping=0, sample_period="0.002", delay=Fraction(delay, 500))
     law = control.tf(num, den, 0.002)
-    index = zw.passivity_indices(
+    index = zw.ports.passivity_indices(
         control.tf([0.002 * c for c in num], np.polymul(den, [1, -1] + [0] * delay), 0.002)
     ).input
-    need = zw.passivity_indices(law, device).sampled_damping
+    need = zw.ports.passivity_indices(law, device).sampled_damping
     assert isclose(need.required, -index.value, rel_tol=1e-12)
     assert isclose(need.frequency, index.frequency, rel_tol=1e-9, abs_tol=1e-9)
 
@@ -323,11 +325,11 @@ def test_sampled_damping_of_a_continuous_law():
     """A continuous system needs a device and a discretization; an environment brings its own."""
     device = zw.Device(damping="0.3", rate=1000)
     solid = scipy.signal.TransferFunction([0.2, 150], [1])
-    found = zw.passivity_indices(solid, device, "backward")
+    found = zw.ports.passivity_indices(solid, device, "backward")
     assert isclose(found.sampled_damping.required, 0.275, rel_tol=1e-12)
-    wall = zw.passivity_indices(zw.Wall(150, "0.2"), device)
+    wall = zw.ports.passivity_indices(zw.Wall(150, "0.2"), device)
     assert wall.sampled_damping.required == found.sampled_damping.required
-    assert zw.passivity_indices(solid).sampled_damping is None
+    assert zw.ports.passivity_indices(solid).sampled_damping is None
 
 
 @pytest.mark.parametrize(
@@ -346,12 +348,12 @@ def test_sampled_damping_of_a_continuous_law():
 def test_what_is_refused(arguments, message):
     """Each refusal says what was given and what to try."""
     with pytest.raises(zw.InputError, match=message):
-        zw.passivity_indices(*arguments)
+        zw.ports.passivity_indices(*arguments)
 
 
 def test_the_checker_refuses_a_false_proof():
     """A higher level, another system, an unstable one, a wrong factor: none passes."""
-    index = zw.passivity_indices((s + 2) / (s + 9)).input
+    index = zw.ports.passivity_indices((s + 2) / (s + 9)).input
     document = index.certificate().to_dict()
     assert checker.verify(document).valid
     changes = [
@@ -369,7 +371,7 @@ def test_the_checker_refuses_a_false_proof():
 
 def test_the_checker_refuses_an_unstable_port_that_is_positive_on_the_axis():
     """1/(1 − s) has Re > 0 on the axis: the sign alone is no proof."""
-    good = zw.passivity_indices(1 / (1 + s)).input.certificate(0).to_dict()
+    good = zw.ports.passivity_indices(1 / (1 + s)).input.certificate(0).to_dict()
     bad = tampered(good, ("system", "denominator"), ["-1", "1"])
     answer = checker.verify(bad)
     assert not answer.valid
@@ -378,8 +380,8 @@ def test_the_checker_refuses_an_unstable_port_that_is_positive_on_the_axis():
 
 def test_the_checker_refuses_a_false_motion():
     """A burst that is not smooth, one below the level, a polynomial not from rest, the wrong time."""
-    burst = zw.passivity_indices((s + 3) / (s + 1) ** 2).witness.to_dict()
-    grown = zw.passivity_indices(1 / (1 - s)).witness.to_dict()
+    burst = zw.ports.passivity_indices((s + 3) / (s + 1) ** 2).witness.to_dict()
+    grown = zw.ports.passivity_indices(1 / (1 - s)).witness.to_dict()
     false = [
         tampered(burst, ("motion", "power"), "0"),
         tampered(burst, ("motion", "step_rad_per_s"), "1" * 200),
@@ -399,7 +401,7 @@ def test_evidence_is_saved_and_verified_from_the_command_line(tmp_path, capsys):
     """`zwidth verify` accepts both and says which index they speak of."""
     from zwidth.cli.main import main
 
-    found = zw.passivity_indices((s + 3) / (s + 1) ** 2)
+    found = zw.ports.passivity_indices((s + 3) / (s + 1) ** 2)
     found.input.certificate().save(tmp_path / "proof.json")
     found.witness.save(tmp_path / "motion.json")
     for name, says in (
@@ -412,7 +414,7 @@ def test_evidence_is_saved_and_verified_from_the_command_line(tmp_path, capsys):
 
 def test_it_says_what_it_found():
     """The representations name both indices with their frequency, and why one is infinite."""
-    found = zw.passivity_indices(1 / (s + 1) - 1e-9)
+    found = zw.ports.passivity_indices(1 / (s + 1) - 1e-9)
     assert repr(found).startswith("<PassivityIndices active: input index ν = −1e−09 as the frequency grows")
     assert "unstable zero at s = 1e+09" in found._repr_html_()
     assert "comes out above the level" in repr(found.witness)

@@ -23,7 +23,7 @@ from zwidth.passivity.ports.leverrier import leverrier, multiplied
 def proved():
     """A port of two axes with the input index 1 − 1/32."""
     lead = ([1, 3], [1, 2])
-    return zw.passivity_indices(matrix([[lead, ([1], [1, 2])], [([0], [1]), lead]])).input
+    return zw.ports.passivity_indices(matrix([[lead, ([1], [1, 2])], [([0], [1]), lead]])).input
 
 
 def test_the_checker_refuses_a_false_matrix_proof():
@@ -53,7 +53,7 @@ def test_the_checker_refuses_a_false_matrix_proof():
 def test_the_checker_refuses_an_unstable_port_of_positive_eigenvalues():
     """diag(1/(1 − s), 1): positive on the axis; with its true resolvent a root lies outside."""
     lag, nothing, one = ([1], [1, 1]), ([0], [1]), ([1], [1])
-    good = zw.passivity_indices(matrix([[lag, nothing], [nothing, one]])).input.certificate(0).to_dict()
+    good = zw.ports.passivity_indices(matrix([[lag, nothing], [nothing, one]])).input.certificate(0).to_dict()
     assert checker.verify(good).valid
     bad = tampered(good, ("system",), {**good["system"], "denominator": ["-1", "1"]})
     bad["system"]["numerators"] = [[["1"], ["0"]], [["0"], ["-1", "1"]]]
@@ -67,11 +67,13 @@ def test_the_checker_refuses_an_unstable_port_of_positive_eigenvalues():
 
 def test_the_checker_refuses_a_false_motion_of_several_axes():
     """Not smooth, of one axis only, below the level, a polynomial not from rest, the wrong time."""
-    burst = zw.passivity_indices(random_system(0, 4, 2, throughput=0)).witness.to_dict()
-    grown = zw.passivity_indices(
+    burst = zw.ports.passivity_indices(random_system(0, 4, 2, throughput=0)).witness.to_dict()
+    grown = zw.ports.passivity_indices(
         matrix([[([1], [-1, 1]), ([0], [1])], [([0], [1]), ([1], [1, 1])]])
     ).witness.to_dict()
-    late = zw.passivity_indices(random_system(2, 3, 2, throughput=-0.1, discrete=True)).witness.to_dict()
+    late = zw.ports.passivity_indices(
+        random_system(2, 3, 2, throughput=-0.1, discrete=True)
+    ).witness.to_dict()
     assert [d["motion"]["kind"] for d in (burst, grown, late)] == ["burst", "polynomial", "sequence"]
     assert all(checker.verify(document).valid for document in (burst, grown, late))
     false = [

@@ -57,7 +57,7 @@ ZOO = {
 def test_matrices_in_closed_form(name):
     """Indices and the frequencies where they are reached, computed by hand; both sides replayed."""
     g, nu, nu_at, rho, rho_at = ZOO[name]
-    found = zw.passivity_indices(g)
+    found = zw.ports.passivity_indices(g)
     for index, value, at in ((found.input, nu, nu_at), (found.output, rho, rho_at)):
         if value is None:
             continue
@@ -87,7 +87,7 @@ REFUSED = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_poles_that_no_level_allows(name):
     """A pole that may not be where it is: no level holds, and a motion takes energy out."""
-    index = zw.passivity_indices(REFUSED[name]).input
+    index = zw.ports.passivity_indices(REFUSED[name]).input
     assert index.value == -inf
     assert index.reason
     assert not index.at_least(-(10**6))
@@ -96,7 +96,7 @@ def test_poles_that_no_level_allows(name):
 
 def test_an_input_without_effect():
     """The second input moves nothing and its output is moved by the first: no ρ at all."""
-    output = zw.passivity_indices(matrix([[LAG, NOTHING], [LAG, NOTHING]])).output
+    output = zw.ports.passivity_indices(matrix([[LAG, NOTHING], [LAG, NOTHING]])).output
     assert output.value == -inf
     assert "input without effect" in output.reason
     assert output.refute(-100).verify()
@@ -104,7 +104,7 @@ def test_an_input_without_effect():
 
 def test_an_irrational_index_lies_between_its_bounds():
     """The static matrix (1 1; 1 3) has the least eigenvalue 2 − √2 at every frequency."""
-    found = zw.passivity_indices(control.ss([], [], [], [[1, 1], [1, 3]]))
+    found = zw.ports.passivity_indices(control.ss([], [], [], [[1, 1], [1, 3]]))
     low, high = found.input.bounds
     assert (2 - low) ** 2 >= 2 >= (2 - high) ** 2
     assert high - low < Fraction(1, 10**20)
@@ -121,7 +121,7 @@ seeds = st.integers(0, 2**32 - 1)
 def test_a_dense_grid_of_eigenvalues_never_falls_below(seed, axes, order, discrete):
     """The least eigenvalue at 3001 frequencies: never below, near it somewhere."""
     g = random_system(seed, order, axes, discrete=discrete)
-    found = zw.passivity_indices(g)
+    found = zw.ports.passivity_indices(g)
     omega = (
         np.linspace(0, pi / 0.01, 3001) if discrete else np.concatenate([[0], np.geomspace(1e-3, 1e5, 3001)])
     )
@@ -150,8 +150,10 @@ entries = st.tuples(st.lists(quarters, min_size=2, max_size=3), st.lists(quarter
 def test_a_diagonal_system_has_the_least_index_of_its_entries(parts):
     """Each axis by itself, by the code for one axis; the brackets of both meet."""
     size = range(len(parts))
-    together = zw.passivity_indices(matrix([[parts[i] if i == j else NOTHING for j in size] for i in size]))
-    alone = [zw.passivity_indices(control.tf(*part)) for part in parts]
+    together = zw.ports.passivity_indices(
+        matrix([[parts[i] if i == j else NOTHING for j in size] for i in size])
+    )
+    alone = [zw.ports.passivity_indices(control.tf(*part)) for part in parts]
     for name in ("input", "output"):
         index, others = getattr(together, name), [getattr(found, name) for found in alone]
         least = min(others, key=lambda other: other.bounds[0] if other.bounds else -inf)
@@ -173,7 +175,7 @@ def test_turned_axes_have_the_same_indices(seed):
     g = control.ss(a, b, c, d)
     # five times the rotation on either side keeps integers: 25 G in turned axes
     turned = control.ss(a, b @ turn.T, turn @ c, turn @ d @ turn.T)
-    first, second = zw.passivity_indices(g).input, zw.passivity_indices(turned).input
+    first, second = zw.ports.passivity_indices(g).input, zw.ports.passivity_indices(turned).input
     assert (first.bounds is None) == (second.bounds is None)
     if first.bounds is not None:
         assert 25 * first.bounds[0] <= second.bounds[1]
@@ -184,7 +186,7 @@ def test_turned_axes_have_the_same_indices(seed):
 @pytest.mark.parametrize(("seed", "discrete"), [(0, False), (1, False), (2, True), (5, True)])
 def test_both_sides_of_a_matrix_index(seed, discrete):
     """Proved at (1 − 1e-9) of the index, refuted by a motion at (1 + 1e-4)."""
-    index = zw.passivity_indices(random_system(seed, 4, 2, discrete=discrete)).input
+    index = zw.ports.passivity_indices(random_system(seed, 4, 2, discrete=discrete)).input
     size = Fraction(repr(abs(index.value)))
     assert index.certificate(index.bounds[0] - size / 10**9).verify()
     above = index.bounds[1] + size / 10**4
@@ -216,7 +218,7 @@ def in_state_space(g):
 )
 def test_a_motion_of_several_axes_replayed_by_scipy(g, kind):
     """lsim answers the inputs with the outputs that the motion says, and the integral is the share."""
-    motion = zw.passivity_indices(g).witness
+    motion = zw.ports.passivity_indices(g).witness
     assert motion.kind == kind
     system = in_state_space(g)
     t, u, y = (np.array(x) for x in motion.signals(40001))
@@ -231,7 +233,7 @@ def test_a_motion_of_several_axes_replayed_by_scipy(g, kind):
 def test_a_discrete_motion_of_several_axes_replayed_by_scipy(seed):
     """dlsim answers the samples; more comes out than goes in."""
     g = random_system(seed, 3, 2, throughput=-0.1, discrete=True)
-    motion = zw.passivity_indices(g).witness
+    motion = zw.ports.passivity_indices(g).witness
     _, u, y = motion.signals()
     _, replayed, _ = scipy.signal.dlsim((g.A, g.B, g.C, g.D, 0.01), np.array(u).T)
     assert np.allclose(replayed.T, y, rtol=1e-8, atol=1e-8)
@@ -242,12 +244,12 @@ def test_a_discrete_motion_of_several_axes_replayed_by_scipy(seed):
 def test_a_burst_says_amplitude_and_phase_of_every_input():
     """The antisymmetric part turns: (1 1/s; −1/s 1)-like ports lose most to a turning input."""
     g = matrix([[([1], [1, 1]), ([3], [1, 1])], [([-3], [1, 1]), ([1], [1, 1])]])
-    motion = zw.passivity_indices(g).witness
+    motion = zw.ports.passivity_indices(g).witness
     (first, start), (second, turned) = motion.phasors
     assert (round(first, 6), round(second, 6)) == (1, 1)
     assert isclose(abs(turned - start), pi / 2, rel_tol=1e-4)
     # Re of 1/(s + 1) ∓ 3j/(s + 1) at jω is (1 ∓ 3ω)/(1 + ω²): least at 3ω² − 2ω − 3 = 0
-    assert isclose(2 * pi * zw.passivity_indices(g).input.frequency, (1 + sqrt(10)) / 3, rel_tol=1e-12)
+    assert isclose(2 * pi * zw.ports.passivity_indices(g).input.frequency, (1 + sqrt(10)) / 3, rel_tol=1e-12)
 
 
 def test_the_output_index_is_the_input_index_of_the_inverse():
@@ -258,7 +260,7 @@ def test_the_output_index_is_the_input_index_of_the_inverse():
     impedance = matrix([[(p[i][j], [1]) for j in range(2)] for i in range(2)])
     minus = [-c for c in p[0][1]]
     mobility = matrix([[(p[1][1], det), (minus, det)], [(minus, det), (p[0][0], det)]])
-    first, second = zw.passivity_indices(impedance), zw.passivity_indices(mobility)
+    first, second = zw.ports.passivity_indices(impedance), zw.ports.passivity_indices(mobility)
     assert first.output.exact == second.input.exact == 0
     low, high = first.input.bounds
     other_low, other_high = second.output.bounds
@@ -270,10 +272,12 @@ def test_the_output_index_is_the_input_index_of_the_inverse():
 def test_feedback_of_the_output_index_is_at_the_limit_of_passivity():
     """G (1 − ρ G)⁻¹ is passive at ρ and not just above it."""
     g = matrix([[([1, 4], [1, 2]), ([1], [1, 2])], [NOTHING, ([1, 3], [1, 1])]])
-    rho = zw.passivity_indices(g).output.bounds[0]
+    rho = zw.ports.passivity_indices(g).output.bounds[0]
     below, above = Fraction(round(rho * 1000) - 1, 1000), Fraction(round(rho * 1000) + 1, 1000)
-    assert zw.passivity_indices(control.feedback(in_state_space(g), float(below) * np.eye(2), sign=1)).passive
-    assert not zw.passivity_indices(
+    assert zw.ports.passivity_indices(
+        control.feedback(in_state_space(g), float(below) * np.eye(2), sign=1)
+    ).passive
+    assert not zw.ports.passivity_indices(
         control.feedback(in_state_space(g), float(above) * np.eye(2), sign=1)
     ).passive
 
@@ -283,7 +287,7 @@ def test_several_axes_of_every_kind_of_system():
     a, b, c, d = [[-1, 0], [0, -2]], [[1, 0], [0, 1]], [[1, 0.5], [0, 1]], [[0, 0], [0, 1]]
     g = matrix([[([1], [1, 1]), ([0.5], [1, 2])], [NOTHING, ([1, 3], [1, 2])]])
     same = [g, control.ss(a, b, c, d), scipy.signal.StateSpace(a, b, c, d)]
-    found = [zw.passivity_indices(system) for system in same]
+    found = [zw.ports.passivity_indices(system) for system in same]
     assert len({f.input.bounds for f in found}) == 1
     assert len({f.output.bounds for f in found}) == 1
 
@@ -305,7 +309,7 @@ HIDDEN = [
 @pytest.mark.parametrize(("g", "decay", "why"), HIDDEN, ids=[why for *_, why in HIDDEN])
 def test_hidden_modes_of_several_axes(g, decay, why):
     """A mode that no input reaches or no output sees, and that does not decay, is told."""
-    found = zw.passivity_indices(g)
+    found = zw.ports.passivity_indices(g)
     assert found.hidden_modes_decay == decay
     assert ("cancelled mode" in repr(found)) != decay
 
@@ -326,4 +330,4 @@ def test_hidden_modes_of_several_axes(g, decay, why):
 def test_what_is_refused_of_several_axes(arguments, message):
     """Each refusal says what was given and what to try."""
     with pytest.raises(zw.InputError, match=message):
-        zw.passivity_indices(*arguments)
+        zw.ports.passivity_indices(*arguments)

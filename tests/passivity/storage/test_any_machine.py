@@ -26,7 +26,7 @@ class LastFirst(ThreadPoolExecutor):
 def iterated(damping: float) -> ValueIteration:
     """A wall with a slow filter of velocity, B = 10 KT and τ = 9 T, fed with the penetration."""
     device = zw.Device(damping=damping, coulomb_friction=6, resolution=1, sample_period=1, delay=0, mass=1)
-    law = finite_law(device, zw.Wall(1, damping=10, velocity_filter=zw.OnePole(9)))
+    law = finite_law(device, zw.Wall(1, damping=10, velocity_filter=zw.rendering.OnePole(9)))
     losses = losses_of(device)
     return value_iteration(RelaxingGrid(law, losses, domain_for(law, losses, 12, 8), 8, "outer"))
 

@@ -187,7 +187,7 @@ def test_progress_is_told():
     assert all(done <= total for done, total in told)
 
 
-IIR = zw.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
+IIR = zw.rendering.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
 
 
 @pytest.mark.parametrize(
@@ -196,7 +196,7 @@ IIR = zw.VelocityFilter([1, 0, 0], [1, "-0.5", "0.06"])
         ((device(1, 1, resolution=0), zw.Wall(300)), BOUNDS, "ideal encoder"),
         ((device(1, 1, "0.4"), zw.StandardLinearSolid(100, 200, 0.5)), BOUNDS, "whole samples"),
         ((device(1, 1), zw.Wall(300, 1, IIR)), BOUNDS, "remember"),
-        ((device(1, 1), zw.Wall(300, 1, zw.Window(9))), BOUNDS, "remembers 9 readings"),
+        ((device(1, 1), zw.Wall(300, 1, zw.rendering.Window(9))), BOUNDS, "remembers 9 readings"),
         ((device(1, 1), zw.Wall((200, 300))), BOUNDS, "not one number"),
         ((device((1, 2), 1), zw.Wall(300)), BOUNDS, "no single value"),
         ((device(1, (1, 2)), zw.Wall(300)), BOUNDS, "no single value"),
@@ -293,7 +293,7 @@ def test_what_plays_no_part_has_no_limit(parameter, options, words):
     """A hand without a limit on its force moves any mass: no bracket up to 4e16 kg, one message."""
     paddle = zw.catalogue.device("haptic-paddle")
     with pytest.raises(zw.InputError, match=words):
-        zw.passive_limit(paddle, zw.Wall(200), parameter, **options)
+        zw.limit(paddle, zw.Wall(200), parameter, **options)
 
 
 def test_the_gain_of_a_transfer_function_is_bracketed():

@@ -101,7 +101,7 @@ def test_cells_of_many_counts_from_both_sides(name):
     wall, delay, damping = WALLS[name]
     loop = device(2**20, damping, "0.05", delay)
     bounds = {"penetration": "0.002", "speed": "0.5"}
-    bracket = zw.passive_limit(loop, wall, **bounds, tolerance=0.04, seconds=30)
+    bracket = zw.limit(loop, wall, **bounds, tolerance=0.04, seconds=30)
     assert bracket.certificate.verify()
     assert bracket.witness.verify()
     assert bracket.relative_width < 0.08
@@ -148,7 +148,7 @@ def test_hands_between_the_ends_of_cells(name):
     """Random rounds behind the fine encoder, turns within a sample too: none gains where it is proved."""
     wall, delay, damping = WALLS[name]
     loop = device(4096 * 20, damping, "0.05", delay)
-    bracket = zw.passive_limit(loop, wall, penetration="0.002", speed="0.5", tolerance=0.1, seconds=20)
+    bracket = zw.limit(loop, wall, penetration="0.002", speed="0.5", tolerance=0.1, seconds=20)
     law = program_of(loop, wall.replace(stiffness=bracket.proved_passive), "0.002", "0.5").law
     step, period = (float(loop.exact(k)) for k in ("resolution", "sample_period"))
     late = loop.exact("delay") / loop.exact("sample_period")
@@ -240,7 +240,7 @@ def test_this_hand_is_never_worse_than_every_hand():
         sample_period="0.001",
         delay="0.0003",
     )
-    bracket = zw.passive_limit(wheel, zw.Wall(57), speed="12.566", penetration="0.0873", seconds=0.2)
+    bracket = zw.limit(wheel, zw.Wall(57), speed="12.566", penetration="0.0873", seconds=0.2)
     assert bracket.proved_passive >= bracket.every_hand[0]
     assert bracket.certificate.verify()
     if bracket.proved_active is not None:

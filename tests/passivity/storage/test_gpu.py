@@ -30,7 +30,7 @@ from zwidth.passivity.storage.solve.value_iteration import value_iteration
 gpu._SCRATCH = 1  # so that threads have more than one item
 paddle = zw.catalogue.device("haptic-paddle").replace(coulomb_friction="0.004")
 ended = []
-window = zw.Window(2)
+window = zw.rendering.Window(2)
 for stiffness, (damping, delay, domain) in itertools.product((200, 20000), (
     ({}, 0, Domain(-3, 3, 4)),
     ({"damping": 0.05}, 0, Domain(-5, 3, 4)),

@@ -45,7 +45,7 @@ DEVICE = device()
 
 def decided(environment, *laws, at=DEVICE, **more):
     """The outcome for laws in a row."""
-    return zw.worst_hand(at, zw.render(environment, *laws), **{**BOUNDS, **more})
+    return zw.available_storage(at, zw.render(environment, *laws), **{**BOUNDS, **more})
 
 
 @cache
@@ -86,10 +86,10 @@ SAME = {
 def test_the_bracket_of_a_wall_alone_is_that_of_the_wall_behind_such_a_law(name):
     """Value iteration on the table and on differences of readings find the same limit."""
     at, wall, laws, counted = SAME[name]
-    alone = zw.passive_limit(at, wall, **BOUNDS, **counted)
+    alone = zw.limit(at, wall, **BOUNDS, **counted)
     if laws[0] is not FREE:
         counted = {}
-    row = zw.passive_limit(at, zw.render(wall, *laws), **BOUNDS, **counted)
+    row = zw.limit(at, zw.render(wall, *laws), **BOUNDS, **counted)
     assert row.relative_width <= 0.01
     assert alone.relative_width <= 0.01
     assert row.proved_passive < alone.proved_active
@@ -104,7 +104,7 @@ def test_looking_ahead_is_a_filter_of_two_readings(stiffness):
     at = device("0.12", "0.02")
     row = decided(zw.PulseTransferFunction([stiffness], [1]), rendering.Extrapolation(), at=at)
     filtered = zw.PulseTransferFunction([1.5 * stiffness, -0.5 * stiffness], [1, 0])
-    other = zw.worst_hand(at, filtered, **BOUNDS)
+    other = zw.available_storage(at, filtered, **BOUNDS)
     assert row.outcome == other.outcome != "undecided"
 
 
@@ -200,7 +200,7 @@ def test_what_cannot_be_iterated_is_said():
         (DEVICE, {"backend": "gpu"}, "leave out backend"),
     ):
         with pytest.raises(zw.InputError, match=said):
-            zw.worst_hand(at, law, **more)
+            zw.available_storage(at, law, **more)
     with pytest.raises(zw.InputError, match=r"laws are not linear.*zwidth\.check"):
         law.pulse_transfer_function(DEVICE.exact("sample_period"))
 
@@ -370,7 +370,7 @@ def test_a_reading_off_the_grid_leaves_its_row_alone():
 def test_a_limit_is_sought_on_one_domain():
     """Where no bounds are given, those on which the law closes as it is hold for every value."""
     law = zw.render(zw.Wall(200), rendering.DualRate(samples=2))
-    bracket = zw.passive_limit(DEVICE, law)
+    bracket = zw.limit(DEVICE, law)
     grid = bracket.storage.grid
     assert (grid.domain.highest + 1, grid.domain.reach) == program_of(DEVICE, law).counts
     assert f"({grid.domain.highest + 1} counts) on either side" in bracket.hand
@@ -381,11 +381,11 @@ def test_a_limit_is_sought_on_one_domain():
 def test_a_limit_of_the_device_behind_laws():
     """The friction that h + KΔ/2 asks for, found from both sides."""
     law = zw.render(zw.Wall(200), rendering.Hysteresis("0.04", 2000))
-    bracket = zw.passive_limit(device("0.5", "0.05"), law, "coulomb_friction", **BOUNDS)
+    bracket = zw.limit(device("0.5", "0.05"), law, "coulomb_friction", **BOUNDS)
     assert bracket.proved_active < 0.05 < bracket.proved_passive
     assert bracket.relative_width <= 0.01
     with pytest.raises(zw.InputError, match="no parameter 'force'"):
-        zw.passive_limit(DEVICE, law, "force")
+        zw.limit(DEVICE, law, "force")
 
 
 def test_a_very_long_memory_is_refused_before_it_fills_the_machine():

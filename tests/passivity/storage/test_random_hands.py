@@ -34,7 +34,7 @@ LOOPS = {
     "damped": (device("0.26", "0.027"), zw.Wall(300, "0.1")),
     "damped and clamped": (device("0.26", "0.027"), zw.Wall(300, "0.1", clamped=True)),
     "negative damping": (device("0.27", "0.020"), zw.Wall(350, "-0.1")),
-    "window": (device("0.21", "0.022"), zw.Wall(300, "0.1", zw.Window(2))),
+    "window": (device("0.21", "0.022"), zw.Wall(300, "0.1", zw.rendering.Window(2))),
     "spring with a delay": (device("0.45", "0.0165", 1), zw.Wall(300)),
     "damped with a delay": (device("0.4", "0.0275", 1), zw.Wall(300, "0.1")),
     "force limit": (device("0.16", "0.0165", force_limit="0.2"), zw.Wall(300)),

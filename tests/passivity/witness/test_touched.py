@@ -36,7 +36,7 @@ def draw(random, low, high):
 
 def pole(k, b, tau, **more):
     """A wall of stiffness k and damping b behind one pole."""
-    return zw.Wall(k, b, zw.OnePole(tau), **more)
+    return zw.Wall(k, b, zw.rendering.OnePole(tau), **more)
 
 
 def energy_out(law, loop, x, *, damping, friction, step, penetration, clamped, anew=False):
@@ -114,10 +114,10 @@ def test_a_clamped_law_with_a_spring_is_active_below_its_bound(law, part):
 
 
 FILTERS = {
-    "slow pole": zw.OnePole("0.01"),
-    "quick pole": zw.OnePole("0.0004"),
-    "window": zw.Window(5),
-    "second order": zw.VelocityFilter([1], [1, "-1.6", "0.7"]),
+    "slow pole": zw.rendering.OnePole("0.01"),
+    "quick pole": zw.rendering.OnePole("0.0004"),
+    "window": zw.rendering.Window(5),
+    "second order": zw.rendering.VelocityFilter([1], [1, "-1.6", "0.7"]),
 }
 
 
@@ -194,7 +194,7 @@ def random_law(random):
     """A law with memory and no delay, what it is fed with."""
     k, b, tau = draw(random, 1, 300), draw(random, 0.02, 2), draw(random, 2e-4, 0.05)
     clamped = random.random() < 0.5
-    filters = (zw.OnePole(tau), zw.Window(random.randint(2, 8)), FILTERS["second order"])
+    filters = (zw.rendering.OnePole(tau), zw.rendering.Window(random.randint(2, 8)), FILTERS["second order"])
     if random.random() < 0.5:
         return zw.Wall(k, b, random.choice(filters), clamped=clamped), False
     method = random.choice(("backward", "tustin"))
@@ -307,7 +307,7 @@ def test_a_motion_must_begin_outside_and_its_law_forget():
 @pytest.mark.parametrize("key", ["device.damping", "stiffness"])
 def test_limits_follow(key):
     """The last damping that is proved, and the first stiffness that is not, of a filtered wall."""
-    bracket = zw.passive_limit(device("0.06"), pole(10, "0.3", "0.01"), key, tolerance=1e-4)
+    bracket = zw.limit(device("0.06"), pole(10, "0.3", "0.01"), key, tolerance=1e-4)
     assert bracket.hand == "every hand"
     if key == "device.damping":
         assert bracket.proved_passive == pytest.approx(0.0482142857, rel=1e-4)

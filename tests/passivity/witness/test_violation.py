@@ -241,7 +241,7 @@ def test_the_motion_is_made_when_it_is_asked_for(monkeypatch):
 
 VIOLATIONS = {
     "criterion": (device("0.3", friction="0.2", resolution="0.0001"), zw.Wall("770", "0.1")),
-    "delayed": (device("0.3", "0.0013"), zw.Wall("480", "0.03", zw.OnePole("0.004"))),
+    "delayed": (device("0.3", "0.0013"), zw.Wall("480", "0.03", zw.rendering.OnePole("0.004"))),
     "negative": (device("0.3"), zw.PulseTransferFunction([1, "-1.2"], [1, "-0.5"])),
     "unstable": (device(900), zw.PulseTransferFunction([1, 0], [1, "-1.01"])),
     "unstable, delayed": (device(900, "0.0004"), zw.PulseTransferFunction([1, 0], [1, "-1.01"])),

@@ -97,7 +97,7 @@ def test_a_plane_wall_whose_matrix_is_rounded() -> None:
     """k n nᵀ in doubles can have an eigenvalue of −10⁻¹⁴: the document has a little more, and is accepted."""
     for angle in (0.0, 0.3, 1.0, 2.5):
         n = np.array([np.cos(angle), np.sin(angle)])
-        space = zw.workspace(ARM, zw.MatrixWall(450 * np.outer(n, n)), rate=1000, points=20)
+        space = zw.workspace(ARM, zw.arms.MatrixWall(450 * np.outer(n, n)), rate=1000, points=20)
         assert space.outcome == "passive"
         assert space.certificate is not None
         written = space.certificate.documents[0]["wall"]["stiffness_N_per_m"]
@@ -109,7 +109,7 @@ def test_a_plane_wall_whose_matrix_is_rounded() -> None:
 @pytest.mark.parametrize("delay", [0, 2])
 def test_virtual_damping_of_both_signs(delay: int) -> None:
     """A certificate with a bound on |B| that the checker accepts; a smaller one it does not."""
-    wall = zw.MatrixWall([[90, 20], [20, 80]], [[0.03, 0.02], [0.02, -0.01]])
+    wall = zw.arms.MatrixWall([[90, 20], [20, 80]], [[0.03, 0.02], [0.02, -0.01]])
     space = zw.workspace(ARM, wall, rate=1000, delay=delay / 1000, points=20)
     assert space.outcome == "passive"
     assert space.certificate is not None

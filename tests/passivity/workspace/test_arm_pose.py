@@ -27,25 +27,25 @@ def _arm(folder: Path, joints: int, moving: int = 2, **options: Any) -> Arm:
     return read_arm(path, pose=True, hold=hold, **{"rest": {}, **options})
 
 
-def _space(arm: Arm, wall: zw.MatrixWall, points: int = 40, **options: Any) -> zw.Workspace:
+def _space(arm: Arm, wall: zw.arms.MatrixWall, points: int = 40, **options: Any) -> zw.Workspace:
     return zw.workspace(arm, wall, rate=1000, points=points, **options)
 
 
-def _times(wall: zw.MatrixWall, factor: float) -> zw.MatrixWall:
-    return zw.MatrixWall(factor * np.array(wall.stiffness), wall.damping, turns=wall.turns)
+def _times(wall: zw.arms.MatrixWall, factor: float) -> zw.arms.MatrixWall:
+    return zw.arms.MatrixWall(factor * np.array(wall.stiffness), wall.damping, turns=wall.turns)
 
 
-def _coupled(seed: int, damped: bool = False) -> zw.MatrixWall:
+def _coupled(seed: int, damped: bool = False) -> zw.arms.MatrixWall:
     """Six coordinates, all coupled."""
     rng = np.random.default_rng(seed)
     units = np.diag([20.0] * 3 + [2.0] * 3)
     root, virtual = units @ rng.normal(size=(6, 6)), 0.01 * units @ rng.normal(size=(6, 2))
-    return zw.MatrixWall(root @ root.T, damped * virtual @ virtual.T, turns=3)
+    return zw.arms.MatrixWall(root @ root.T, damped * virtual @ virtual.T, turns=3)
 
 
 WALLS = {
-    "as stiff every way": zw.MatrixWall.in_pose(500, 5),
-    "rotation alone": zw.MatrixWall.in_pose(0, 5),
+    "as stiff every way": zw.arms.MatrixWall.in_pose(500, 5),
+    "rotation alone": zw.arms.MatrixWall.in_pose(0, 5),
     "coupled": _coupled(1),
     "coupled and damped": _coupled(2, True),
 }
@@ -184,12 +184,12 @@ def test_seven_joints_are_proved_up_to_what_a_hand_feels(tmp_path: Path) -> None
 def test_one_joint_that_turns_the_hand(tmp_path: Path) -> None:
     """e = 2 sin(q/2) in a rotation alone: b = cos²(q/2) KT/2, so that K = 2b/T is the limit at the rest."""
     arm = read_arm(random_arm(tmp_path / "arm.urdf", 3, 1), pose=True, rest={"j0": 0.0}, damping=(0.004,))
-    space = _space(arm, zw.MatrixWall.in_pose(0, 1), 401)
+    space = _space(arm, zw.arms.MatrixWall.in_pose(0, 1), 401)
     angles = space.data["j0"].values
     assert space.data["stiffness_factor"].values == pytest.approx(8 / np.cos(angles / 2) ** 2, rel=1e-9)
     assert space.stiffness_factor == pytest.approx(8, rel=1e-6)
-    assert _space(arm, zw.MatrixWall.in_pose(0, 8 * 0.99), 401).outcome == "passive"
-    assert _space(arm, zw.MatrixWall.in_pose(0, 8 * 1.001), 401).outcome == "active"
+    assert _space(arm, zw.arms.MatrixWall.in_pose(0, 8 * 0.99), 401).outcome == "passive"
+    assert _space(arm, zw.arms.MatrixWall.in_pose(0, 8 * 1.001), 401).outcome == "active"
 
 
 @pytest.mark.parametrize("joints", [2, 4])
@@ -198,7 +198,7 @@ def test_without_rotational_stiffness_it_is_the_wall_of_a_point(joints: int, tmp
     arm = _arm(tmp_path, joints)
     point = read_arm(tmp_path / "arm.urdf", hold={f"j{i}": 0.03 * i for i in range(2, joints)})
     for stiffness in (200, 3000):
-        posed = _space(arm, zw.MatrixWall.in_pose(stiffness, 0))
+        posed = _space(arm, zw.arms.MatrixWall.in_pose(stiffness, 0))
         plain = zw.workspace(point, zw.Wall(stiffness), rate=1000, points=40)
         for name in ("margin_in_joints", "stiffness_factor", "addition_to_one"):
             assert posed.data[name].values == pytest.approx(plain.data[name].values, rel=1e-9, abs=1e-12)
@@ -255,7 +255,7 @@ def test_a_held_torque_in_pose() -> None:
     arm = PlanarChain(
         links=(0.1, 0.08), damping=(0.02, 0.015), joint_range=((0.2, 0.9), (0.5, 1.2)), pose=True
     )
-    wall = zw.MatrixWall.in_pose(100, 0.5, planar=True)
+    wall = zw.arms.MatrixWall.in_pose(100, 0.5, planar=True)
     free, held = (_space(arm, wall, 20, torque_held_up_to=up_to) for up_to in (None, (10, 3)))
     assert held.stiffness_factor < free.stiffness_factor
     assert held.outcome == "passive"
@@ -275,7 +275,7 @@ def test_the_turn_costs_where_the_torque_is_held(tmp_path: Path) -> None:
     """½ (h F + h_e M) T more of every joint, with h_e half the number of joints that turn the hand."""
     arm = _arm(tmp_path, 3)
     assert arm.curvature is not None
-    wall, held = zw.MatrixWall.in_pose(100, 1), (4, 2)
+    wall, held = zw.arms.MatrixWall.in_pose(100, 1), (4, 2)
     price = (arm.curvature * 4 + 1.5 * 2) * 0.001 / 2
     more = arm.replace(damping=tuple(np.array(arm.damping) + price))
     found = [_space(arm, wall), _space(more, wall, torque_held_up_to=held)]
@@ -312,7 +312,7 @@ def test_the_map_keeps_metres_and_radians_apart(tmp_path: Path) -> None:
 def test_a_planar_chain_in_pose() -> None:
     """The last link held: both sides of the limit, and the least damping proves the region."""
     arm = PlanarChain(links=(0.1, 0.08), damping=(0.02, 0.01), joint_range=((0.2, 0.9),) * 2, pose=True)
-    wall = zw.MatrixWall.in_pose(600, 8, planar=True)
+    wall = zw.arms.MatrixWall.in_pose(600, 8, planar=True)
     limit = _space(arm, wall).stiffness_factor
     assert _space(arm, _times(wall, 1.001 * limit)).outcome == "active"
     assert _space(arm, _times(wall, 0.95 * limit)).outcome == "passive"
@@ -327,24 +327,28 @@ def test_walls_and_hands_that_do_not_fit(tmp_path: Path) -> None:
     posed, point = _arm(tmp_path, 2), built_in("two-link", damping=0.01)
     for arm, wall, words in (
         (_arm(tmp_path, 2, rest=None), WALLS["coupled"], "say where it rests"),
-        (_arm(tmp_path, 2, rest=None), zw.MatrixWall(np.diag([1, 1, 1, 2, 2, 3]), turns=3), "every axis"),
+        (
+            _arm(tmp_path, 2, rest=None),
+            zw.arms.MatrixWall(np.diag([1, 1, 1, 2, 2, 3]), turns=3),
+            "every axis",
+        ),
         (posed, zw.Wall(500), "are not one stiffness"),
-        (posed, zw.MatrixWall(np.eye(6)), "turns=3"),
-        (posed, zw.MatrixWall.in_pose(1, 1, planar=True), "turns=3"),
+        (posed, zw.arms.MatrixWall(np.eye(6)), "turns=3"),
+        (posed, zw.arms.MatrixWall.in_pose(1, 1, planar=True), "turns=3"),
         (PlanarChain(links=(0.1,), damping=(1,), pose=True), zw.Wall(1), "planar=True"),
-        (point, zw.MatrixWall.in_pose(1, 1, planar=True), "held at a point"),
+        (point, zw.arms.MatrixWall.in_pose(1, 1, planar=True), "held at a point"),
     ):
         with pytest.raises(zw.InputError, match=words):
             zw.workspace(arm, wall, rate=1000, points=4)
     with pytest.raises(zw.InputError, match="3 and 1 in the plane"):
-        zw.MatrixWall(np.eye(4), turns=1)
+        zw.arms.MatrixWall(np.eye(4), turns=1)
     with pytest.raises(zw.InputError, match="largest moment"):
         zw.workspace(posed, WALLS["coupled"], rate=1000, points=4, torque_held_up_to=5)
 
 
 def test_a_wall_in_pose_in_words() -> None:
     """Each unit with its numbers."""
-    text = zw.MatrixWall.in_pose(500, 5, 0.1).describe()
+    text = zw.arms.MatrixWall.in_pose(500, 5, 0.1).describe()
     assert text == (
         "wall of 6 coordinates, stiffness 500 to 500 N/m, virtual damping 0.1 to 0.1 N·s/m; "
         "of the rotation stiffness 5 to 5 N·m/rad"
@@ -366,13 +370,13 @@ def test_a_wrist_that_no_hand_can_hold_is_not_refuted(tmp_path: Path) -> None:
         )
         + "</robot>"
     )
-    wall, arm = zw.MatrixWall.in_pose(0, 1), read_arm(path, pose=True, hold={"j2": 0.1, "j3": 0.1})
+    wall, arm = zw.arms.MatrixWall.in_pose(0, 1), read_arm(path, pose=True, hold={"j2": 0.1, "j3": 0.1})
     limit = _space(arm, wall, 10).stiffness_factor
     assert _space(arm, _times(wall, 1.5 * limit), 10).outcome == "undecided"
 
 
 def test_shows_itself_without_a_stiffness_in_one_unit(tmp_path: Path) -> None:
     """In a console: a factor in the place of N/m."""
-    space = _space(_arm(tmp_path, 3), zw.MatrixWall.in_pose(10, 0.1), points=5)
+    space = _space(_arm(tmp_path, 3), zw.arms.MatrixWall.in_pose(10, 0.1), points=5)
     assert "times this one" in repr(space)
     assert len(repr(space)) < 600

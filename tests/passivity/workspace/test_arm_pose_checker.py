@@ -156,11 +156,11 @@ def test_the_matrix_is_that_of_the_arm(joints: int, rest: Any, tmp_path: Path) -
     hold = {f"j{i}": 0.03 * i for i in range(1, joints)}
     path = random_arm(tmp_path / "arm.urdf", joints, joints, sliding=(2,))
     arm = read_arm(path, pose=True, hold=hold, rest=rest)
-    wall = zw.MatrixWall.in_pose(30, 0.5)
+    wall = zw.arms.MatrixWall.in_pose(30, 0.5)
     if rest is not None:
         couple = np.zeros((6, 6))
         couple[:3, 3:] = 0.2 * np.arange(9).reshape(3, 3)
-        wall = zw.MatrixWall(np.array(wall.stiffness) + couple + couple.T, turns=3)
+        wall = zw.arms.MatrixWall(np.array(wall.stiffness) + couple + couple.T, turns=3)
     space = zw.workspace(arm, wall, rate=1000, points=4)
     assert space.certificate is not None
     document = space.certificate.documents[0]
@@ -231,8 +231,8 @@ def test_both_sides_of_the_limit(joints: int, rest: Any, tmp_path: Path) -> None
     pytest.importorskip("pinocchio")
     hold = {f"j{i}": 0.03 * i for i in range(2 if joints == 3 else 1, joints)}
     arm = read_arm(random_arm(tmp_path / "arm.urdf", 10 + joints, joints), pose=True, hold=hold, rest=rest)
-    limit = zw.workspace(arm, zw.MatrixWall.in_pose(500, 5), rate=1000, points=20).stiffness_factor
-    under = zw.workspace(arm, zw.MatrixWall.in_pose(495 * limit, 4.95 * limit), rate=1000, points=20)
+    limit = zw.workspace(arm, zw.arms.MatrixWall.in_pose(500, 5), rate=1000, points=20).stiffness_factor
+    under = zw.workspace(arm, zw.arms.MatrixWall.in_pose(495 * limit, 4.95 * limit), rate=1000, points=20)
     assert under.outcome == "passive"
     assert under.certificate is not None
     document = under.certificate.documents[0]
@@ -241,7 +241,7 @@ def test_both_sides_of_the_limit(joints: int, rest: Any, tmp_path: Path) -> None
     found = checker.verify(put(document, "wall/stiffness_N_m_rad", texts(over)))
     assert not found.valid
     assert "not enough" in found.reason
-    refuted = zw.workspace(arm, zw.MatrixWall.in_pose(505 * limit, 5.05 * limit), rate=1000, points=20)
+    refuted = zw.workspace(arm, zw.arms.MatrixWall.in_pose(505 * limit, 5.05 * limit), rate=1000, points=20)
     assert refuted.outcome == ("active" if joints < 7 else "undecided")
 
 
@@ -253,7 +253,7 @@ def test_units_may_be_far_apart(tmp_path: Path) -> None:
     stiffness[:3, :3], stiffness[3:, 3:] = 300 * np.outer(n, n), 1e-4 * np.eye(3)
     damping[:3, :3], damping[3:, 3:] = virtual, -1e-9 * np.eye(3)
     arm = read_arm(random_arm(tmp_path / "arm.urdf", 3, 2), pose=True)
-    space = zw.workspace(arm, zw.MatrixWall(stiffness, damping, turns=3), rate=1000, points=8)
+    space = zw.workspace(arm, zw.arms.MatrixWall(stiffness, damping, turns=3), rate=1000, points=8)
     assert space.outcome == "passive"
     assert space.certificate is not None
     bound = np.array(space.certificate.documents[0]["wall"]["damping_bound_N_m_s_rad"], dtype=float)
@@ -281,9 +281,9 @@ def test_a_held_torque_pays_for_forces_and_turns(size: int, slides: tuple[int, .
 def planar() -> dict[str, Any]:
     """Two links that hold (x, y, angle), and what `workspace` writes of them, 1 % below the limit."""
     arm = PlanarChain(links=(0.1, 0.08), damping=(0.02, 0.01), joint_range=((0.2, 0.9),) * 2, pose=True)
-    limit = zw.workspace(arm, zw.MatrixWall.in_pose(600, 8, planar=True), rate=1000, points=20)
+    limit = zw.workspace(arm, zw.arms.MatrixWall.in_pose(600, 8, planar=True), rate=1000, points=20)
     factor = 0.99 * limit.stiffness_factor
-    wall = zw.MatrixWall.in_pose(600 * factor, 8 * factor, planar=True)
+    wall = zw.arms.MatrixWall.in_pose(600 * factor, 8 * factor, planar=True)
     space = zw.workspace(arm, wall, rate=1000, points=20)
     assert space.outcome == "passive"
     assert space.certificate is not None
@@ -354,9 +354,9 @@ def test_other_axes_and_a_larger_region_are_refused(rest: Any, tmp_path: Path) -
     pytest.importorskip("pinocchio")
     path = random_arm(tmp_path / "arm.urdf", 13, 3)
     arm = read_arm(path, pose=True, hold={"j2": 0.1}, rest=rest)
-    limit = zw.workspace(arm, zw.MatrixWall.in_pose(500, 5), rate=1000, points=20).stiffness_factor
+    limit = zw.workspace(arm, zw.arms.MatrixWall.in_pose(500, 5), rate=1000, points=20).stiffness_factor
     factor = 0.98 * limit
-    space = zw.workspace(arm, zw.MatrixWall.in_pose(500 * factor, 5 * factor), rate=1000, points=20)
+    space = zw.workspace(arm, zw.arms.MatrixWall.in_pose(500 * factor, 5 * factor), rate=1000, points=20)
     assert space.certificate is not None
     document = space.certificate.documents[0]
     joints = document["arm"]["joints"]

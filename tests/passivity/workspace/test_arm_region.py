@@ -115,9 +115,11 @@ def test_no_closed_path_in_a_proved_region_takes_energy_out(delay: int, damped: 
     root = rng.normal(size=(2, 2))
     virtual = rng.normal(size=(2, 2)) * 0.02
     k, b = root @ root.T, damped * (virtual + virtual.T)
-    start = zw.workspace(arm, zw.MatrixWall(k, b), rate=1000, delay=delay / 1000, points=20).largest_stiffness
+    start = zw.workspace(
+        arm, zw.arms.MatrixWall(k, b), rate=1000, delay=delay / 1000, points=20
+    ).largest_stiffness
     k *= 0.95 * start / np.linalg.norm(k, 2)
-    wall = zw.MatrixWall(k, b)
+    wall = zw.arms.MatrixWall(k, b)
     assert zw.workspace(arm, wall, rate=1000, delay=delay / 1000, points=20).outcome == "passive"
     assert isinstance(arm, PlanarChain)
     low, high = np.array(arm.joint_range).T
@@ -189,9 +191,9 @@ def test_a_wall_with_one_normal_asks_for_less() -> None:
     """A plane wall k n nᵀ allows more than the wall that is stiff in every direction, and is refuted too."""
     arm = built_in("haply-2diy", damping=0.003)
     every = zw.workspace(arm, zw.Wall(500), rate=1000, points=30)
-    one = zw.workspace(arm, zw.MatrixWall([[500, 0], [0, 0]]), rate=1000, points=30)
+    one = zw.workspace(arm, zw.arms.MatrixWall([[500, 0], [0, 0]]), rate=1000, points=30)
     assert one.largest_stiffness > 1.02 * every.largest_stiffness
-    over = zw.MatrixWall([[1.01 * one.largest_stiffness, 0], [0, 0]])
+    over = zw.arms.MatrixWall([[1.01 * one.largest_stiffness, 0], [0, 0]])
     assert zw.workspace(arm, over, rate=1000, points=30).outcome == "active"
 
 
@@ -267,7 +269,7 @@ def test_an_arm_that_cannot_leave_its_plane_has_the_margins_in_it() -> None:
     felt = 1 / np.linalg.eigvalsh(j / np.array(b) @ np.swapaxes(j, -1, -2))[..., -1]
     assert space.data["margin"].values == pytest.approx(felt - 100 * 0.001 / 2, rel=1e-5)
     assert space.data["largest_stiffness"].values == pytest.approx(felt * 2 / 0.001, rel=1e-5)
-    across = zw.workspace(arm, zw.MatrixWall(900 * np.outer(*2 * [TILT[:, 2]])), rate=1000, points=12)
+    across = zw.workspace(arm, zw.arms.MatrixWall(900 * np.outer(*2 * [TILT[:, 2]])), rate=1000, points=12)
     assert across.largest_stiffness > 1e12
     assert across.outcome != "undecided"
 

@@ -19,7 +19,7 @@ STIFFNESS = 9.0
 def storage(arm, inputs, delay, damping=DAMPING, hand=lambda t: np.zeros(2)):
     """The storage along a motion, and the motion."""
     run, given = arm.run(inputs, delay, hand)
-    data = zw.loop_storage(
+    data = zw.coupling.loop_storage(
         given, run.positions, run.energies, damping, arm.period, delay * arm.period, run.hand_work
     )
     return data, run
@@ -103,7 +103,7 @@ def alone(damping, delay, samples=150):
 
     arm = Arm(damping * np.eye(2), start=np.array([-0.01, 0.0, 2.0, 1.0]))
     run, given = arm.run((force, samples), delay)
-    return zw.loop_storage(
+    return zw.coupling.loop_storage(
         given, run.positions, run.energies, arm.damping, arm.period, delay * arm.period
     ), run
 
@@ -111,7 +111,7 @@ def alone(damping, delay, samples=150):
 @pytest.mark.parametrize("delay", [0, 2])
 def test_springs_known_by_their_slopes_never_feed_the_arm(delay):
     """With the damping their slopes ask for, thrown from where they are slack, no energy grows."""
-    need = float(zw.required_damping_by_slopes(0, STIFFNESS, "0.004", Fraction(delay, 250)))
+    need = float(zw.coupling.required_damping_by_slopes(0, STIFFNESS, "0.004", Fraction(delay, 250)))
     data, run = alone(need, delay)
     given = (data["supply"] - data["dissipation"]).cumsum()
     assert float(given.max()) <= 1e-9
@@ -121,7 +121,7 @@ def test_springs_known_by_their_slopes_never_feed_the_arm(delay):
 
 def test_a_tenth_of_that_damping_feeds_it():
     """The same arm with a tenth of it, two samples late: it soon has three times what it had, and more."""
-    _, run = alone(0.1 * float(zw.required_damping_by_slopes(0, STIFFNESS, "0.004", "0.008")), 2)
+    _, run = alone(0.1 * float(zw.coupling.required_damping_by_slopes(0, STIFFNESS, "0.004", "0.008")), 2)
     assert run.energies.max() > 3 * run.energies[0]
 
 
@@ -146,13 +146,15 @@ def test_a_spring_at_the_end_of_the_arm_by_its_slopes_in_the_joints(delay):
         np.linalg.eigvalsh(at_the_hand(np.array([a, b]), stiffness, probe)[1]) for a in grid for b in grid
     ]
     least, greatest = np.min(slopes), np.max(slopes) * 1.01
-    need = float(zw.required_damping_by_slopes(least, greatest, "0.004", Fraction(delay, 250)))
+    need = float(zw.coupling.required_damping_by_slopes(least, greatest, "0.004", Fraction(delay, 250)))
     arm = Arm(need * np.eye(2), start=np.array([0.5, 0.6, 0.0, 0.0]))
     end = np.array(
         [0.23 * np.sin(0.5) + 0.19 * np.sin(1.1) - 0.25, -0.23 * np.cos(0.5) - 0.19 * np.cos(1.1) + 0.1]
     )
     run, given = arm.run((lambda k, q: -at_the_hand(q, stiffness, arm)[0], 120), delay)
-    data = zw.loop_storage(given, run.positions, run.energies, arm.damping, arm.period, delay * arm.period)
+    data = zw.coupling.loop_storage(
+        given, run.positions, run.energies, arm.damping, arm.period, delay * arm.period
+    )
     spring = stiffness / 2 * end @ end
     assert least < 0 < greatest
     assert float((data["supply"] - data["dissipation"]).cumsum().max()) * arm.period <= spring * (1 + 1e-9)
@@ -204,4 +206,4 @@ def test_what_does_not_fit_is_refused(changes, words):
         "sample_period": 0.001,
     }
     with pytest.raises(InputError, match=words):
-        zw.loop_storage(**{**good, **changes})
+        zw.coupling.loop_storage(**{**good, **changes})

@@ -19,26 +19,26 @@ T = Fraction(1, 1000)
 @pytest.mark.parametrize("least", [-500, -310, 0, 120, 500])
 def test_it_is_the_need_of_a_delayed_spring(delay, least):
     """(2d + 1) K T/2, whatever the least slope from −K up: that of `closed_forms.spring_damping`."""
-    found = zw.required_damping_by_slopes(least, 500, T, delay * T)
-    assert found == zw.closed_forms.spring_damping(500, T, delay * T)
+    found = zw.coupling.required_damping_by_slopes(least, 500, T, delay * T)
+    assert found == zw.formulas.closed_forms.spring_damping(500, T, delay * T)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2, 3])
 def test_the_closed_form_is_the_best_of_the_form(delay):
     """At slopes −μ within (1 + 1/d) L the searched multiplier finds no less and no more."""
     for least in (-470, -333, 0, 200):
-        slopes = zw.SlopeBounds(least, 470, bounded_below=True)
+        slopes = zw.coupling.SlopeBounds(least, 470, bounded_below=True)
         searched, _ = largest_need(best_form(slopes, DIRECT, delay), T)
         assert searched == pytest.approx(
-            float(zw.required_damping_by_slopes(least, 470, T, delay * T)), rel=1e-7
+            float(zw.coupling.required_damping_by_slopes(least, 470, T, delay * T)), rel=1e-7
         )
 
 
 def test_the_edge_of_the_closed_form():
     """At d |μ| = (d + 1) L it still holds; past it more is asked for, without a jump."""
-    at = float(zw.required_damping_by_slopes(-750, 500, T, 2 * T))
-    past = zw.required_damping_by_slopes(-751, 500, T, 2 * T)
-    far = zw.required_damping_by_slopes(-1500, 500, T, 2 * T)
+    at = float(zw.coupling.required_damping_by_slopes(-750, 500, T, 2 * T))
+    past = zw.coupling.required_damping_by_slopes(-751, 500, T, 2 * T)
+    far = zw.coupling.required_damping_by_slopes(-1500, 500, T, 2 * T)
     assert at == 1.25
     assert at <= past < at * 1.001
     assert far > 1.2 * at
@@ -47,11 +47,15 @@ def test_the_edge_of_the_closed_form():
 @pytest.mark.parametrize(("least", "delay"), [(-3000, 1), (-800, 2), (-1200, 3)])
 def test_beyond_the_closed_form_the_number_itself_is_proved(least, delay):
     """The float that is returned holds by exact arithmetic; a millionth less does not."""
-    need = zw.required_damping_by_slopes(least, 500, T, delay * T)
+    need = zw.coupling.required_damping_by_slopes(least, 500, T, delay * T)
     there = zw.Device(damping=need, sample_period=T, delay=delay * T)
-    assert zw.transformed_condition(there, zw.SlopeBounds(least, 500, bounded_below=True)).holds
+    assert zw.coupling.transformed_condition(
+        there, zw.coupling.SlopeBounds(least, 500, bounded_below=True)
+    ).holds
     short = there.replace(damping=need * (1 - 1e-6))
-    assert not zw.transformed_condition(short, zw.SlopeBounds(least, 500, bounded_below=True)).holds
+    assert not zw.coupling.transformed_condition(
+        short, zw.coupling.SlopeBounds(least, 500, bounded_below=True)
+    ).holds
 
 
 def wavy(random, slopes):
@@ -96,7 +100,7 @@ def searched_gain(slopes, damping, delay, rounds=400):
 @pytest.mark.parametrize(("least", "delay"), [(-1.0, 0), (-1.9, 1), (-1.4, 2), (-4.0, 2), (0.0, 3)])
 def test_a_search_over_springs_and_motions_gains_nothing(least, delay):
     """At the need, springs of extreme slopes give no more than their potential; at a third of it they do."""
-    need = float(zw.required_damping_by_slopes(Fraction(least), 1, 1, delay))
+    need = float(zw.coupling.required_damping_by_slopes(Fraction(least), 1, 1, delay))
     assert searched_gain((least, 1.0), need, delay) <= 1e-12
     assert searched_gain((least, 1.0), need / 3, delay) > 1e-3
 
@@ -123,7 +127,7 @@ def test_curvature_within_a_matrix_is_paid_by_it(delay):
 
 def test_below_the_need_a_spring_is_active():
     """One per cent below, `check` has a motion for the spring of greatest slope; at the need a proof."""
-    need = zw.required_damping_by_slopes(-500, 500, T, T)
+    need = zw.coupling.required_damping_by_slopes(-500, 500, T, T)
     spring = zw.PulseTransferFunction([500], [1])
     below = zw.Device(damping=Fraction(99, 100) * need.fraction, sample_period=T, delay=T)
     assert zw.check(below, spring).outcome == "active"
@@ -151,8 +155,8 @@ def test_the_trapezoid_lies_within_the_parallelogram():
 def test_any_multiplier_is_sound():
     """Whatever g, the form asks for no less than the best one."""
     slopes, best = (
-        zw.SlopeBounds(-100, 300, bounded_below=True),
-        float(zw.required_damping_by_slopes(-100, 300, T, T)),
+        zw.coupling.SlopeBounds(-100, 300, bounded_below=True),
+        float(zw.coupling.required_damping_by_slopes(-100, 300, T, T)),
     )
     for more in (0, Fraction(1, 900), Fraction(1, 100)):
         need, _ = largest_need(slopes_form(slopes, least_multiplier(slopes) + more, DIRECT, 1), T)
@@ -161,11 +165,11 @@ def test_any_multiplier_is_sound():
 
 def test_the_slopes_of_a_spring_given_by_points():
     """Detents have ±4F/p; a magnet that lets go on one side has the steeper fall as its least slope."""
-    detents = zw.SlopeBounds.of(zw.NonlinearSpring.detents(3, "0.01", 2))
+    detents = zw.coupling.SlopeBounds.of(zw.NonlinearSpring.detents(3, "0.01", 2))
     assert (detents.least, detents.greatest) == (-800, 800)
-    magnet = zw.SlopeBounds.of(zw.NonlinearSpring(["-0.01", 0, "0.002"], [-3, "0.5", 0]))
+    magnet = zw.coupling.SlopeBounds.of(zw.NonlinearSpring(["-0.01", 0, "0.002"], [-3, "0.5", 0]))
     assert (magnet.least, magnet.greatest) == (-250, 350)
-    assert zw.SlopeBounds.of(zw.NonlinearSpring([0, 1], [-1, 2])).least == 0
+    assert zw.coupling.SlopeBounds.of(zw.NonlinearSpring([0, 1], [-1, 2])).least == 0
 
 
 @pytest.mark.parametrize(
@@ -175,7 +179,7 @@ def test_the_slopes_of_a_spring_given_by_points():
 def test_a_spring_that_leads_away_has_no_such_slopes(spring):
     """Its potential has no least value: refused, as is what is no spring by points."""
     with pytest.raises(InputError):
-        zw.SlopeBounds.of(spring)
+        zw.coupling.SlopeBounds.of(spring)
 
 
 @pytest.mark.parametrize(
@@ -190,25 +194,25 @@ def test_a_spring_that_leads_away_has_no_such_slopes(spring):
 def test_what_does_not_fit_is_refused(arguments, words):
     """Each with a message that names it."""
     with pytest.raises(InputError, match=words):
-        zw.required_damping_by_slopes(*arguments)
+        zw.coupling.required_damping_by_slopes(*arguments)
 
 
 def test_a_class_states_that_its_potentials_are_bounded_below():
     """Where slopes do not force it, from 0 down; above 0 it is so by itself, and False is nobody's class."""
     for least in (-100, 0):
         with pytest.raises(InputError, match="bounded_below=True"):
-            zw.SlopeBounds(least, 250)
-        assert zw.SlopeBounds(least, 250, bounded_below=True).bounded_below
-    assert zw.SlopeBounds("0.1", 250).bounded_below
+            zw.coupling.SlopeBounds(least, 250)
+        assert zw.coupling.SlopeBounds(least, 250, bounded_below=True).bounded_below
+    assert zw.coupling.SlopeBounds("0.1", 250).bounded_below
     with pytest.raises(InputError, match="no device is passive"):
-        zw.SlopeBounds(1, 250, bounded_below=False)
+        zw.coupling.SlopeBounds(1, 250, bounded_below=False)
 
 
 def test_the_spring_that_refutes_the_class_without_it():
     """−100 N/m has slopes from −100 to 250; before it the device is active, and the claim leaves it out."""
     paddle = zw.catalogue.device("haptic-paddle").replace(coulomb_friction=0, resolution=0)
     assert zw.check(paddle, zw.PulseTransferFunction([-100], [1])).outcome == "active"
-    found = zw.transformed_condition(paddle, zw.SlopeBounds(-100, 250, bounded_below=True))
+    found = zw.coupling.transformed_condition(paddle, zw.coupling.SlopeBounds(-100, 250, bounded_below=True))
     assert found.holds
     assert "slopes from -100 to 250 N/m whose potential is bounded below" in found.claim
     assert found.claim in repr(found)
@@ -219,14 +223,14 @@ def test_the_spring_that_refutes_the_class_without_it():
 def test_what_it_covers_is_data(count, encoder):
     """Contact made and broken; an encoder with counts is not in it, in the claim too."""
     device = zw.Device(damping=1, rate=1000, resolution=count)
-    found = zw.transformed_condition(device, zw.SlopeBounds(0, 500, bounded_below=True))
+    found = zw.coupling.transformed_condition(device, zw.coupling.SlopeBounds(0, 500, bounded_below=True))
     assert (found.scope.contact, found.scope.encoder) == ("made and broken", encoder)
     assert ("counts of the encoder are not in it" in found.claim) == bool(float(count))
-    short = zw.transformed_condition(
-        device.replace(damping="0.1"), zw.SlopeBounds(0, 500, bounded_below=True)
+    short = zw.coupling.transformed_condition(
+        device.replace(damping="0.1"), zw.coupling.SlopeBounds(0, 500, bounded_below=True)
     )
     assert short.claim.startswith("No promise for every static spring")
-    assert zw.transformed_condition(device, zw.PassivityExcess(0, 1)).scope.law == (
+    assert zw.coupling.transformed_condition(device, zw.coupling.PassivityExcess(0, 1)).scope.law == (
         "energy at first bounded",
     )
 
@@ -241,7 +245,7 @@ def slow_gain(points, forces, start, end, damping, samples=4000):
 def test_slow_motions_tell_potentials_that_have_no_lower_bound():
     """Random springs of one class: with stops slow motions get out what is stored, else ten times as much."""
     random, low, high = np.random.default_rng(4), -1.0, 1.5
-    need = float(zw.required_damping_by_slopes(Fraction(low), Fraction(high), 1))
+    need = float(zw.coupling.required_damping_by_slopes(Fraction(low), Fraction(high), 1))
     refuted = 0
     for _ in range(40):
         points, forces = wavy(random, (low, high))
@@ -252,11 +256,11 @@ def test_slow_motions_tell_potentials_that_have_no_lower_bound():
         far = 10 * (stored + 40) / max(abs(forces[0]), abs(forces[-1]), 0.1)
         best = max(slow_gain(points, forces, 0.0, side * far, need) for side in (-1, 1))
         if kept:
-            assert zw.SlopeBounds.of(spring).bounded_below
+            assert zw.coupling.SlopeBounds.of(spring).bounded_below
             assert max(slow_gain(points, forces, 0.0, x, need) for x in grid[::100]) <= stored
             assert best <= stored
         else:
             with pytest.raises(InputError, match="leads away"):
-                zw.SlopeBounds.of(spring)
+                zw.coupling.SlopeBounds.of(spring)
             refuted += best > 3 * stored
     assert refuted >= 10

@@ -28,25 +28,25 @@ def test_the_delay_sum_is_the_difference_it_stands_for():
     """(1 − z⁻¹)/T · A = (1 − z^{−d−1})/2α, and A(1) = (d + 1) T/2α."""
     hertz = np.array([0.7, 33.0, 240.0, 500.0])
     late = np.exp(-2j * np.pi * hertz / 1000)
-    a = zw.delay_sum(hertz, "0.15", T, 3 * T)
+    a = zw.coupling.delay_sum(hertz, "0.15", T, 3 * T)
     assert np.allclose((1 - late) * 1000 * a, (1 - late**4) / 0.3, rtol=1e-12)
-    assert zw.delay_sum([0.0], "0.15", T, 3 * T)[0] == pytest.approx(4e-3 / 0.3)
+    assert zw.coupling.delay_sum([0.0], "0.15", T, 3 * T)[0] == pytest.approx(4e-3 / 0.3)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 4])
 def test_the_device_gains_what_the_lemma_says(delay):
     """Re{1/Ĝ} ≥ b at every frequency, and is b where the device follows the force at once."""
-    heavy = zw.transformed_blocks(device("0.15", delay), WALLS[0])
+    heavy = zw.coupling.transformed_blocks(device("0.15", delay), WALLS[0])
     assert heavy["excess"].min() >= 0.15 * (1 - 1e-9)
     assert heavy["excess"].max() > 0.3
-    light = zw.transformed_blocks(device("0.15", delay, None), WALLS[0])
+    light = zw.coupling.transformed_blocks(device("0.15", delay, None), WALLS[0])
     assert np.allclose(light["excess"], 0.15, rtol=1e-9)
 
 
 def test_the_mean_velocity_is_that_of_the_held_force():
     """Ĝ less its feedthrough is (x(k+1) − x(k))/(T F) of a zero-order hold, by scipy."""
     hertz = np.array([3.0, 71.0, 455.0])
-    blocks = zw.transformed_blocks(device("0.15"), WALLS[0], hertz)
+    blocks = zw.coupling.transformed_blocks(device("0.15"), WALLS[0], hertz)
     numerator, denominator, _ = cont2discrete(([1.0], [0.04, 0.15, 0.0]), 1e-3)
     z = np.exp(2j * np.pi * hertz / 1000)
     moved = np.polyval(numerator.ravel(), z) / np.polyval(denominator, z) * (z - 1) / 1e-3
@@ -59,8 +59,8 @@ def test_the_shortage_reaches_b_just_at_the_need(environment, delay):
     """Above the need that `check` finds, −Re Ĉ < b at all frequencies; below, it exceeds b at one."""
     verdict = zw.check(device(1, delay), environment, contact="kept")
     need = verdict.required_damping
-    above = zw.transformed_blocks(device(need * 1.001, delay), environment)
-    below = zw.transformed_blocks(device(need * 0.99, delay), environment)
+    above = zw.coupling.transformed_blocks(device(need * 1.001, delay), environment)
+    below = zw.coupling.transformed_blocks(device(need * 0.99, delay), environment)
     assert np.all(above["shortage"] < need * 1.001)
     assert (below["shortage"] > need * 0.99).any()
 
@@ -79,10 +79,10 @@ def test_the_transformation_loses_nothing(delay):
 def test_what_does_not_fit_is_refused():
     """No damping, parts of a sample, frequencies beyond half the rate."""
     with pytest.raises(InputError, match="damping"):
-        zw.transformed_blocks(device(0), WALLS[0])
+        zw.coupling.transformed_blocks(device(0), WALLS[0])
     with pytest.raises(InputError, match="whole number"):
-        zw.transformed_blocks(device(1, Fraction(1, 3)), WALLS[0])
+        zw.coupling.transformed_blocks(device(1, Fraction(1, 3)), WALLS[0])
     with pytest.raises(InputError, match="half the rate"):
-        zw.transformed_blocks(device(1), WALLS[0], [501.0])
+        zw.coupling.transformed_blocks(device(1), WALLS[0], [501.0])
     with pytest.raises(InputError, match="damping"):
-        zw.delay_sum([1.0], 0, T)
+        zw.coupling.delay_sum([1.0], 0, T)

@@ -23,8 +23,8 @@ def device(damping, delay=0, **more):
 @pytest.mark.parametrize(("k", "b"), COUPLINGS)
 def test_passive_environments_are_those_of_the_coupling_condition(k, b, delay):
     """Without excess or shortage the transformation asks for what `coupling_condition` proves necessary."""
-    found = zw.transformed_condition(device(1, delay), zw.PassivityExcess(), k, b)
-    known = zw.coupling_condition(device(1, delay), k, b)
+    found = zw.coupling.transformed_condition(device(1, delay), zw.coupling.PassivityExcess(), k, b)
+    known = zw.coupling.coupling_condition(device(1, delay), k, b)
     assert found.required_damping == pytest.approx(known.required_damping, rel=1e-9)
     assert found.holds == known.holds
 
@@ -33,8 +33,8 @@ def test_passive_environments_are_those_of_the_coupling_condition(k, b, delay):
 @pytest.mark.parametrize(("k", "b"), COUPLINGS)
 def test_a_class_asks_for_no_less_than_its_springs(k, b, delay):
     """`check` of springs of the class behind the coupling asks for less or as much, by 3 % at most."""
-    found = zw.transformed_condition(
-        device(1, delay), zw.SlopeBounds(0, 1000, bounded_below=True), k, b
+    found = zw.coupling.transformed_condition(
+        device(1, delay), zw.coupling.SlopeBounds(0, 1000, bounded_below=True), k, b
     ).required_damping
     springs = (zw.VirtualCoupling(k, b, zw.PulseTransferFunction([s], [1])) for s in (1, 30, 170, 400, 1000))
     needs = [zw.check(device(1, delay), spring).required_damping for spring in springs]
@@ -46,37 +46,46 @@ def test_a_class_asks_for_no_less_than_its_springs(k, b, delay):
 @pytest.mark.parametrize(("least", "greatest"), [(0, 800), (-90, 450), (120, 300)])
 def test_a_spring_before_springs_is_a_spring(least, greatest, delay):
     """B_c = 0: the form of coupling and class, and the class of springs in series by its closed form."""
-    slopes = zw.SlopeBounds(least, greatest, bounded_below=True)
+    slopes = zw.coupling.SlopeBounds(least, greatest, bounded_below=True)
     series = slopes.behind_a_spring(290)
-    found = zw.transformed_condition(device(1, delay), slopes, 290)
-    bare = zw.required_damping_by_slopes(series.least, series.greatest, T, delay * T)
+    found = zw.coupling.transformed_condition(device(1, delay), slopes, 290)
+    bare = zw.coupling.required_damping_by_slopes(series.least, series.greatest, T, delay * T)
     assert found.required_damping == pytest.approx(float(bare), rel=1e-6)
 
 
 def test_both_sides_of_the_need_are_decided_exactly():
     """A thousand-millionth above it holds, below it does not; for a bare spring the need itself holds."""
     for given in (
-        (zw.SlopeBounds(-100, 1000, bounded_below=True), 290, "0.07"),
-        (zw.PassivityExcess("-0.02", 0), 290, "0.07"),
+        (zw.coupling.SlopeBounds(-100, 1000, bounded_below=True), 290, "0.07"),
+        (zw.coupling.PassivityExcess("-0.02", 0), 290, "0.07"),
     ):
-        need = zw.transformed_condition(device(1, 1), *given).required_damping
-        assert zw.transformed_condition(device(need * (1 + 1e-9), 1), *given).holds
-        assert not zw.transformed_condition(device(need * (1 - 1e-9), 1), *given).holds
-    assert zw.transformed_condition(device("0.75", 1), zw.SlopeBounds(0, 500, bounded_below=True)).holds
-    assert not zw.transformed_condition(
-        device("0.7499999999999999", 1), zw.SlopeBounds(0, 500, bounded_below=True)
+        need = zw.coupling.transformed_condition(device(1, 1), *given).required_damping
+        assert zw.coupling.transformed_condition(device(need * (1 + 1e-9), 1), *given).holds
+        assert not zw.coupling.transformed_condition(device(need * (1 - 1e-9), 1), *given).holds
+    assert zw.coupling.transformed_condition(
+        device("0.75", 1), zw.coupling.SlopeBounds(0, 500, bounded_below=True)
+    ).holds
+    assert not zw.coupling.transformed_condition(
+        device("0.7499999999999999", 1), zw.coupling.SlopeBounds(0, 500, bounded_below=True)
     ).holds
 
 
 def test_what_binds():
     """Too little damping, or coupling and environment that no damping helps: a name and a margin for each."""
-    short = zw.transformed_condition(device("0.1"), zw.SlopeBounds(0, 500, bounded_below=True))
+    short = zw.coupling.transformed_condition(
+        device("0.1"), zw.coupling.SlopeBounds(0, 500, bounded_below=True)
+    )
     assert (short.holds, short.binding) == (False, "device damping")
     assert short.margin == pytest.approx(-0.15)
-    lacking = zw.transformed_condition(device(100), zw.PassivityExcess(0, "-0.05"), 290, "0.07")
+    lacking = zw.coupling.transformed_condition(
+        device(100), zw.coupling.PassivityExcess(0, "-0.05"), 290, "0.07"
+    )
     assert (lacking.holds, lacking.binding) == (False, "coupling and environment")
     assert lacking.margin is None
-    assert zw.transformed_condition(device(1), zw.PassivityExcess()).binding == "coupling and environment"
+    assert (
+        zw.coupling.transformed_condition(device(1), zw.coupling.PassivityExcess()).binding
+        == "coupling and environment"
+    )
     assert "none is enough" in repr(lacking)
     assert "0.25 N·s/m" in repr(short)
 
@@ -84,20 +93,24 @@ def test_what_binds():
 def test_shortage_costs_and_excess_saves_under_delay():
     """ι = −0.02, 0, 0.05 N·s/m ask for less and less; without delay a small shortage is free."""
     needs = [
-        zw.transformed_condition(device(1, 1), zw.PassivityExcess(i, 0), 290).required_damping
+        zw.coupling.transformed_condition(
+            device(1, 1), zw.coupling.PassivityExcess(i, 0), 290
+        ).required_damping
         for i in ("-0.02", 0, "0.05")
     ]
     assert needs == sorted(needs, reverse=True)
     assert needs[0] > needs[2] * 1.05
-    free = zw.transformed_condition(device(1), zw.PassivityExcess("-0.02", 0), 290).required_damping
+    free = zw.coupling.transformed_condition(
+        device(1), zw.coupling.PassivityExcess("-0.02", 0), 290
+    ).required_damping
     assert free == pytest.approx(0.145)
 
 
 @pytest.mark.parametrize(("delay", "index"), [(0, "0.031"), (1, "0.02"), (2, "-0.011")])
 def test_a_parallel_damper_is_an_input_index(delay, index):
     """ι bounds a wall B in parallel with a passive spring: linear members ask for no more."""
-    found = zw.transformed_condition(
-        device(1, delay), zw.PassivityExcess(index, 0), 290, "0.07"
+    found = zw.coupling.transformed_condition(
+        device(1, delay), zw.coupling.PassivityExcess(index, 0), 290, "0.07"
     ).required_damping
     worst = 0.0
     for k in (10, 150, 900):
@@ -110,7 +123,9 @@ def test_a_parallel_damper_is_an_input_index(delay, index):
 @pytest.mark.parametrize("delay", [0, 1, 4])
 def test_bare_dampers_by_their_gains(delay):
     """Gains g to G: the need is G, whatever the delay; random ones gain nothing, at half of it one does."""
-    found = zw.transformed_condition(device("0.12", delay), zw.PassivityExcess.of_damper("-0.03", "0.11"))
+    found = zw.coupling.transformed_condition(
+        device("0.12", delay), zw.coupling.PassivityExcess.of_damper("-0.03", "0.11")
+    )
     assert found.required_damping == pytest.approx(0.11)
     assert found.holds
     random = np.random.default_rng(delay)
@@ -128,11 +143,11 @@ def test_bare_dampers_by_their_gains(delay):
 
 def test_excess_and_shortage_together():
     """ο b² − b + ι ≥ 0 is where a bare environment with both holds."""
-    indices = zw.PassivityExcess("0.02", 3)
-    need = zw.transformed_condition(device(1), indices).required_damping
+    indices = zw.coupling.PassivityExcess("0.02", 3)
+    need = zw.coupling.transformed_condition(device(1), indices).required_damping
     assert 3 * need**2 - need + 0.02 == pytest.approx(0, abs=1e-12)
-    assert zw.transformed_condition(device(need * 1.001), indices).holds
-    assert not zw.transformed_condition(device(need * 0.999), indices).holds
+    assert zw.coupling.transformed_condition(device(need * 1.001), indices).holds
+    assert not zw.coupling.transformed_condition(device(need * 0.999), indices).holds
 
 
 def spring_of_pieces(random, slopes):
@@ -152,8 +167,8 @@ def test_random_springs_behind_a_coupling_gain_nothing():
     """
     k, b_c, slopes = 1.0, 0.4, (-0.3, 2.0)
     unit = zw.Device(damping=1, sample_period=1, delay=1)
-    need = zw.transformed_condition(
-        unit, zw.SlopeBounds(*slopes, bounded_below=True), k, b_c
+    need = zw.coupling.transformed_condition(
+        unit, zw.coupling.SlopeBounds(*slopes, bounded_below=True), k, b_c
     ).required_damping
     random = np.random.default_rng(8)
     over, under = [], []
@@ -179,19 +194,30 @@ def test_random_springs_behind_a_coupling_gain_nothing():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: zw.transformed_condition(1, zw.PassivityExcess()), "Device"),
-        (lambda: zw.transformed_condition(device(1), zw.Wall(1, 0)), "use check"),
-        (lambda: zw.transformed_condition(device(1), zw.PassivityExcess(), -1), "stiffness"),
-        (lambda: zw.transformed_condition(device(1), zw.PassivityExcess(), 0, 0), "passes no force"),
-        (lambda: zw.transformed_condition(device(1), zw.PassivityExcess(), None, 1), "coupling"),
+        (lambda: zw.coupling.transformed_condition(1, zw.coupling.PassivityExcess()), "Device"),
+        (lambda: zw.coupling.transformed_condition(device(1), zw.Wall(1, 0)), "use check"),
         (
-            lambda: zw.transformed_condition(device(1, Fraction(1, 2)), zw.PassivityExcess(), 1),
+            lambda: zw.coupling.transformed_condition(device(1), zw.coupling.PassivityExcess(), -1),
+            "stiffness",
+        ),
+        (
+            lambda: zw.coupling.transformed_condition(device(1), zw.coupling.PassivityExcess(), 0, 0),
+            "passes no force",
+        ),
+        (
+            lambda: zw.coupling.transformed_condition(device(1), zw.coupling.PassivityExcess(), None, 1),
+            "coupling",
+        ),
+        (
+            lambda: zw.coupling.transformed_condition(
+                device(1, Fraction(1, 2)), zw.coupling.PassivityExcess(), 1
+            ),
             "whole number",
         ),
-        (lambda: zw.SlopeBounds(2, 1), "least slope"),
-        (lambda: zw.SlopeBounds(-5, 1, bounded_below=True).behind_a_spring(5), "stiffer"),
-        (lambda: zw.PassivityExcess(1, 1), "4 · input · output"),
-        (lambda: zw.PassivityExcess.of_damper(-1, 1), "positive sum"),
+        (lambda: zw.coupling.SlopeBounds(2, 1), "least slope"),
+        (lambda: zw.coupling.SlopeBounds(-5, 1, bounded_below=True).behind_a_spring(5), "stiffer"),
+        (lambda: zw.coupling.PassivityExcess(1, 1), "4 · input · output"),
+        (lambda: zw.coupling.PassivityExcess.of_damper(-1, 1), "positive sum"),
     ],
 )
 def test_what_does_not_fit_is_refused(call, words):

@@ -1,0 +1,49 @@
+"""Public names written once, in the stub beside a package: found there when they are first used.
+
+Editors and type checkers read the stub; so does this, so that the list cannot differ from what there is.
+Libraries that take their time to load are loaded by whoever uses them.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+
+def attach(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """`__getattr__`, `__dir__` and `__all__` of a package, from its `__init__.pyi`.
+
+    Each line of the stub is ``from module import name as public_name``; what is no name of the module is a
+    module in it.
+    """
+    module = sys.modules[package]
+    places = dict(_places(Path(str(module.__file__)).with_suffix(".pyi")))
+
+    def get(name: str) -> Any:
+        if name not in places:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        source, inner = places[name]
+        found = import_module(f"{source}.{inner}") if source == package else _found(source, inner)
+        setattr(module, name, found)
+        return found
+
+    return get, lambda: sorted(places), sorted(places)
+
+
+def _places(stub: Path) -> list[tuple[str, tuple[str, str]]]:
+    """Of each public name its module, and its name there."""
+    return [
+        (alias.asname or alias.name, (str(line.module), alias.name))
+        for line in ast.parse(stub.read_text(encoding="utf-8")).body
+        if isinstance(line, ast.ImportFrom)
+        for alias in line.names
+    ]
+
+
+def _found(module: str, name: str) -> Any:
+    owner = import_module(module)
+    return getattr(owner, name) if hasattr(owner, name) else import_module(f"{module}.{name}")

@@ -1,0 +1,48 @@
+"""The device and the environment of files, in Python: `zw.check(*zw.load("wheel.toml", "bumpstop.toml"))`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from zwidth.device import Device
+from zwidth.environment import Environment
+from zwidth.errors import InputError
+from zwidth.specification.environments import build_environment
+from zwidth.specification.laws import with_laws
+from zwidth.specification.read import WITH_LAWS, read_tables, specified_device
+
+
+class Loaded(NamedTuple):
+    """What files describe: a device, and what it renders."""
+
+    device: Device
+    environment: Environment | None
+    """Behind its laws, if the files have [[law]] tables; None if they have no [environment]."""
+
+
+def load(*sources: Path | str) -> Loaded:
+    """The device and the environment that specifications describe, as the command line reads them.
+
+    Parameters
+    ----------
+    sources
+        TOML files with [device], [environment] and [[law]] tables, each in one of them; a name of the
+        catalogue stands for a [device].
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, there is no device, or a key or value cannot be used: it says which,
+        where it stands and what is allowed.
+    """
+    if not sources:
+        raise InputError("no file is given: name TOML files with a [device], or a device of the catalogue")
+    tables = read_tables(sources, WITH_LAWS)
+    device, laws = specified_device(tables, {}), tables.get("law")
+    if "environment" not in tables:
+        if laws is not None:
+            raise InputError("[[law]] stands behind an environment, and no file has an [environment] table")
+        return Loaded(device, None)
+    environment = build_environment(tables["environment"], device.motion)
+    return Loaded(device, with_laws(environment, laws, None, device.motion))

@@ -1,0 +1,87 @@
+"""A hand that is known: a mass on a spring and a damper to where it wants to be.
+
+    f_h = −k x − c ẋ − m_h ẍ        (about the point of rest)
+
+The criterion of passivity stands against every hand; a loop that fails it may still be
+stable with this one.  Each number may be an interval: a claim then holds for every hand in it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
+from zwidth.quantity.glossary import GLOSSARY
+
+Parameter = RealLike | Interval | tuple[RealLike, RealLike]
+
+
+@dataclass(frozen=True, init=False, kw_only=True)
+class HandImpedance:
+    """``f_h = −k x − c ẋ − m_h ẍ``, each number certain or an interval.
+
+    Parameters
+    ----------
+    mass
+        m_h ≥ 0, moves with the handle [kg; kg·m²]. Default 0.
+    stiffness
+        k ≥ 0 [N/m; N·m/rad]. Default 0.
+    damping
+        c ≥ 0 [N·s/m; N·m·s/rad]. Default 0.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite or negative.
+    """
+
+    mass: Exact | Interval
+    stiffness: Exact | Interval
+    damping: Exact | Interval
+
+    def __init__(self, *, mass: Parameter = 0, stiffness: Parameter = 0, damping: Parameter = 0) -> None:
+        for name, value in (("mass", mass), ("stiffness", stiffness), ("damping", damping)):
+            number = as_parameter(value)
+            if ends(number)[0] < 0:
+                raise InputError(
+                    f"{name} of a hand must be ≥ 0, got {number}: "
+                    "a passive hand has no energy of its own to give"
+                )
+            object.__setattr__(self, name, number)
+
+    def describe(self, motion: str = "linear") -> str:
+        """The hand with its numbers, on one line, in linear or rotary units."""
+        parts = [
+            f"{symbol} = {value if isinstance(value, Interval) else f'{float(value):.6g}'} "
+            f"{GLOSSARY[name].unit_for(motion)}"
+            for symbol, name, value in (
+                ("m_h", "mass", self.mass),
+                ("k", "stiffness", self.stiffness),
+                ("c", "damping", self.damping),
+            )
+            if ends(value)[1]
+        ]
+        return ", ".join(parts) if parts else "no hand"
+
+
+def as_hand(hand: Any) -> HandImpedance:
+    """Read a hand: None for none, a `HandImpedance`, or an operator whose linear part is meant.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, or an operator that prescribes the motion.
+    """
+    if hand is None:
+        return HandImpedance()
+    if isinstance(hand, HandImpedance):
+        return hand
+    linear = getattr(hand, "hand", None)
+    if linear is None or getattr(hand, "kinematic", False):
+        raise InputError(
+            f"a known hand is None, a HandImpedance or a linear operator such as Finger(), got "
+            f"{type(hand).__name__}: a prescribed motion leaves nothing that could become unstable"
+        )
+    return HandImpedance(mass=linear.mass, stiffness=linear.stiffness, damping=linear.damping)

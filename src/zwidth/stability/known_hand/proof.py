@@ -1,0 +1,42 @@
+"""What is said of a known hand, as a document for the independent checker.
+
+It holds the loop alone: the checker forms its characteristic polynomial and cuts the intervals itself.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from zwidth.environment.environment import RationalFunction
+from zwidth.passivity.certificate import FORMAT
+from zwidth.passivity.document import unit_key
+from zwidth.quantity.text import exact_text
+from zwidth.stability.known_hand.decide import Found
+from zwidth.stability.known_hand.plant import Motion, Range
+
+
+def evidence(found: Found, motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any] | None:
+    """A document of kind "stability", or of kind "instability" with the culprit; None for undecided."""
+    if found.outcome == "undecided":
+        return None
+    kind = "stability" if found.outcome == "stable" else "instability"
+    return {
+        "format": FORMAT,
+        "kind": kind,
+        "loop": _loop(motion if found.culprit is None else found.culprit, transfer, units),
+    }
+
+
+def _loop(motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any]:
+    return {
+        **{unit_key(name, units): _ends(getattr(motion, name)) for name in ("mass", "damping", "stiffness")},
+        unit_key("sample_period", units): exact_text(motion.period),
+        unit_key("delay", units): exact_text(motion.delay),
+        "numerator": [exact_text(c) for c in transfer.numerator],
+        "denominator": [exact_text(c) for c in transfer.denominator],
+    }
+
+
+def _ends(ends: Range) -> str | list[str]:
+    low, high = (exact_text(end) for end in ends)
+    return low if low == high else [low, high]

@@ -1,0 +1,102 @@
+"""Six published plants: their slopes to three digits, each proved by a certificate."""
+
+from __future__ import annotations
+
+import pytest
+
+import zwidth as zw
+
+PLANTS = {
+    1: (["0.1", 0], [1, "-1.8", "0.81"]),
+    2: ([1, "-1.95", "0.9", "0.05"], [1, "-2.8", "3.5", "-2.412", "0.7209"]),
+    3: ([-1, "1.95", "-0.9", "-0.05"], [1, "-2.8", "3.5", "-2.412", "0.7209"]),
+    4: ([1, "-1.5", "0.5", "-0.5", "0.5"], ["4.4", "-8.957", "9.893", "-5.671", "2.207", "-0.5"]),
+    5: (["-0.5", "0.1"], [1, "-0.9", "0.79", "0.089"]),
+    6: ([2, "0.92"], [1, "-0.5", 0]),
+}
+PUBLISHED = {  # circle, Tsypkin, best odd Zames–Falb: Carrasco et al. (2020), as quoted by public code
+    1: (0.7935, 3.80, 13.5113),
+    2: (0.1984, 0.2427, 1.1056),
+    3: (0.1379, 0.1379, 0.3121),
+    4: (1.5312, 1.6911, 3.8240),
+    5: (1.0273, 1.0273, 2.4475),
+    6: (0.6510, 0.6510, 1.0870),
+}
+NYQUIST = {1: 36.1, 2: 2.7455, 3: 0.3124, 4: 7.907, 5: 2.4475, 6: 1.0870}
+"""−1/G at its first real negative value; 36.1, 2.7455, 7.907 are D(−1)/−N(−1) by hand."""
+
+
+@pytest.fixture(scope="module", params=sorted(PLANTS))
+def case(request):
+    """(number, result) of a plant, without the motions."""
+    top, bottom = PLANTS[request.param]
+    plant = zw.PulseTransferFunction(top, bottom)
+    return request.param, zw.stability.absolute_stability(plant, motions=False)
+
+
+def test_a_result_shows_in_a_line(case):
+    """What each criterion proves and what is refuted, without the certificates' numbers."""
+    _, result = case
+    words = repr(result)
+    assert words.startswith(
+        f"<AbsoluteStability proved: circle {float(result.slope('circle')):.6g}; Tsypkin "
+    )
+    assert words.endswith(f"refuted: {result.linear_limit.slope:.6g}>")
+
+
+def test_slopes_are_the_published_ones(case):
+    """Circle, Tsypkin and odd Zames–Falb agree with the paper to three digits."""
+    number, result = case
+    names = ("circle", "Tsypkin", "Zames–Falb, odd")
+    for name, value in zip(names, PUBLISHED[number], strict=True):
+        assert float(result.slope(name)) == pytest.approx(value, rel=5e-4)
+
+
+def test_linear_limit(case):
+    """The linear limit is the Nyquist value, and no criterion proves more."""
+    number, result = case
+    assert result.linear_limit.slope == pytest.approx(NYQUIST[number], rel=5e-4)
+    assert max(float(row.slope) for row in result.proved) <= result.linear_limit.slope
+
+
+def test_certificates_verify_and_no_more_slope_does(case):
+    """Each certificate is accepted, and with one percent more slope the same multiplier is refused."""
+    _, result = case
+    for row in result.proved:
+        assert row.certificate.verify()
+        (document,) = row.certificate.documents
+        more = {**document, "slope": str(float(row.slope) * 1.01)}
+        assert not zw.Certificate((more,)).verify()
+
+
+def test_one_tap_is_at_least_tsypkin_and_jury_lee(case):
+    """Each of the two is implied by a Zames–Falb multiplier, and the circle by each of them."""
+    _, result = case
+    circle, tsypkin, jury_lee, general, odd = (float(row.slope) for row in result.proved)
+    near = 1 - 1e-4
+    assert min(tsypkin, jury_lee) >= circle * near
+    assert general >= max(tsypkin, jury_lee) * near
+    assert odd >= general * near
+
+
+def test_walls_that_are_not_odd_get_less():
+    """Example 6: 0.9115 for any monotone wall, 1.0870 for odd ones."""
+    result = zw.stability.absolute_stability(zw.PulseTransferFunction(*PLANTS[6]), motions=False)
+    assert float(result.slope("Zames–Falb")) == pytest.approx(0.9115, abs=5e-5)
+
+
+def test_a_one_sided_wall_just_above_what_is_proved_for_it_vibrates():
+    """Example 6: a motion of three samples, below the linear limit, within a percent of the proof."""
+    result = zw.stability.absolute_stability(zw.PulseTransferFunction(*PLANTS[6]))
+    motion = result.pressing
+    assert motion.period == 3
+    assert motion.slope == pytest.approx(175 / 192, rel=1e-6)  # x = −½, −¼ − K, −⅛ − 0.96 K with g = −1
+    assert motion.growth < 1
+    assert float(result.largest) < motion.slope < float(result.largest) * 1.01 < result.linear_limit.slope
+    # replayed by its difference equation: x(j) = 0.5 x(j−1) − 2 f(j−1) − 0.92 f(j−2)
+    x = list(motion.positions[:2])
+    f = [motion.slope * max(v - motion.gap, 0.0) for v in x]
+    for _ in range(3000):
+        x.append(0.5 * x[-1] - 2 * f[-1] - 0.92 * f[-2])
+        f.append(motion.slope * max(x[-1] - motion.gap, 0.0))
+    assert x[-3:] == pytest.approx([motion.positions[(3002 - 3 + i) % 3] for i in range(3)], abs=1e-9)

@@ -1,0 +1,160 @@
+"""Periodic motions solved once more by the checker: exact by hand, from both sides of a limit, tampered."""
+
+from __future__ import annotations
+
+import copy
+import json
+from fractions import Fraction
+
+import pytest
+
+import zwidth as zw
+from zwidth import checker
+from zwidth.cli.main import main
+from zwidth.operator.operator import LinearHand
+from zwidth.passivity.certificate import read_document, verify_document
+from zwidth.stability.absolute import given_plant, periodic_motion, touched_plant
+
+SIX = {"numerator": ["2", "0.92"], "denominator": ["1", "-0.5", "0"]}
+LIMIT = Fraction(175, 192)
+"""Above it plant 6 vibrates with three samples: the third position leaves the wall at 0.96 K = 7/8."""
+
+
+def six(**changes: object) -> dict:
+    """Plant 6 with a wall just beyond its limit, two samples of three off it."""
+    base = {"kind": "vibration", "plant": SIX, "slope": "0.92", "gap": "-1", "inside": [True, False, False]}
+    return {**base, **changes}
+
+
+def device(**changes: object) -> zw.Device:
+    """m = 0.04 kg, b = 0.8 N·s/m at 1 kHz, ideal otherwise."""
+    values = {
+        "mass": "0.04",
+        "damping": "0.8",
+        "sample_period": "0.001",
+        "coulomb_friction": 0,
+        "resolution": 0,
+    }
+    return zw.Device(**{**values, "delay": 0, **changes})
+
+
+@pytest.fixture(scope="module")
+def touched() -> dict:
+    """A pressing hand of 400 N/m that vibrates against 1200 N/m, the force half a sample late."""
+    plant = touched_plant(device(delay="0.0005"), LinearHand(stiffness=400, mass=0.001))
+    motion = periodic_motion(plant, 1250.0, -1.0)
+    assert motion is not None
+    return copy.deepcopy(motion.certificate.documents[0])
+
+
+@pytest.mark.parametrize(
+    ("off", "valid"), [(Fraction(1, 10**60), True), (-Fraction(1, 10**60), False), (0, False)]
+)
+def test_the_slope_at_which_a_motion_of_three_samples_appears(off: Fraction, valid: bool) -> None:
+    """Plant 6: 10⁻⁶⁰ above 175/192 there are two motions, one and two samples inside; not at it or below."""
+    for second in (False, True):
+        doc = six(slope=str(LIMIT + off), inside=[True, second, False])
+        assert checker.verify(doc).valid == valid
+
+
+def test_where_the_pattern_begins_does_not_matter() -> None:
+    """The same motion from its second and third sample on, and twice round."""
+    assert checker.verify(six(inside=[False, False, True])).valid
+    assert checker.verify(six(inside=[False, True, False])).valid
+    assert checker.verify(six(inside=[True, False, False] * 2)).valid
+
+
+def test_the_size_follows_the_gap() -> None:
+    """Any gap < 0 has this motion, scaled; a hand off the wall has not."""
+    assert checker.verify(six(gap="-0.0371")).valid
+    assert not checker.verify(six(gap="0.0371")).valid
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"inside": [True, False]}, "not one of the wall"),
+        ({"inside": [True, False, False, False]}, "not one of the wall"),
+        ({"inside": [True, True, True]}, "samples inside"),
+        ({"inside": [1, 0, 0]}, "true or false"),
+        ({"inside": [True]}, "2 to 1000 entries"),
+        ({"inside": "100"}, "a list"),
+        ({"slope": "0"}, "> 0"),
+        ({"slope": "0.9"}, "not one of the wall"),
+        ({"plant": {"numerator": ["1", "2", "3"], "denominator": ["1", "0", "0"]}}, "proper"),
+        ({"plant": {"numerator": ["0.5", "0.92"], "denominator": ["1", "-0.5", "0"]}}, "not one of the wall"),
+        ({"plant": {"numerator": ["1"], "denominator": ["1", *["0"] * 80]}}, "too high"),
+    ],
+    ids=str,
+)
+def test_refuses_what_is_no_motion(change: dict, words: str) -> None:
+    """Another pattern, slope or plant, or one without contact made and broken."""
+    found = checker.verify(six(**change))
+    assert not found.valid
+    assert words in found.reason
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("mass_kg", "0.02"),
+        ("hand_mass_kg", "0.03"),
+        ("damping_N_s_per_m", "1.5"),
+        ("hand_damping_N_s_per_m", "0.9"),
+        ("hand_stiffness_N_per_m", "2000"),
+        ("sample_period_s", "0.0005"),
+        ("delay_s", "0"),
+        ("delay_s", "0.003"),
+        ("mass_kg", ["0.03", "0.05"]),
+        ("hand_mass_kg", "-0.01"),
+    ],
+)
+def test_a_touched_device_with_another_number(touched: dict, key: str, value: object) -> None:
+    """The motion of one device is accepted, and is none of the others."""
+    assert checker.verify(touched).valid
+    assert not checker.verify({**touched, "loop": {**touched["loop"], key: value}}).valid
+
+
+def test_a_touched_device_with_another_wall(touched: dict) -> None:
+    """Its pattern with one sample flipped, or with a slope that is proved to come to rest, is refused."""
+    flipped = list(touched["inside"])
+    edge = next(i for i in range(len(flipped)) if flipped[i] != flipped[i - 1])
+    flipped[edge] = not flipped[edge]
+    assert not checker.verify({**touched, "inside": flipped}).valid
+    assert not checker.verify({**touched, "slope": "804"}).valid
+
+
+@pytest.mark.parametrize(
+    ("top", "bottom", "slope"),
+    [
+        (["0.1", 0], [1, "-1.8", "0.81"], 26.1),
+        ([1, "-1.95", "0.9", "0.05"], [1, "-2.8", "3.5", "-2.412", "0.7209"], 1.58),
+        ([1, "-1.5", "0.5", "-0.5", "0.5"], ["4.4", "-8.957", "9.893", "-5.671", "2.207", "-0.5"], 3.99),
+    ],
+)
+def test_every_motion_found_has_a_certificate(top: list, bottom: list, slope: float) -> None:
+    """Published plants: what the search finds the checker accepts, and with half the slope refuses."""
+    motion = periodic_motion(given_plant(zw.PulseTransferFunction(top, bottom)), slope, -1.0)
+    assert motion is not None
+    assert motion.certificate.verify()
+    (doc,) = motion.certificate.documents
+    assert sum(doc["inside"]) == sum(motion.inside)
+    assert not checker.verify({**doc, "slope": str(slope / 2)}).valid
+
+
+def test_saved_with_the_result_and_verified(tmp_path, capsys) -> None:
+    """Slopes and motions are verified from one file; the command line says that it vibrates."""
+    found = zw.stability.absolute_stability(zw.PulseTransferFunction(*SIX.values()))
+    assert found.pressing is not None
+    path = tmp_path / "six.json"
+    found.save(path)
+    assert verify_document(read_document(path)).valid
+    assert main(["verify", str(path)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "to rest" in told
+    assert "vibrates" in told
+    assert "passive" not in told
+    doc = json.loads(path.read_text(encoding="utf-8"))
+    doc["witness"]["slope"] = "0.9"
+    path.write_text(json.dumps(doc))
+    assert main(["verify", str(path)]) == 1
