@@ -38,7 +38,7 @@ def answers() -> dict[str, Answer]:
         "unstable": zw.stability(HEAVY, zw.Wall(50_000, -1), HAND),
         "coupling": zw.coupling_condition(PADDLE, 100, 0.02),
         "poor coupling": zw.coupling_condition(PADDLE, 1000, 0.2),
-        "springs": zw.transformed_condition(PADDLE, zw.Slopes(0, 100, bounded_below=True)),
+        "springs": zw.transformed_condition(PADDLE, zw.SlopeBounds(0, 100, bounded_below=True)),
     }
 
 
