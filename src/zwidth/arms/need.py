@@ -101,8 +101,15 @@ def damping_at(
     return np.asarray(sample_period / 2 * kernel * k - np.cos((d + 1) * theta) * b)
 
 
+def require_wall(wall: object) -> None:
+    """Refuse what is no wall of an arm."""
+    if not isinstance(wall, (Wall, MatrixWall)):
+        raise InputError(f"the wall of an arm is a Wall or a MatrixWall, got {type(wall).__name__}")
+
+
 def wall_matrices(wall: Wall | MatrixWall, size: int) -> tuple[Array, Array]:
     """K and B as n × n matrices."""
+    require_wall(wall)
     if isinstance(wall, MatrixWall):
         if wall.coordinates != size:
             raise InputError(
@@ -110,8 +117,6 @@ def wall_matrices(wall: Wall | MatrixWall, size: int) -> tuple[Array, Array]:
                 f"give {size} × {size} matrices"
             )
         return np.array(wall.stiffness), np.array(wall.damping)
-    if not isinstance(wall, Wall):
-        raise InputError(f"the wall of an arm is a Wall or a MatrixWall, got {type(wall).__name__}")
     if wall.velocity_filter != BackwardDifference():
         raise InputError("for arms the velocity is a backward difference; leave out the velocity filter")
     k, b = float(certain(wall.stiffness, "stiffness")), float(certain(wall.damping, "damping"))

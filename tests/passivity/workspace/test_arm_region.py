@@ -373,3 +373,11 @@ def test_other_bad_input() -> None:
     loose = PlanarChain(links=(0.1,) * 3, damping=(0.1, 0, 0.1))
     with pytest.raises(zw.InputError, match="damping in each of them"):
         zw.workspace(loose, zw.Wall(100), rate=1000, points=20)
+
+
+def test_what_is_no_wall_of_an_arm_is_refused():
+    """By its kind, before anything is asked of it."""
+    arm = built_in("two-link", damping=[0.02, 0.02])
+    for thing in (3, zw.HuntCrossley(100, 1)):
+        with pytest.raises(zw.InputError, match="is a Wall or a MatrixWall"):
+            zw.workspace(arm, thing, rate=1000)

@@ -12,6 +12,7 @@ from zwidth.arms import Arm
 from zwidth.arms.held import forces_of, held_torque_damping
 from zwidth.arms.joints import as_matrix
 from zwidth.arms.matrix_wall import MatrixWall
+from zwidth.arms.need import require_wall
 from zwidth.arms.pose import fits
 from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
@@ -95,6 +96,7 @@ def asked_of(
         raise InputError(f"the first argument is an arm, got {type(arm).__name__}")
     if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= 1000:
         raise InputError(f"points must be a whole number from 2 to 1000, got {points!r}")
+    require_wall(wall)
     fits(arm, wall)
     held_to = forces_of(arm, torque_held_up_to, "torque_held_up_to")
     asked = forces_of(arm, largest_force, "largest_force")
