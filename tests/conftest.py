@@ -50,7 +50,7 @@ def _plain_terminal() -> Iterator[None]:
 def _time_enough() -> Iterator[None]:
     """A game that is to be decided is decided, also on a busy machine and where it is compiled first."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("zwidth.passivity.game.SECONDS", 60.0)
+        patch.setattr("zwidth.passivity.gap.SECONDS", 60.0)
         yield
 
 

@@ -17,7 +17,7 @@ from numba import njit
 import zwidth as zw
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.rendering import DualRate, EnergyBounding, Extrapolation, ForceBounding, PassiveLeap, Saturation
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 from .judge import HEAVY, HEAVY_SHARE, LIGHT, Judged
 from .loops import decades, near, period_of, typed
@@ -126,7 +126,7 @@ def claimed(device: zw.Device, law: Any, full: bool) -> str:
         return str(zw.check(device, law).outcome)
     if device.delay == 0 and is_bounded(law):
         return str(check_bounding(device, law).outcome)
-    theorem = law.stages[-1].theorem(Surroundings(device, law.environment))
+    theorem = law.laws[-1].theorem(LoopContext(device, law.environment))
     return "theorem" if theorem is not None and theorem.holds_on(device) else "refused"
 
 

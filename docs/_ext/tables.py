@@ -46,14 +46,14 @@ def environment_options() -> str:
 
 def operator_options() -> str:
     """The hands and their numbers, as options of the command line."""
-    from zwidth.cli.touch import operator_parameters
+    from zwidth.cli.simulation_tables import operator_parameters
 
     return _options(operator_parameters())
 
 
 def simulation_options() -> str:
     """How a simulation is run, as options of the command line."""
-    from zwidth.cli.touch import simulation_parameters
+    from zwidth.cli.simulation_tables import simulation_parameters
 
     return _options(simulation_parameters())
 

@@ -32,7 +32,7 @@ from zwidth.passivity import formulas as formulas
 from zwidth.passivity import ports as ports
 from zwidth.passivity.certificate import Certificate as Certificate
 from zwidth.passivity.check import check as check
-from zwidth.passivity.real_hand import replay as replay
+from zwidth.passivity.finite_stiffness import replay as replay
 from zwidth.passivity.verdict import Verdict as Verdict
 from zwidth.passivity.witness.witness import Witness as Witness
 from zwidth.passivity.workspace import workspace as workspace

@@ -65,14 +65,14 @@ def test_a_law_that_does_what_the_wall_does_falls_with_it():
 
 
 def test_motions_found_against_the_wall_refute_laws_behind_which_it_stands():
-    """Just where the wall begins to give: none of the fixed set gains up to 1 m/s, the worst hand's does."""
+    """Where the wall begins to give, none of the fixed set gains up to 1 m/s; that of value iteration does."""
     wall = zw.Wall(534)
     known = found_motions(PADDLE, wall, 1.0)
     for stage in (PassiveLeap(), PassivityController(observer="published")):
         law = zw.render(wall, stage)
         assert not attack(PADDLE, law, fastest=1.0).extracts
         found = attack(PADDLE, law, fastest=1.0, known=known)
-        assert "the worst hand against the wall alone" in found.name
+        assert "value iteration against the wall alone" in found.name
         assert found.extracts
         assert replayed(PADDLE, law, found) == pytest.approx(found.total, rel=1e-9)
 

@@ -101,7 +101,7 @@ def test_a_theorem_says_as_data_what_it_counts():
         (PassiveLeap(), Fraction(1, 200)),
         (DualRate(samples=3), Fraction(1, 200)),
     ):
-        theorem = stage.theorem(zw.rendering.stage.Surroundings(made(), wall))
+        theorem = stage.theorem(zw.rendering.rendering_law.LoopContext(made(), wall))
         assert theorem.counts_force_steps
         assert theorem.counts_force_limit
         assert not any((theorem.counts_encoder, theorem.counts_delay, theorem.counts_current_rise))
@@ -116,8 +116,8 @@ def test_a_theorem_says_as_data_what_it_counts():
         ):
             assert said in theorem.reason(enough.replace(**more))
             assert not theorem.holds_on(enough.replace(**more))
-    limit = zw.rendering.stage.Surroundings(made(), zw.Wall(1000))
-    beyond = zw.rendering.stage.Surroundings(made(), zw.Wall("1000.0000001"))
+    limit = zw.rendering.rendering_law.LoopContext(made(), zw.Wall(1000))
+    beyond = zw.rendering.rendering_law.LoopContext(made(), zw.Wall("1000.0000001"))
     assert PassiveLeap().theorem(limit) is not None
     assert PassiveLeap().theorem(beyond) is None
     assert DualRate(samples=2, slope="1000.0000001").theorem(limit) is None

@@ -15,6 +15,7 @@ from strategies import toml_values
 import zwidth as zw
 from zwidth import rendering
 from zwidth.cli.main import main
+from zwidth.environment import Environment
 from zwidth.rendering import ESTIMATORS, LAWS
 from zwidth.specification.laws import build_law, with_laws
 from zwidth.specification.read import TABLES, read_tables
@@ -25,14 +26,16 @@ WALL = zw.Wall(400)
 TOUCH = ("--operator", "dowel", "--duration", "0.1")
 
 
-def read(text: str, folder: Path, *typed: str, motion: str = "linear") -> zw.Environment:
+def read(text: str, folder: Path, *typed: str, motion: str = "linear") -> Environment:
     """The wall behind the laws of a file with these tables, or of the command line."""
     (folder / "laws.toml").write_text(text, encoding="utf-8")
     table = read_tables([folder / "laws.toml"], TABLES).get("law")
     return with_laws(WALL, table, typed or None, motion)
 
 
-@pytest.mark.parametrize(("kinds", "base"), [(LAWS, rendering.Stage), (ESTIMATORS, rendering.Estimator)])
+@pytest.mark.parametrize(
+    ("kinds", "base"), [(LAWS, rendering.RenderingLaw), (ESTIMATORS, rendering.Estimator)]
+)
 def test_every_law_can_be_named(kinds, base):
     """Under its class's name in small letters, with all of its arguments."""
     public = [getattr(rendering, name) for name in rendering.__all__]

@@ -429,7 +429,9 @@ def test_the_closed_forms_are_worked_out_once(monkeypatch: pytest.MonkeyPatch) -
         return once(device, law, contact=contact)
 
     monkeypatch.setattr(sys.modules["zwidth.passivity.check"], "check_by_closed_forms", counted)
-    monkeypatch.setattr("zwidth.passivity.game.with_game", lambda device, law, verdict, progress: verdict)
+    monkeypatch.setattr(
+        "zwidth.passivity.gap.with_value_iteration", lambda device, law, verdict, progress: verdict
+    )
     device = catalogue.device("haptic-paddle")
     law = zw.Wall(stiffness=120, damping="0.2", velocity_filter=zw.rendering.Window(3))
     assert decided(Specification(device, law)).outcome == "passive in contact"

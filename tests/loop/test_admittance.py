@@ -191,7 +191,7 @@ PUSH = zw.operators.ConstantForce(1.0)
             lambda: zw.simulation.VirtualBody(1, integration="euler"),
             "integration is one of 'implicit', 'explicit'",
         ),
-        (lambda: run(body=zw.Wall(1)), "body is a zwidth.VirtualBody, got Wall"),
+        (lambda: run(body=zw.Wall(1)), "body is a zwidth.simulation.VirtualBody, got Wall"),
         (lambda: run(hand="finger"), "operator is a hand"),
         (lambda: run(hand=zw.operators.Finger()), "give mass=0"),
         (lambda: run(hand=zw.operators.PrescribedMotion([0, 1])), "prescribes the motion"),

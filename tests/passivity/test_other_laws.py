@@ -142,7 +142,7 @@ def test_laws_in_a_row():
     assert "covered by a wall" in covered.scope.law
     open_still = zw.check(PADDLE, zw.render(zw.Wall(770), SlewLimit(rate=1000)))
     assert open_still.outcome == "undecided"
-    assert open_still.worst_hand.outcome == "passive"
+    assert open_still.available_storage.outcome == "passive"
     assert "proved passive for hands of up to" in open_still.claim
 
 
@@ -173,5 +173,8 @@ def test_values_on_one_board_of_counts_say_nothing_of_counts_of_another_size():
     """What value iteration proves holds for the counts it was played with, and not for smaller ones."""
     slew = zw.render(zw.Wall(770), SlewLimit(rate=1000))
     step = PADDLE.exact("resolution")
-    assert zw.check(PADDLE.replace(coulomb_friction=zw.Interval("0.12", "0.13")), slew).worst_hand is not None
-    assert zw.check(PADDLE.replace(resolution=zw.Interval(step / 2, step)), slew).worst_hand is None
+    assert (
+        zw.check(PADDLE.replace(coulomb_friction=zw.Interval("0.12", "0.13")), slew).available_storage
+        is not None
+    )
+    assert zw.check(PADDLE.replace(resolution=zw.Interval(step / 2, step)), slew).available_storage is None

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from strategies import decimals
 
 import zwidth as zw
-from zwidth.passivity import real_hand as module
+from zwidth.passivity import finite_stiffness as module
 
 PADDLE = zw.catalogue.device("haptic-paddle")
 COARSE = PADDLE.replace(resolution=2.24e-3)

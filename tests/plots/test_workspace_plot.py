@@ -11,9 +11,10 @@ import pytest
 import zwidth as zw
 from zwidth import plots
 from zwidth.arms import PlanarChain, built_in
+from zwidth.passivity.workspace import Workspace
 
 
-def _space(name: str, stiffness: float) -> zw.Workspace:
+def _space(name: str, stiffness: float) -> Workspace:
     return zw.workspace(built_in(name, damping=0.003), zw.Wall(stiffness), rate=1000, points=16)
 
 
@@ -45,7 +46,7 @@ def test_a_limit_that_is_nowhere_is_drawn_too() -> None:
 def test_what_is_drawn_is_named() -> None:
     """Strokes and the line at 0 in words, each where it is; a colour bar that ends early says so; units."""
 
-    def words(space: zw.Workspace) -> str:
+    def words(space: Workspace) -> str:
         return " ".join(text.get_text() for text in plots.workspace_figure(space).axes[0].texts)
 
     limit = _space("haply-2diy", 100).data["largest_stiffness"]

@@ -12,7 +12,7 @@ from test_force_bounding import DEVICES, bounded
 import zwidth as zw
 from zwidth.rendering import ForceBounding
 from zwidth.rendering.energy.force_bounding import step
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 
 def exact_energy_in(paddle, positions, forces):
@@ -40,7 +40,7 @@ def test_nothing_comes_out_not_even_a_rounding(friction, size):
 def test_each_line_and_each_bound_is_below_the_exact_one(friction, size):
     """Random states of every size, one sample: E' at most what the lemma says, |f| at most what S pays."""
     paddle = device(friction=friction, resolution=size)
-    numbers = ForceBounding().numbers(Surroundings(paddle, zw.Wall(100)))
+    numbers = ForceBounding().numbers(LoopContext(paddle, zw.Wall(100)))
     p = np.array(numbers)
     rate, fc, size = 150, paddle.exact("coulomb_friction"), paddle.exact("resolution")
     rng = np.random.default_rng(8)

@@ -175,16 +175,16 @@ def test_a_row_of_laws_is_one_environment():
     """Laws are added behind; the text says all of them."""
     one = zw.render(zw.Wall(300), PassivityController())
     two = zw.render(one, PassivityController(largest_force=1))
-    assert len(two.stages) == 2
+    assert len(two.laws) == 2
     assert two.environment == zw.Wall(300)
     assert "at most 1 N" in two.describe()
     assert two.unilateral
 
 
-def undamped(stage):
+def undamped(link):
     """A touch on a device without damping."""
     device = zw.Device(mass=1, damping=0, coulomb_friction=0, resolution=0, sample_period=0.001)
-    return zw.simulate(device, zw.render(zw.Wall(9), stage), zw.operators.Finger(), 0.01)
+    return zw.simulate(device, zw.render(zw.Wall(9), link), zw.operators.Finger(), 0.01)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from scipy.signal import cont2discrete
 import zwidth as zw
 from zwidth.rendering import CrossingCorrection, Extrapolation, HalfSamplePrediction, PoleMatched
 from zwidth.rendering.prediction import half_sample
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 T = 0.009
 DEVICE = zw.Device(mass=0.31, damping=0.7, sample_period=T)
@@ -89,7 +89,7 @@ def test_at_the_first_sample_the_hand_is_taken_to_be_at_rest():
 def test_a_push_that_the_model_does_not_know():
     """At rest against d the place T/2 ahead errs by −⅜ d T²/M."""
     law = HalfSamplePrediction(mass="0.37", damping=0)
-    packed = np.array(law.numbers(Surroundings(DEVICE, zw.Wall(1))))
+    packed = np.array(law.numbers(LoopContext(DEVICE, zw.Wall(1))))
     ahead = half_sample.step(packed, 0, np.array([0.002, 1.0]), 0, 0.002, 2.9)
     assert ahead - 0.002 == pytest.approx(-3 / 8 * 2.9 * T**2 / 0.37, rel=1e-9)
 
@@ -108,14 +108,14 @@ def test_matched_poles_sample_by_sample(damping):
     """The gains are Ackermann's and act on the true state."""
     wall, law = zw.Wall(2300, damping), PoleMatched(**FINGER)
     gains = matched_by_numpy(2300, damping)
-    assert law.gains(Surroundings(DEVICE, wall)) == pytest.approx(gains, rel=1e-10)
+    assert law.gains(LoopContext(DEVICE, wall)) == pytest.approx(gains, rel=1e-10)
     assert_same(zw.render(wall, law), lambda state, _: gains @ state if state[0] > 0 else 0.0)
 
 
 def test_matched_poles_of_a_free_mass():
     """g_x = (2M/T²)(1 − cos ωT) and g_v = g_x T/2."""
     device = zw.Device(mass=0.31, damping=0, sample_period=T)
-    stiff, damp = PoleMatched().gains(Surroundings(device, zw.Wall(2300)))
+    stiff, damp = PoleMatched().gains(LoopContext(device, zw.Wall(2300)))
     assert stiff == pytest.approx(2 * 0.31 / T**2 * (1 - np.cos(np.sqrt(2300 / 0.31) * T)), rel=1e-10)
     assert damp == pytest.approx(stiff * T / 2, rel=1e-10)
 
@@ -276,7 +276,7 @@ def test_text():
 
 
 def numbers(law, environment, **device):
-    return law.numbers(Surroundings(DEVICE.replace(**device), environment))
+    return law.numbers(LoopContext(DEVICE.replace(**device), environment))
 
 
 @pytest.mark.parametrize(

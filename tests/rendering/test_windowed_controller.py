@@ -11,7 +11,7 @@ from tempting import FORCE, LENGTH, TIME, device, follow, same_in_other_units
 
 import zwidth as zw
 from zwidth.rendering import Hysteresis, PassivityController, WindowedController
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 DEVICE = device()
 OPTIONS = {
@@ -92,7 +92,7 @@ def test_what_the_spring_stores_is_never_forgotten():
 )
 def test_only_a_spring_from_the_surface_is_credited(environment, stored):
     """What relaxes, what is bent and what lies behind a coupling does not hold K x²/2 at x."""
-    assert WindowedController().numbers(Surroundings(DEVICE, environment))[3] == stored
+    assert WindowedController().numbers(LoopContext(DEVICE, environment))[3] == stored
 
 
 def test_a_clamped_amplifier_is_booked_as_it_was():

@@ -149,9 +149,11 @@ class _Plain:
         still, width = 0, 2 * self.reach + 1
         for k in range(self.memory):
             still += self.reach * width**k
-        return np.array([float(self.at(int(np.floor(v)), still, self.rested(v), np.array(v))) for v in x])
+        return np.array(
+            [float(self.at(int(np.floor(v)), still, self.initial_state(v), np.array(v))) for v in x]
+        )
 
-    def rested(self, x: float) -> float:
+    def initial_state(self, x: float) -> float:
         """What is remembered there."""
         return 0.0
 
@@ -194,7 +196,7 @@ class _Relaxing(_Plain):
         line = both[i] * (1 - t) + (both[i + 1] * t if t else 0.0)
         return np.interp(x - n, np.linspace(0, 1, self.value.shape[3]), line)
 
-    def rested(self, x: float) -> float:
+    def initial_state(self, x: float) -> float:
         n = int(np.floor(x))
         return 0.0 if self.law.get("resets") and n <= 0 else float(self.fed(n))
 

@@ -1,4 +1,4 @@
-"""A hand that tries many motions against any law, for laws that remember too much for the game.
+"""A hand that tries many motions against any law, for laws that remember too much for value iteration.
 
     gain = −∮ f_h dx      per round, once the law has settled to the motion
 

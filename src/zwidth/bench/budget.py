@@ -40,7 +40,7 @@ class Budget:
             raise Spent
 
 
-def budget_of(game: DynamicProgram, moves: float) -> Budget:
+def budget_of(program: DynamicProgram, moves: float) -> Budget:
     """For so many moves against one law.
 
     Raises
@@ -48,10 +48,10 @@ def budget_of(game: DynamicProgram, moves: float) -> Budget:
     InputError
         If not even one round is within them.
     """
-    width = 2 * game.domain.reach + 1
-    states = game.domain.cells * width ** (game.law.memory + game.losses.delay)
-    if game.law.relaxing is not None:
-        states *= game.domain.cells
+    width = 2 * program.domain.reach + 1
+    states = program.domain.cells * width ** (program.law.memory + program.losses.delay)
+    if program.law.relaxing is not None:
+        states *= program.domain.cells
     rounds = moves // (states * width * NODES)
     if rounds < 1:
         raise InputError(f"the grid of {states:,} states is too large to be iterated on here")

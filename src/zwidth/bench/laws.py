@@ -32,14 +32,14 @@ from zwidth.rendering import (
     PassivityController,
     PoleMatched,
     RateTerm,
-    Stage,
+    RenderingLaw,
     TickTime,
     VirtualCoupling,
     WindowedController,
     render,
 )
-from zwidth.rendering.rendered import stages_of
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendered import laws_of
+from zwidth.rendering.rendering_law import LoopContext
 
 Law = Callable[[Device, Wall], Environment]
 
@@ -65,7 +65,7 @@ def _coupled(device: Device, wall: Wall) -> Environment:
     return VirtualCoupling(stiffness=limit, damping=0, environment=wall)
 
 
-def _through(make: Callable[[Device, Wall], Stage]) -> Law:
+def _through(make: Callable[[Device, Wall], RenderingLaw]) -> Law:
     return lambda device, wall: render(wall, make(device, wall))
 
 
@@ -159,8 +159,8 @@ def standard_laws(device: Device, wall: Environment) -> dict[str, Environment]:
 def _suits(law: Environment, device: Device) -> bool:
     """Whether the device has all the numbers that a law is computed from."""
     try:
-        for stage in stages_of(law):
-            stage.numbers(Surroundings(device, law.met))
+        for link in laws_of(law):
+            link.numbers(LoopContext(device, law.met))
     except InputError:
         return False
     return True

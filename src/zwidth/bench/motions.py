@@ -6,7 +6,7 @@ rests at either end, and sinusoids inside and through the surface; those that ea
 a law should not give: to and fro over an edge before a leap, up within a count and out of it.
 The same over steps of the converter, and about the depth where the force limit is reached; small
 rounds at random beside edges and steps.  And those that are found against the wall alone, by proof
-and by the game of the worst hand.
+and by value iteration.
 
 Every length is one of the loop's own: a count, the depth of a converter step, that of the force
 limit, the way of the fastest hand in a sample.  So the same loop in other units meets the same hand.
@@ -33,7 +33,7 @@ from zwidth.passivity.storage.program import DynamicProgram, program_of
 from zwidth.passivity.witness.motion import Motion
 from zwidth.passivity.witness.witness import Witness
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.rendered import stages_of
+from zwidth.rendering.rendered import laws_of
 
 USUAL = Fraction(1, 10)
 """Part of the fastest speed below which a hand is tried first: about what a hand reaches, of 10 m/s."""
@@ -44,8 +44,8 @@ IDEAL_COUNT = Fraction(9876, 10**6)
 EDGE = 0.02
 """How far beside an edge of the encoder a hand turns round, in counts."""
 
-GAME = 2e9
-"""Moves that are looked at in each game against the wall alone."""
+MOVES = 2e9
+"""Moves that are looked at in each value iteration against the wall alone."""
 
 LONGEST_ROUND = 2000
 """Samples of a found motion that is tried as one round."""
@@ -137,7 +137,7 @@ def _stiffnesses(device: Device, environment: Environment) -> tuple[Fraction, ..
     if not isinstance(own, Exact) or own <= 0:
         return ()
     paid = 2 * device.exact("damping") / device.exact("sample_period")
-    softer = (paid,) if stages_of(environment) and 0 < paid < own.fraction else ()
+    softer = (paid,) if laws_of(environment) and 0 < paid < own.fraction else ()
     return (own.fraction, *softer)
 
 
@@ -279,7 +279,7 @@ def found_motions(device: Device, wall: Wall, fastest: RealLike) -> dict[str, Fl
     for speed in (*(part * USUAL * limit for part in (Fraction(1, 4), Fraction(1, 2), 1)), limit):
         cycle = _worst(device, wall, speed)
         if cycle is not None:
-            found[f"the worst hand against the wall alone, up to {float(speed):g} m/s"] = cycle
+            found[f"value iteration against the wall alone, up to {float(speed):g} m/s"] = cycle
     return {n: x for n, x in found.items() if len(x) <= LONGEST_ROUND and speed_of(x, period) <= limit}
 
 
@@ -302,13 +302,13 @@ def _round(motion: Motion) -> Floats:
 
 
 def _worst(device: Device, wall: Wall, speed: Fraction) -> Floats | None:
-    """The cycle of the worst hand on a board twice as deep as one sample's way; None where none gains."""
-    bounded = speed * Fraction(999, 1000)  # the game's moves may be a step longer
+    """The best cycle on a grid twice as deep as one sample's way; None where none gains."""
+    bounded = speed * Fraction(999, 1000)  # moves of the grid may be a step longer
     deep = 2 * bounded * device.exact("sample_period")
     try:
-        game = program_of(device, wall, deep, bounded)
-        assert isinstance(game, DynamicProgram)  # a wall is no row
-        told = budget_of(game, GAME)
+        program = program_of(device, wall, deep, bounded)
+        assert isinstance(program, DynamicProgram)  # a wall is no row
+        told = budget_of(program, MOVES)
         played = available_storage(
             device, wall, speed=bounded, penetration=deep, seconds=float("inf"), progress=told
         )

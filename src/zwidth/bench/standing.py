@@ -18,7 +18,7 @@ from typing import Literal
 import numpy as np
 
 from zwidth.bench.adversary import LONGEST, Attack, taken_out
-from zwidth.bench.game import by_the_game
+from zwidth.bench.iteration import by_value_iteration
 from zwidth.device.actuator import current_rise
 from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
@@ -28,8 +28,8 @@ from zwidth.passivity.other_laws import covering_wall
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
-from zwidth.rendering.rendered import stages_of
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendered import laws_of
+from zwidth.rendering.rendering_law import LoopContext
 from zwidth.rendering.theorem import half_a_step
 
 Status = Literal["passive", "theorem", "active", "undecided"]
@@ -83,7 +83,7 @@ def standing(device: Device, law: Environment, found: Attack) -> Standing:
         if isinstance(outcome, Standing):
             return outcome
         withheld += outcome
-    refuted, reason = by_the_game(device, law, found)
+    refuted, reason = by_value_iteration(device, law, found)
     status: Status = "active" if refuted else "undecided"
     kept_back = () if refuted else tuple(withheld)
     return Standing(status=status, reason=reason, scope=_scope(device, law), withheld=kept_back)
@@ -98,7 +98,7 @@ def _scope(device: Device, law: Environment) -> Scope:
 
 def _by_check(device: Device, law: Environment) -> Standing | list[str]:
     """The verdict on a law without a row, with steps and limit of the actuator counted."""
-    if stages_of(law):
+    if laws_of(law):
         return []
     verdict, why_not = _with_the_actuator(device, law)
     if verdict is not None:
@@ -144,11 +144,11 @@ def _by_bounding(device: Device, law: Environment) -> Standing | list[str]:
 
 def _by_a_theorem(device: Device, law: Environment) -> Standing | list[str]:
     """A proof on paper, where the device has nothing that it does not count."""
-    stages = stages_of(law)
-    if not stages:
+    chain = laws_of(law)
+    if not chain:
         return []
-    last = stages[-1]
-    theorem = last.theorem(Surroundings(device, law.met))
+    last = chain[-1]
+    theorem = last.theorem(LoopContext(device, law.met))
     if theorem is None:
         return []
     if not theorem.holds_on(device):

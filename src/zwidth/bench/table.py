@@ -34,7 +34,7 @@ COLUMNS = (
     Column("given out", "generated_energy", 1e3, "mJ"),
     Column("to a dowel", "dowel_energy", 1e3, "mJ"),
     Column("free air", "free_damping", 1.0, "N·s/m"),
-    Column("worst hand", "gain", 1e3, "mJ/round"),
+    Column("adversary", "gain", 1e3, "mJ/round"),
     Column("step", "step_time", 1e9, "ns"),
 )
 

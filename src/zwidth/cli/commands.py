@@ -21,7 +21,7 @@ from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
 
 if TYPE_CHECKING:
-    from zwidth.passivity.real_hand import RealHand
+    from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
     from zwidth.passivity.verdict import Verdict
     from zwidth.specification.read import Specification
     from zwidth.stability.active_hand import ToleratedActivity
@@ -95,9 +95,9 @@ def _loop(arguments: argparse.Namespace) -> Specification:
     return Specification(given.device, rendered)
 
 
-def _replayed(verdict: Verdict) -> RealHand:
-    from zwidth.cli.patience import warn_of_compiling
-    from zwidth.passivity.real_hand import replay  # the simulator takes its time
+def _replayed(verdict: Verdict) -> FiniteStiffnessReplay:
+    from zwidth.cli.compile_notice import warn_of_compiling
+    from zwidth.passivity.finite_stiffness import replay  # the simulator takes its time
 
     warn_of_compiling()
     return replay(verdict)
@@ -112,7 +112,7 @@ def _tolerated(loop: Specification, below: str | None) -> ToleratedActivity | No
     return tolerated_activity(loop.device, loop.environment, parse_number(below, "Hz", "active_below"))
 
 
-def _in_full(verdict: Verdict, **reports: RealHand | ToleratedActivity | None) -> str:
+def _in_full(verdict: Verdict, **reports: FiniteStiffnessReplay | ToleratedActivity | None) -> str:
     from zwidth.passivity.document import to_json
 
     given = {name: report.to_dict() for name, report in reports.items() if report is not None}

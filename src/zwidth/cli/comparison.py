@@ -58,7 +58,7 @@ def run_compare(arguments: argparse.Namespace) -> int:
     loop = specified(tables, overrides(arguments))
     own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     from zwidth.bench.laws import standard_laws
-    from zwidth.cli.patience import warn_of_compiling
+    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.traces import compare
 
     warn_of_compiling()

@@ -109,7 +109,7 @@ def run_identify(arguments: argparse.Namespace) -> int:
 
 
 def _found(arguments: argparse.Namespace, confidence: float) -> Result:
-    from zwidth.cli.patience import warn_of_compiling_the_estimates
+    from zwidth.cli.compile_notice import warn_of_compiling_the_estimates
     from zwidth.identification.logs import Log
     from zwidth.identification.recording import identify, log_from
     from zwidth.traces.progress import progress_bar

@@ -65,7 +65,7 @@ def run_limit(arguments: argparse.Namespace) -> int:
     loop = Specification(given.device, rendered)
     parameter = _parameter(arguments.parameter or "stiffness")
     options = _options(arguments, loop.device.motion)
-    from zwidth.cli.patience import warn_of_compiling_the_iteration
+    from zwidth.cli.compile_notice import warn_of_compiling_the_iteration
     from zwidth.traces import passive_limit
 
     warn_of_compiling_the_iteration()

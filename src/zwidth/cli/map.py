@@ -71,7 +71,7 @@ def configure_map(parser: argparse.ArgumentParser) -> None:
 
 def run_map(arguments: argparse.Namespace) -> int:
     """`zwidth map`: 0."""
-    from zwidth.cli.patience import warn_of_compiling_the_map
+    from zwidth.cli.compile_notice import warn_of_compiling_the_map
     from zwidth.maps import z_width
 
     plot, proof = targets(arguments.plot, arguments.certify, arguments.force, "--certify")

@@ -26,7 +26,7 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, shown
 
 if TYPE_CHECKING:
-    from zwidth.passivity.real_hand import RealHand
+    from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
     from zwidth.stability.active_hand import ToleratedActivity
 
 _LONGEST_BAR = 34
@@ -38,7 +38,9 @@ _ORDER = (
 
 
 def print_verdict(
-    verdict: Verdict, real_hand: RealHand | None = None, active_hand: ToleratedActivity | None = None
+    verdict: Verdict,
+    real_hand: FiniteStiffnessReplay | None = None,
+    active_hand: ToleratedActivity | None = None,
 ) -> None:
     """Print the report on standard output, with what was asked for of real and of active hands."""
     fancy = encodes(PICTURE)

@@ -25,7 +25,7 @@ INTERRUPTED = 130
 
 def configure_simulate(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth simulate`."""
-    from zwidth.cli.touch import operator_parameters, simulation_parameters
+    from zwidth.cli.simulation_tables import operator_parameters, simulation_parameters
 
     parser.usage = (
         "%(prog)s [SOURCE ...] --operator TYPE --duration TIME [--law NAMES] [--PARAMETER VALUE ...] "
@@ -49,7 +49,7 @@ def configure_simulate(parser: argparse.ArgumentParser) -> None:
 
 def run_simulate(arguments: argparse.Namespace) -> int:
     """`zwidth simulate`: 0, or 130 after Ctrl-C."""
-    from zwidth.cli.touch import build_touch, operator_parameters, simulation_parameters
+    from zwidth.cli.simulation_tables import build_touch, operator_parameters, simulation_parameters
 
     plot, sound, save = _targets(arguments)
     tables = read_tables(arguments.sources, TABLES)
@@ -61,7 +61,7 @@ def run_simulate(arguments: argparse.Namespace) -> int:
     duration = touch.duration
     if duration is None:
         duration = _own_duration(touch.operator, float(loop.device.exact("sample_period")))
-    from zwidth.cli.patience import warn_of_compiling
+    from zwidth.cli.compile_notice import warn_of_compiling
     from zwidth.traces import save_sound, save_trace, simulate
 
     warn_of_compiling()

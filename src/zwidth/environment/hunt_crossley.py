@@ -118,7 +118,7 @@ class HuntCrossley(Environment):
         """
         raise InputError(
             "a Hunt–Crossley contact has no H(z): the law is not linear; "
-            "zwidth.check, zwidth.simulate and zwidth.passive_limit take it"
+            "zwidth.check, zwidth.simulate and zwidth.limit take it"
         )
 
     def describe(self, motion: str = "linear") -> str:

@@ -177,7 +177,7 @@ class NonlinearSpring(Environment):
         """
         raise InputError(
             "a nonlinear spring has no H(z): the law is not linear; "
-            "zwidth.check, zwidth.simulate and zwidth.passive_limit take it"
+            "zwidth.check, zwidth.simulate and zwidth.limit take it"
         )
 
     def describe(self, motion: str = "linear") -> str:

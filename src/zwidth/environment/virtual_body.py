@@ -50,7 +50,7 @@ class VirtualBody(Parametric):
         kept=Exact,
         bound="> 0",
         why="a body without mass follows every jump of the force; a light one is unstable against a stiff "
-        "hand, see zwidth.stable_virtual_masses",
+        "hand, see zwidth.stability.stable_virtual_masses",
     )
     damping: Certain = parameter("virtual_damping", 0, kept=Exact, bound="≥ 0", why=_GIVES_OUT)
     stiffness: Certain = parameter("stiffness", 0, kept=Exact, bound="≥ 0", why=_GIVES_OUT)

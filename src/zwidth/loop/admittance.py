@@ -28,7 +28,13 @@ from zwidth.operator.operator import LinearHand, Operator
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import one_of, read_number
-from zwidth.rendering.energy.parallel_controller import ENERGY, SLOTS, ParallelController, observer_only, step
+from zwidth.rendering.energy.parallel_controller import (
+    ENERGY,
+    STATE_SIZE,
+    ParallelController,
+    observer_only,
+    step,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -120,7 +126,7 @@ def simulate_admittance(
         why="the display works by a clock",
     )
     if not isinstance(body, VirtualBody):
-        raise InputError(f"body is a zwidth.VirtualBody, got {type(body).__name__}")
+        raise InputError(f"body is a zwidth.simulation.VirtualBody, got {type(body).__name__}")
     if controller is not None and not isinstance(controller, ParallelController):
         raise InputError(
             f"controller is a zwidth.rendering.ParallelController, got {type(controller).__name__}"
@@ -141,7 +147,7 @@ def simulate_admittance(
         anchor=np.full(samples + 1, start) if signals.anchor is None else signals.anchor,
     )
     record = np.zeros((R_OBSERVED + 1, samples + 1))
-    done = _run(samples, float(period), float(mean), start, *loop, np.zeros(SLOTS), record)
+    done = _run(samples, float(period), float(mean), start, *loop, np.zeros(STATE_SIZE), record)
     attributes: dict[str, Any] = {
         "body": body.describe(),
         "operator": operator.describe(),

@@ -13,12 +13,12 @@ from zwidth.compiled import Array, compiled
 from zwidth.loop.carry import carry
 from zwidth.loop.law import (
     BILATERAL,
+    CHAIN,
     GATE,
     LIMIT,
     PHASE,
     REMEMBERED,
     RESOLUTION,
-    STAGES,
     STEP,
     measured,
     rendered_force,
@@ -240,7 +240,7 @@ def commanded(state: Array, law: Array, memory: Array, reading: float) -> float:
     if law[LIMIT] > 0.0 and abs(f) > law[LIMIT]:
         state[SATURATED] += 1.0
         f = law[LIMIT] if f > 0.0 else -law[LIMIT]
-    if law[STAGES] > 0.0:
+    if law[CHAIN] > 0.0:
         memory[int(law[REMEMBERED])] = f
     return f
 

@@ -27,7 +27,7 @@ BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 # b_0 … b_n, a_1 … a_n; or, where there are points and no section, their positions and their forces; or K, n
 # and λ/T of a contact, which remembers the last reading.
 # Behind all that the laws in a row, see `rendering.chain`: how many, where they begin, where their memory.
-GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS, POINTS, CONTACT, STAGES, ROW, REMEMBERED = range(12)
+GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS, POINTS, CONTACT, CHAIN, ROW, REMEMBERED = range(12)
 HEADER = 12
 
 
@@ -101,9 +101,9 @@ def law_force(law: Array, memory: Array, reading: float) -> float:
 @compiled
 def rendered_force(law: Array, memory: Array, reading: float) -> float:
     """The same through the laws that render it, if there are any."""
-    stages = int(law[STAGES])
-    if stages == 0:
+    chain = int(law[CHAIN])
+    if chain == 0:
         return law_force(law, memory, reading)
     row, slot = int(law[ROW]), int(law[REMEMBERED])
-    f = law_force(law, memory, before(law, row, stages, memory, slot, reading))
-    return after(law, row, stages, memory, slot, reading, f)
+    f = law_force(law, memory, before(law, row, chain, memory, slot, reading))
+    return after(law, row, chain, memory, slot, reading, f)

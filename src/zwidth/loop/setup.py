@@ -22,8 +22,8 @@ from zwidth.loop.start import rest_position
 from zwidth.loop.timing import Timing
 from zwidth.operator.operator import Operator, Signals
 from zwidth.quantity.exact import Exact, RealLike
-from zwidth.rendering.rendered import stages_of
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendered import laws_of
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -69,7 +69,7 @@ class Setup:
         memoryless = self.law[laws.SECTIONS] == 1 and self.law[laws.HEADER] == 0
         linear = self.law[laws.CLAMPED] == 0
         clock = f.offset == 0.0 and f.points == 1 and not f.arrivals.size and not f.missed.size
-        memoryless &= self.law[laws.STAGES] == 0
+        memoryless &= self.law[laws.CHAIN] == 0
         return bool(free and memoryless and linear and clock and f.signals.position is None)
 
     @property
@@ -126,13 +126,13 @@ def prepare(
     state[VELOCITY] = _number(initial_velocity, "initial_velocity")
     state[DIRECTION] = np.sign(state[VELOCITY])
     actuation = frame.actuation
-    met, row = law.met, stages_of(law)
+    met, row = law.met, laws_of(law)
     clamped = float(met.clamped and not met.spring)  # a spring pushes wherever it acts
     header = [GATES[met.surface], frame.resolution, phase, actuation.step, actuation.limit, clamped]
     kinds, body = _body(met, frame.period)
     reading = laws.measured(state[POSITION], frame.resolution, phase)
     memory = at_rest(np.array([*header, *kinds, 0.0, 0.0, 0.0, *body]), reading)
-    numbers, remembered = _row(row, Surroundings(device, met), reading)
+    numbers, remembered = _row(row, LoopContext(device, met), reading)
     begins = [float(len(row)), float(laws.HEADER + len(body)), float(len(memory))]
     packed = np.array([*header, *kinds, *begins, *body, *numbers])
     return Setup(
@@ -279,15 +279,15 @@ def _body(law: Environment, period: Fraction) -> tuple[list[float], list[float]]
 
 
 def _row(
-    stages: tuple[Stage, ...], surroundings: Surroundings, reading: float
+    chain: tuple[RenderingLaw, ...], context: LoopContext, reading: float
 ) -> tuple[list[float], list[float]]:
     """The laws that render, packed as `rendering.chain` reads them, and what they remember at rest."""
     packed: list[float] = []
-    remembered = [0.0] if stages else []  # the force that was applied last
-    for stage in stages:
-        numbers = stage.numbers(surroundings)
-        packed += [stage.code, float(len(numbers)), float(stage.slots), *numbers]
-        remembered += stage.rested(reading)
+    remembered = [0.0] if chain else []  # the force that was applied last
+    for link in chain:
+        numbers = link.numbers(context)
+        packed += [link.code, float(len(numbers)), float(link.state_size), *numbers]
+        remembered += link.initial_state(reading)
     return packed, remembered
 
 
@@ -307,9 +307,9 @@ def _section(environment: Environment, period: Fraction) -> list[float]:
 
 def resting_memory(setup: Setup, reading: float) -> Array:
     """What the law of a setup remembers after the hand has been at a reading for ever."""
-    row = stages_of(setup.environment)
-    slots = [number for stage in row for number in stage.rested(reading)]
-    return np.array([*at_rest(setup.law, reading), *([0.0] if row else []), *slots])
+    row = laws_of(setup.environment)
+    remembered = [number for link in row for number in link.initial_state(reading)]
+    return np.array([*at_rest(setup.law, reading), *([0.0] if row else []), *remembered])
 
 
 def at_rest(law: Array, reading: float) -> Array:
@@ -318,7 +318,7 @@ def at_rest(law: Array, reading: float) -> Array:
     if law[laws.CONTACT] > 0.0:
         return np.array([reading])
     x = max(reading, 0.0) if gate == laws.PENETRATION else reading
-    slots: list[float] = []
+    remembered: list[float] = []
     for _ in range(int(law[laws.SECTIONS])):
         order = int(law[at])
         b, a = law[at + 1 : at + 2 + order], np.concatenate(([1.0], law[at + 2 + order : at + 2 + 2 * order]))
@@ -329,9 +329,9 @@ def at_rest(law: Array, reading: float) -> Array:
         for i in range(order, 0, -1):
             later += float(b[i]) * x - float(a[i]) * y
             own.append(later if gain != 0.0 else 0.0)
-        slots += reversed(own)
+        remembered += reversed(own)
         at += 2 * order + 2
-    return np.array(slots or [0.0])
+    return np.array(remembered or [0.0])
 
 
 def whole_samples(duration: RealLike, period: Fraction) -> int:
@@ -400,7 +400,7 @@ def _clock(
     if timing is None:
         return regular, np.array([step]), np.empty((2, 0)), _NONE
     if not isinstance(timing, Timing):
-        raise InputError(f"timing is a zwidth.Timing, got {type(timing).__name__}")
+        raise InputError(f"timing is a zwidth.simulation.Timing, got {type(timing).__name__}")
     late, missed = timing.late(samples, step), timing.skipped(samples)
     if not late.any():
         return regular, np.array([step]), np.empty((2, 0)), missed

@@ -25,7 +25,7 @@ import numpy as np
 from zwidth.environment.environment import Environment, PowerLaw
 from zwidth.loop.law import measured
 from zwidth.quantity.exact import Exact
-from zwidth.rendering.rendered import stages_of
+from zwidth.rendering.rendered import laws_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -132,7 +132,7 @@ def held_at_start(at: Start, deepest: float) -> Held:
     if met.unilateral and at.reading <= 0.0:
         return Held(stored=at.plant.coulomb * max(at.beyond, 0.0))
     found = _of_law(at, met, deepest)
-    if found.force and stages_of(at.law):
+    if found.force and laws_of(at.law):
         return Held(stored=None, unknown=IN_A_ROW)
     if found.force and (at.actuation.lag or at.actuation.slew):
         return Held(stored=None, unknown=ON_THE_WAY)

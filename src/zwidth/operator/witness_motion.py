@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class WitnessMotion(Operator):
-    """``x(kT) = x_k`` of a witness: the motion that `check` or `worst_hand` found to take energy out.
+    """``x(kT) = x_k`` of a witness: the motion that `check` or `available_storage` found to take energy out.
 
     After its end the hand stays where it is; of a longer motion the touch sees the beginning.
 

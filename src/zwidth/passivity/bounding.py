@@ -25,8 +25,8 @@ from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.wording import if_friction_goes_on
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
 from zwidth.quantity.text import exact_text
-from zwidth.rendering.rendered import stages_of
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendered import laws_of
+from zwidth.rendering.rendering_law import LoopContext
 
 ROUNDOFF = Fraction(1, 2**53)
 """u: relative error of one operation on doubles, at most."""
@@ -99,8 +99,8 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
 
 def is_bounded(environment: Environment) -> bool:
     """True for a row of laws with force bounding at its end."""
-    stages = stages_of(environment)
-    return bool(stages) and stages[-1].bounds_the_force
+    chain = laws_of(environment)
+    return bool(chain) and chain[-1].bounds_the_force
 
 
 def _numbers(device: Device, law: Environment) -> dict[str, Fraction] | None:
@@ -109,7 +109,7 @@ def _numbers(device: Device, law: Environment) -> dict[str, Fraction] | None:
         return None
     from zwidth.rendering.energy.force_bounding import HAIR  # numba takes its time
 
-    credit, friction, count, half_step, _ = stages_of(law)[-1].numbers(Surroundings(device, law.met))
+    credit, friction, count, half_step, _ = laws_of(law)[-1].numbers(LoopContext(device, law.met))
     doubles = {"credit": credit, "friction": friction, "count": count, "half_step": half_step, "hair": HAIR}
     return {name: Fraction(value) for name, value in doubles.items()}
 

@@ -20,7 +20,7 @@ from zwidth.passivity.certificate import Certificate, certify, certify_delays
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
 from zwidth.passivity.found import Finding
-from zwidth.passivity.game import has_gap, with_game
+from zwidth.passivity.gap import has_gap, with_value_iteration
 from zwidth.passivity.linear.delay_interval import prove_delays
 from zwidth.passivity.linear.linear import LinearProof, LinearRefutation, decide_linear
 from zwidth.passivity.linear.loop import HIGH_DEGREE, linear_loop
@@ -77,7 +77,7 @@ def check(
     (Abbott & Okamura 2005).  Equality counts as passive.  A damped wall is
     covered with contact made and broken where b ≥ (2d + 1) K T/2 + |B| Σ|w_j| and
     f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.  Where these conditions leave a gap
-    values are iterated as in `worst_hand`, for some seconds at most.
+    values are iterated as in `available_storage`, for some seconds at most.
 
     Laws without H(z) are decided too: nonlinear springs by their slopes, laws in a row by the force bounding
     that ends them or a wall that covers them, all by value iteration; `decided_by` says which.
@@ -121,7 +121,7 @@ def check(
     verdict = check_by_closed_forms(device, law, contact=contact)
     if asked == "kept" or not has_gap(device, law, verdict):
         return verdict
-    return with_game(device, law, verdict, progress)
+    return with_value_iteration(device, law, verdict, progress)
 
 
 def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:
@@ -140,7 +140,7 @@ def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:
 def check_by_closed_forms(
     device: Device, environment: Environment | Any, *, contact: str = "made and broken"
 ) -> LinearVerdict:
-    """`check` without the game: exact, in milliseconds, of every hand."""
+    """`check` without value iteration: exact, in milliseconds, of every hand."""
     asked, law = as_contact(contact), _as_law(device, environment)
     corners = worst_corners(device, law)
     _require_few(corners)

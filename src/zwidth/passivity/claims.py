@@ -63,12 +63,12 @@ def decided_by(verdict: Found) -> str:
         return "nothing"
     if verdict.violation is not None:
         return "the linear criterion" if hasattr(verdict, "decision") else "the ends of the spring"
-    return "a motion" if verdict.worst_hand is None else "a motion found by value iteration"
+    return "a motion" if verdict.available_storage is None else "a motion found by value iteration"
 
 
 def _by_bounded_hands(verdict: Found) -> Iterator[str]:
     """What is proved of hands within bounds, contact made and broken."""
-    found = verdict.worst_hand
+    found = verdict.available_storage
     if found is not None and found.outcome == "passive":
         hands = describe_hands(found.scope.hands, found.scope.motion)
         yield f"Contact made and broken: proved passive for {hands}."

@@ -32,7 +32,7 @@ from zwidth.passivity.linear.loop import LinearLoop, linear_loop
 from zwidth.passivity.linear.multiplier_contact import MultiplierLaw, multiplier_law
 from zwidth.passivity.linear.one_norm import NormBound, bound_one_norm
 from zwidth.passivity.linear.relaxing_contact import RelaxingLaw, relaxing_law
-from zwidth.passivity.witness.straddle import best_waits
+from zwidth.passivity.witness.edge_crossing import best_waits
 from zwidth.passivity.witness.witness import Setting
 
 Kind = Literal["spring", "contact", "relaxing contact", "multiplier contact", "linear", "quantized"]

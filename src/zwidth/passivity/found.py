@@ -48,7 +48,7 @@ class Found(PassivityAnswer):
     certificate: Certificate | None = None
     violation: Violation | EndlessPull | None = None
     motion: Witness | Gain | None = None
-    worst_hand: AvailableStorage | None = None
+    available_storage: AvailableStorage | None = None
     finding: Finding = "open"
     at_limit: bool = False
     theorem: str = ""

@@ -18,14 +18,14 @@ from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.wall import Wall, wall_of
 from zwidth.errors import InputError
-from zwidth.passivity import game
+from zwidth.passivity import gap
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.found import Need
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
-from zwidth.rendering.rendered import stages_of
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendered import laws_of
+from zwidth.rendering.rendering_law import LoopContext
 
 _ACTUATOR = ("force_limit", "force_resolution", "motor_inductance", "supply_voltage", "current_limit")
 """What a device states of its actuator."""
@@ -62,14 +62,14 @@ def check_other(
         verdict = _spring(worst, law, asked, progress)
     elif law.power_law is not None:
         verdict = _by_values(Verdict("undecided", asked, worst, law), progress)
-    elif stages_of(law):
+    elif laws_of(law):
         verdict = _row(worst, law, asked, closed, progress)
     else:
         raise InputError(f"no road is known to a verdict on {law.describe(device.motion)}")
     if verdict.outcome == "active" and not device.is_certain:  # at the worst: more friction may hold it
         return replace(verdict, outcome="undecided", scope=asked, finding="depends on values")
     if isinstance(device.resolution, Interval):  # values were iterated on counts of one size
-        return replace(verdict, worst_hand=None)
+        return replace(verdict, available_storage=None)
     return verdict
 
 
@@ -129,12 +129,12 @@ def _row(
 
 def covering_wall(device: Device, law: Environment) -> Wall | None:
     """A wall whose proof, for |f − K u| ≤ B |v|, is one of a wall with laws that add no more than that."""
-    stages, wall, total = stages_of(law), wall_of(law.met), Fraction(0)
-    if not stages or wall is None or wall.damping or wall.clamped:
+    chain, wall, total = laws_of(law), wall_of(law.met), Fraction(0)
+    if not chain or wall is None or wall.damping or wall.clamped:
         return None
-    for n, stage in enumerate(stages):
+    for n, link in enumerate(chain):
         alone = n == 0 and isinstance(wall.stiffness, Exact)
-        bound = stage.most_damping(device, wall.stiffness if alone else None)  # type: ignore[arg-type]
+        bound = link.most_damping(device, wall.stiffness if alone else None)  # type: ignore[arg-type]
         if bound is None:
             return None
         total += bound
@@ -144,7 +144,7 @@ def covering_wall(device: Device, law: Environment) -> Wall | None:
 def _on_paper(verdict: Verdict) -> Verdict | None:
     """The theorem of the last law in the row, if it has one for this device."""
     law = verdict.environment
-    theorem = stages_of(law)[-1].theorem(Surroundings(verdict.device, law.met))
+    theorem = laws_of(law)[-1].theorem(LoopContext(verdict.device, law.met))
     ideal = verdict.device.replace(**dict.fromkeys(_ACTUATOR))  # the scope says that the actuator is
     if theorem is None or not theorem.holds_on(ideal):
         return None
@@ -157,10 +157,10 @@ def _by_values(verdict: Verdict, progress: Progress | None) -> Verdict:
 
     try:
         device, law = verdict.device, verdict.environment
-        found = available_storage(device, law, seconds=game.SECONDS, progress=progress)
+        found = available_storage(device, law, seconds=gap.SECONDS, progress=progress)
     except InputError:  # an ideal encoder, or a law that remembers too much
         return verdict
     if found.witness is not None:
         scope = verdict.scope.replace(contact=found.scope.contact)
-        return replace(verdict, outcome="active", scope=scope, motion=found.witness, worst_hand=found)
-    return verdict if found.outcome == "undecided" else replace(verdict, worst_hand=found)
+        return replace(verdict, outcome="active", scope=scope, motion=found.witness, available_storage=found)
+    return verdict if found.outcome == "undecided" else replace(verdict, available_storage=found)

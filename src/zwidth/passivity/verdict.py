@@ -43,8 +43,8 @@ class Verdict(Found):
         of an interval.  None for a loop that is active by its encoder, or by contact made and broken.
     motion
         The motion, where it was needed to decide; see `witness`.
-    worst_hand
-        What the game of the worst hand adds, where the closed forms leave a gap: a motion,
+    available_storage
+        What value iteration adds, where the closed forms leave a gap: a motion,
         then also the `witness`; or a proof for hands within bounds.
     finding
         Why it is undecided.
@@ -83,14 +83,14 @@ class Verdict(Found):
 
     def evidence(self) -> dict[str, Any]:
         """Proofs and motions as plain data; of bounded hands what is said, the proof only if saved."""
-        hand = {} if self.worst_hand is None else {"worst_hand": self.worst_hand.stated()}
+        hand = {} if self.available_storage is None else {"worst_hand": self.available_storage.stated()}
         return {**super().evidence(), **hand}
 
     def save(self, path: str | Path, reports: Mapping[str, Any] | None = None) -> None:
         """Write verdict and evidence as JSON for `zwidth verify`, and `reports` under their names."""
         document = {**self.to_dict(), **(reports or {})}
-        if self.worst_hand is not None and self.witness is None:
-            document["worst_hand"] = self.worst_hand.to_dict()
+        if self.available_storage is not None and self.witness is None:
+            document["worst_hand"] = self.available_storage.to_dict()
         save_json(path, document)
 
     def __repr__(self) -> str:

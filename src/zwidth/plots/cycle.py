@@ -33,7 +33,7 @@ def cycle(gain: Gain) -> Figure:
     Parameters
     ----------
     gain
-        `zwidth.worst_hand(…).witness`.
+        `zwidth.available_storage(…).witness`.
     """
     figure = new_figure(6.4, 5.0)
     draw_cycle(list(figure.subplots(3, 1, sharex=True)), gain)

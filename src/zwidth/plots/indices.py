@@ -32,7 +32,7 @@ def indices(found: PassivityIndices) -> Figure:
     Parameters
     ----------
     found
-        What `zwidth.passivity_indices` returned.
+        What `zwidth.ports.passivity_indices` returned.
     """
     figure = new_figure(8.6, 3.6)
     left, right = figure.subplots(1, 2)

@@ -36,7 +36,7 @@ def laws_figure(comparison: Any) -> Figure:
     Parameters
     ----------
     comparison
-        A `zwidth.LawComparison`, what `zwidth.compare` gives.
+        A `zwidth.bench.LawComparison`, what `zwidth.compare` gives.
     """
     scores = comparison.scores
     names = [str(name) for name in scores["law"].values]

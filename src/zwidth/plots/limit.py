@@ -31,7 +31,7 @@ def limit_figure(bracket: Bracket) -> Figure:
     Parameters
     ----------
     bracket
-        What `zwidth.passive_limit` returned.
+        What `zwidth.limit` returned.
 
     Raises
     ------

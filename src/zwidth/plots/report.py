@@ -60,7 +60,7 @@ def _panels(verdict: Verdict) -> list[_Draw]:
         panels += [_criterion, _plane, _budget] if has_place else [_criterion, _budget]
     if verdict.witness is not None:
         panels.append(_witness)
-    elif verdict.worst_hand is not None and verdict.worst_hand.storage is not None:
+    elif verdict.available_storage is not None and verdict.available_storage.storage is not None:
         panels.append(_storage)
     return panels
 
@@ -94,6 +94,6 @@ def _witness(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
 
 
 def _storage(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
-    assert verdict.worst_hand is not None
-    assert verdict.worst_hand.storage is not None
-    draw_storage(figure.add_subplot(place), verdict.worst_hand.storage)
+    assert verdict.available_storage is not None
+    assert verdict.available_storage.storage is not None
+    draw_storage(figure.add_subplot(place), verdict.available_storage.storage)

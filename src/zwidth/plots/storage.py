@@ -36,7 +36,7 @@ def storage(found: AvailableStorage) -> Figure:
     Parameters
     ----------
     found
-        What `zwidth.worst_hand` returned.
+        What `zwidth.available_storage` returned.
 
     Raises
     ------

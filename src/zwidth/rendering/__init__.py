@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from zwidth.rendering.prediction.pole_matched import PoleMatched as PoleMatched
     from zwidth.rendering.rendered import Rendered as Rendered
     from zwidth.rendering.rendered import render as render
-    from zwidth.rendering.stage import Stage as Stage
+    from zwidth.rendering.rendering_law import RenderingLaw as RenderingLaw
     from zwidth.rendering.velocity.adaptive_window import AdaptiveWindow as AdaptiveWindow
     from zwidth.rendering.velocity.estimator import Estimator as Estimator
     from zwidth.rendering.velocity.kalman import Kalman as Kalman
@@ -149,7 +149,7 @@ _LATER = {kind.class_name: kind.module for kind in (*LAWS.values(), *ESTIMATORS.
     "Estimator": "rendering.velocity.estimator",
     "ParallelController": "rendering.energy.parallel_controller",
     "Rendered": "rendering.rendered",
-    "Stage": "rendering.stage",
+    "RenderingLaw": "rendering.rendering_law",
     "render": "rendering.rendered",
 }
 """Where they are, until they are first used: the compiler of their steps takes its time to load."""

@@ -1,8 +1,8 @@
 """The laws in a row, as the loop runs them.
 
 Packed behind the numbers of the environment, for each law: its code, how many numbers and
-how many slots it has, its numbers.  In the memory: the force that was applied last, then
-the slots of each law.  Codes from 30 and below 35 change the reading that the environment
+how many numbers it remembers, its numbers.  In the memory: the force that was applied last, then
+the numbers that each law remembers.  Codes from 30 and below 35 change the reading that the environment
 is given, the others the force that it gives.
 """
 
@@ -38,13 +38,13 @@ def before(law: Array, at: int, count: int, memory: Array, slot: int, reading: f
     applied = memory[slot]
     slot += 1
     for _ in range(count):
-        code, size, slots = law[at], int(law[at + 1]), int(law[at + 2])
+        code, size, remembered = law[at], int(law[at + 1]), int(law[at + 2])
         if code == extrapolation.EXTRAPOLATION:
             reading = extrapolation.step(law, at + 3, memory, slot, reading)
         elif code == half_sample.HALF_SAMPLE:
             reading = half_sample.step(law, at + 3, memory, slot, reading, applied)
         at += 3 + size
-        slot += slots
+        slot += remembered
     return reading
 
 
@@ -54,7 +54,7 @@ def after(law: Array, at: int, count: int, memory: Array, slot: int, reading: fl
     applied = memory[slot]
     slot += 1
     for _ in range(count):
-        code, size, slots = law[at], int(law[at + 1]), int(law[at + 2])
+        code, size, remembered = law[at], int(law[at + 1]), int(law[at + 2])
         if code == passivity_controller.PASSIVITY_CONTROLLER:
             force = passivity_controller.step(law, at + 3, memory, slot, reading, force, applied)
         elif code == windowed_controller.WINDOWED_CONTROLLER:
@@ -92,5 +92,5 @@ def after(law: Array, at: int, count: int, memory: Array, slot: int, reading: fl
         elif code == held.HELD:
             force = held.step(law, at + 3, memory, slot, reading, force, applied)
         at += 3 + size
-        slot += slots
+        slot += remembered
     return force

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, Interval
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 
-def given_or_known(given: Exact | None, at: Surroundings, key: str, parameter: str) -> float:
+def given_or_known(given: Exact | None, at: LoopContext, key: str, parameter: str) -> float:
     """A parameter of a law, or the device's `key` in its place.
 
     Raises
@@ -20,7 +20,7 @@ def given_or_known(given: Exact | None, at: Surroundings, key: str, parameter: s
     return known(at, key, f"{parameter} was not given and is otherwise the device's {key}")
 
 
-def known(at: Surroundings, key: str, why: str) -> float:
+def known(at: LoopContext, key: str, why: str) -> float:
     """A number of the device.
 
     Raises
@@ -36,7 +36,7 @@ def known(at: Surroundings, key: str, why: str) -> float:
     return float(value)
 
 
-def stiffness(at: Surroundings, why: str) -> float:
+def stiffness(at: LoopContext, why: str) -> float:
     """K of the environment [N/m; N·m/rad].
 
     Raises
@@ -51,7 +51,7 @@ def stiffness(at: Surroundings, why: str) -> float:
     return at.stiffness
 
 
-def surface(at: Surroundings, law: str) -> None:
+def surface(at: LoopContext, law: str) -> None:
     """Nothing, where the environment can be entered.
 
     Raises

@@ -9,7 +9,7 @@ from typing import Any
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import PLAIN, part
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 
 def count(name: str, value: RealLike, why: str) -> int:
@@ -36,7 +36,7 @@ def updated_every() -> Any:
     )
 
 
-def damping_per_sample(at: Surroundings, law: str) -> float:
+def damping_per_sample(at: LoopContext, law: str) -> float:
     """b/T, rounded down: what the device takes per squared move of one sample, at least [N/m; N·m/rad].
 
     Raises
@@ -53,7 +53,7 @@ def damping_per_sample(at: Surroundings, law: str) -> float:
     return below(damping / at.device.exact("sample_period"))
 
 
-def half_step(at: Surroundings) -> float:
+def half_step(at: LoopContext) -> float:
     """What the device's converter can add to a force at most, ΔF/2; 0 where its step is unknown [N; N·m]."""
     step = at.device.force_resolution
     return 0.0 if step is None else above(at.device.exact("force_resolution")) / 2

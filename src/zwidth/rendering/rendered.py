@@ -11,19 +11,19 @@ from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.quantity.parameter import Reads, part
-from zwidth.rendering.stage import Stage
+from zwidth.rendering.rendering_law import RenderingLaw
 
 
-def _stages(given: Iterable[Any], name: str) -> tuple[Stage, ...]:
-    stages = tuple(given)
-    if not stages:
+def _laws(given: Iterable[Any], name: str) -> tuple[RenderingLaw, ...]:
+    laws = tuple(given)
+    if not laws:
         raise InputError("no law was given: an environment alone is simulated as it is")
-    for stage in stages:
-        if not isinstance(stage, Stage):
+    for law in laws:
+        if not isinstance(law, RenderingLaw):
             raise InputError(
-                f"a law is one of zwidth.rendering, such as PassivityController(), got {type(stage).__name__}"
+                f"a law is one of zwidth.rendering, such as PassivityController(), got {type(law).__name__}"
             )
-    return stages
+    return laws
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Rendered(Environment):
     ----------
     environment
         What the hand meets: an `Environment`, or a discrete system of python-control or scipy.signal.
-    stages
+    laws
         The laws, from the environment to the actuator.
 
     Raises
@@ -46,15 +46,15 @@ class Rendered(Environment):
     environment: Reads[Environment, Any] = part(
         "environment", lambda given, _: as_environment(given), meaning="what the hand meets"
     )
-    stages: tuple[Stage, ...] = part("laws", _stages, meaning="from the environment to the actuator")
+    laws: tuple[RenderingLaw, ...] = part("laws", _laws, meaning="from the environment to the actuator")
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        inner, stages = self.environment, self.stages
+        inner, laws = self.environment, self.laws
         while isinstance(inner, Rendered):
-            stages = (*inner.stages, *stages)
+            laws = (*inner.laws, *laws)
             inner = inner.environment
-        self._keep(environment=inner, stages=stages)
+        self._keep(environment=inner, laws=laws)
 
     @property
     def unilateral(self) -> bool:
@@ -85,7 +85,7 @@ class Rendered(Environment):
 
     def describe(self, motion: str = "linear") -> str:
         """Environment and laws, on one line."""
-        laws = ", ".join(stage.describe(motion) for stage in self.stages)
+        laws = ", ".join(law.describe(motion) for law in self.laws)
         return f"{self.environment.describe(motion)}, with {laws}"
 
     @property
@@ -100,17 +100,17 @@ class Rendered(Environment):
 
     def around(self, environment: Environment) -> Environment:
         """Another environment behind the same laws."""
-        return Rendered(environment, self.stages)
+        return Rendered(environment, self.laws)
 
 
-def render(environment: Environment | Any, *stages: Stage) -> Rendered:
+def render(environment: Environment | Any, *laws: RenderingLaw) -> Rendered:
     """An environment rendered by laws in a row, from the environment to the actuator.
 
     Parameters
     ----------
     environment
         What the hand meets.
-    stages
+    laws
         `PassivityController()`, `SlewLimit(…)`, …, see `zwidth.rendering`.
 
     Raises
@@ -118,9 +118,9 @@ def render(environment: Environment | Any, *stages: Stage) -> Rendered:
     InputError
         If there is no law, or one of them is none.
     """
-    return Rendered(environment, stages)
+    return Rendered(environment, laws)
 
 
-def stages_of(environment: Environment) -> tuple[Stage, ...]:
+def laws_of(environment: Environment) -> tuple[RenderingLaw, ...]:
     """The laws that render an environment, from it to the actuator; none where it is given as it is."""
-    return environment.stages if isinstance(environment, Rendered) else ()
+    return environment.laws if isinstance(environment, Rendered) else ()

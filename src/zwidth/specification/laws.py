@@ -23,7 +23,7 @@ from zwidth.specification.table import COMMAND_LINE, Table, located, quoted, sug
 from zwidth.specification.values import read
 
 if TYPE_CHECKING:
-    from zwidth.rendering import Estimator, Stage
+    from zwidth.rendering import Estimator, RenderingLaw
 
 NOT_PROVED = (
     "laws in a row have no place in this command: zwidth check decides them, zwidth limit says how far one "
@@ -85,7 +85,7 @@ def _named(typed: Iterable[str]) -> Iterable[Table]:
             yield Table(f"{COMMAND_LINE}: --law", {"type": name.strip()})
 
 
-def build_law(table: Table, motion: str) -> Stage:
+def build_law(table: Table, motion: str) -> RenderingLaw:
     """The law that a table describes, in the units of the device's motion.
 
     Raises
@@ -93,7 +93,7 @@ def build_law(table: Table, motion: str) -> Stage:
     InputError
         If the type or a key is unknown, missing, or has a value it cannot have.
     """
-    law: Stage = _built(table, LAWS, "law", motion)
+    law: RenderingLaw = _built(table, LAWS, "law", motion)
     return law
 
 

@@ -39,10 +39,10 @@ def written(device: Device, environment: Environment) -> str:
     InputError
         If a specification has no words for it: an environment or a law of one's own.
     """
-    stages = getattr(environment, "stages", ())
-    inner = environment.environment if stages else environment  # type: ignore[attr-defined]
+    chain = getattr(environment, "laws", ())
+    inner = environment.environment if chain else environment  # type: ignore[attr-defined]
     tables = [("[device]", _device(device)), ("[environment]", _environment(inner, device.motion))]
-    tables += [("[[law]]", _law(stage, LAWS, device.motion)) for stage in stages]
+    tables += [("[[law]]", _law(link, LAWS, device.motion)) for link in chain]
     text = "\n".join(line for head, values in tables for line in (head, *_lines(values), ""))
     again = parsed(text)
     if (again.device.replace(name=device.name), again.environment) != (device, environment):

@@ -55,9 +55,9 @@ def stable_virtual_masses(
     body_damping, body_stiffness
         B ≥ 0 [N·s/m] and K ≥ 0 [N/m] of the body.
     integration
-        Of the body, "implicit" or "explicit", see `zwidth.VirtualBody`.
+        Of the body, "implicit" or "explicit", see `zwidth.simulation.VirtualBody`.
     sensor
-        "mean" or "point", see `zwidth.simulate_admittance`.
+        "mean" or "point", see `zwidth.simulation.simulate_admittance`.
 
     Returns
     -------

@@ -34,7 +34,7 @@ class TraceAccessor:
         if trace.attrs.get("format") != FORMAT:
             raise InputError(
                 f"this Dataset is no zwidth trace: its attribute format is {trace.attrs.get('format')!r}, "
-                f"not {FORMAT!r}; traces come from zwidth.simulate and zwidth.load_trace"
+                f"not {FORMAT!r}; traces come from zwidth.simulate and zwidth.traces.load_trace"
             )
         self._trace = trace
 

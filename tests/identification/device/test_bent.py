@@ -14,6 +14,7 @@ from recorded_strokes import recorded as recorded_strokes
 from recordings import paddle
 
 import zwidth as zw
+from zwidth.identification.logs.block import Finding
 from zwidth.quantity.exact import ends
 from zwidth.specification.read import load_device
 
@@ -96,7 +97,7 @@ def test_a_stribeck_bump_is_not_taken_for_damping() -> None:
     assert all(result.estimates["slow"].value > 0 for result in results if "slow" in result.estimates)
 
 
-def _bent(result: zw.identification.Identified) -> zw.Finding:
+def _bent(result: zw.identification.Identified) -> Finding:
     (finding,) = [f for f in result.findings if f.kind == "bent friction"]
     return finding
 

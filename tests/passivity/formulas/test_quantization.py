@@ -116,7 +116,7 @@ def test_edge_straddle_gains_what_it_says(seed):
     random = Random(seed)
     dev = device(random)
     k = limits(dev)[1] * (1 + draw(random, 1e-4, 10))
-    straddle = q.edge_straddle(dev, k)
+    straddle = q.edge_crossing(dev, k)
     assert straddle.energy > 0
     assert per_cycle(dev, k, straddle.positions) == straddle.energy.fraction
 
@@ -133,7 +133,7 @@ def test_paddle_press():
     with pytest.raises(zw.InputError, match="does not exceed 2b/T = 300"):
         q.fast_press(PADDLE, 300)
     with pytest.raises(zw.InputError, match=r"does not exceed 2f_c/Δ = 10714\.3"):
-        q.edge_straddle(PADDLE, 10714)
+        q.edge_crossing(PADDLE, 10714)
 
 
 def test_paddle_in_the_plane():
@@ -178,7 +178,7 @@ def test_globally_stable_is_passive(seed):
     assert (region == "globally stable") == (k <= min(sampling, quantization))
     assert (region in ("locally stable", "globally unstable")) == (k > sampling)
     if region != "globally stable":
-        found = q.fast_press(dev, k) if k > sampling else q.edge_straddle(dev, k)
+        found = q.fast_press(dev, k) if k > sampling else q.edge_crossing(dev, k)
         assert found.energy > 0
 
 
@@ -251,7 +251,7 @@ def test_ideal_encoder():
     assert q.plane_point(ideal, 770).dry == inf
     assert q.plane_point(ideal, 770).cycle_loss(3) == q.plane_point(ideal, 770).largest_step() == inf
     assert q.admissible_speed(ideal, 770) == q.admissible_speed(ideal, 770, "surface")
-    for call in (q.fast_press, q.edge_straddle):
+    for call in (q.fast_press, q.edge_crossing):
         with pytest.raises(zw.InputError, match="no edges to count"):
             call(ideal, 770)
 

@@ -234,13 +234,13 @@ def test_the_documents_survive_being_saved(tmp_path):
 def test_another_law_is_not_the_same():
     """A certificate is of one law, to the bit; and so is a motion."""
     found, document = proved()
-    row = found.environment.stages
+    row = found.environment.laws
     assert same_law(document, DEVICE, found.environment)
     assert not same_law(document, DEVICE, zw.render(zw.Wall("200.0000001"), *row))
     assert not same_law(document, DEVICE, zw.render(zw.Wall(200), row[0]))
     motion = refuted().witness.to_dict()
     assert same_law(motion, DEVICE, refuted().environment)
-    assert not same_law(motion, DEVICE, zw.render(zw.Wall("200.0000001"), *refuted().environment.stages))
+    assert not same_law(motion, DEVICE, zw.render(zw.Wall("200.0000001"), *refuted().environment.laws))
     with pytest.raises(zw.InputError, match="row storage or row motion"):
         same_law({"kind": "storage"}, DEVICE, found.environment)
 

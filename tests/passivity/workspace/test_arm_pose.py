@@ -14,6 +14,7 @@ import zwidth as zw
 from zwidth.arms import Arm, PlanarChain, built_in, read_arm, wall_need
 from zwidth.arms.pose import loss_in_pose
 from zwidth.arms.replay import replay_cycle
+from zwidth.passivity.workspace import Workspace
 
 pytest.importorskip("pinocchio")
 
@@ -27,7 +28,7 @@ def _arm(folder: Path, joints: int, moving: int = 2, **options: Any) -> Arm:
     return read_arm(path, pose=True, hold=hold, **{"rest": {}, **options})
 
 
-def _space(arm: Arm, wall: zw.arms.MatrixWall, points: int = 40, **options: Any) -> zw.Workspace:
+def _space(arm: Arm, wall: zw.arms.MatrixWall, points: int = 40, **options: Any) -> Workspace:
     return zw.workspace(arm, wall, rate=1000, points=points, **options)
 
 

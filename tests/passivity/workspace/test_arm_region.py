@@ -10,11 +10,12 @@ import pytest
 import zwidth as zw
 from zwidth.arms import BUILT_IN, PlanarChain, built_in, joint_margin, wall_need
 from zwidth.arms.replay import replay_cycle
+from zwidth.passivity.workspace import Workspace
 
 DAMPING = {"hapkit": 0.001, "two-link": (0.02, 0.012), "haply-2diy": (0.003, 0.002), "falcon": 0.003}
 
 
-def _space(name: str, stiffness: float, **options: Any) -> zw.Workspace:
+def _space(name: str, stiffness: float, **options: Any) -> Workspace:
     arm = built_in(name, damping=DAMPING[name], resolution=0)
     return zw.workspace(arm, zw.Wall(stiffness), rate=1000, points=30, **options)
 

@@ -187,12 +187,12 @@ def test_an_interval_stands_for_every_hand_in_it() -> None:
 
 
 def test_an_interval_with_one_unstable_hand_names_it() -> None:
-    """The culprit, taken alone, is unstable; a hand at the other end is not."""
+    """The unstable_hand, taken alone, is unstable; a hand at the other end is not."""
     box = zw.stability.HandImpedance(damping=(0, 3))
     found = zw.stability.coupled_stability(PADDLE, zw.Wall(3000, 1), box)
     assert found.outcome == "unstable"
-    assert found.culprit is not None
-    damping = found.culprit[1] - float(PADDLE.damping)
+    assert found.unstable_hand is not None
+    damping = found.unstable_hand[1] - float(PADDLE.damping)
     assert (
         zw.stability.coupled_stability(
             PADDLE, zw.Wall(3000, 1), zw.stability.HandImpedance(damping=damping)

@@ -169,7 +169,7 @@ def test_intervals_are_covered_where_random_hands_say_so() -> None:
 
 
 def test_a_kind_cannot_be_exchanged() -> None:
-    """A stable loop is no proof of instability, nor the reverse; nor is an interval a culprit."""
+    """A stable loop is no proof of instability, nor the reverse; nor is an interval a unstable_hand."""
     stable, unstable = document(PADDLE, zw.Wall(1000, 1)), document(PADDLE, zw.Wall(99000, 1))
     assert not checker.verify({**stable, "kind": "instability"}).valid
     assert not checker.verify({**unstable, "kind": "stability"}).valid

@@ -21,7 +21,7 @@ from zwidth.passivity.storage.row.program import RowProgram, row_program
 from zwidth.passivity.storage.slow_hands import slow_hands
 from zwidth.passivity.storage.solution import patience
 from zwidth.quantity.exact import Exact, RealLike, ends
-from zwidth.rendering.rendered import stages_of
+from zwidth.rendering.rendered import laws_of
 
 
 def passive_limit(
@@ -42,7 +42,7 @@ def passive_limit(
 
     Contact is made and broken at will.  Without bounds on the hand the closed
     conditions are tried first, which cover every hand; where they end, and always
-    where the hand is bounded, the game of `worst_hand` is played.
+    where the hand is bounded, values are iterated as in `available_storage`.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def passive_limit(
         `HuntCrossley` contact "stiffness" or "dissipation".  Of laws in a row one of the
         environment that they render.
     penetration, speed
-        Bounds on the hand [m; rad], [m/s; rad/s], as for `worst_hand`.
+        Bounds on the hand [m; rad], [m/s; rad/s], as for `available_storage`.
     force_limit, force_resolution
         True to count in the device's force limit, the steps of its converter.
     friction
@@ -70,7 +70,7 @@ def passive_limit(
     Raises
     ------
     InputError
-        If there is no such parameter, or the game cannot be played (see `worst_hand`).
+        If there is no such parameter, or values cannot be iterated (see `available_storage`).
     """
     if not isinstance(device, Device):
         raise InputError(f"the first argument is a Device, got {type(device).__name__}")
@@ -86,7 +86,7 @@ def passive_limit(
     patience(seconds)
     counted = penetration, speed, force_limit, force_resolution, friction
     ideal = ends(device.resolution)[1] == 0
-    in_a_row = bool(stages_of(law))
+    in_a_row = bool(laws_of(law))
     if not (ideal or in_a_row) and isinstance(first := program_of(device, law, *counted), DynamicProgram):
         first.warm_up()
     search = Search(asked, tolerance, time.monotonic(), patience(seconds), progress)
@@ -97,15 +97,15 @@ def passive_limit(
     bounded = penetration is not None or speed is not None
     settled = every.passive is not None or every.active is not None
     if not bounded and (search.is_close(every.passive, every.active) or (settled and ideal)):
-        return search.bracket(every, (every.passive, every.active))  # no game narrows an ideal encoder's
+        return search.bracket(every, (every.passive, every.active))  # no grid narrows an ideal encoder's
 
     # laws in a row have one grid for all values: that on which they close as they are given
-    boards = (row_program(device, law, *counted).counts,) if in_a_row else ()
+    grids = (row_program(device, law, *counted).counts,) if in_a_row else ()
 
     def program(value: Exact) -> DynamicProgram | RowProgram:
         changed, rendered = asked.change(value)
         if in_a_row:
-            return row_program(changed, rendered, *counted, boards)
+            return row_program(changed, rendered, *counted, grids)
         return program_of(changed, rendered, *counted)
 
     def slow(value: Exact) -> Certificate | None:

@@ -30,7 +30,7 @@ __all__ = [
     "PlanePoint",
     "admissible_speed",
     "catalogue_coordinates",
-    "edge_straddle",
+    "edge_crossing",
     "fast_press",
     "linear_worst_case",
     "plane_point",
@@ -136,7 +136,7 @@ def fast_press(device: Device, stiffness: RealLike, counts: int | None = None) -
     return Counterexample((-epsilon, depth + epsilon, -epsilon), Exact(wall.t), Exact(energy))
 
 
-def edge_straddle(device: Device, stiffness: RealLike) -> Counterexample:
+def edge_crossing(device: Device, stiffness: RealLike) -> Counterexample:
     """From Δ − ε/2 to Δ + ε/2 in one sample and back in the next: gains energy where K > 2f_c/Δ.
 
         W = ε (K Δ − 2f_c − 2bε/T)

@@ -33,7 +33,7 @@ from zwidth.passivity.storage.losses import Losses
 from zwidth.passivity.storage.row.program import RowProgram, row_program
 from zwidth.passivity.storage.solve.value_iteration import Progress, value_iteration
 from zwidth.quantity.exact import RealLike
-from zwidth.rendering.rendered import stages_of
+from zwidth.rendering.rendered import laws_of
 
 STEPS = (8, 16, 32, 64)
 """Steps in which a count is cut, coarse to fine, when a proof is sought."""
@@ -207,7 +207,7 @@ def program_of(
     if friction is not None and not isinstance(friction, FrictionCurve):
         raise InputError(f"friction is a FrictionCurve, got {type(friction).__name__}")
     given = as_environment(environment)
-    if stages_of(given):
+    if laws_of(given):
         return row_program(device, given, penetration, speed, force_limit, force_resolution, friction)
     law = finite_law(device, given, force_limit=force_limit, force_resolution=force_resolution)
     losses = losses_of(device, friction)

@@ -15,11 +15,11 @@ from math import ceil
 
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.schur import is_schur
-from zwidth.passivity.witness.escape import PRESS_LENGTHS, buildups, holds, slow_press
+from zwidth.passivity.witness.edge_crossing import best_waits, edge_crossing
 from zwidth.passivity.witness.motion import Motion, Pattern, realize, round_up
-from zwidth.passivity.witness.oscillation import oscillations
+from zwidth.passivity.witness.short_sinusoid import oscillations
 from zwidth.passivity.witness.sinusoid import sinusoids
-from zwidth.passivity.witness.straddle import best_waits, straddle
+from zwidth.passivity.witness.unstable_mode import PRESS_LENGTHS, buildups, holds, slow_press
 from zwidth.passivity.witness.witness import Setting, Witness
 
 _AMPLITUDE = Fraction(1, 1000)
@@ -69,7 +69,7 @@ def refute_friction(setting: Setting) -> Witness | None:
     loop = setting.loop
     memory = len(loop.numerator) + len(loop.denominator) > 2
     edge = (2 if memory else 1) if setting.unilateral else 0  # a law with memory is kept in contact
-    motion = straddle(loop, setting.coulomb_friction, setting.resolution, best_waits(loop), edge)
+    motion = edge_crossing(loop, setting.coulomb_friction, setting.resolution, best_waits(loop), edge)
     if motion is None:
         return None
     if len(loop.follower) == 1:

@@ -22,7 +22,7 @@ from zwidth.passivity.document import loop_document, unit_key
 from zwidth.passivity.linear.rhythm import Surface, rhythms
 from zwidth.passivity.linear.schur import is_schur
 from zwidth.passivity.witness.motion import Motion, round_up
-from zwidth.passivity.witness.oscillation import oscillations
+from zwidth.passivity.witness.short_sinusoid import oscillations
 from zwidth.passivity.witness.witness import FORMAT, Setting, Witness
 
 _AMPLITUDE = Fraction(1, 1000)

@@ -23,7 +23,7 @@ from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import CertainOrNone, Count, parameter, word
 from zwidth.rendering.energy.controller_limit import NO_LIMIT
 from zwidth.rendering.reading import damping_per_sample, updated_every
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.rendering.theorem import Theorem, half_a_step
 
 DUAL_RATE = 24.0
@@ -33,7 +33,7 @@ _LEFT, _REFERENCE, _FORCE, _OFF, _SPARE = range(5)
 
 
 @dataclass(frozen=True, kw_only=True)
-class DualRate(Stage):
+class DualRate(RenderingLaw):
     """``f = F + κ (x − X)`` between updates every N samples, F paid for by potential, κ ≤ 2b/T.
 
     Proved, where κ ≤ 2b/T and updates are "continuous": no motion of any hand takes energy out, whatever
@@ -60,7 +60,7 @@ class DualRate(Stage):
     """
 
     code: ClassVar[float] = DUAL_RATE
-    slots: ClassVar[int] = 5
+    state_size: ClassVar[int] = 5
 
     samples: Count = updated_every()
     slope: CertainOrNone = parameter(
@@ -73,7 +73,7 @@ class DualRate(Stage):
     )
     updates: Literal["continuous", "jump"] = word("continuous", "jump")
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """As the step reads them.
 
         Raises
@@ -91,11 +91,11 @@ class DualRate(Stage):
             NO_LIMIT if limit is None else float(at.device.exact("force_limit")),
         ]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """No spring yet, and an update is due."""
         return [0.0, reading, 0.0, 1.0, 0.0]
 
-    def theorem(self, at: Surroundings) -> Theorem | None:
+    def theorem(self, at: LoopContext) -> Theorem | None:
         """Where the device can pay for the local spring, and friction for the steps of the converter."""
         slope = 0 if self.slope is None else self.slope.fraction
         paid = slope <= 2 * at.device.exact("damping") / at.device.exact("sample_period")
@@ -115,7 +115,7 @@ class DualRate(Stage):
         return f"local spring ({', '.join([*parts, f'{self.updates} updates'])})"
 
 
-def _paid_slope(at: Surroundings) -> float:
+def _paid_slope(at: LoopContext) -> float:
     steepest = 2 * damping_per_sample(at, "a local spring without slope")
     return min(at.stiffness, steepest) if at.stiffness > 0.0 else steepest
 

@@ -21,7 +21,7 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.rendering.reading import damping_per_sample, half_step
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.rendering.theorem import Theorem
 
 ENERGY_BOUNDING = 22.0
@@ -31,7 +31,7 @@ _BEFORE = 0
 
 
 @dataclass(frozen=True, kw_only=True)
-class EnergyBounding(Stage):
+class EnergyBounding(RenderingLaw):
     """``|f_k| ≤ |f_{k−1} + (2b/T) Δx_k|``: the wall is nowhere stiffer than the device can pay.
 
     Proved: no motion of any hand takes energy out, whatever the environment.  Hypotheses: the device
@@ -45,9 +45,9 @@ class EnergyBounding(Stage):
     """
 
     code: ClassVar[float] = ENERGY_BOUNDING
-    slots: ClassVar[int] = 1
+    state_size: ClassVar[int] = 1
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """As the step reads them.
 
         Raises
@@ -57,7 +57,7 @@ class EnergyBounding(Stage):
         """
         return [2 * damping_per_sample(at, "energy bounding"), half_step(at)]
 
-    def theorem(self, at: Surroundings) -> Theorem:
+    def theorem(self, at: LoopContext) -> Theorem:
         """Half a step of the converter is kept below the bound, and the law is told what was applied."""
         return Theorem(
             statement="energy bounding: what the next move can take out grows by no more than what came in",

@@ -25,7 +25,7 @@ from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import CertainOrNone, parameter
 from zwidth.rendering.reading import damping_per_sample
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 ENERGY_TANK = 21.0
 
@@ -34,7 +34,7 @@ _BEFORE, _ENERGY = range(2)
 
 
 @dataclass(frozen=True, kw_only=True)
-class EnergyTank(Stage):
+class EnergyTank(RenderingLaw):
     """``|f| ≤ H/(|v| T)`` and 0 where the tank H is empty; a damper ``d = α max(0, H_d − H)`` refills it.
 
     Proved, for d ≤ b: the energy taken out is never more than ``|f_w| (|Δx'| − |Δx|)`` of one sample, f_w the
@@ -60,7 +60,7 @@ class EnergyTank(Stage):
     """
 
     code: ClassVar[float] = ENERGY_TANK
-    slots: ClassVar[int] = 2
+    state_size: ClassVar[int] = 2
 
     level: CertainOrNone = parameter(
         "energy",
@@ -86,7 +86,7 @@ class EnergyTank(Stage):
         meaning="d, by default the device's",
     )
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """As the step reads them.
 
         Raises
@@ -116,7 +116,7 @@ class EnergyTank(Stage):
         return f"energy tank ({', '.join(parts)})" if parts else "energy tank"
 
 
-def _stored_at_the_limit(at: Surroundings) -> float:
+def _stored_at_the_limit(at: LoopContext) -> float:
     if at.device.force_limit is None or at.stiffness <= 0.0:
         raise InputError(
             "level, the energy that the tank is filled to, has no default here: it is F²/(2K), and "

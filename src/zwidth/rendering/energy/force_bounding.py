@@ -32,7 +32,7 @@ from typing import ClassVar, Literal
 from zwidth.compiled import Array, compiled
 from zwidth.quantity.parameter import flag, word
 from zwidth.rendering.reading import above, below, damping_per_sample, half_step
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 FORCE_BOUNDING = 20.0
 
@@ -46,10 +46,10 @@ _BEFORE, _ENERGY, _SLOPE = range(3)
 
 
 @dataclass(frozen=True, kw_only=True)
-class ForceBounding(Stage):
+class ForceBounding(RenderingLaw):
     """``|f| ≤ 2 √(b E/T)``, E what the hand has put in, device damping counted.
 
-    Proved, with a certificate from `zwidth.check_bounding`: no motion of any hand takes energy
+    Proved, with a certificate from `zwidth.check`: no motion of any hand takes energy
     out, whatever the environment.  Hypotheses: the device takes at least b and, counted, f_c; no delay,
     regular samples, no law behind this one, an amplifier without lag.  "ideal" needs an encoder without
     counts as well.
@@ -74,13 +74,13 @@ class ForceBounding(Stage):
     """
 
     code: ClassVar[float] = FORCE_BOUNDING
-    slots: ClassVar[int] = 3
+    state_size: ClassVar[int] = 3
     bounds_the_force: ClassVar[bool] = True
 
     encoder: Literal["counted", "ideal"] = word("counted", "ideal")
     resets: bool = flag("to forget the energy where there was no force", False)
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """As the step reads them.
 
         Raises

@@ -15,7 +15,7 @@ from typing import ClassVar
 from zwidth.compiled import Array, compiled
 from zwidth.quantity.parameter import Count
 from zwidth.rendering.reading import updated_every
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 HELD = 25.0
 
@@ -24,7 +24,7 @@ _LEFT, _FORCE = range(2)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Held(Stage):
+class Held(RenderingLaw):
     """The force of every N-th sample, held for N: an environment that is updated slowly.
 
     It promises nothing: a spring K is passive behind it if and only if it is in a loop of period N T,
@@ -43,15 +43,15 @@ class Held(Stage):
     """
 
     code: ClassVar[float] = HELD
-    slots: ClassVar[int] = 2
+    state_size: ClassVar[int] = 2
 
     samples: Count = updated_every()
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """As the step reads them."""
         return [float(self.samples)]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """An update is due."""
         return [0.0, 0.0]
 

@@ -34,7 +34,7 @@ from zwidth.rendering.energy.controller_limit import NO_LIMIT, UNLIMITED, WHY_A_
 _PERIOD, _MOBILITY, _VELOCITY, _FLOOR, _PUBLISHED, _RESETS, _CEILING = range(7)
 ENERGY, HELD, BEFORE = range(3)
 
-SLOTS = 3
+STATE_SIZE = 3
 """Numbers that it remembers."""
 
 

@@ -26,7 +26,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import CertainOrNone, flag, parameter
 from zwidth.rendering.reading import damping_per_sample
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.rendering.theorem import Theorem, half_a_step
 
 PASSIVE_LEAP = 23.0
@@ -36,7 +36,7 @@ _BEFORE, _ENERGY = range(2)
 
 
 @dataclass(frozen=True, kw_only=True)
-class PassiveLeap(Stage):
+class PassiveLeap(RenderingLaw):
     """``|f| ≤ √(2 K E)``: the force of a spring that stores what the hand has put in, to the joule.
 
     Proved: no hand takes out more than f² (T/(4b) − 1/(2K)), f the largest force, at any time; nothing
@@ -60,7 +60,7 @@ class PassiveLeap(Stage):
     """
 
     code: ClassVar[float] = PASSIVE_LEAP
-    slots: ClassVar[int] = 2
+    state_size: ClassVar[int] = 2
 
     stiffness: CertainOrNone = parameter(
         "stiffness",
@@ -72,7 +72,7 @@ class PassiveLeap(Stage):
     )
     resets: bool = flag("to forget credit where there was no force", False)
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """As the step reads them.
 
         Raises
@@ -89,7 +89,7 @@ class PassiveLeap(Stage):
         friction = float(at.device.exact("coulomb_friction"))
         return [stiffness, damping_per_sample(at, "a passive leap"), friction, float(self.resets)]
 
-    def theorem(self, at: Surroundings) -> Theorem | None:
+    def theorem(self, at: LoopContext) -> Theorem | None:
         """Where the device renders the spring anyway, and friction pays for the steps of the converter."""
         own = self.stiffness if self.stiffness is not None else getattr(at.environment, "stiffness", None)
         limit = 2 * at.device.exact("damping") / at.device.exact("sample_period")

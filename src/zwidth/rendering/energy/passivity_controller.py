@@ -41,7 +41,7 @@ from zwidth.rendering.energy.controller_limit import (
     said,
     spring_of,
 )
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 PASSIVITY_CONTROLLER = 1.0
 
@@ -58,7 +58,7 @@ Observer = Literal["sampled", "past", "published"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class PassivityController(Stage):
+class PassivityController(RenderingLaw):
     """Passivity observer and controller in series, ``f ← f + (E_ref − E − f Δx)/Δx`` where that dissipates.
 
     Parameters
@@ -101,7 +101,7 @@ class PassivityController(Stage):
     """
 
     code: ClassVar[float] = PASSIVITY_CONTROLLER
-    slots: ClassVar[int] = 4
+    state_size: ClassVar[int] = 4
 
     observer: Observer = word(*OBSERVERS)
     largest_damping: Reads[Limit, RealLike | None] = parameter(
@@ -149,7 +149,7 @@ class PassivityController(Stage):
         meaning="time constant in which credit is forgotten",
     )
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """As the step reads them.
 
         Raises

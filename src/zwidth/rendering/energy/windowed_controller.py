@@ -34,7 +34,7 @@ from zwidth.quantity.parameter import PLAIN, Certain, CertainOrNone, Count, para
 from zwidth.rendering.energy.controller_limit import largest_damping as or_the_devices
 from zwidth.rendering.energy.controller_limit import spring_of
 from zwidth.rendering.reading import below, count
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 WINDOWED_CONTROLLER = 2.0
 
@@ -57,7 +57,7 @@ def _samples(window: RealLike, name: str) -> int:
 
 
 @dataclass(frozen=True, kw_only=True)
-class WindowedController(Stage):
+class WindowedController(RenderingLaw):
     """``f ← f + α Δx/T``, ``α = min(lack T/max(Δx², (v₀ T)²), s α_max)``; what was lost is forgotten.
 
     Of every hand, without counts: the controller gives out (s α_max/T) Σ Δx² at most, by default less
@@ -129,11 +129,11 @@ class WindowedController(Stage):
             )
 
     @property
-    def slots(self) -> int:  # type: ignore[override]  # as many as the window is long
+    def state_size(self) -> int:  # type: ignore[override]  # as many as the window is long
         """The last reading, D, where the oldest loss is, and N losses."""
         return _RING + self.window
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """As the step reads them.
 
         Raises

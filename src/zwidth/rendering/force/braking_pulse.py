@@ -16,7 +16,7 @@ from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import CertainOrNone, Reads, parameter
 from zwidth.rendering.defaults import given_or_known, surface
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.rendering.velocity.estimate import estimate, estimated, packed
 from zwidth.rendering.velocity.estimator import Estimator
 
@@ -29,7 +29,7 @@ UNLIMITED = 1e300
 
 
 @dataclass(frozen=True)
-class BrakingPulse(Stage):
+class BrakingPulse(RenderingLaw):
     """One sample of force at entry, ``f ← f + min(m v̂/T, F)``.
 
     Parameters
@@ -69,11 +69,11 @@ class BrakingPulse(Stage):
     velocity: Reads[Estimator, Estimator | None] = estimated()
 
     @property
-    def slots(self) -> int:  # type: ignore[override]  # the estimator's among them, known once it is chosen
+    def state_size(self) -> int:  # type: ignore[override]  # the estimator's among them, known once it is chosen
         """Whether the hand was inside, and those of the estimator."""
-        return _REMEMBERED + self.velocity.slots
+        return _REMEMBERED + self.velocity.state_size
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """m/T, F, the estimator's."""
         surface(at, "a braking pulse")
         mass = given_or_known(self.mass, at, "mass", "mass")
@@ -81,9 +81,9 @@ class BrakingPulse(Stage):
         limit = UNLIMITED if unknown else given_or_known(self.limit, at, "force_limit", "limit")
         return [mass / at.period, limit, *packed(self.velocity, at)]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """A hand that is inside has entered long ago."""
-        return [float(reading > 0.0), *self.velocity.rested(reading)]
+        return [float(reading > 0.0), *self.velocity.initial_state(reading)]
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""

@@ -14,7 +14,7 @@ from typing import ClassVar
 from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import Certain, Reads, flag, parameter
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.rendering.velocity.estimate import estimate, estimated, packed
 from zwidth.rendering.velocity.estimator import Estimator
 
@@ -24,7 +24,7 @@ _DAMPING, _SURFACE, _CLAMPED, _ESTIMATOR = range(4)
 
 
 @dataclass(frozen=True)
-class Damper(Stage):
+class Damper(RenderingLaw):
     """Virtual damping on an estimated velocity, ``f ← f + B v̂ if x > 0``.
 
     Parameters
@@ -55,18 +55,18 @@ class Damper(Stage):
     clamped: bool = flag("for a sum that never pulls", False)
 
     @property
-    def slots(self) -> int:  # type: ignore[override]  # it is the estimator's, known once it is chosen
+    def state_size(self) -> int:  # type: ignore[override]  # it is the estimator's, known once it is chosen
         """Those of the estimator."""
-        return self.velocity.slots
+        return self.velocity.state_size
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """B, whether there is a surface, whether it is clamped, the estimator's."""
         gates = [float(at.environment.unilateral), float(self.clamped)]
         return [float(self.damping), *gates, *packed(self.velocity, at)]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """As the estimator."""
-        return self.velocity.rested(reading)
+        return self.velocity.initial_state(reading)
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""

@@ -19,7 +19,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import PLAIN, CertainOrNone, Count, parameter, word
 from zwidth.rendering.defaults import given_or_known
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 DITHER = 15.0
 
@@ -35,7 +35,7 @@ def _seed(seed: Exact) -> int:
 
 
 @dataclass(frozen=True)
-class Dither(Stage):
+class Dither(RenderingLaw):
     """A force of amplitude a that changes from sample to sample, where the environment acts.
 
     Parameters
@@ -55,7 +55,7 @@ class Dither(Stage):
     """
 
     code: ClassVar[float] = DITHER
-    slots: ClassVar[int] = 1
+    state_size: ClassVar[int] = 1
 
     amplitude: CertainOrNone = parameter(
         "force",
@@ -75,13 +75,13 @@ class Dither(Stage):
         meaning="of the random one, a whole number",
     )
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """a, whether it is random, whether there is a surface."""
         share = 1.0 if self.amplitude is not None else 0.5 if self.kind == "random" else 0.25
         amplitude = share * given_or_known(self.amplitude, at, "force_resolution", "amplitude")
         return [amplitude, float(self.kind == "random"), float(at.environment.unilateral)]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """+1, or the seed."""
         return [float(self.seed) if self.kind == "random" else 1.0]
 

@@ -25,7 +25,7 @@ from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import CertainOrNone, Reads, parameter, part, word
 from zwidth.rendering.defaults import given_or_known, surface
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 from zwidth.rendering.velocity.estimate import estimate, estimated, packed
 from zwidth.rendering.velocity.estimator import Estimator
 
@@ -65,7 +65,7 @@ def _record(values: Sequence[RealLike] | None, name: str) -> tuple[Exact, ...] |
 
 
 @dataclass(frozen=True)
-class EventTransient(Stage):
+class EventTransient(RenderingLaw):
     """An open-loop transient at entry, scaled by its speed; armed again when the hand has left.
 
     Parameters
@@ -124,17 +124,17 @@ class EventTransient(Stage):
             raise InputError("give either record or duration: a record is as long as it is")
 
     @property
-    def slots(self) -> int:  # type: ignore[override]  # the estimator's among them, known once it is chosen
+    def state_size(self) -> int:  # type: ignore[override]  # the estimator's among them, known once it is chosen
         """Samples played, speed of entry, and those of the estimator."""
-        return _REMEMBERED + self.velocity.slots
+        return _REMEMBERED + self.velocity.state_size
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """How many samples, g of each, the estimator's."""
         surface(at, "a transient")
         table = self.table(at)
         return [float(len(table)), *table, *packed(self.velocity, at)]
 
-    def table(self, at: Surroundings) -> list[float]:
+    def table(self, at: LoopContext) -> list[float]:
         """g_n [N·s/m; N·m·s/rad]."""
         if self.record is not None:
             return [float(d) * self._mass(at) for d in self.record]
@@ -146,7 +146,7 @@ class EventTransient(Stage):
         scale = float(self.amplitude) if self.amplitude is not None else self._stopping(shape, at)
         return [scale * g for g in shape]
 
-    def _stopping(self, shape: list[float], at: Surroundings) -> float:
+    def _stopping(self, shape: list[float], at: LoopContext) -> float:
         total = sum(shape)
         if total <= 0:
             raise InputError(
@@ -178,12 +178,12 @@ class EventTransient(Stage):
             )
         return count
 
-    def _mass(self, at: Surroundings) -> float:
+    def _mass(self, at: LoopContext) -> float:
         return given_or_known(self.mass, at, "mass", "mass")
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """A hand that is inside has entered long ago."""
-        return [_OVER if reading > 0.0 else _ARMED, 0.0, *self.velocity.rested(reading)]
+        return [_OVER if reading > 0.0 else _ARMED, 0.0, *self.velocity.initial_state(reading)]
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""

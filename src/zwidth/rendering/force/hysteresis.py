@@ -26,7 +26,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import CertainOrNone, flag, parameter
 from zwidth.rendering.defaults import stiffness as stiffness_of
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 HYSTERESIS = 11.0
 
@@ -35,7 +35,7 @@ _RELAXED = 0
 
 
 @dataclass(frozen=True)
-class Hysteresis(Stage):
+class Hysteresis(RenderingLaw):
     """Rate-independent hysteresis, ``s ← clamp(s + k Δu, ±h)``, ``f ← f + s`` inside.
 
     Parameters
@@ -58,7 +58,7 @@ class Hysteresis(Stage):
     """
 
     code: ClassVar[float] = HYSTERESIS
-    slots: ClassVar[int] = 1
+    state_size: ClassVar[int] = 1
 
     force: CertainOrNone = parameter(
         "force",
@@ -95,7 +95,7 @@ class Hysteresis(Stage):
             )
         super().__post_init__()
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """h, k, whether there is a surface, whether it is clamped."""
         if self.force is None:
             assert self.fastest is not None
@@ -110,7 +110,7 @@ class Hysteresis(Stage):
         )
         return [width, spring, float(at.environment.unilateral), float(self.clamped)]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """The spring relaxed where the hand is."""
         return [reading]
 

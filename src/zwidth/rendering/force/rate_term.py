@@ -26,7 +26,7 @@ from zwidth.compiled import Array, compiled
 from zwidth.device.device import Device
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import CertainOrNone, parameter
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 RATE_TERM = 17.0
 
@@ -35,7 +35,7 @@ _BEGUN, _LAST = range(2)
 
 
 @dataclass(frozen=True)
-class RateTerm(Stage):
+class RateTerm(RenderingLaw):
     """``f ← f + τ (f − f_{k−1})/T``: the force leads by τ.
 
     Proved of a wall with this law alone behind it: no hand takes energy out where b ≥ K T/2 + K τ; with an
@@ -57,7 +57,7 @@ class RateTerm(Stage):
     """
 
     code: ClassVar[float] = RATE_TERM
-    slots: ClassVar[int] = 2
+    state_size: ClassVar[int] = 2
 
     time_constant: CertainOrNone = parameter(
         "time_constant",
@@ -68,11 +68,11 @@ class RateTerm(Stage):
         meaning="τ, by default T/2",
     )
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """τ/T."""
         return [0.5 if self.time_constant is None else float(self.time_constant) / at.period]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """The first force is taken as it is: it has been there for ever."""
         return [0.0, 0.0]
 

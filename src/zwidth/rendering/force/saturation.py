@@ -15,13 +15,13 @@ from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import CertainOrNone, parameter
 from zwidth.rendering.defaults import given_or_known
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 SATURATION = 16.0
 
 
 @dataclass(frozen=True)
-class Saturation(Stage):
+class Saturation(RenderingLaw):
     """``f ← clamp(f, ±F)``.
 
     Parameters
@@ -36,7 +36,7 @@ class Saturation(Stage):
     """
 
     code: ClassVar[float] = SATURATION
-    slots: ClassVar[int] = 0
+    state_size: ClassVar[int] = 0
 
     limit: CertainOrNone = parameter(
         "force",
@@ -47,11 +47,11 @@ class Saturation(Stage):
         meaning="F, by default the force limit",
     )
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """F."""
         return [given_or_known(self.limit, at, "force_limit", "limit")]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """Nothing."""
         return []
 

@@ -18,7 +18,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import Quantity
 from zwidth.quantity.parameter import CertainOrNone, parameter
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 SLEW_LIMIT = 14.0
 
@@ -27,7 +27,7 @@ _BEGUN, _LAST = range(2)
 
 
 @dataclass(frozen=True)
-class SlewLimit(Stage):
+class SlewLimit(RenderingLaw):
     """The force changes by R T a sample at most.
 
     Parameters
@@ -42,7 +42,7 @@ class SlewLimit(Stage):
     """
 
     code: ClassVar[float] = SLEW_LIMIT
-    slots: ClassVar[int] = 2
+    state_size: ClassVar[int] = 2
 
     rate: CertainOrNone = parameter(
         Quantity("rate", "R", "N/s", "N*m/s", "R, by default what the device's winding allows"),
@@ -52,11 +52,11 @@ class SlewLimit(Stage):
         why="a force that never changes renders nothing",
     )
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """R T."""
         return [self._rate(at) * at.period]
 
-    def _rate(self, at: Surroundings) -> float:
+    def _rate(self, at: LoopContext) -> float:
         if self.rate is not None:
             return float(self.rate)
         try:
@@ -64,7 +64,7 @@ class SlewLimit(Stage):
         except InputError as error:
             raise InputError(f"rate was not given and is otherwise the motor's: {error}") from None
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """The first force is taken as it is: it has been there for ever."""
         return [0.0, 0.0]
 

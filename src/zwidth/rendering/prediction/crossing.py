@@ -42,7 +42,7 @@ from zwidth.rendering.prediction.modelled import (
     estimated,
     speed_before,
 )
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 CROSSING = 35.0
 
@@ -78,13 +78,13 @@ class CrossingCorrection(Modelled):
     """
 
     code: ClassVar[float] = CROSSING
-    slots: ClassVar[int] = 4
+    state_size: ClassVar[int] = 4
 
     throughout: bool = part(
         "flag", lambda given, _: bool(given), False, meaning="true to go on with it inside"
     )
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """The model, the continuous wall and (ΦΓ, Γ)⁻¹.
 
         Raises

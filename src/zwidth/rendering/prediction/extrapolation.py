@@ -20,13 +20,13 @@ from typing import ClassVar
 from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import Certain, parameter, plain
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 EXTRAPOLATION = 30.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Extrapolation(Stage):
+class Extrapolation(RenderingLaw):
     """Before the environment, ``x̂ = x_k + n (x_k − x_{k−1})``.
 
     An encoder's count is multiplied by 1 + n, and a count up and down by 1 + 2n.
@@ -43,7 +43,7 @@ class Extrapolation(Stage):
     """
 
     code: ClassVar[float] = EXTRAPOLATION
-    slots: ClassVar[int] = 1
+    state_size: ClassVar[int] = 1
 
     samples: Certain = parameter(
         plain("samples", "n, by default ½"),
@@ -53,7 +53,7 @@ class Extrapolation(Stage):
         why="the force is applied after the reading, not before",
     )
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """As the step reads them."""
         return [float(self.samples)]
 

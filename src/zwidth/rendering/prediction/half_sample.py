@@ -20,7 +20,7 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.rendering.prediction.modelled import FF, FV, GX, MODEL, REST, Modelled, estimated
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 HALF_SAMPLE = 31.0
 
@@ -37,9 +37,9 @@ class HalfSamplePrediction(Modelled):
     """
 
     code: ClassVar[float] = HALF_SAMPLE
-    slots: ClassVar[int] = 2
+    state_size: ClassVar[int] = 2
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """Φ, Γ and k x_a for a sample, then for half of one.
 
         Raises

@@ -30,7 +30,7 @@ from zwidth.environment.wall import wall_of
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.parameter import Certain, CertainOrNone, parameter
-from zwidth.rendering.stage import Stage, Surroundings
+from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -73,7 +73,7 @@ class Plant(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Modelled(Stage):
+class Modelled(RenderingLaw):
     """A law that knows device and finger.
 
     Parameters
@@ -114,7 +114,7 @@ class Modelled(Stage):
     )
     finger_position: Certain = parameter("position", 0, kept=Exact, meaning="where that finger is at rest")
 
-    def plant(self, at: Surroundings) -> Plant:
+    def plant(self, at: LoopContext) -> Plant:
         """Device and finger, what was left out taken from the device.
 
         Raises
@@ -141,7 +141,7 @@ class Modelled(Stage):
             )
         return plant
 
-    def wall(self, at: Surroundings) -> tuple[float, float]:
+    def wall(self, at: LoopContext) -> tuple[float, float]:
         """(K, B) of the wall that is met [N/m, N·s/m].
 
         Raises

@@ -29,7 +29,7 @@ from scipy.linalg import expm
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.rendering.prediction.modelled import MODEL, Modelled, Plant, estimated, turns_over
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 POLE_MATCHED = 36.0
 
@@ -45,9 +45,9 @@ class PoleMatched(Modelled):
     """
 
     code: ClassVar[float] = POLE_MATCHED
-    slots: ClassVar[int] = 2
+    state_size: ClassVar[int] = 2
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """The model, g_x, g_v and whether the wall never pulls.
 
         Raises
@@ -65,7 +65,7 @@ class PoleMatched(Modelled):
         gains = matched(plant, stiffness, damping, at.period)
         return [*plant.numbers(at.period), *gains, float(at.environment.clamped)]
 
-    def gains(self, at: Surroundings) -> tuple[float, float]:
+    def gains(self, at: LoopContext) -> tuple[float, float]:
         """(g_x, g_v) [N/m, N·s/m]; raises as `numbers`."""
         numbers = self.numbers(at)
         return numbers[_POSITION], numbers[_VELOCITY]

@@ -21,7 +21,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import PLAIN, CertainOrNone, Count, parameter, word
 from zwidth.rendering.defaults import given_or_known
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 from zwidth.rendering.velocity.estimator import Estimator
 
 ADAPTIVE_WINDOW = 1.0
@@ -84,16 +84,16 @@ class AdaptiveWindow(Estimator):
     fit: Literal["end", "best"] = word("end", "best")
 
     @property
-    def slots(self) -> int:
+    def state_size(self) -> int:
         """Where the newest reading is, and N + 1 readings."""
         return self.longest + 2
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """T, d, N and whether the best fit is taken."""
         noise = given_or_known(self.noise, at, "resolution", "noise")
         return [at.period, noise * _EDGE, float(self.longest), float(self.fit == "best")]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """All readings the same."""
         return [0.0] + [reading] * (self.longest + 1)
 

@@ -7,7 +7,7 @@ from typing import Any
 from zwidth.compiled import Array, compiled
 from zwidth.errors import InputError
 from zwidth.quantity.parameter import part
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 from zwidth.rendering.velocity import adaptive_window, kalman, tick_time
 from zwidth.rendering.velocity.adaptive_window import ADAPTIVE_WINDOW, AdaptiveWindow
 from zwidth.rendering.velocity.estimator import Estimator
@@ -44,7 +44,7 @@ def estimated() -> Any:
     )
 
 
-def packed(estimator: Estimator, at: Surroundings) -> list[float]:
+def packed(estimator: Estimator, at: LoopContext) -> list[float]:
     """The numbers that `estimate` reads."""
     return [estimator.kind, *estimator.numbers(at)]
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from zwidth.quantity.parameter import Parametric
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,15 +23,15 @@ class Estimator(Parametric, ABC):
 
     @property
     @abstractmethod
-    def slots(self) -> int:
+    def state_size(self) -> int:
         """Numbers that it remembers."""
 
     @abstractmethod
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """The parameters of the step, defaults filled in from the device."""
 
     @abstractmethod
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """What it remembers after the hand has been at a reading for ever."""
 
     @abstractmethod

@@ -24,7 +24,7 @@ from zwidth.compiled import Array, compiled
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.parameter import CertainOrNone, parameter, plain
 from zwidth.rendering.defaults import known
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 from zwidth.rendering.velocity.estimator import Estimator
 
 KALMAN = 3.0
@@ -64,11 +64,11 @@ class Kalman(Estimator):
     )
 
     @property
-    def slots(self) -> int:
+    def state_size(self) -> int:
         """x̂ and v̂."""
         return 2
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """T, α and β/T."""
         resolution = known(at, "resolution", "the noise of the readings is the resolution's")
         wanders = sqrt(3 * resolution**2 / (_WANDERING * at.period) ** 3)
@@ -76,7 +76,7 @@ class Kalman(Estimator):
         alpha, beta = gains(density, resolution, at.period)
         return [at.period, alpha, beta / at.period]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """At the reading, at rest."""
         return [reading, 0.0]
 

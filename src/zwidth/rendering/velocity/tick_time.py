@@ -19,7 +19,7 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.rendering.defaults import known
-from zwidth.rendering.stage import Surroundings
+from zwidth.rendering.rendering_law import LoopContext
 from zwidth.rendering.velocity.estimator import Estimator
 
 TICK_TIME = 2.0
@@ -40,15 +40,15 @@ class TickTime(Estimator):
     kind: ClassVar[float] = TICK_TIME
 
     @property
-    def slots(self) -> int:
+    def state_size(self) -> int:
         """Last reading, velocity, samples since the last tick, its direction."""
         return 4
 
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """T and Δ."""
         return [at.period, known(at, "resolution", "the time between ticks needs the resolution")]
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """The last tick was for ever ago."""
         return [reading, 0.0, _FOR_EVER, 0.0]
 

@@ -61,11 +61,11 @@ class Stability(Answer):
         With which the loop oscillates at that stiffness, for intervals at their worst corner [Hz].
     scope
         What it is about: which hand, contact, what is left out.
-    culprit
+    unstable_hand
         Mass [kg], damping [N·s/m] and stiffness [N/m] of device and hand together that do not decay.
     certificate
         What the independent checker accepted, of kind "stability" for the loop and all its intervals or
-        "instability" for the culprit; None where it is undecided.
+        "instability" for the unstable_hand; None where it is undecided.
     """
 
     FORMAT = "zwidth stability 1"
@@ -79,7 +79,7 @@ class Stability(Answer):
     max_stiffness: float | None
     limit_frequency: float | None
     scope: Scope
-    culprit: tuple[float, float, float] | None = None
+    unstable_hand: tuple[float, float, float] | None = None
     certificate: Certificate | None = None
 
     @property
@@ -162,7 +162,7 @@ def coupled_stability(device: Device, wall: Environment | Any, hand: Any = None)
         max_stiffness=largest,
         limit_frequency=None if limit is None else _hertz(limit, motion),
         scope=_scope(device, holding, law),
-        culprit=_culprit(found),
+        unstable_hand=_unstable_hand(found),
         certificate=certificate,
     )
 
@@ -257,10 +257,10 @@ def _hertz(angle: float, motion: Motion) -> float:
     return angle / (2 * pi * float(motion.period))
 
 
-def _culprit(found: Found) -> tuple[float, float, float] | None:
-    if found.culprit is None:
+def _unstable_hand(found: Found) -> tuple[float, float, float] | None:
+    if found.unstable_hand is None:
         return None
-    mass, damping, stiffness = (float(low) for low, _ in found.culprit[:3])
+    mass, damping, stiffness = (float(low) for low, _ in found.unstable_hand[:3])
     return mass, damping, stiffness
 
 

@@ -27,7 +27,7 @@ class Found(NamedTuple):
     """The outcome, and a point of the box that does not decay if there is one."""
 
     outcome: Outcome
-    culprit: Motion | None = None
+    unstable_hand: Motion | None = None
 
 
 def decided(motion: Motion, polynomial: Polynomial) -> Found:

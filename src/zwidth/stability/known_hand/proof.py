@@ -16,14 +16,14 @@ from zwidth.stability.known_hand.plant import Motion, Range
 
 
 def evidence(found: Found, motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any] | None:
-    """A document of kind "stability", or of kind "instability" with the culprit; None for undecided."""
+    """A document of kind "stability", or of kind "instability" with the unstable_hand; None for undecided."""
     if found.outcome == "undecided":
         return None
     kind = "stability" if found.outcome == "stable" else "instability"
     return {
         "format": FORMAT,
         "kind": kind,
-        "loop": _loop(motion if found.culprit is None else found.culprit, transfer, units),
+        "loop": _loop(motion if found.unstable_hand is None else found.unstable_hand, transfer, units),
     }
 
 

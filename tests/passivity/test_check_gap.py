@@ -14,7 +14,7 @@ from zwidth import checker
 from zwidth.cli.verification import verifications
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
-from zwidth.passivity.game import has_gap
+from zwidth.passivity.gap import has_gap
 from zwidth.passivity.storage.evidence.gain import Gain
 from zwidth.passivity.storage.evidence.playback import peak_force, settled_round
 from zwidth.passivity.wording import describe_hands
@@ -35,8 +35,8 @@ def test_a_motion_of_the_game_refutes_what_was_undecided() -> None:
     assert verdict.outcome == "active"
     assert isinstance(verdict.witness, Gain)
     assert verdict.certificate is None
-    assert verdict.worst_hand is not None
-    assert verdict.worst_hand.witness is verdict.witness
+    assert verdict.available_storage is not None
+    assert verdict.available_storage.witness is verdict.witness
     assert verdict.witness.describe() in verdict.claim
     assert checker.verify(verdict.witness.to_dict()).energy == verdict.witness.exact_energy
     assert verdict.scope.contact == "made and broken"
@@ -47,9 +47,9 @@ def test_a_proof_of_bounded_hands_decides_nothing_of_every_hand() -> None:
     verdict = zw.check(PADDLE, CLAMPED)
     assert verdict.outcome == "undecided"
     assert verdict.certificate is None
-    assert verdict.worst_hand is not None
-    assert verdict.worst_hand.outcome == "passive"
-    hands = describe_hands(verdict.worst_hand.scope.hands, "linear")
+    assert verdict.available_storage is not None
+    assert verdict.available_storage.outcome == "passive"
+    hands = describe_hands(verdict.available_storage.scope.hands, "linear")
     assert f"Contact made and broken: proved passive for {hands}." in verdict.claim
     assert verdict.claim.startswith(check_by_closed_forms(PADDLE, CLAMPED).claim)
 
@@ -60,8 +60,8 @@ def test_a_proof_of_sustained_contact_says_for_whom_contact_is_covered() -> None
     assert verdict.outcome == before.outcome == "passive in contact"
     assert verdict.certificate == before.certificate
     assert verdict.scope == before.scope
-    assert verdict.worst_hand is not None
-    assert not verdict.worst_hand.scope.hands.every
+    assert verdict.available_storage is not None
+    assert not verdict.available_storage.scope.hands.every
     assert "nothing is proved or refuted" in before.claim
     assert "Contact made and broken: proved passive for hands of up to" in verdict.claim
 
@@ -82,7 +82,7 @@ def test_a_proof_of_sustained_contact_says_for_whom_contact_is_covered() -> None
 def test_no_game_where_there_is_no_gap(device: zw.Device, law: zw.Wall) -> None:
     """Decided by closed forms, or not a loop that can be played."""
     assert not has_gap(device, law, check_by_closed_forms(device, law))
-    assert zw.check(device, law).worst_hand is None
+    assert zw.check(device, law).available_storage is None
 
 
 def test_a_law_that_cannot_be_played_keeps_its_verdict() -> None:
@@ -90,7 +90,7 @@ def test_a_law_that_cannot_be_played_keeps_its_verdict() -> None:
     law = WINDOW.replace(velocity_filter=zw.rendering.Window(20), damping=0.27)
     assert has_gap(PADDLE, law, check_by_closed_forms(PADDLE, law))
     verdict = zw.check(PADDLE, law)
-    assert verdict.worst_hand is None
+    assert verdict.available_storage is None
     assert verdict == check_by_closed_forms(PADDLE, law)
 
 
@@ -178,7 +178,7 @@ def test_a_settled_round_gains_what_one_more_round_does(delay: float | str) -> N
     assert peak_force(gain) >= max(once.forces) > 0
 
 
-def test_a_motion_of_the_game_is_replayed_by_real_hands() -> None:
+def test_a_motion_of_value_iteration_is_replayed_by_real_hands() -> None:
     """The ideal hand gets out what the exact arithmetic says."""
     found = zw.replay(zw.check(SMOOTH, SOFT))
     assert found.replayed == pytest.approx(found.claimed, rel=1e-9)

@@ -29,7 +29,7 @@ def has_gap(device: Device, law: Environment, verdict: Verdict) -> bool:
     return verdict.outcome in ("undecided", "passive in contact")
 
 
-def with_game(
+def with_value_iteration(
     device: Device, law: Environment, verdict: Verdict, progress: Callable[[int], None] | None = None
 ) -> Verdict:
     """The verdict with what available storage adds to it; as it is where that cannot be computed."""
@@ -46,7 +46,7 @@ def with_game(
             scope=verdict.scope.replace(contact=found.scope.contact, also=()),
             certificate=None,
             motion=found.witness,
-            worst_hand=found,
+            available_storage=found,
             at_limit=False,
         )
-    return verdict if found.outcome == "undecided" else replace(verdict, worst_hand=found)
+    return verdict if found.outcome == "undecided" else replace(verdict, available_storage=found)

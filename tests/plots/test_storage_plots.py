@@ -1,4 +1,4 @@
-"""Pictures of the worst hand, read back from their artists."""
+"""Pictures of available storage, read back from their artists."""
 
 from __future__ import annotations
 
@@ -83,7 +83,9 @@ def test_a_verdict_shows_what_the_game_found():
     assert len(plots.witness(active).axes) == 3
     bounded = zw.check(PADDLE, zw.Wall(250, 0.05, clamped=True))
     titles = [a.get_title(loc="left") for a in plots.check_figure(bounded).axes]
-    found = bounded.worst_hand  # of slow hands a closed form may say as much, without a storage function
+    found = (
+        bounded.available_storage
+    )  # of slow hands a closed form may say as much, without a storage function
     drawn = found is not None and found.storage is not None
     assert any("never more than" in t for t in titles) is drawn
 

@@ -21,7 +21,7 @@ from zwidth.quantity.parameter import Parametric
 from zwidth.rendering.theorem import Theorem
 
 
-class Surroundings(NamedTuple):
+class LoopContext(NamedTuple):
     """What a law is told once, before the loop runs.
 
     Parameters
@@ -47,25 +47,25 @@ class Surroundings(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stage(Parametric, ABC):
+class RenderingLaw(Parametric, ABC):
     """A law that changes the force of an environment, or the reading before it."""
 
     code: ClassVar[float]
     """Which step the compiled chain takes; its own for each law."""
 
-    slots: ClassVar[int]
+    state_size: ClassVar[int]
     """Numbers that it remembers."""
 
     bounds_the_force: ClassVar[bool] = False
     """True for force bounding: last in a row, it keeps to what the device pays for, whatever came before."""
 
     @abstractmethod
-    def numbers(self, at: Surroundings) -> list[float]:
+    def numbers(self, at: LoopContext) -> list[float]:
         """The parameters of the step, defaults filled in from the device."""
 
-    def rested(self, reading: float) -> list[float]:
+    def initial_state(self, reading: float) -> list[float]:
         """What it remembers after the hand has been at a reading for ever."""
-        return [reading] + [0.0] * (self.slots - 1)
+        return [reading] + [0.0] * (self.state_size - 1)
 
     def most_damping(self, device: Device, spring: Exact | None) -> Fraction | None:
         """α where what it adds is never more than α |Δx|/T; None where it is not so bounded.
@@ -75,7 +75,7 @@ class Stage(Parametric, ABC):
         """
         return None
 
-    def theorem(self, at: Surroundings) -> Theorem | None:
+    def theorem(self, at: LoopContext) -> Theorem | None:
         """Why no hand takes energy out with this law last in the row, by a proof on paper; None without one.
 
         What the proof counts of the device is in it; whether that is enough says `Theorem.unmet`.  No

@@ -77,7 +77,7 @@ def _gain(turn: list[float], above: int, loop: LinearLoop) -> float:
     return applied(above - 1) - applied(period - 1)
 
 
-def straddle(
+def edge_crossing(
     loop: LinearLoop, coulomb_friction: Fraction, resolution: Fraction, waits: Waits, edge: int
 ) -> Motion | None:
     """To and fro over the edge `edge` counts from x = 0, going there first; None if that gains nothing."""

@@ -19,7 +19,7 @@ from zwidth.passivity.storage.program import FINE, STEPS, DynamicProgram, progra
 from zwidth.passivity.storage.row.program import COUNTS, RowProgram, row_program
 from zwidth.passivity.storage.row.table import DoesNotClose
 from zwidth.passivity.wording import describe_hands
-from zwidth.rendering.rendered import stages_of
+from zwidth.rendering.rendered import laws_of
 
 MOVES = 4e9
 """Moves that are looked at."""
@@ -28,11 +28,11 @@ STATES = 20_000
 """States that a law in a row may have on its grid."""
 
 
-def by_the_game(device: Device, law: Environment, found: Attack) -> tuple[bool, str]:
+def by_value_iteration(device: Device, law: Environment, found: Attack) -> tuple[bool, str]:
     """Whether a motion refutes the law, and what is known; a proof is one of hands on a small grid."""
     no_proof = f"{found}; no criterion covers this law"
     try:
-        refuted, said = _of_a_row(device, law) if stages_of(law) else _of_a_law(device, law)
+        refuted, said = _of_a_row(device, law) if laws_of(law) else _of_a_law(device, law)
     except InputError as error:
         return False, f"{no_proof}; values were not iterated: {_cause(error)}"
     except Spent:
@@ -45,34 +45,34 @@ def by_the_game(device: Device, law: Environment, found: Attack) -> tuple[bool, 
 def _of_a_law(device: Device, law: Environment) -> tuple[bool, str]:
     """By `available_storage`."""
     actuator = _actuator(device)
-    game = program_of(device, law, **actuator)
-    assert isinstance(game, DynamicProgram)  # it is no row
-    told = budget_of(game, MOVES)
+    program = program_of(device, law, **actuator)
+    assert isinstance(program, DynamicProgram)  # it is no row
+    told = budget_of(program, MOVES)
     played = available_storage(device, law, **actuator, seconds=float("inf"), progress=told)
     if played.outcome == "undecided":
         return False, "nor does value iteration decide it"
-    return played.outcome == "active", played.claim if played.outcome == "active" else _proved(game)
+    return played.outcome == "active", played.claim if played.outcome == "active" else _proved(program)
 
 
 def _of_a_row(device: Device, law: Environment) -> tuple[bool, str]:
     """On the largest domain on which the law closes."""
-    game = _largest(device, law)
-    width = game.table.successors.shape[1]
-    told = Budget(MOVES // (game.table.states * width * NODES**2))
-    for outcome in _rounds(game, told):
+    program = _largest(device, law)
+    width = program.table.successors.shape[1]
+    told = Budget(MOVES // (program.table.states * width * NODES**2))
+    for outcome in _rounds(program, told):
         if isinstance(outcome, Gain):
             return True, f"A motion of the hand takes energy out of this loop: {outcome.describe()}."
         if outcome:
-            return False, _proved(game)
+            return False, _proved(program)
     return False, "nor does value iteration decide it"
 
 
-def _rounds(game: RowProgram, told: Budget) -> Iterator[bool | Gain | None]:
+def _rounds(program: RowProgram, told: Budget) -> Iterator[bool | Gain | None]:
     """On finer and finer steps: whether it is proved, or a motion."""
     for steps, fine in zip(STEPS, (*FINE, None, None), strict=True):
-        storage = game.prove(steps, progress=told)
+        storage = program.prove(steps, progress=told)
         yield storage is not None and storage.certificate().verify()
-        yield None if fine is None else game.refute(fine, progress=told)
+        yield None if fine is None else program.refute(fine, progress=told)
 
 
 def _largest(device: Device, law: Environment) -> RowProgram:
@@ -83,16 +83,16 @@ def _largest(device: Device, law: Environment) -> RowProgram:
     DoesNotClose
         If there are more on the smallest one.
     """
-    game = None
+    program = None
     for counts in reversed(COUNTS):
         try:
-            game = row_program(device, law, domains=(counts,), most=STATES, **_actuator(device))
+            program = row_program(device, law, domains=(counts,), most=STATES, **_actuator(device))
         except DoesNotClose:
-            if game is None:
+            if program is None:
                 raise
             break
-    assert game is not None
-    return game
+    assert program is not None
+    return program
 
 
 def _actuator(device: Device) -> Any:
@@ -100,8 +100,8 @@ def _actuator(device: Device) -> Any:
     return {key: getattr(device, key) is not None for key in ("force_limit", "force_resolution")}
 
 
-def _proved(game: DynamicProgram | RowProgram) -> str:
-    hands = describe_hands(game.hands, game.motion)
+def _proved(program: DynamicProgram | RowProgram) -> str:
+    hands = describe_hands(program.hands, program.motion)
     return f"{hands} take no energy out, proved; others may"
 
 

@@ -17,7 +17,7 @@ from flint import fmpz_poly
 from zwidth.passivity.linear.linear import closed_loop, offset_of
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.witness.motion import Motion, Pattern, Repeat, convolve
-from zwidth.passivity.witness.oscillation import forces_of
+from zwidth.passivity.witness.short_sinusoid import forces_of
 
 _LENGTHS = (8, 32, 128, 512, 2048)
 _SIZE = 1024

@@ -71,7 +71,7 @@ class Threshold(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class RealHand(Documented):
+class FiniteStiffnessReplay(Documented):
     """A witness replayed by the ideal hand and by hands of finite stiffness.
 
     Attributes
@@ -151,7 +151,7 @@ class RealHand(Documented):
         yield Table(rows=list(self.rows()))
 
 
-def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> RealHand:
+def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> FiniteStiffnessReplay:
     """Replay the witness of an active verdict by the ideal hand and by hands of finite stiffness.
 
     Parameters
@@ -195,7 +195,7 @@ def replay(verdict: Verdict, *, damping_ratio: float = 1.0) -> RealHand:
         _threshold(hand(verdict.device.replace(mass=factor * mass)), tried, factor * mass)
         for factor in _MASSES
     )
-    return RealHand(
+    return FiniteStiffnessReplay(
         rounds=rounds,
         rounds_found=verdict.witness.motion.rounds,
         claimed=claimed,
