@@ -65,7 +65,7 @@ def test_a_law_that_does_what_the_wall_does_falls_with_it():
 
 
 def test_motions_found_against_the_wall_refute_laws_behind_which_it_stands():
-    """Where the wall begins to give, none of the fixed set gains up to 1 m/s; that of value iteration does."""
+    """Where the wall begins to give, no motion of the fixed set gains up to 1 m/s; that of values does."""
     wall = zw.Wall(534)
     known = found_motions(PADDLE, wall, 1.0)
     for stage in (PassiveLeap(), PassivityController(observer="published")):

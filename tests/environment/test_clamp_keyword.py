@@ -28,7 +28,7 @@ def test_a_clamped_law_is_another_law_with_the_same_pulse_transfer_function(law)
     assert clamped.describe() == law.describe() + ", never pulls"
     assert clamped.describe("rotary") == law.describe("rotary") + ", never pulls"
     assert pickle.loads(pickle.dumps(clamped)) == clamped
-    assert eval(repr(clamped), vars(zw)) == clamped
+    assert eval(repr(clamped), {**vars(zw.rendering), **vars(zw)}) == clamped
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -22,7 +22,7 @@ def written(folder: Path, text: str, name: str = "a.toml") -> Path:
 def test_device_and_environment_in_files_of_their_own(tmp_path: Path) -> None:
     """Both together are the arguments of `check`."""
     loop = zw.load(written(tmp_path, WHEEL), written(tmp_path, STOP, "b.toml"))
-    assert loop.device == zw.rotary(inertia="0.006", damping="0.02", sample_period="0.001")
+    assert loop.device == zw.rotary(inertia="0.006", damping="0.02", sample_period="0.001", name="a")
     assert loop.environment == zw.Wall(20)
     assert zw.check(*loop).max_stiffness == 40
 
@@ -45,7 +45,7 @@ def test_a_device_alone(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("[device]\nmass = 1\n", "damping"),
+        ("[device]\nmass = 1\n", "sample_period"),
         ("[devise]\nmass = 1\n", "devise"),
         (WHEEL + "stiffness = 3\n", "stiffness"),
         (STOP, "no device"),

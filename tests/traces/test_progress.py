@@ -23,7 +23,7 @@ class _Terminal:
 
 def test_nothing_is_drawn_where_nobody_watches(capsys, monkeypatch) -> None:
     """A pipe or a file gets no bar."""
-    monkeypatch.setattr(module, "PATIENCE", 0.0)
+    monkeypatch.setattr(module, "SHOWN_AFTER", 0.0)
     with module.progress_bar("samples") as tell:
         tell(1, 3)
     assert capsys.readouterr().err == ""
@@ -41,7 +41,7 @@ def test_short_work_draws_no_bar(capsys, monkeypatch) -> None:
 def test_long_work_draws_a_bar(capsys, monkeypatch) -> None:
     """It counts what is done."""
     monkeypatch.setattr(sys, "stderr", _Terminal(sys.stderr))
-    monkeypatch.setattr(module, "PATIENCE", 0.0)
+    monkeypatch.setattr(module, "SHOWN_AFTER", 0.0)
     with module.progress_bar("samples") as tell:
         tell(1, 3)
         tell(2, 3)

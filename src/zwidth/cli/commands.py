@@ -73,13 +73,13 @@ def _check(arguments: argparse.Namespace) -> int:
             verdict.save(save, {} if active is None else {"active_hand": active.to_dict()})
     if plot is not None:
         verdict.plot(plot)
-    real_hand = _replayed(verdict) if arguments.replay else None
+    replayed = _replayed(verdict) if arguments.replay else None
     if arguments.json:
-        print_json(_in_full(verdict, real_hand=real_hand, active_hand=active))
+        print_json(_in_full(verdict, real_hand=replayed, active_hand=active))
     else:
         from zwidth.cli.report import print_verdict
 
-        print_verdict(verdict, real_hand, active)
+        print_verdict(verdict, replayed, active)
         say_written(save, plot)
     return exit_status(verdict.outcome)
 

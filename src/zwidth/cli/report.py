@@ -39,7 +39,7 @@ _ORDER = (
 
 def print_verdict(
     verdict: Verdict,
-    real_hand: FiniteStiffnessReplay | None = None,
+    replayed: FiniteStiffnessReplay | None = None,
     active_hand: ToleratedActivity | None = None,
 ) -> None:
     """Print the report on standard output, with what was asked for of real and of active hands."""
@@ -52,8 +52,8 @@ def print_verdict(
             section(out, "budget", _budget(verdict, fancy))
         if verdict.witness is not None:
             section(out, "the motion", motion_lines(verdict.witness, fancy))
-        if real_hand is not None:
-            section(out, "a real hand", [grid(real_hand.rows())])
+        if replayed is not None:
+            section(out, "a real hand", [grid(replayed.rows())])
         if active_hand is not None:
             section(out, "an active hand", [grid(active_hand.rows())])
         if isinstance(verdict, LinearVerdict):

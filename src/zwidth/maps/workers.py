@@ -14,7 +14,7 @@ from zwidth.maps.plan import Plan
 
 Finished = Iterator[tuple[Place, Layers]]
 
-_PATIENCE = "10 s"
+_TIMEOUT = "10 s"
 """How long a cluster may take to answer."""
 
 
@@ -43,7 +43,7 @@ def on_cluster(ready: Plan, places: list[Place], address: str) -> Finished:
         ) from None
     dask: Any = distributed
     try:
-        client: Any = dask.Client(address, timeout=_PATIENCE)
+        client: Any = dask.Client(address, timeout=_TIMEOUT)
     except (OSError, ValueError, ImportError) as error:
         raise InputError(
             f"no Dask scheduler answers at {address}: {str(error).splitlines()[0]}; "

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-PATIENCE = 1.0
+SHOWN_AFTER = 1.0
 """Seconds before the bar appears."""
 
 
@@ -29,7 +29,7 @@ def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
         return
     bar = _Bar(what)
     try:
-        yield bar.tell
+        yield bar.report
     finally:
         bar.close()
 
@@ -40,9 +40,9 @@ class _Bar:
         self._start = time.monotonic()
         self._bar: Progress | None = None
 
-    def tell(self, done: int, total: int) -> None:
+    def report(self, done: int, total: int) -> None:
         if self._bar is None:
-            if time.monotonic() - self._start < PATIENCE or done >= total:
+            if time.monotonic() - self._start < SHOWN_AFTER or done >= total:
                 return
             from rich.console import Console  # only for those who wait
             from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn

@@ -35,12 +35,12 @@ def falling(progress: Callable[[int, int], None]) -> Callable[[int], None]:
     """Progress for a number that falls to 0, not always steadily: the most there were, less what is left."""
     most = 0
 
-    def tell(left: int) -> None:
+    def report(left: int) -> None:
         nonlocal most
         most = max(most, left)
         progress(most - left, most)
 
-    return tell
+    return report
 
 
 @wraps(_storage.available_storage)

@@ -50,8 +50,8 @@ def contact_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
     if start > 0 or law.force([start] * taps) != 0:
         raise Invalid("the motion must begin at rest where the law gives no force")
 
-    rested = Fraction(0) if law.surface == "penetration" or law.relaxing is None else start
-    state = _State([start] * (taps + losses.delay + 1), [rested] * (losses.delay + 1))
+    resting = Fraction(0) if law.surface == "penetration" or law.relaxing is None else start
+    state = _State([start] * (taps + losses.delay + 1), [resting] * (losses.delay + 1))
 
     def run(begin: int, end: int) -> Fraction:
         out = Fraction(0)

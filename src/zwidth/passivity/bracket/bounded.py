@@ -121,21 +121,22 @@ class BoundedSearch:
 
     def _is_proved_on_cells(self, cells: int, value: Exact, deadline: float) -> bool:
         self.search.count()
-        return self._keep_proof(value, self.program(value).prove_on_cells(cells, deadline, self.search.tell))
+        proof = self.program(value).prove_on_cells(cells, deadline, self.search.report)
+        return self._keep_proof(value, proof)
 
     def _is_proved(self, steps: int, value: Exact, deadline: float) -> bool:
         self.search.count()
         try:
             program = self.program(value)
             in_time = min(deadline, self.search.deadline - program.checking_time(steps))
-            return self._keep_proof(value, program.prove(steps, in_time, self.search.tell))
+            return self._keep_proof(value, program.prove(steps, in_time, self.search.report))
         except DoesNotClose:
             return False
 
     def _gains(self, fine: int, value: Exact, deadline: float) -> bool:
         self.search.count()
         try:
-            motion = self.program(value).refute(fine, deadline, self.search.tell)
+            motion = self.program(value).refute(fine, deadline, self.search.report)
         except DoesNotClose:
             return False
         if motion is not None:

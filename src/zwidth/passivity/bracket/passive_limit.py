@@ -19,7 +19,7 @@ from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.storage.program import DynamicProgram, program_of
 from zwidth.passivity.storage.row.program import RowProgram, row_program
 from zwidth.passivity.storage.slow_hands import slow_hands
-from zwidth.passivity.storage.solution import patience
+from zwidth.passivity.storage.solution import time_limit
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.rendering.rendered import laws_of
 
@@ -83,13 +83,13 @@ def passive_limit(
     law = as_environment(environment)
     refuse_without_part(parameter.removeprefix("device."), force_limit, force_resolution)
     asked = parameter_of(device, law, parameter)
-    patience(seconds)
+    time_limit(seconds)
     counted = penetration, speed, force_limit, force_resolution, friction
     ideal = ends(device.resolution)[1] == 0
     in_a_row = bool(laws_of(law))
     if not (ideal or in_a_row) and isinstance(first := program_of(device, law, *counted), DynamicProgram):
         first.warm_up()
-    search = Search(asked, tolerance, time.monotonic(), patience(seconds), progress)
+    search = Search(asked, tolerance, time.monotonic(), time_limit(seconds), progress)
     if friction is not None and asked.name in ("device.damping", "device.coulomb_friction"):
         raise InputError(f"{parameter} plays no part beside a friction curve: leave out one of the two")
     closed = not (force_limit or force_resolution or friction is not None)

@@ -128,9 +128,9 @@ class Search:
     def count(self) -> None:
         """One loop more is looked at."""
         self.evaluations += 1
-        self.tell(0)
+        self.report(0)
 
-    def tell(self, _: int) -> None:
+    def report(self, _: int) -> None:
         """Say how far it is; a round of values has passed."""
         if self.progress is not None:
             self.progress(self.evaluations, max(30, self.evaluations + 1))

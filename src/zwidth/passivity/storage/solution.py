@@ -150,7 +150,7 @@ def available_storage(
     law = as_environment(environment)
     said = program_scope(device, law, program)
     program.warm_up()
-    deadline = time.monotonic() + patience(seconds)
+    deadline = time.monotonic() + time_limit(seconds)
     counted = force_limit or force_resolution or friction is not None
     slow = None if counted else slow_hands(device, law, program.bounds.speed)
     if program.is_large:
@@ -184,7 +184,7 @@ def _on_cells(
     return next((certificate for certificate in found if certificate is not None), None)
 
 
-def patience(seconds: float) -> float:
+def time_limit(seconds: float) -> float:
     """The time that a search may take [s].
 
     Raises

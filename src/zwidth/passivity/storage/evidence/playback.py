@@ -94,9 +94,9 @@ class _Controller:
     def __init__(self, law: FiniteLaw, losses: Losses, start: Fraction) -> None:
         self._law, self._losses = law, losses
         self._used = law.memory + 1
-        rested = self._read(start)
-        average = Fraction(0) if law.surface == "penetration" or law.relaxing is None else rested
-        self._readings = [rested] * (self._used + losses.delay)
+        resting = self._read(start)
+        average = Fraction(0) if law.surface == "penetration" or law.relaxing is None else resting
+        self._readings = [resting] * (self._used + losses.delay)
         self._averages = [average] * (losses.delay + 1)
 
     def forces(self, position: Fraction) -> list[float]:
