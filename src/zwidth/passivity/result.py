@@ -140,8 +140,10 @@ class Answer(Result):
         The same in a sentence.
     scope
         What it is about.
-    certificate, witness
-        The proof, or the motion against it; None where there is none.  Of a loop `violation` too.
+    certificate
+        The proof; None where there is none.
+    witness
+        The motion against it; None where there is none.  Of a loop `violation` too.
     """
 
     YES: ClassVar[str]

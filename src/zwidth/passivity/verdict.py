@@ -21,7 +21,7 @@ from zwidth.quantity.text import in_unit, in_words
 class Verdict(Found):
     """Whether a hand can take energy out of a sampled loop.
 
-    "passive" stands on a `certificate` that the independent checker accepted, with contact made and broken,
+    "passive" stands on a ``certificate`` that the independent checker accepted, with contact made and broken,
     or as it was asked; "passive in contact" on one for hands that never leave the wall; "active" on a
     `violation` that it accepted or a motion, the `witness`, that it recomputed; "undecided" says what is
     known.

@@ -30,8 +30,10 @@ class Bracket(Result):
         Which, and its SI unit.
     proved_passive, proved_active
         Proved passive; refuted.  None where no such value was found.
-    certificate, witness
-        The evidence at either value.
+    certificate
+        The proof at the one value.
+    witness
+        The motion at the other.
     scope
         What it is about: every hand, or hands within bounds; contact; what of the actuator is counted.
     every_hand

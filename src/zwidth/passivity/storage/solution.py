@@ -42,8 +42,10 @@ class AvailableStorage(PassivityAnswer):
         What it is about: the hands, within which bounds; contact; what of the actuator is counted.
     device, environment
         The loop.
-    certificate, witness
-        The evidence; the one that does not apply is None.
+    certificate
+        The proof; None unless passive.
+    witness
+        The motion that gains; None unless active.
     storage
         The storage function, to look at; None unless passive.
     """

@@ -29,7 +29,7 @@ class Workspace(PassivityAnswer):
     Parameters
     ----------
     outcome
-        "passive": the independent checker has shown the condition in the whole region, `certificate`.
+        "passive": the independent checker has shown the condition in the whole region, ``certificate``.
         "passive without encoder steps": it has of an arm that is read without them, and this one has some.
         "theorem": it holds in every cell, reckoned in doubles with room for rounding, without a certificate.
         "active": at one point a motion of the hand takes energy out, `motion`. "undecided": none of these.
