@@ -12,7 +12,7 @@ import pytest
 import zwidth as zw
 from zwidth import checker
 from zwidth.cli.main import main
-from zwidth.cli.verification import verifications
+from zwidth.cli.verify import verifications
 from zwidth.passivity.document import to_json
 
 PADDLE = zw.Device(

@@ -11,7 +11,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.cli.verification import verifications
+from zwidth.cli.verify import verifications
 from zwidth.passivity.check import check_by_closed_forms
 from zwidth.passivity.decision import decide
 from zwidth.passivity.gap import has_gap

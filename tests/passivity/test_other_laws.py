@@ -9,7 +9,7 @@ import pytest
 
 import zwidth as zw
 from zwidth import checker
-from zwidth.cli.verification import verifications
+from zwidth.cli.verify import verifications
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.formulas.nonlinear_spring import spring_need
 from zwidth.rendering import ForceBounding, PassivityController, SlewLimit

@@ -1,7 +1,8 @@
-"""The catalogue as a table and as JSON."""
+"""The command `devices`: the catalogue as a table and as JSON."""
 
 from __future__ import annotations
 
+import argparse
 import json
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -9,10 +10,29 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
+from zwidth.cli.output import print_json
 from zwidth.cli.page import page
+from zwidth.device import catalogue
 from zwidth.device.catalogue import Datum, Entry
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import in_words, shown
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth devices`."""
+    parser.add_argument("name", metavar="NAME", nargs="?", help="only this device, with every value")
+    parser.add_argument("--json", action="store_true", help="print JSON, units in the keys")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth devices`: 0."""
+    names = catalogue.names() if arguments.name is None else (arguments.name,)
+    entries = [catalogue.entry(name) for name in names]
+    if arguments.json:
+        print_json(entries_json(entries))
+    else:
+        print_entries(entries, in_full=arguments.name is not None)
+    return 0
 
 
 def print_entries(entries: Sequence[Entry], in_full: bool) -> None:

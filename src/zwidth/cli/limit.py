@@ -22,7 +22,7 @@ BOTH, ONE_OR_NONE = 0, 3
 """Exit status by the sides that were found; 2 is bad input."""
 
 
-def configure_limit(parser: argparse.ArgumentParser) -> None:
+def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth limit`."""
     parser.usage = (
         "%(prog)s [SOURCE ...] [--law NAMES] [--parameter NAME] [--penetration LENGTH] [--speed SPEED] "
@@ -54,7 +54,7 @@ def configure_limit(parser: argparse.ArgumentParser) -> None:
     add_parameters(parser)
 
 
-def run_limit(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """`zwidth limit`: 0 if both sides of the limit were found, else 3."""
     from zwidth.specification.read import WITH_LAWS, Specification, read_tables, specified
 

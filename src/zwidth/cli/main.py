@@ -12,7 +12,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import NoReturn
 
-from zwidth.cli.commands import COMMANDS
+from zwidth.cli.commands import COMMANDS, configure, run
 from zwidth.cli.options import joined
 from zwidth.cli.output import quiet_pipe, tolerate_encoding
 from zwidth.errors import InputError
@@ -70,7 +70,7 @@ def _run(argv: list[str]) -> int:
         raise InputError(_unknown(unknown, parser, arguments))
     if arguments.command is None:
         raise InputError(f"which command? One of {', '.join(COMMANDS)}; zwidth --help says what they do")
-    return COMMANDS[arguments.command].run(arguments)
+    return run(arguments.command, arguments)
 
 
 def _parser(argv: Sequence[str]) -> Parser:
@@ -91,7 +91,7 @@ def _parser(argv: Sequence[str]) -> Parser:
             allow_abbrev=False,
         )
         if name in argv:  # the many options of the others need not be built
-            command.configure(child)
+            configure(name, child)
             parser.set_defaults(**{_CHILD: child})
     return parser
 

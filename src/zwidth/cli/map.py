@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from zwidth.environment.velocity import VelocityEstimator
 
 
-def configure_map(parser: argparse.ArgumentParser) -> None:
+def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth map`."""
     parser.usage = (
         "%(prog)s [SOURCE] --stiffness LOW:HIGH --virtual-damping LOW:HIGH [--cells NxM] [--hands NAMES] "
@@ -69,7 +69,7 @@ def configure_map(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def run_map(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """`zwidth map`: 0."""
     from zwidth.cli.compile_notice import warn_of_compiling_the_map
     from zwidth.maps import z_width

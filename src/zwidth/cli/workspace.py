@@ -23,7 +23,7 @@ _RATE = "1 kHz"
 _SAVED = (".json", ".nc")
 
 
-def configure_workspace(parser: argparse.ArgumentParser) -> None:
+def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth workspace`."""
     parser.usage = (
         "%(prog)s ARM --stiffness K [--pose --rotational-stiffness K] [--wall FILE] [--joint-damping B] "
@@ -69,7 +69,7 @@ def configure_workspace(parser: argparse.ArgumentParser) -> None:
     add_output(parser, "the verdict", "the map", saved)
 
 
-def run_workspace(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """`zwidth workspace`: 0 passive, 1 active, 3 undecided, 4 by a proof on paper alone."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() not in _SAVED:

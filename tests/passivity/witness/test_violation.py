@@ -18,7 +18,7 @@ from zwidth import checker
 from zwidth.checker.loop.criterion import criterion
 from zwidth.checker.loop.loop import LOOP, loop_of
 from zwidth.checker.loop.violation import criterion_at
-from zwidth.cli.verification import verifications
+from zwidth.cli.verify import verifications
 from zwidth.passivity.certificate import verify_document
 from zwidth.passivity.check import check_by_closed_forms
 

@@ -1,16 +1,19 @@
-"""What the independent checker found, in the terminal."""
+"""The command `verify`: what the independent checker finds, in the terminal."""
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from zwidth.checker import Scope, Verified
+from zwidth.cli.options import Once
+from zwidth.cli.output import print_json
 from zwidth.cli.page import below, grid, headline, page
 from zwidth.errors import InputError
-from zwidth.passivity.certificate import evidence, verify_document
+from zwidth.passivity.certificate import evidence, read_document, verify_document
 from zwidth.quantity.text import shown
 from zwidth.specification.table import plain
 
@@ -22,6 +25,40 @@ _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 
 _OF_A_PORT = "zwidth indices 1"
 """A document about a port by itself."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth verify`."""
+    parser.usage = "%(prog)s FILE\n       %(prog)s --schema KIND"
+    parser.add_argument(
+        "file", metavar="FILE", nargs="?", help="certificate, witness, verdict or limit saved as JSON"
+    )
+    parser.add_argument(
+        "--schema",
+        metavar="KIND",
+        action=Once,
+        help="print the JSON Schema of the documents of a kind, such as spring or corners",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth verify`: 0 where everything holds, else 1."""
+    if arguments.schema is not None:
+        return _schema(arguments)
+    if arguments.file is None:
+        raise InputError("which FILE is to be checked? Or --schema KIND for what one must look like")
+    found = verifications(read_document(arguments.file))
+    print_verifications(found)
+    return 0 if all(part.verification.valid for part in found) else 1
+
+
+def _schema(arguments: argparse.Namespace) -> int:
+    if arguments.file is not None:
+        raise InputError("--schema prints what a document must look like, and checks no FILE")
+    from zwidth.cli.schemas import schema
+
+    print_json(schema(arguments.schema))
+    return 0
 
 
 class Part(NamedTuple):

@@ -20,7 +20,7 @@ YOURS = "yours"
 """What the row of laws of a specification is called on the bench."""
 
 
-def configure_compare(parser: argparse.ArgumentParser) -> None:
+def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth compare`."""
     parser.usage = (
         "%(prog)s [SOURCE ...] [--laws NAMES] [--law NAMES] [--fastest SPEED] [--PARAMETER VALUE ...] "
@@ -49,7 +49,7 @@ def configure_compare(parser: argparse.ArgumentParser) -> None:
     add_parameters(parser)
 
 
-def run_compare(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """`zwidth compare`: 0."""
     from zwidth.specification.read import WITH_LAWS, read_tables, specified
 

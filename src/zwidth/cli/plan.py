@@ -23,7 +23,7 @@ _OPTIONS = (
 )
 
 
-def configure_plan(parser: argparse.ArgumentParser) -> None:
+def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth plan`."""
     parser.usage = (
         "%(prog)s [SOURCE ...] --force-noise NOISE [--length L] [--slow TIME] [--PARAMETER VALUE ...]"
@@ -41,7 +41,7 @@ def configure_plan(parser: argparse.ArgumentParser) -> None:
     add_all(device, device_parameters())
 
 
-def run_plan(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """`zwidth plan`: 0."""
     from zwidth.identification.device.plan import plan_identification
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +22,7 @@ SOUNDS = (".wav",)
 INTERRUPTED = 130
 
 
-def configure_simulate(parser: argparse.ArgumentParser) -> None:
+def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth simulate`."""
     from zwidth.cli.simulation_tables import operator_parameters, simulation_parameters
 
@@ -47,7 +46,7 @@ def configure_simulate(parser: argparse.ArgumentParser) -> None:
     add_parameters(parser)
 
 
-def run_simulate(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """`zwidth simulate`: 0, or 130 after Ctrl-C."""
     from zwidth.cli.simulation_tables import build_touch, operator_parameters, simulation_parameters
 
@@ -107,51 +106,15 @@ def summary(trace: xr.Dataset) -> dict[str, Any]:
     return {"format": "zwidth simulation 1", **about, **measures, "energy": trace.zwidth.energy.to_dict()}
 
 
-def configure_traces(parser: argparse.ArgumentParser) -> None:
-    """The arguments of `zwidth traces`."""
-    parser.add_argument("files", metavar="FILE", nargs="+", help="traces that zwidth simulate saved")
-    parser.add_argument("--json", action="store_true", help="print JSON, units in the keys")
-    parser.add_argument("--plot", metavar="FILE", action=Once, help="save a plot of all: .png, .svg or .pdf")
-    parser.add_argument("--force", action="store_true", help="replace a file that exists")
-
-
-def run_traces(arguments: argparse.Namespace) -> int:
-    """`zwidth traces`: the numbers of saved traces beside each other."""
-    plot = _target("--plot", arguments.plot, PICTURES, arguments.force)
-    from zwidth.traces import compare_traces, load_trace
-
-    comparison = compare_traces(dict(_labelled(arguments.files, load_trace)))
-    if plot is not None:
-        with writing(plot):
-            comparison.plot(plot)
-    if arguments.json:
-        print_json(json.dumps(comparison.to_dict(), indent=2, ensure_ascii=False))
-    else:
-        from zwidth.cli.trace_report import print_comparison
-
-        print_comparison(comparison)
-        say_written(plot)
-    return 0
-
-
-def _labelled(files: list[str], load: Any) -> Iterator[tuple[str, xr.Dataset]]:
-    seen: set[str] = set()
-    for name in files:
-        if name in seen:
-            raise InputError(f"{name} is given twice")
-        seen.add(name)
-        yield name, load(name)
-
-
 def _targets(arguments: argparse.Namespace) -> tuple[Path | None, Path | None, Path | None]:
     """The files to write, checked before anything is computed."""
-    plot = _target("--plot", arguments.plot, PICTURES, arguments.force)
-    sound = _target("--sound", arguments.sound, SOUNDS, arguments.force)
-    save = _target("--save", arguments.save, SAVED, arguments.force)
+    plot = target("--plot", arguments.plot, PICTURES, arguments.force)
+    sound = target("--sound", arguments.sound, SOUNDS, arguments.force)
+    save = target("--save", arguments.save, SAVED, arguments.force)
     return plot, sound, save
 
 
-def _target(option: str, given: str | None, suffixes: tuple[str, ...], force: bool) -> Path | None:
+def target(option: str, given: str | None, suffixes: tuple[str, ...], force: bool) -> Path | None:
     if given is None:
         return None
     path = Path(given)

@@ -39,7 +39,7 @@ _READING = (
 """Options of how to read: the same."""
 
 
-def configure_identify(parser: argparse.ArgumentParser) -> None:
+def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth identify`."""
     parser.usage = (
         "%(prog)s LOG [LOG ...] [SOURCE] [--column QUANTITY=NAME ...] [--unit QUANTITY=UNIT ...] "
@@ -82,7 +82,7 @@ def _behind(parameter: Any) -> Any:
     return parameter._replace(key=BEHIND + parameter.key, help=argparse.SUPPRESS)
 
 
-def run_identify(arguments: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """`zwidth identify`: 0; with an environment that of `zwidth check`, "undecided" of a wrong model."""
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     if save is not None and save.suffix.lower() != ".toml":

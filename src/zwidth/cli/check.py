@@ -1,0 +1,108 @@
+"""The command `check`: is this device, rendering this environment, passive?"""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from zwidth.cli.decision import decided, exit_status
+from zwidth.cli.options import (
+    Once,
+    add_contact_option,
+    add_law_option,
+    add_output,
+    add_parameters,
+    contact,
+    overrides,
+)
+from zwidth.cli.output import print_json, say_written, targets, writing
+
+if TYPE_CHECKING:
+    from zwidth.passivity.finite_stiffness import FiniteStiffnessReplay
+    from zwidth.passivity.verdict import Verdict
+    from zwidth.specification.read import Specification
+    from zwidth.stability.active_hand import ToleratedActivity
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth check`."""
+    parser.usage = (
+        "%(prog)s [SOURCE ...] [--law NAMES] [--PARAMETER VALUE ...] [--json] [--plot FILE] [--replay] "
+        "[--active-below FREQUENCY] [--contact KIND] [-o FILE] [--force]"
+    )
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="device of the catalogue, or TOML file with a [device] table, an [environment] table or both",
+    )
+    add_law_option(parser)
+    add_contact_option(parser)
+    output = add_output(parser, "the verdict", "the plots", "verdict and evidence as JSON, for zwidth verify")
+    output.add_argument(
+        "--replay", action="store_true", help="replay the motion by hands of finite stiffness; needs a mass"
+    )
+    output.add_argument(
+        "--active-below",
+        metavar="FREQUENCY",
+        action=Once,
+        help="how active a hand may be below this frequency that is passive above it, such as 10 Hz",
+    )
+    add_parameters(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth check`: the status says the outcome."""
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    loop = _loop(arguments)
+    active = _tolerated(loop, arguments.active_below)
+    verdict = decided(loop, contact(arguments))
+    if save is not None:
+        with writing(save):
+            verdict.save(save, {} if active is None else {"active_hand": active.to_dict()})
+    if plot is not None:
+        verdict.plot(plot)
+    replayed = _replayed(verdict) if arguments.replay else None
+    if arguments.json:
+        print_json(_in_full(verdict, real_hand=replayed, active_hand=active))
+    else:
+        from zwidth.cli.report import print_verdict
+
+        print_verdict(verdict, replayed, active)
+        say_written(save, plot)
+    return exit_status(verdict.outcome)
+
+
+def _loop(arguments: argparse.Namespace) -> Specification:
+    """The device, and the environment behind its laws."""
+    from zwidth.specification.laws import with_laws
+    from zwidth.specification.read import WITH_LAWS, Specification, read_tables, specified
+
+    tables = read_tables(arguments.sources, WITH_LAWS)
+    given = specified(tables, overrides(arguments))
+    rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
+    return Specification(given.device, rendered)
+
+
+def _replayed(verdict: Verdict) -> FiniteStiffnessReplay:
+    from zwidth.cli.compile_notice import warn_of_compiling
+    from zwidth.passivity.finite_stiffness import replay  # the simulator takes its time
+
+    warn_of_compiling()
+    return replay(verdict)
+
+
+def _tolerated(loop: Specification, below: str | None) -> ToleratedActivity | None:
+    if below is None:
+        return None
+    from zwidth.quantity.units import parse_number
+    from zwidth.stability.active_hand import tolerated_activity
+
+    return tolerated_activity(loop.device, loop.environment, parse_number(below, "Hz", "active_below"))
+
+
+def _in_full(verdict: Verdict, **reports: FiniteStiffnessReplay | ToleratedActivity | None) -> str:
+    from zwidth.passivity.document import to_json
+
+    given = {name: report.to_dict() for name, report in reports.items() if report is not None}
+    return to_json({**verdict.to_dict(), **given})

@@ -1,0 +1,52 @@
+"""The command `traces`: saved touches beside each other."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from zwidth.cli.options import Once
+from zwidth.cli.output import print_json, say_written, writing
+from zwidth.cli.simulate import PICTURES, target
+from zwidth.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth traces`."""
+    parser.add_argument("files", metavar="FILE", nargs="+", help="traces that zwidth simulate saved")
+    parser.add_argument("--json", action="store_true", help="print JSON, units in the keys")
+    parser.add_argument("--plot", metavar="FILE", action=Once, help="save a plot of all: .png, .svg or .pdf")
+    parser.add_argument("--force", action="store_true", help="replace a file that exists")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth traces`: the numbers of saved traces beside each other."""
+    plot = target("--plot", arguments.plot, PICTURES, arguments.force)
+    from zwidth.traces import compare_traces, load_trace
+
+    comparison = compare_traces(dict(_labelled(arguments.files, load_trace)))
+    if plot is not None:
+        with writing(plot):
+            comparison.plot(plot)
+    if arguments.json:
+        print_json(json.dumps(comparison.to_dict(), indent=2, ensure_ascii=False))
+    else:
+        from zwidth.cli.trace_report import print_comparison
+
+        print_comparison(comparison)
+        say_written(plot)
+    return 0
+
+
+def _labelled(files: list[str], load: Any) -> Iterator[tuple[str, xr.Dataset]]:
+    seen: set[str] = set()
+    for name in files:
+        if name in seen:
+            raise InputError(f"{name} is given twice")
+        seen.add(name)
+        yield name, load(name)
