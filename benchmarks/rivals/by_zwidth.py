@@ -82,7 +82,7 @@ def batch(threads: int) -> None:
     def ends(samples: int, starts: list[float]) -> list[float]:
         vary = {"initial_position": starts}
         many = zw.simulation.simulate_batch(
-            DEVICE, WALL, push(samples), samples * PERIOD, vary=vary, threads=threads
+            DEVICE, WALL, push(samples), samples * PERIOD, vary=vary, workers=threads
         )
         return many.position.values
 

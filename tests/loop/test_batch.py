@@ -51,7 +51,7 @@ def test_plain_loops_side_by_side_have_the_bits_of_each_alone(delay: float) -> N
     }
     hand = zw.operators.ConstantForce(1.0)
     device = PADDLE.replace(delay=delay)
-    batch = zw.simulation.simulate_batch(device, zw.Wall(1.0), hand, 0.4, vary=vary, together=True, threads=2)
+    batch = zw.simulation.simulate_batch(device, zw.Wall(1.0), hand, 0.4, vary=vary, together=True, workers=2)
     for i in range(count):
         own = {name.rpartition(".")[2]: float(values[i]) for name, values in vary.items()}
         options = {key: own.pop(key) for key in ("encoder_phase", "initial_position", "initial_velocity")}
@@ -64,7 +64,7 @@ def test_loops_of_every_other_kind_have_the_bits_of_each_alone() -> None:
     device = PADDLE.replace(delay=3e-4)
     wall, hand = zw.Wall(300.0, damping=0.2), zw.operators.Finger()
     vary = {"environment.stiffness": [200.0, 900.0], "operator.damping": [0.1, 1.0, 4.0]}
-    batch = zw.simulation.simulate_batch(device, wall, hand, 0.5, vary=vary, threads=2)
+    batch = zw.simulation.simulate_batch(device, wall, hand, 0.5, vary=vary, workers=2)
     assert batch.sizes == {"stiffness": 2, "damping": 3}
     for i, k in enumerate(vary["environment.stiffness"]):
         for j, c in enumerate(vary["operator.damping"]):
@@ -76,7 +76,7 @@ def test_threads_do_not_change_a_bit() -> None:
     """One thread or three."""
     vary = {"stiffness": np.linspace(50.0, 1500.0, 3 * LANES + 1)}
     one, three = (
-        zw.simulation.simulate_batch(PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.3, vary=vary, threads=n)
+        zw.simulation.simulate_batch(PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 0.3, vary=vary, workers=n)
         for n in (1, 3)
     )
     assert one.identical(three)
@@ -154,7 +154,7 @@ def test_ctrl_c_keeps_the_loops_that_are_finished() -> None:
 
     vary = {"stiffness": np.linspace(50.0, 1500.0, 60 * LANES)}
     batch = zw.simulation.simulate_batch(
-        PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 1.0, vary=vary, threads=1, progress=stop
+        PADDLE, zw.Wall(1.0), zw.operators.Dowel(), 1.0, vary=vary, workers=1, progress=stop
     )
     finished = np.isfinite(batch.position.values)
     assert LANES <= finished.sum() < finished.size

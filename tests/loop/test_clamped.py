@@ -71,7 +71,7 @@ def test_a_batch_varies_the_clamp_with_the_bits_of_single_loops() -> None:
     """With and without, springs and damped walls side by side."""
     wall, dowel = zw.Wall(500.0, 0.3), zw.operators.Dowel()
     vary = {"clamped": [False, True], "environment.damping": [0.0, 0.3]}
-    batch = zw.simulation.simulate_batch(PADDLE, wall, dowel, 0.2, vary=vary, threads=2)
+    batch = zw.simulation.simulate_batch(PADDLE, wall, dowel, 0.2, vary=vary, workers=2)
     for clamped in (False, True):
         for damping in (0.0, 0.3):
             alone = zw.simulate(PADDLE, wall.replace(clamped=clamped, damping=damping), dowel, 0.2)

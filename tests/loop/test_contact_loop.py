@@ -107,7 +107,7 @@ def test_a_batch_has_the_bits_of_single_loops() -> None:
     """Over stiffness, exponent and dissipation."""
     hand, vary = zw.operators.Dowel(), {"stiffness": [1e3, 3e4], "exponent": [1, 1.5], "dissipation": [0, 2]}
     contact = zw.HuntCrossley(1)
-    batch = zw.simulation.simulate_batch(PADDLE, contact, hand, 0.1, vary=vary, threads=2)
+    batch = zw.simulation.simulate_batch(PADDLE, contact, hand, 0.1, vary=vary, workers=2)
     for k in vary["stiffness"]:
         for n in vary["exponent"]:
             for d in vary["dissipation"]:

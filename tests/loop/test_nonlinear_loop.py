@@ -88,7 +88,7 @@ def test_a_batch_has_the_bits_of_single_loops() -> None:
     """Over a parameter of the device."""
     hand = zw.operators.Dowel()
     batch = zw.simulation.simulate_batch(
-        PADDLE, SPRING, hand, 0.2, vary={"device.damping": [0.1, 0.4]}, threads=2
+        PADDLE, SPRING, hand, 0.2, vary={"device.damping": [0.1, 0.4]}, workers=2
     )
     for damping in (0.1, 0.4):
         alone = zw.simulate(PADDLE.replace(damping=damping), SPRING, hand, 0.2)

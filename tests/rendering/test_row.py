@@ -74,7 +74,7 @@ def test_a_missed_sample_leaves_the_laws_as_they_were():
 def test_a_batch_has_the_bits_of_single_loops():
     """On two threads."""
     batch = zw.simulation.simulate_batch(
-        DEVICE, LAW, HAND, 0.2, vary={"device.damping": [0.1, 0.4]}, threads=2
+        DEVICE, LAW, HAND, 0.2, vary={"device.damping": [0.1, 0.4]}, workers=2
     )
     for damping in (0.1, 0.4):
         alone = zw.simulate(DEVICE.replace(damping=damping), LAW, HAND, 0.2)

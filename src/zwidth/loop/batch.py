@@ -96,7 +96,7 @@ def simulate_batch(
     *,
     vary: Mapping[str, Sequence[Any]],
     together: bool = False,
-    threads: int | None = None,
+    workers: int | None = None,
     backend: str = "cpu",
     progress: Progress | None = None,
     **options: Any,
@@ -114,7 +114,7 @@ def simulate_batch(
     together
         False: every combination, one dimension for each parameter. True: the first values of
         all, then the second values, …, along one dimension `case`.
-    threads
+    workers
         By default as many as there are processors.
     backend
         "cpu", or "gpu" for a graphics card with CUDA (install the extra `gpu`): the same step
@@ -145,7 +145,7 @@ def simulate_batch(
     if backend == "gpu":
         states, summaries, finished = _run_on_card(setups)
     elif backend == "cpu":
-        states, summaries, finished = _run_all(setups, _threads(threads), progress)
+        states, summaries, finished = _run_all(setups, _workers(workers), progress)
     else:
         raise InputError(f'backend is "cpu" or "gpu", got {backend!r}')
     return _dataset(base, axes, owners, together, states, summaries, finished)
@@ -236,11 +236,11 @@ def _changed(part: T, changes: dict[str, Any], make: Callable[..., T], made: dic
     return result
 
 
-def _threads(given: int | None) -> int:
+def _workers(given: int | None) -> int:
     if given is None:
         return os.cpu_count() or 1
     if given != int(given) or given < 1:
-        raise InputError(f"threads is a whole number ≥ 1, got {given}")
+        raise InputError(f"workers is a whole number ≥ 1, got {given}")
     return int(given)
 
 
