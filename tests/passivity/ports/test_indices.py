@@ -228,8 +228,11 @@ def test_slow_growth_is_caught_by_a_longer_polynomial():
 def test_what_grows_slowly_has_no_motion_but_no_proof_either():
     """A pole 1e-4 outside the circle with Re G > 0 on it: not passive, and not certified either way."""
     found = zw.ports.passivity_indices(control.tf([-1, -1], [1, -1.0001], 0.01) + 20001)
+    assert found.outcome == "undecided"
+    assert "ν < 0 was found" in found.claim
     assert not found.passive
     assert found.certificate is None
+    assert found.witness is None
     assert "unstable pole at z = 1.0001" in found.input.reason
 
 

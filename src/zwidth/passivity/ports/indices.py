@@ -50,16 +50,17 @@ class PassivityIndices(PassivityAnswer):
 
     @cached_property
     def outcome(self) -> Outcome:
-        """ "passive" for ν ≥ 0 with a proof that the checker accepts; "active" for ν < 0; equality counts."""
-        if not self.input.at_least(0):
-            return "active"
-        return "passive" if self.input.certificate(0).verify() else "undecided"
+        """ "passive" for ν ≥ 0 with a proof, "active" for ν < 0 with a motion, each accepted by the checker."""
+        if self.input.at_least(0):
+            return "passive" if self.input.certificate(0).verify() else "undecided"
+        return "active" if self.witness is not None and self.witness.verify() else "undecided"
 
     @property
     def claim(self) -> str:
         """The outcome in a sentence."""
         if self.outcome == "undecided":
-            return "ν ≥ 0 was found, and the checker did not confirm it: nothing is proved."
+            sign = "≥" if self.input.at_least(0) else "<"
+            return f"ν {sign} 0 was found, and nothing that the checker accepts shows it: nothing is proved."
         some = {"passive": "No", "active": "An"}[self.outcome]
         return f"{some} input, from rest, takes energy out of this port."
 
@@ -83,7 +84,7 @@ class PassivityIndices(PassivityAnswer):
         """The proof that the port is passive; None if it is not."""
         return self.input.certificate(0) if self.passive else None
 
-    @property
+    @cached_property
     def witness(self) -> ExtractingInput | None:
         """A motion from rest that takes energy out; None if the port is passive, or none was found."""
         return self.input.refute(0)
