@@ -50,7 +50,7 @@ class PassivityIndices(PassivityAnswer):
 
     @cached_property
     def outcome(self) -> Outcome:
-        """ "passive" for ν ≥ 0 with a proof, "active" for ν < 0 with a motion, each accepted by the checker."""
+        """ "passive": ν ≥ 0 with a proof; "active": ν < 0 with a motion; the checker has accepted either."""
         if self.input.at_least(0):
             return "passive" if self.input.certificate(0).verify() else "undecided"
         return "active" if self.witness is not None and self.witness.verify() else "undecided"
