@@ -1,7 +1,8 @@
-"""Text of others, such as the names in a file, is shown and never obeyed.
+"""What a result says of itself, in parts that a terminal and a notebook show alike.
 
-A terminal obeys control characters, a notebook and a browser obey markup: whoever writes a file
-could have them do what its reader did not ask for.
+Text of others, such as the names in a file, is shown and never obeyed: a terminal obeys control
+characters, a notebook and a browser obey markup, and whoever writes a file could have them do what
+its reader did not ask for.
 """
 
 from __future__ import annotations
