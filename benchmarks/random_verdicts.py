@@ -1,7 +1,7 @@
 """Is any outcome of `zw.check` wrong?  Random loops of all kinds, attacked by a referee of its own.
 
 Each seed is one loop: any H(z), one-sided walls and solids with memory, encoders with
-Coulomb friction, delays, laws in a row, intervals, wheels; damping and friction are within
+Coulomb friction, delays, laws in a chain, intervals, wheels; damping and friction are within
 1e-9 to 0.3 of a limit.  What the package says is held against `attack/`, which shares no
 code with it: the linear criterion in enclosed complex numbers, motions against what is
 called passive, the motion run again of what is called active.

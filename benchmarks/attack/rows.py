@@ -1,4 +1,4 @@
-"""Laws in a row behind a spring wall, written down once more, attacked where something is promised.
+"""Laws in a chain behind a spring wall, written down once more, attacked where something is promised.
 
 The laws are those that come with a claim: force bounding with a certificate, energy bounding,
 the passive leap and the local spring with a proof on paper; extrapolation or saturation may
@@ -35,7 +35,7 @@ BOUNDING, ENERGY, LEAP, LOCAL = range(4)
 
 @dataclass(frozen=True)
 class Row:
-    """A device, a row of laws, and its numbers for the referee: `numbers` in units of length `unit`."""
+    """A device, a chain of laws, and its numbers for the referee: `numbers` in units of length `unit`."""
 
     device: zw.Device
     law: Any

@@ -82,7 +82,7 @@ def environment_keys() -> str:
 
 
 def law_types() -> str:
-    """Every law in a row, and what it does."""
+    """Every law in a chain, and what it does."""
     rows = [
         (f"`{name}`", f"{{class}}`zwidth.rendering.{law.class_name}`", law.meaning)
         for name, law in LAWS.items()

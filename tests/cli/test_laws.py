@@ -1,4 +1,4 @@
-"""Laws in a row in a specification and on the command line."""
+"""Laws in a chain in a specification and on the command line."""
 
 from __future__ import annotations
 
@@ -164,7 +164,9 @@ def test_check_decides_laws_in_a_row_and_a_map_names_who_takes_them(tmp_path, mo
     capsys.readouterr()
     Path("device.toml").write_text('[device]\ncatalogue = "haptic-paddle"\n[[law]]\ntype = "held"\n', "utf-8")
     assert main(["map", "device.toml", "--stiffness", "0:100", "--virtual-damping", "0:1"]) == 2
-    assert "laws in a row have no place in this command: zwidth check decides them" in capsys.readouterr().err
+    assert (
+        "laws in a chain have no place in this command: zwidth check decides them" in capsys.readouterr().err
+    )
 
 
 BAD = [
@@ -196,7 +198,7 @@ BAD = [
     ('[[law]]\ntype = "rate-term"\ntime_constant = "1 N"\n', "time_constant"),
     ('[[law]]\ntype = "event-transient"\nrecord = 3\n', "record is a list of numbers"),
     ('[[law]]\ntype = "event-transient"\nrecord = [1, "2 N"]\n', "record[1] is in 1/s"),
-    ('[[law]]\ntype = "saturation"\n' * 17, "[[law]] 17: more than 16 laws in a row"),
+    ('[[law]]\ntype = "saturation"\n' * 17, "[[law]] 17: more than 16 laws in a chain"),
     ('[[law]]\ntype = "saturation"\n[[law]]\ntype = "x"\n', '[[law]] 2: there is no law "x"'),
 ]  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Laws in a row in a document: `zwidth verify` builds them from their parameters and steps them again."""
+"""Laws in a chain in a document: `zwidth verify` builds them from their parameters and steps them again."""
 
 from __future__ import annotations
 

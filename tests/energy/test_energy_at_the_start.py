@@ -167,10 +167,10 @@ def test_a_law_that_does_not_settle_holds_what_a_leap_there_costs():
 
 
 def test_where_no_bound_is_known_nothing_is_said_to_be_active():
-    """Laws in a row in a loaded spring, a spring that leads away for ever, an amplifier that lags."""
+    """Laws in a chain in a loaded spring, a spring that leads away for ever, an amplifier that lags."""
     hand, push = zw.operators.ConstantForce(-1.0), {"initial_position": -0.01}
     cases = (
-        (zw.render(SPRING, PassivityController()), push, "laws in a row"),
+        (zw.render(SPRING, PassivityController()), push, "laws in a chain"),
         (zw.NonlinearSpring([0, 1], [0, -3]), {}, "pushes away for ever"),
         (SPRING, {**push, "amplifier": zw.amplifiers.FirstOrderLag(0.001)}, "amplifier has not yet"),
     )

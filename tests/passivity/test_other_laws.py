@@ -1,4 +1,4 @@
-"""Laws without H(z) have the same verb: nonlinear springs, contacts, laws in a row, walls of an arm."""
+"""Laws without H(z) have the same verb: nonlinear springs, contacts, laws in a chain, walls of an arm."""
 
 import json
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""The commands of laws in a row at prescribed positions, sample by sample."""
+"""The commands of laws in a chain at prescribed positions, sample by sample."""
 
 from __future__ import annotations
 

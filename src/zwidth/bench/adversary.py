@@ -128,7 +128,7 @@ def attack(
     device
         Every number certain; its mass plays no part.
     environment
-        Any that can be simulated, laws in a row included.
+        Any that can be simulated, laws in a chain included.
     fastest
         Speed of the fastest hand [m/s], > 0.  Beyond a tenth of it, of 10 m/s about what a hand reaches,
         motions are tried only where no slower one gains.

@@ -25,7 +25,7 @@ MOVES = 4e9
 """Moves that are looked at."""
 
 STATES = 20_000
-"""States that a law in a row may have on its grid."""
+"""States that a law in a chain may have on its grid."""
 
 
 def by_value_iteration(device: Device, law: Environment, found: Attack) -> tuple[bool, str]:

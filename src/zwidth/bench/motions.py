@@ -104,7 +104,7 @@ def fixed_motions(
     fastest
         Speed that is not exceeded [m/s].
     environment
-        What is rendered, laws in a row included: how deep a step of the converter and the force limit
+        What is rendered, laws in a chain included: how deep a step of the converter and the force limit
         are; None: motions in counts only.
     """
     stiffnesses = () if environment is None else _stiffnesses(device, environment)

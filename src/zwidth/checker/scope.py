@@ -120,7 +120,7 @@ def on_a_grid(shows: str) -> Callable[[Read], Scope]:
 
 
 def of_a_row(shows: str) -> Callable[[Read], Scope]:
-    """Laws in a row: the table lists the forces as they come out, whatever made them."""
+    """Laws in a chain: the table lists the forces as they come out, whatever made them."""
     return lambda told: Scope(shows, _hands(shows), BROKEN, _encoder(told))
 
 

@@ -132,7 +132,7 @@ def add_law_option(parser: argparse.ArgumentParser) -> None:
         "--law",
         metavar="NAMES",
         action="append",
-        help=f"laws in a row behind the environment, with their defaults: {', '.join(LAWS)}",
+        help=f"laws in a chain behind the environment, with their defaults: {', '.join(LAWS)}",
     )
 
 

@@ -64,7 +64,7 @@ def _schema(arguments: argparse.Namespace) -> int:
 class Part(NamedTuple):
     """One certificate or witness of a document, and what the checker says of it.
 
-    Of laws in a row `law` says which they are, if they were stepped again and gave what the document lists.
+    Of laws in a chain `law` says which they are, if they were stepped again and gave what the document lists.
     """
 
     evidence: Mapping[str, Any]
@@ -93,7 +93,7 @@ def verifications(document: object) -> list[Part]:
 
 
 def _with_law(part: Part) -> Part:
-    """Laws in a row stepped again from the parameters in the document."""
+    """Laws in a chain stepped again from the parameters in the document."""
     if not part.verification.valid or part.evidence["kind"] not in _LAWS_IN_A_ROW:
         return part
     from zwidth.passivity.storage.row.document import law_of  # the compiler of their steps takes its time

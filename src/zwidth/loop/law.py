@@ -26,7 +26,7 @@ BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 # pulls, number of sections, number of points, whether it is a contact; then for each section its order n,
 # b_0 … b_n, a_1 … a_n; or, where there are points and no section, their positions and their forces; or K, n
 # and λ/T of a contact, which remembers the last reading.
-# Behind all that the laws in a row, see `rendering.chain`: how many, where they begin, where their memory.
+# Behind all that the laws in a chain, see `rendering.chain`: how many, where they begin, where their memory.
 GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS, POINTS, CONTACT, CHAIN, ROW, REMEMBERED = range(12)
 HEADER = 12
 

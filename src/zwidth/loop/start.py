@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 DOWNHILL = "the spring pushes away for ever at one end, so that what it holds has no bound"
-IN_A_ROW = "laws in a row may hold energy of their own"
+IN_A_ROW = "laws in a chain may hold energy of their own"
 ON_THE_WAY = "the amplifier has not yet reached the force of the law when the touch starts"
 
 

@@ -1,4 +1,4 @@
-"""A row of laws that force bounding ends: passive whatever comes before it, with a certificate.
+"""A chain of laws that force bounding ends: passive whatever comes before it, with a certificate.
 
     β ≤ b/T    φ (1 + u) ≤ f_c    δ ≥ Δ    h ≥ ΔF/2    delay = 0
 
@@ -34,7 +34,7 @@ ROUNDOFF = Fraction(1, 2**53)
 
 @dataclass(frozen=True, repr=False)
 class Bounding(PassivityAnswer):
-    """Whether force bounding at the end of a row of laws keeps every hand from taking energy out.
+    """Whether force bounding at the end of a chain of laws keeps every hand from taking energy out.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Bounding(PassivityAnswer):
 
 
 def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
-    """Decide whether force bounding, the last law in a row, makes a loop passive.
+    """Decide whether force bounding, the last law in a chain, makes a loop passive.
 
     Nothing is asked of the environment and of the laws before it: what they command may be anything.  Where
     the record says that the current rises slowly, nothing is proved.
@@ -79,7 +79,7 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
     numbers = _numbers(device, law)
     if numbers is None:
         raise InputError(
-            f"a row of laws is proved here if ForceBounding() is the last of them, got {law.describe()}"
+            f"a chain of laws is proved here if ForceBounding() is the last of them, got {law.describe()}"
         )
     document = _document(device, numbers)
     found = verify(document)
@@ -98,7 +98,7 @@ def check_bounding(device: Device, environment: Environment | Any) -> Bounding:
 
 
 def is_bounded(environment: Environment) -> bool:
-    """True for a row of laws with force bounding at its end."""
+    """True for a chain of laws with force bounding at its end."""
     chain = laws_of(environment)
     return bool(chain) and chain[-1].bounds_the_force
 

@@ -79,8 +79,8 @@ def check(
     f_c ≥ (K + |B| ‖h_v‖₁) Δ/2, clamped or not.  Where these conditions leave a gap
     values are iterated as in `available_storage`, for some seconds at most.
 
-    Laws without H(z) are decided too: nonlinear springs by their slopes, laws in a row by the force bounding
-    that ends them or a wall that covers them, all by value iteration; `decided_by` says which.
+    Laws without H(z) are decided too: nonlinear springs by their slopes, laws in a chain by the force
+    bounding that ends them or a wall that covers them, all by value iteration; `decided_by` says which.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
     a nonlinear spring       its slopes; else value iteration, or a motion
     a Hunt–Crossley contact  value iteration, for hands within bounds
-    laws in a row            force bounding at the end; a wall with as much virtual damping covers them;
+    laws in a chain            force bounding at the end; a wall with as much virtual damping covers them;
                              a proof on paper, where the last law has one; value iteration
 
 Each road says of whom it speaks: the scope of the verdict is that of the proof.
@@ -47,7 +47,7 @@ def check_other(
     law
         A `NonlinearSpring`, a `HuntCrossley` contact, or what `render` gives.
     closed
-        How a wall that covers laws in a row is decided.
+        How a wall that covers laws in a chain is decided.
     progress
         Told the number of states that still improve, while values are iterated.
 

@@ -69,7 +69,7 @@ def draw_storage(axes: Axes, found: StorageFunction) -> None:
         waits = np.abs(before[:, None] - cells[None, :]).argmin(axis=0)
         waiting = energy.values[waits, np.arange(len(position))]
         axes.plot(x, joules * waiting, color=BLUE, label="the hand waits", gid="waiting")
-    else:  # of laws in a row only the extremes are known
+    else:  # of laws in a chain only the extremes are known
         axes.plot(x, joules * high, color=BLUE, label="at most", gid="most")
     edges = np.arange(cells[0], cells[-1] + 2)
     if len(edges) <= _EDGES:

@@ -1,4 +1,4 @@
-"""The laws between the hand and what it meets: virtual coupling, and laws in a row behind an environment.
+"""The laws between the hand and what it meets: virtual coupling, and laws in a chain behind an environment.
 
 `LAWS` is the registry: a new law is one line, its name that of the class in small letters.  It feeds the
 names of this package, the reader of specifications, the options of the command line, and the docs.
@@ -128,7 +128,7 @@ LAWS: Mapping[str, Kind] = MappingProxyType(
         "saturation": Kind("rendering.force.saturation", "Saturation", "a force no larger than a limit"),
     }
 )
-"""Every law in a row, by name."""
+"""Every law in a chain, by name."""
 
 ESTIMATORS: Mapping[str, Kind] = MappingProxyType(
     {

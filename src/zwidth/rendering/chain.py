@@ -1,4 +1,4 @@
-"""The laws in a row, as the loop runs them.
+"""The laws in a chain, as the loop runs them.
 
 Packed behind the numbers of the environment, for each law: its code, how many numbers and
 how many numbers it remembers, its numbers.  In the memory: the force that was applied last, then

@@ -104,7 +104,7 @@ class Rendered(Environment):
 
 
 def render(environment: Environment | Any, *laws: RenderingLaw) -> Rendered:
-    """An environment rendered by laws in a row, from the environment to the actuator.
+    """An environment rendered by laws in a chain, from the environment to the actuator.
 
     Parameters
     ----------

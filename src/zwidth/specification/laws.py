@@ -1,4 +1,4 @@
-"""The laws in a row behind an environment that a specification can name.
+"""The laws in a chain behind an environment that a specification can name.
 
     [[law]]                                  --law extrapolation,passivity-controller
     type = "passivity-controller"
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from zwidth.rendering import Estimator, RenderingLaw
 
 NOT_PROVED = (
-    "laws in a row have no place in this command: zwidth check decides them, zwidth limit says how far one "
+    "laws in a chain have no place in this command: zwidth check decides them, zwidth limit says how far one "
     "may go, zwidth compare judges them, zwidth simulate shows a touch"
 )
 """What commands say to them that take a device alone, or a wall."""
 
 MOST = 16
-"""Laws in a row; more is a mistake."""
+"""Laws in a chain; more is a mistake."""
 
 ROW = "row"
 """The one key of the table in which the laws of a file are kept."""
@@ -61,7 +61,7 @@ def with_laws(
     """
     tables = _tables(table) if typed is None else [*_named(typed)]
     if len(tables) > MOST:
-        raise InputError(f"{tables[MOST].label}: more than {MOST} laws in a row")
+        raise InputError(f"{tables[MOST].label}: more than {MOST} laws in a chain")
     laws = [build_law(law, motion) for law in tables]
     if not laws:
         return environment

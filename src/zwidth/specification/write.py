@@ -32,7 +32,7 @@ def written(device: Device, environment: Environment) -> str:
     Parameters
     ----------
     device, environment
-        A loop; the environment may stand behind laws in a row.
+        A loop; the environment may stand behind laws in a chain.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def written(device: Device, environment: Environment) -> str:
 
 
 def parsed(text: str, name: str = "specification") -> Specification:
-    """The loop of a text, with its laws in a row; `name` says in messages where it stands.
+    """The loop of a text, with its laws in a chain; `name` says in messages where it stands.
 
     Raises
     ------

@@ -476,7 +476,7 @@ def table(
         "forces": packed([int.from_bytes(pack("<d", f), "little", signed=True) for f in forces]),
     }
     domain = {"lowest_count": -1, "highest_count": 1, "largest_move_counts": move, "steps_per_count": steps}
-    law = {"description": "a law in a row", "counts_force_limit": False, "counts_force_resolution": False}
+    law = {"description": "a law in a chain", "counts_force_limit": False, "counts_force_resolution": False}
     return {**stored("row storage", device, law, domain), "table": told}
 
 
@@ -544,11 +544,11 @@ GRIDS = {
         friction("9/10", "3/16"), -3, 2, ONE, "3/2", remembered=1
     ),
     "cells of a damped wall, half a sample late": cells(friction("3/4", "1/8"), -3, 1, TWO, remembered=2),
-    "laws in a row": table(friction("7/40"), 2),
-    "laws in a row, of short moves": table(friction("7/40"), 3, "2/3"),
-    "laws in a row, the last listed first": listed_backwards(table(friction("7/40"), 2)),
-    "laws in a row, two frictions": table(CURVE, 2),
-    "laws in a row, two frictions, of the other side": table(CURVE, 2, side=-1),
+    "laws in a chain": table(friction("7/40"), 2),
+    "laws in a chain, of short moves": table(friction("7/40"), 3, "2/3"),
+    "laws in a chain, the last listed first": listed_backwards(table(friction("7/40"), 2)),
+    "laws in a chain, two frictions": table(CURVE, 2),
+    "laws in a chain, two frictions, of the other side": table(CURVE, 2, side=-1),
     "a law that relaxes": counts(friction("1/4"), -1, 1, 1, ONE, **BRANCH),
     "a law that relaxes slowly": counts(friction("2/5"), -1, 1, 1, ONE, **relaxing("4/5", "5/3")),
     "a law that relaxes, clamped": counts(friction("9/40"), -1, 1, 2, ONE, **BRANCH, **CLAMPED),
@@ -691,7 +691,7 @@ TRIANGLES = (
         "1868763 1745948 2535715 2535715 549154 1861654 1861654 3174154 2736653 1861654 986654 2736653",
     ),
 )
-"""Of laws in a row, the device, the force at 1 and values: at one triangle of moves each corner has a model
+"""Of laws in a chain, the device, the force at 1 and values: at one triangle of moves each corner has a model
 of friction that will do, and no model all three."""
 
 
@@ -725,8 +725,8 @@ MOVES = [
     ("a law that relaxes", GRIDS["a law that relaxes"], [2 * 18 * 6]),
     ("cells", GRIDS["cells"], [7 * 7]),
     ("cells, a third of a sample late", GRIDS["cells, a third of a sample late"], [30 * 5**2]),
-    ("laws in a row", GRIDS["laws in a row"], [12 * 9]),
-    ("laws in a row, two frictions", GRIDS["laws in a row, two frictions"], [12 * 9 * 3]),
+    ("laws in a chain", GRIDS["laws in a chain"], [12 * 9]),
+    ("laws in a chain, two frictions", GRIDS["laws in a chain, two frictions"], [12 * 9 * 3]),
 ]
 """Knots, times those that a move from one leads to, and how often each is looked at.  A line has one of each;
 of two parts of an interval, every place between is one more."""
@@ -781,15 +781,15 @@ def nearer(document: Any) -> Any:
 REFUSED = [
     *(
         (
-            f"laws in a row, where a reading off the grid leads to {then}",
+            f"laws in a chain, where a reading off the grid leads to {then}",
             table(friction("7/40"), 2, leads=((then, 0, 1), *LEADS[1:])),
             "is not closed",
         )
         for then in (-2, -3, 0, 4, 99)
     ),
     (
-        "laws in a row that begin in a state of the table and in another",
-        put(GRIDS["laws in a row"], {"table.starts": [0, 4]}),
+        "laws in a chain that begin in a state of the table and in another",
+        put(GRIDS["laws in a chain"], {"table.starts": [0, 4]}),
         "not in the table",
     ),
     *((f"{name}, one reading less", nearer(GRIDS[name]), FORGOTTEN) for name in AT_THEIR_EDGE),
@@ -828,7 +828,7 @@ REFUSED = [
     ),
     *(
         (
-            f"laws in a row, a force of {force}",
+            f"laws in a chain, a force of {force}",
             table(friction("7/40"), 2, force=force),
             "a force is no number",
         )

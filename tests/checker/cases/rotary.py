@@ -78,7 +78,7 @@ DOCUMENTS = {
     },
     "a motion with rounds, part of a sample late": energy(PUSHED_LATE, "3/2"),
     "a motion with a friction curve": energy(curved([0, 1], [1, "1/2"], [2, 1]), 3),
-    "a motion of laws in a row": energy(ROW, 3),
+    "a motion of laws in a chain": energy(ROW, 3),
     **{
         f"storage, {name}": STORAGES[name]["document"]
         for name in ("limited", "stepped", "grows", "points", "solid", "curve", "row", "coarse")

@@ -1,4 +1,4 @@
-"""A motion against laws in a row: the forces as they are listed, T = 1 s.  0 → 1 → 0 under 2 N
+"""A motion against laws in a chain: the forces as they are listed, T = 1 s.  0 → 1 → 0 under 2 N
 gains 2 − 2b − 2 f_c.
 """
 

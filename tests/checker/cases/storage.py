@@ -130,7 +130,7 @@ def relaxing(low: int, high: int, values: list[int], law: Any, **more: Any) -> A
 
 
 def leading(place: tuple[int, int], to: int) -> Any:
-    """The laws in a row, of states at −2, −1, 0, 1, where one reading leads elsewhere."""
+    """The laws in a chain, of states at −2, −1, 0, 1, where one reading leads elsewhere."""
     successors = unpacked(ROW["table"]["successors"])
     successors[3 * place[0] + place[1]] = to
     return put(ROW, {"table.successors": packed(successors)})
@@ -156,7 +156,7 @@ CASES = [
         if name != "relaxing"
     ),
     *(
-        refused(f"laws in a row, {what}", leading(place, to), phrase)
+        refused(f"laws in a chain, {what}", leading(place, to), phrase)
         for what, place, to, phrase in (
             ("a reading that leads to one further in", (0, 1), 1, "another reading"),
             ("a reading that leads to one further out", (1, 1), 0, "another reading"),
@@ -205,7 +205,7 @@ CASES = [
     refused("a value too few", put(SPRING, {"storage": SHORT}), "one value for each state"),
     refused("a value too many", put(SPRING, {"storage": LONG}), "one value for each state"),
     *(
-        refused(f"laws in a row that begin {what}", put(ROW, {"table.starts": starts}), phrase)
+        refused(f"laws in a chain that begin {what}", put(ROW, {"table.starts": starts}), phrase)
         for what, starts, phrase in (
             ("nowhere", [], "starts must have 1"),
             ("in a list of one word", "0", "starts must be a list"),
@@ -217,15 +217,15 @@ CASES = [
             ("past the last state", [ROW["table"]["states"]], "not in the table"),
         )
     ),
-    refused("laws in a row, a grid of less", put(ROW, {"domain.lowest_count": -1}), "not on the grid"),
-    refused("laws in a row, a grid of more", put(ROW, {"domain.lowest_count": -3}), "is not closed"),
-    refused("laws in a row, a grid of more inside", put(ROW, {"domain.highest_count": 2}), "is not closed"),
+    refused("laws in a chain, a grid of less", put(ROW, {"domain.lowest_count": -1}), "not on the grid"),
+    refused("laws in a chain, a grid of more", put(ROW, {"domain.lowest_count": -3}), "is not closed"),
+    refused("laws in a chain, a grid of more inside", put(ROW, {"domain.highest_count": 2}), "is not closed"),
     refused(
-        "laws in a row, a state less",
+        "laws in a chain, a state less",
         put(ROW, {"table.states": ROW["table"]["states"] - 1}),
         "one value for each state",
     ),
-    refused("laws in a row, part of a sample late", put(ROW, {"loop.delay_s": "0.0005"}), "whole samples"),
+    refused("laws in a chain, part of a sample late", put(ROW, {"loop.delay_s": "0.0005"}), "whole samples"),
     refused(
         "a grid that ends too near",
         put(STORAGES["damped"]["document"], {"domain.lowest_count": -2}),

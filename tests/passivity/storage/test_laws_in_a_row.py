@@ -1,4 +1,4 @@
-"""Laws in a row: the table of the law, value iteration on it, its proofs and motions."""
+"""Laws in a chain: the table of the law, value iteration on it, its proofs and motions."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ DEVICE = device()
 
 
 def decided(environment, *laws, at=DEVICE, **more):
-    """The outcome for laws in a row."""
+    """The outcome for laws in a chain."""
     return zw.available_storage(at, zw.render(environment, *laws), **{**BOUNDS, **more})
 
 

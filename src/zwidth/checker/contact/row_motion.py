@@ -1,4 +1,4 @@
-"""A motion against laws in a row re-counted: positions and the forces that were held, exactly.
+"""A motion against laws in a chain re-counted: positions and the forces that were held, exactly.
 
     energy out = −Σ f Δx − Σ c(Δx)
 
@@ -29,7 +29,7 @@ TOLD_LAW = Record(
         "counts_force_resolution": Flag(shown=False),
     }
 )
-"""What is said of laws in a row, and their parameters for who has the law: the proof is of the table, or of
+"""What is said of laws in a chain, and their parameters for who has the law: the proof is of the table, or of
 the forces, and not of these words."""
 
 ROW_MOTION = document(
@@ -52,7 +52,7 @@ def row_motion_energy(told: Read) -> tuple[Fraction, Fraction]:
     """
     losses = losses_of(told.loop)
     if losses.part < 1:
-        raise Invalid("laws in a row are checked for delays of whole samples")
+        raise Invalid("laws in a chain are checked for delays of whole samples")
     x, forces = told.positions, told.forces
     if len(forces) != len(x) - 1:
         raise Invalid("there must be one force for each move")

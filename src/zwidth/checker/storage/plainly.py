@@ -72,7 +72,7 @@ def row_storage_plainly(told: Read) -> str:
     """Of a table of states; says what was proved."""
     losses, domain, table = losses_of(told.loop), told.domain, told.table
     if losses.part < 1:
-        raise Invalid("laws in a row are checked for delays of whole samples")
+        raise Invalid("laws in a chain are checked for delays of whole samples")
     reach, steps = ceil(domain.largest_move_counts), domain.steps_per_count
     _require_few(table.states * (steps + 1), (2 * reach + 1) * (steps + 1) * len(losses.models))
     value = _stored(told.storage, table.states * (steps + 1))

@@ -1,4 +1,4 @@
-"""A storage function over a table re-checked: laws in a row, their states and forces listed one by one.
+"""A storage function over a table re-checked: laws in a chain, their states and forces listed one by one.
 
 The document lists states, each with its count and the force that acts until the next sample, and
 where every reading leads.  It is checked that the list is closed: from each state every reading
@@ -52,7 +52,7 @@ def storage_of_row(told: Read) -> str:
 
     losses, domain, table = losses_of(told.loop), told.domain, told.table
     if losses.part < 1:
-        raise Invalid("laws in a row are checked for delays of whole samples")
+        raise Invalid("laws in a chain are checked for delays of whole samples")
     low, high, states = domain.lowest_count, domain.highest_count, table.states
     max_move, steps, unit = domain.largest_move_counts, domain.steps_per_count, told.force_unit
     reach = ceil(max_move)

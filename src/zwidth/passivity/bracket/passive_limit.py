@@ -52,7 +52,7 @@ def passive_limit(
         A parameter of the environment ("stiffness", "damping") or of the device
         ("coulomb_friction", "device.damping", "sample_period", "resolution", …);
         of a `NonlinearSpring` or a transfer function "gain", a factor on its force; of a
-        `HuntCrossley` contact "stiffness" or "dissipation".  Of laws in a row one of the
+        `HuntCrossley` contact "stiffness" or "dissipation".  Of laws in a chain one of the
         environment that they render.
     penetration, speed
         Bounds on the hand [m; rad], [m/s; rad/s], as for `available_storage`.
@@ -99,7 +99,7 @@ def passive_limit(
     if not bounded and (search.is_close(every.passive, every.active) or (settled and ideal)):
         return search.bracket(every, (every.passive, every.active))  # no grid narrows an ideal encoder's
 
-    # laws in a row have one grid for all values: that on which they close as they are given
+    # laws in a chain have one grid for all values: that on which they close as they are given
     grids = (row_program(device, law, *counted).counts,) if in_a_row else ()
 
     def program(value: Exact) -> DynamicProgram | RowProgram:

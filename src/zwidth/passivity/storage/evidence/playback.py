@@ -73,7 +73,7 @@ def peak_force(gain: Gain) -> float:
 def _forces(gain: Gain) -> tuple[list[float], list[float]]:
     """Forces on the way in, and in a round once the law has settled."""
     listed = next((gain.document[key] for key in gain.document if key.startswith("forces_")), None)
-    if listed is not None:  # laws in a row, settled from the first round on
+    if listed is not None:  # laws in a chain, settled from the first round on
         first = gain.motion.repeats[0].first
         return [float(f) for f in listed[:first]], [float(f) for f in listed[first:]]
     controller = _Controller(gain.law, gain.losses, gain.motion.positions[0])

@@ -72,7 +72,7 @@ class StorageFunction:
     def to_xarray(self) -> xr.DataArray:
         """V along the position, by what the law remembers [J].
 
-        Dims `reading_before` [counts], of a law that relaxes `average_reading` [counts], of laws in a row
+        Dims `reading_before` [counts], of a law that relaxes `average_reading` [counts], of laws in a chain
         `remembered` (the least and the most over all), and `position` [m; rad]; each edge between two
         counts is there twice, from below and from above.
         """

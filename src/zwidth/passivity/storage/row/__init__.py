@@ -1,1 +1,1 @@
-"""Laws in a row: their states in a table, and the available storage over it."""
+"""Laws in a chain: their states in a table, and the available storage over it."""

@@ -1,4 +1,4 @@
-"""Laws in a row in a certificate or a witness, and whether they give what it says.
+"""Laws in a chain in a certificate or a witness, and whether they give what it says.
 
 The checker knows no law: it takes the table of states, or the forces of a motion, as they stand in
 the document.  `same_law` steps a law again, by the simulator's own functions, and compares to the bit;
@@ -74,7 +74,7 @@ def columns(motion: str) -> tuple[str, str]:
 
 
 class Run:
-    """Laws in a row, reading by reading, from a hand that has rested at a count for ever."""
+    """Laws in a chain, reading by reading, from a hand that has rested at a count for ever."""
 
     def __init__(self, law: RowLaw, rest: int) -> None:
         self._law, self._row = law, law.starts[rest]
@@ -91,7 +91,7 @@ class Run:
 
 
 def same_law(document: Mapping[str, Any], device: Device, environment: Environment) -> bool:
-    """True if laws in a row give, to the bit, the table or the forces that a document holds.
+    """True if laws in a chain give, to the bit, the table or the forces that a document holds.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def same_law(document: Mapping[str, Any], device: Device, environment: Environme
     kind = document.get("kind")
     if kind not in (STORAGE, MOTION):
         raise InputError(
-            f"a document of laws in a row is of kind {STORAGE} or {MOTION}, got {str(kind)[:40]!r}"
+            f"a document of laws in a chain is of kind {STORAGE} or {MOTION}, got {str(kind)[:40]!r}"
         )
     counted = document["law"]
     limited, stepped = (bool(counted[f"counts_force_{k}"]) for k in ("limit", "resolution"))

@@ -1,4 +1,4 @@
-"""From a cycle that gains against laws in a row to a witness: replayed by the law, counted exactly.
+"""From a cycle that gains against laws in a chain to a witness: replayed by the law, counted exactly.
 
 The cycle is one of states, so that the law does the same in each round, to the bit.
 """

@@ -1,4 +1,4 @@
-"""The grid of laws in a row: the states of their table, and nodes within each count.
+"""The grid of laws in a chain: the states of their table, and nodes within each count.
 
 Moves cost what they do on a grid of counts, outer or inner.  A state of the table is a vertex with a
 count and a force; within the count the hand stands on a node.
@@ -67,7 +67,7 @@ class RowGrid(Grid):
     def sweep(self, backend: str = "cpu") -> Sweep:
         """What value iteration begins with, and the kernel that improves it; InputError but on the "cpu"."""
         if backend != "cpu":
-            raise InputError("laws in a row are for the processor: leave out backend='gpu'")
+            raise InputError("laws in a chain are for the processor: leave out backend='gpu'")
         tables = self.table.successors, self.forces, self.costs, self.nodes
         return BestMoves(self.first_guess.copy(), self.table.states, self.move_at, sweep_table, tables)
 

@@ -1,4 +1,4 @@
-"""Laws in a row as the simulator packs them, for a hand that begins at rest outside."""
+"""Laws in a chain as the simulator packs them, for a hand that begins at rest outside."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class RowLaw:
-    """Laws in a row as the simulator runs them.
+    """Laws in a chain as the simulator runs them.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def row_law(
     force_limit: bool = False,
     force_resolution: bool = False,
 ) -> RowLaw:
-    """The law of laws in a row in a device's loop.
+    """The law of laws in a chain in a device's loop.
 
     Parameters
     ----------
@@ -92,8 +92,8 @@ def row_law(
     delay = device.exact("delay") / device.exact("sample_period")
     if delay.denominator != 1:
         raise InputError(
-            f"laws in a row are looked at with delays of whole samples; this one is {float(delay):.6g}: the "
-            "force would change within a sample"
+            f"laws in a chain are looked at with delays of whole samples; this one is {float(delay):.6g}: "
+            "the force would change within a sample"
         )
     first = min(lowest, 0) if environment.unilateral else 0
     resting = {}

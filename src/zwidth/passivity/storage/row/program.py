@@ -1,4 +1,4 @@
-"""Laws in a row and one domain as a dynamic program: which domain, which table, both approximations."""
+"""Laws in a chain and one domain as a dynamic program: which domain, which table, both approximations."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ USUAL_STATES = 20_000
 
 @dataclass(frozen=True, eq=False)
 class RowProgram:
-    """Laws in a row and one domain, on tables of either approximation; as `DynamicProgram`."""
+    """Laws in a chain and one domain, on tables of either approximation; as `DynamicProgram`."""
 
     device: Device
     environment: Environment
@@ -138,7 +138,7 @@ def row_program(
     domains: Sequence[tuple[int, int]] = COUNTS,
     most: int = MOST_STATES,
 ) -> RowProgram:
-    """The dynamic program of laws in a row; arguments as for `available_storage`.
+    """The dynamic program of laws in a chain; arguments as for `available_storage`.
 
     `domains` are tried for what is not given: counts on either side, and counts a sample.  On the last
     of them the law may have so many states as `most`.

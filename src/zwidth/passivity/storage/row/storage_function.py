@@ -1,4 +1,4 @@
-"""The storage function of laws in a row as a certificate."""
+"""The storage function of laws in a chain as a certificate."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from zwidth.passivity.storage.row.law import RowLaw
 
 @dataclass(frozen=True)
 class RowStorage(StorageFunction):
-    """The available storage of laws in a row, from above.
+    """The available storage of laws in a chain, from above.
 
     Parameters
     ----------

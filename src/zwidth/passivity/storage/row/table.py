@@ -1,4 +1,4 @@
-"""Laws in a row as a table: every state that readings on a grid can lead to, and where each leads.
+"""Laws in a chain as a table: every state that readings on a grid can lead to, and where each leads.
 
     s' = step(s, q'),   f = f(s)        s the count and the memory after a sample, to the bit
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from zwidth.passivity.storage.losses import Integers
 
 MOST_STATES = 100_000
-"""States that a law in a row may have on its grid."""
+"""States that a law in a chain may have on its grid."""
 
 _MOST_NUMBERS = 20_000_000
 """Numbers that all states together may remember."""
@@ -40,7 +40,7 @@ class DoesNotClose(InputError):
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """The graph of a law in a row on a grid.
+    """The graph of a law in a chain on a grid.
 
     Parameters
     ----------
