@@ -216,7 +216,10 @@ def test_rows_without_a_number_cut_the_run(recording) -> None:
 
 @seeds(20)
 def test_every_gap_is_found_behind_jitter(seed: int) -> None:
-    """Gaps of any length, wherever they fall, and stamps off by up to T/5: runs and times as they were."""
+    """Gaps of any length, wherever they fall, and stamps off by up to T/5: runs as they were.
+
+    Times are too, to within a sample: a period that such stamps leave open is rounded.
+    """
     random = np.random.default_rng(seed)
     count, period = int(random.integers(1000, 20000)), 10 ** random.uniform(-4, -2)
     kept = np.ones(count, dtype=bool)
@@ -228,4 +231,4 @@ def test_every_gap_is_found_behind_jitter(seed: int) -> None:
     log = zw.Log.from_arrays(time=stamps, position=random.normal(size=rows.size))
     assert log.runs == 1 + np.count_nonzero(np.diff(rows) > 1)
     time = np.concatenate([b.time for b in log.blocks()])
-    assert np.abs(time - rows * period).max() < 0.5 * period
+    assert np.abs(time - rows * period).max() < period
