@@ -100,8 +100,9 @@ def test_cells_of_many_counts_from_both_sides(name):
     """What is proved has no motion on any grid, and a little stiffer one has: a few per cent apart."""
     wall, delay, damping = WALLS[name]
     loop = device(2**20, damping, "0.05", delay)
-    bounds = {"penetration": "0.0005", "speed": "0.125"}
-    tolerance = 0.15 if name == "negative damping" else 0.075  # of a grid that is dear to compute
+    dear = name == "negative damping"  # to compute its grid
+    bounds = {"penetration": "0.0005", "speed": "0.0625" if dear else "0.125"}
+    tolerance = 0.15 if dear else 0.075
     bracket = zw.limit(loop, wall, **bounds, tolerance=tolerance, seconds=60)
     assert bracket.certificate.verify()
     assert bracket.witness.verify()
@@ -110,7 +111,7 @@ def test_cells_of_many_counts_from_both_sides(name):
         program_of(loop, wall.replace(stiffness=bracket.proved_passive), *bounds.values()).refute(64) is None
     )
     motion = bracket.witness
-    assert motion.peak_speed <= 0.125
+    assert motion.peak_speed <= float(bounds["speed"])
     assert motion.depth <= 0.0005
 
 

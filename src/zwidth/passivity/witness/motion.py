@@ -50,15 +50,16 @@ class Motion:
 
     def listed(self) -> Motion:
         """The same motion with every round listed, and no repeated part left."""
-        x, y = list(self.positions[:1]), []
+        x, y = list(self.positions[:1]), list[Fraction]()
         ahead, before = Fraction(0), 0
         for part in (*self.repeats, Repeat(len(self.positions) - 1, len(self.positions) - 1, 1)):
             stretches = [(before, part.first), *[(part.first, part.last)] * part.times]
             advance = self.positions[part.last] - self.positions[part.first]
             for k, (start, stop) in enumerate(stretches):
                 ahead += advance if k > 1 else 0  # the list itself holds the first round's advance
-                x += [v + ahead for v in self.positions[start + 1 : stop + 1]]
-                y += [v + ahead for v in self.switch_positions[start:stop]]
+                further = self.positions[start + 1 : stop + 1], self.switch_positions[start:stop]
+                for there, values in zip((x, y), further, strict=True):
+                    there += [v + ahead for v in values] if ahead else values
             before = part.last
         return Motion(tuple(x), tuple(y))
 

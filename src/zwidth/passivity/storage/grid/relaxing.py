@@ -31,6 +31,7 @@ from zwidth.passivity.storage.losses import Integers
 from zwidth.passivity.storage.solve.hull import NOWHERE
 from zwidth.passivity.storage.solve.relaxing import sweep_relaxing
 from zwidth.passivity.storage.solve.value_iteration import THREADS, Move, Sweep, slices
+from zwidth.passivity.storage.solve.watched import RelaxingForce, best_cycle, follow
 
 ONE = 1 << 16
 """Weights of interpolation are whole multiples of 1/ONE, taken from both sides."""
@@ -102,6 +103,20 @@ class RelaxingGrid(Grid):
         acting = cells + self.differences.sum(axis=1)[None, :]
         out: Integers = np.where(self.forces == NOWHERE, -1, acting)
         return out
+
+    @property
+    def relaxing_force(self) -> RelaxingForce:
+        """The law as a hand that is watched feels it."""
+        law, unit = self.law, self.losses.resolution / self.force_unit
+        return RelaxingForce(
+            spring=float(law.taps[0] * unit),
+            branch=float(self.branch_unit * self.levels),
+            pole=float(self.pole),
+            penetration=law.surface == "penetration",
+            everywhere=law.surface == "none",
+            clamped=law.clamped,
+            resets=law.resets,
+        )
 
     @cached_property
     def all_forces(self) -> tuple[Integers, Integers]:
@@ -197,85 +212,18 @@ class RelaxingSweep(Sweep):
         best: tuple[Move, ...] = ()
         most = 0.0
         random = np.random.default_rng(1)
+        grid, delay, law = self.grid, self.grid.losses.delay, self.grid.relaxing_force
+        lowest = grid.domain.lowest
+        cells, _, levels, edges = self.value.shape
+        frame = lowest, grid.readings[0], grid.levels, grid.steps, grid.domain.reach
         for _ in range(_STARTS):
-            path = _followed(self.grid, self.value, random)
-            seen: dict[Move, list[int]] = {}
-            for k, place in enumerate(path):
-                for before in seen.get(place, ())[-3:]:
-                    moves = path[before:k]
-                    gain = _settled_gain(self.grid, moves) if len(moves) > 1 else 0.0
-                    if gain > most:
-                        best, most = tuple(moves), gain
-                seen.setdefault(place, []).append(k)
+            cell, node = int(random.integers(max(0, -lowest), cells)), int(random.integers(edges))
+            start = cell, node, float(grid.readings[0] + random.integers(levels) / grid.levels)
+            path = follow(law, self.value, start, delay, grid.nodes, grid.costs, frame, _LONGEST)
+            counts = path[:, 0] + lowest
+            positions = counts * grid.steps + grid.nodes[path[:, 1]]
+            gain, first, last = best_cycle(law, counts, positions, path @ [edges, 1], delay, grid.costs)
+            if gain > most:
+                most = gain
+                best = tuple(zip(positions[first:last].tolist(), counts[first:last].tolist(), strict=True))
         return best
-
-
-def _followed(grid: RelaxingGrid, value: Integers, random: np.random.Generator) -> list[Move]:
-    """Nodes and cells along the best moves from a state drawn at random."""
-    cells, _, levels, edges = value.shape
-    low, reach = grid.readings[0], grid.domain.reach
-    law, delay, pole = grid.law, grid.losses.delay, float(grid.pole)
-    spring = float(law.taps[0] * grid.losses.resolution / grid.force_unit)
-    branch = float(grid.branch_unit * grid.levels)
-    readings = [int(random.integers(max(0, -grid.domain.lowest), cells))] * (delay + 1)
-    node = int(random.integers(edges))
-    average = float(low + random.integers(levels) / grid.levels)
-    path: list[Move] = []
-    for _ in range(_LONGEST):
-        n, felt = readings[0], readings[-1] + grid.domain.lowest
-        count = n + grid.domain.lowest
-        path.append((count * grid.steps + int(grid.nodes[node]), count))
-        u = max(felt, 0) if law.surface == "penetration" else felt
-        force = spring * u + branch * (u - average)
-        force = max(force, 0.0) if law.clamped else force
-        force = force if law.surface == "none" or felt > 0 else 0.0
-        average = 0.0 if law.resets and u <= 0 else pole * average + (1 - pole) * u
-        level = min((average - low) * grid.levels, levels - 1.0)
-        below = min(int(level), levels - 2)
-        first, last = max(0, n - reach), min(cells - 1, n + reach)
-        goals = np.arange(first, last + 1)
-        columns = _columns(grid, goals, readings)
-        lower, upper = value[goals, columns, below], value[goals, columns, below + 1]
-        there = lower + (upper - lower) * (level - below)
-        d = (goals - n)[:, None] * grid.steps + grid.nodes[None, :] - grid.nodes[node]
-        far = np.minimum(np.abs(d), len(grid.costs) - 1)
-        worth = there - grid.costs[far] - force * d
-        worth[np.abs(d) >= len(grid.costs)] = -np.inf
-        row, node = (int(v) for v in np.unravel_index(int(worth.argmax()), worth.shape))
-        readings = [int(goals[row]), *readings[:-1]] if delay else [int(goals[row])]
-    return path
-
-
-def _columns(grid: RelaxingGrid, goals: Integers, readings: list[int]) -> Integers:
-    """The history of each goal: differences of the readings before it."""
-    column = np.zeros_like(goals)
-    newer = goals
-    for reading in readings[: grid.losses.delay]:
-        column = column * grid.width + (reading - newer + grid.domain.reach)
-        newer = np.full_like(goals, reading)
-    return column
-
-
-def _settled_gain(grid: RelaxingGrid, moves: list[Move]) -> float:
-    """What a cycle gains in each round when the law has settled to it, in energy units."""
-    law, size = grid.law, len(moves)
-    pole = float(grid.pole)
-    u = np.array([max(cell, 0) if law.surface == "penetration" else cell for _, cell in moves], dtype=float)
-    keeps = np.array([0.0 if law.resets and v <= 0 else 1.0 for v in u])
-    scale, shift = 1.0, 0.0  # of one round: a → scale a + shift
-    for v, keep in zip(u, keeps, strict=True):
-        scale, shift = scale * pole * keep, (shift * pole + (1 - pole) * v) * keep
-    a = shift / (1 - scale)
-    unit = float(grid.losses.resolution / grid.force_unit)
-    spring, branch = float(law.taps[0]) * unit, float(grid.branch_unit * grid.levels)
-    forces = np.zeros(size)
-    for k in range(size):
-        f = spring * u[k] + branch * (u[k] - a)
-        f = max(f, 0.0) if law.clamped else f
-        forces[k] = f if law.surface == "none" or moves[k][1] > 0 else 0.0
-        a = (pole * a + (1 - pole) * u[k]) * keeps[k]
-    forces = np.roll(forces, grid.losses.delay)
-    x = np.array([node for node, _ in moves])
-    d = np.roll(x, -1) - x
-    far = np.abs(d)
-    return float(-(forces * d).sum() - grid.costs[far].sum()) if far.max() < len(grid.costs) else 0.0

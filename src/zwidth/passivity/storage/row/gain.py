@@ -140,8 +140,9 @@ def _simulated(path: Motion, law: RowLaw, device: Device, environment: Environme
     part = path.repeats[0]
     samples = part.last - part.first
     rounds = min(part.times, max(2, _LONGEST // samples))
-    x = np.array([float(v) for v in path.repeated(rounds).listed().positions])
-    x = np.append(x, x[-1])  # the mass at rest again
+    x = np.array([float(v) for v in path.positions])
+    around = np.tile(x[part.first + 1 : part.last + 1], rounds)  # a round ends where it began
+    x = np.concatenate((x[: part.first + 1], around, x[part.last + 1 :], x[-1:]))  # the mass at rest again
     period = device.exact("sample_period")
     setup = prepare(device, environment, PrescribedMotion(x), (len(x) - 1) * period)
     commands, record, work = empty_record(setup)
