@@ -45,7 +45,7 @@ _LAW = {
     "covered by a wall": "the laws add no more than the virtual damping of a wall, and that wall is proved",
     "potential bounded below": "of springs: those whose potential is bounded below",
     "energy at first bounded": "environments that have stored no more than a bounded energy at first",
-    "any before the last": "any environment, and any laws before the last one in the row",
+    "any before the last": "any environment, and any laws before the last one of the chain",
 }
 _ENCODER = {
     "ideal": "ideal position sensor: no quantization",

@@ -1,0 +1,146 @@
+"""A hand that follows the best moves behind a law that relaxes, and the cycle on its way that gains most.
+
+The average reading a lies between two levels, so the best moves on the levels make no cycle by themselves:
+the hand is watched with
+
+    a_{k+1} = p a_k + (1 − p) u_k
+
+as it really becomes, and of a cycle that it makes counts what it gains once a has settled to it.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.compiled import compiled
+from zwidth.passivity.storage.losses import Integers
+
+Floats = NDArray[np.float64]
+
+
+class RelaxingForce(NamedTuple):
+    """y = spring u + branch (u − a), in force units, for readings of whole counts.
+
+    `penetration`: u is never below 0; `everywhere`: there is no surface; `clamped`: the law never pulls;
+    `resets`: at the surface and outside it forgets.
+    """
+
+    spring: float
+    branch: float
+    pole: float
+    penetration: bool
+    everywhere: bool
+    clamped: bool
+    resets: bool
+
+
+@compiled
+def felt(law: Any, count: int, average: float) -> tuple[float, float]:
+    """The force at this count, and what the average then becomes."""
+    u = max(count, 0) if law.penetration else count
+    force = law.spring * u + law.branch * (u - average)
+    if (law.clamped and force < 0) or not (law.everywhere or count > 0):
+        force = 0.0
+    if law.resets and u <= 0:
+        return force, 0.0
+    return force, law.pole * average + (1 - law.pole) * u
+
+
+@compiled
+def follow(
+    law: Any,
+    value: Integers,
+    start: tuple[int, int, float],
+    delay: int,
+    nodes: Integers,
+    costs: Integers,
+    frame: tuple[int, int, int, int, int],
+    moves: int,
+) -> Integers:
+    """Cell and node at each of so many moves, each the best by V between two levels.
+
+    `start` is the cell, where it was for long, the node and the average; `frame` is the count of the lowest
+    cell and of the lowest level, levels and steps per count, and the reach in cells.
+    """
+    lowest, low, per_count, steps, reach = frame
+    cells, _, levels, edges = value.shape
+    path = np.empty((moves, 2), np.int64)
+    n, j, average = start
+    readings = np.full(delay + 1, n)
+    for k in range(moves):
+        path[k, 0], path[k, 1] = n, j
+        force, average = felt(law, readings[delay] + lowest, average)
+        level = min((average - low) * per_count, levels - 1.0)
+        m = min(int(level), levels - 2)
+        most = -np.inf
+        n1, j1 = n, j
+        for n2 in range(max(0, n - reach), min(cells - 1, n + reach) + 1):
+            column, newer = 0, n2
+            for i in range(delay):
+                column = column * (2 * reach + 1) + readings[i] - newer + reach
+                newer = readings[i]
+            for j2 in range(edges):
+                d = (n2 - n) * steps + nodes[j2] - nodes[j]
+                if abs(d) >= costs.size:
+                    continue
+                lower = value[n2, column, m, j2]
+                there = lower + (value[n2, column, m + 1, j2] - lower) * (level - m)
+                worth = there - costs[abs(d)] - force * d
+                if worth > most:
+                    most, n1, j1 = worth, n2, j2
+        n, j = n1, j1
+        for i in range(delay, 0, -1):
+            readings[i] = readings[i - 1]
+        readings[0] = n
+    return path
+
+
+@compiled
+def best_cycle(
+    law: Any, counts: Integers, positions: Integers, places: Integers, delay: int, costs: Integers
+) -> tuple[float, int, int]:
+    """The largest gain of a cycle on the way, and its first move and the one after its last; 0, 0, 0 of none.
+
+    Moves of one of the `places` (numbered from 0) begin and end at the same cell and node; of those where
+    the hand was before, the last three count.
+    """
+    most, begins, ends = 0.0, 0, 0
+    latest = np.full(places.max() + 1, -1)
+    before = np.full(places.size, -1)
+    for k in range(places.size):
+        before[k] = latest[places[k]]
+        latest[places[k]] = k
+        first = before[k]
+        for _ in range(3):
+            if first < 0:
+                break
+            if k - first > 1:
+                gain = settled_gain(law, counts[first:k], positions[first:k], delay, costs)
+                if gain > most:
+                    most, begins, ends = gain, first, k
+            first = before[first]
+    return most, begins, ends
+
+
+@compiled
+def settled_gain(law: Any, counts: Integers, positions: Integers, delay: int, costs: Integers) -> float:
+    """What a cycle gains in each round when the law has settled to it, in energy units; 0 where too fast."""
+    size = counts.size
+    zero, one = 0.0, 1.0  # one round takes the average a to zero + (one − zero) a
+    for k in range(size):
+        _, zero = felt(law, counts[k], zero)
+        _, one = felt(law, counts[k], one)
+    average = zero / (1 - (one - zero))
+    forces = np.empty(size)
+    for k in range(size):
+        forces[(k + delay) % size], average = felt(law, counts[k], average)
+    gain = 0.0
+    for k in range(size):
+        d = positions[(k + 1) % size] - positions[k]
+        if abs(d) >= costs.size:
+            return 0.0
+        gain -= forces[k] * d + costs[abs(d)]
+    return gain
