@@ -28,6 +28,8 @@ from .loop.motion import MOTION, motion_energy, stored_at_start
 from .loop.nonlinear_spring import NONLINEAR_SPRING, endless_pull, nonlinear_spring
 from .loop.spring import SPRING, spring
 from .loop.violation import VIOLATION, violation
+from .pair.motion import PAIR_MOTION, pair_motion_energy, pair_stored_at_start
+from .pair.passive import PAIR_PROOF, PAIR_VIOLATION, pair, pair_violation
 from .port.index import POSITIVE_REAL, positive_real
 from .port.matrix import POSITIVE_REAL_MATRIX, positive_real_matrix
 from .port.motion import EXTRACTION, MATRIX_EXTRACTION, extraction
@@ -141,6 +143,11 @@ KINDS: dict[str, Kind] = {
     "storage": Kind(STORAGE, _proof(checked), _on_a_grid(PASSIVE)),
     "coarse storage": Kind(COARSE_STORAGE, _proof(checked), _on_a_grid(PASSIVE)),
     "row storage": Kind(ROW_STORAGE, _proof(checked), _of_a_row(PASSIVE)),
+    "pair": Kind(PAIR_PROOF, _proof(pair), scope.of_a_pair(PASSIVE)),
+    "pair violation": Kind(PAIR_VIOLATION, _proof(pair_violation), scope.of_a_pair(ACTIVE)),
+    "pair motion": Kind(
+        PAIR_MOTION, _motion(pair_motion_energy, pair_stored_at_start), scope.of_a_pair(ACTIVE)
+    ),
     "arm": Kind(ARM, _arm, scope.of_an_arm),
     "violation": Kind(VIOLATION, _proof(violation), _of_every_hand(KEPT, ACTIVE)),
     "motion": Kind(MOTION, _motion(motion_energy, stored_at_start), scope.of_a_motion),

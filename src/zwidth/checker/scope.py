@@ -144,6 +144,16 @@ def of_an_arm(told: Read) -> Scope:
     return Scope(PASSIVE, encoder=told.loop.encoder)
 
 
+def of_a_pair(shows: str) -> Callable[[Read], Scope]:
+    """Two hands, one on each arm; the spring between the arms has no surface."""
+
+    def scope(told: Read) -> Scope:
+        counted = told.loop.leader.resolution or told.loop.follower.resolution
+        return Scope(shows, encoder=COUNTED if counted else IDEAL)
+
+    return scope
+
+
 def of_a_port(shows: str) -> Callable[[Read], Scope]:
     """A system, and no loop."""
     return lambda told: Scope(shows)

@@ -16,6 +16,7 @@ from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
+from zwidth.pairs import Pair
 from zwidth.passivity.certificate import Certificate, certify, certify_delays
 from zwidth.passivity.corners import Loop, best_corner, corners_decide, worst_corners
 from zwidth.passivity.decision import Decision, decide
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from zwidth.arms import Arm
     from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.environment import Wall
+    from zwidth.passivity.pairs import PairVerdict
     from zwidth.passivity.workspace import Workspace
 
 MOST_CORNERS_OF_HIGH_DEGREE = 8
@@ -55,15 +57,17 @@ def check(
     progress: Callable[[int], None] | None = ...,
 ) -> Verdict: ...
 @overload
+def check(device: Pair) -> PairVerdict: ...
+@overload
 def check(device: Arm, environment: Wall | MatrixWall, **of_an_arm: Any) -> Workspace: ...
 def check(
-    device: Device | Arm,
-    environment: Environment | Any,
+    device: Device | Arm | Pair,
+    environment: Environment | Any = None,
     *,
     contact: str = "made and broken",
     progress: Callable[[int], None] | None = None,
     **of_an_arm: Any,
-) -> Verdict | Workspace:
+) -> Verdict | Workspace | PairVerdict:
     """Decide whether a hand can ever take energy out of the sampled loop.
 
     Passive means ∫ f_h v dt + E(0) ≥ 0 for every motion, E(0) finite.  For a
@@ -86,7 +90,8 @@ def check(
     ----------
     device
         The device; where parameters are intervals the verdict holds for all values.  An arm of several joints
-        is answered by `workspace`, whose further arguments (rate, delay, …) are given by name.
+        is answered by `workspace`, whose further arguments (rate, delay, …) are given by name.  A `Pair` of
+        arms that follow each other stands alone, and has its verdict from `check_pair`.
     environment
         Whatever can be rendered: an `Environment`, what `render` gives, a discrete python-control or
         scipy.signal system H(z); for an arm a `Wall` or a `MatrixWall`.
@@ -105,6 +110,10 @@ def check(
         If the environment cannot be sampled at this rate or is not an environment.
     """
     asked = as_contact(contact)
+    if isinstance(device, Pair):
+        return _check_pair(device, environment, of_an_arm)
+    if environment is None:
+        raise InputError("the environment is missing: check(device, zw.Wall(300)) asks for a wall of 300 N/m")
     if not isinstance(device, Device):
         if asked == "kept":
             raise InputError("contact: the wall of an arm acts on both sides of its rest; leave it out")
@@ -122,6 +131,15 @@ def check(
     if asked == "kept" or not has_gap(device, law, verdict):
         return verdict
     return with_value_iteration(device, law, verdict, progress)
+
+
+def _check_pair(pair: Pair, environment: Any, further: Mapping[str, Any]) -> PairVerdict:
+    """The verdict on two arms that follow each other."""
+    if environment is not None or further:
+        raise InputError("a pair of arms holds its coupling in itself: check(pair)")
+    from zwidth.passivity.pairs import check_pair
+
+    return check_pair(pair)
 
 
 def _check_arm(arm: Any, wall: Any, further: Mapping[str, Any]) -> Workspace:

@@ -57,6 +57,8 @@ GLOSSARY: dict[str, Quantity] = dict(
         _q("virtual_damping", "B", "N*s/m", "N*m*s/rad", "virtual damping"),
         _q("exponent", "n", "1", "1", "of the depth in a Hunt–Crossley contact"),
         _q("dissipation", "λ", "s/m", "s/rad", "damping of a Hunt–Crossley contact, f = K uⁿ (1 + λ v)"),
+        _q("local_damping", "D", "N*s/m", "N*m*s/rad", "virtual damping of an arm's own speed"),
+        _q("link_delay", "τ_link", "s", "s", "from one arm's reading to the other's controller"),
         _q("branch_stiffness", "μ1", "N/m", "N*m/rad", "spring in series with a dashpot"),
         _q("branch_damping", "η1", "N*s/m", "N*m*s/rad", "dashpot in series with a spring"),
         _q("time_constant", "τ_v", "s", "s", "time constant of a velocity filter"),

@@ -44,7 +44,7 @@ def motion_energy(told: Read) -> Fraction:
     if not p.unilateral and start != 0:
         raise Invalid("the motion must start at rest at x = 0")
     switches = switch_positions(told, bool(p.part))
-    _require_apart(told.repeats, len(positions))
+    require_apart(told.repeats, len(positions))
     return _energy_of(p, positions, switches, told.repeats)
 
 
@@ -71,7 +71,7 @@ def switch_positions(told: Read, inside_sample: bool) -> list[Fraction]:
     return found
 
 
-def _require_apart(repeats: Sequence[Read], size: int) -> None:
+def require_apart(repeats: Sequence[Read], size: int) -> None:
     """Refuse repeated parts that do not lie in the motion, one after the other.
 
     The positions list each of them once; where one ends ahead of its start,

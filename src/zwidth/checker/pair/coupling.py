@@ -1,0 +1,81 @@
+"""Two devices joined by a spring and a damper over a link, each side computing from its own reading.
+
+With ζ = z⁻¹, dᵢ + αᵢ samples of delay from reading to force, and nᵢ the age of the other's last reading,
+
+    fᵢ = ζ^dᵢ (1 − αᵢ + αᵢ ζ) [(Kᵢ + (Bᵢ + Dᵢ)(1 − ζ)/T) xᵢ − ζ^nᵢ (Kᵢ + Bᵢ (1 − ζ)/T) xⱼ]
+
+A reading arrives between two samples and is used at the next, so nᵢ = ⌈link delay/T⌉.  The work of the
+follower counts K_l/K_f times: then the spring between the two gives back what it takes.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import NamedTuple
+
+from ..document.fields import Number, Read, Record
+from ..document.number import common_scale
+from ..document.refusal import Invalid
+from ..document.unit import DAMPING, FORCE, LENGTH, SECONDS, STIFFNESS
+
+MOST_AGE = 400
+"""Samples that a reading may be old where it acts."""
+
+SIDE = Record(
+    {
+        "damping": Number(DAMPING, least=0),
+        "coulomb_friction": Number(FORCE, least=0),
+        "resolution": Number(LENGTH, least=0),
+        "delay": Number(SECONDS, least=0),
+        "stiffness": Number(STIFFNESS, above=0),
+        "virtual_damping": Number(DAMPING),
+        "local_damping": Number(DAMPING),
+        "link_delay": Number(SECONDS, least=0),
+    }
+)
+PAIR = Record({"sample_period": Number(SECONDS, above=0), "leader": SIDE, "follower": SIDE})
+
+
+class Side(NamedTuple):
+    """One device: its friction and encoder, and what its force is made of.
+
+    `own` and `other` in ascending powers of ζ, the other's as old as it is where it arrives, `age`; the force
+    comes `whole` + `part` samples later.  `weight` is how often its work counts.
+    """
+
+    damping: Fraction
+    coulomb_friction: Fraction
+    resolution: Fraction
+    own: list[Fraction]
+    other: list[Fraction]
+    age: int
+    whole: int
+    part: Fraction
+    weight: Fraction
+
+
+def sides_of(told: Read) -> tuple[Side, Side]:
+    """Leader and follower."""
+    period, ratio = told.sample_period, told.leader.stiffness / told.follower.stiffness
+    return _side(told.leader, period, Fraction(1)), _side(told.follower, period, ratio)
+
+
+def _side(told: Read, period: Fraction, weight: Fraction) -> Side:
+    whole, age = told.delay // period, -(-told.link_delay // period)
+    if whole > MOST_AGE or age > MOST_AGE:
+        raise Invalid(f"a reading is more than {MOST_AGE} samples old where it acts")
+    shared = told.virtual_damping / period
+    mine = shared + told.local_damping / period
+    side = Side(
+        told.damping,
+        told.coulomb_friction,
+        told.resolution,
+        [told.stiffness + mine, -mine],
+        [-told.stiffness - shared, shared],
+        int(age),
+        int(whole),
+        told.delay / period - whole,
+        weight,
+    )
+    common_scale((*side.own, *side.other, side.damping, side.part, period, weight))
+    return side

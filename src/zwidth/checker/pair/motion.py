@@ -1,0 +1,186 @@
+"""Motions of both hands re-run: the energy that they take out, in rational arithmetic."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from ..document.effort import spend
+from ..document.fields import List, Read, document, numbers, only_if
+from ..document.number import MOST_BITS, common_scale
+from ..document.refusal import Invalid
+from ..document.unit import LENGTH
+from ..loop.motion import MOST_SAMPLES, REPEAT, TOLD, require_apart
+from .coupling import PAIR, Side, sides_of
+
+PAIR_MOTION = document(
+    {
+        "loop": PAIR,
+        **TOLD,
+        "leader_positions": numbers(LENGTH, least=2, most=MOST_SAMPLES, shown=False),
+        "follower_positions": numbers(LENGTH, least=2, most=MOST_SAMPLES, shown=False),
+        "leader_switch_positions": numbers(LENGTH, most=MOST_SAMPLES, default=None, shown=False),
+        "follower_switch_positions": numbers(LENGTH, most=MOST_SAMPLES, default=None, shown=False),
+        "repeats": List(REPEAT, most=MOST_SAMPLES, default=(), shown=False),
+    }
+)
+
+
+def pair_stored_at_start(told: Read) -> Fraction:
+    """K_l (Δ_l + Δ_f)²/8: what the spring between two readings may hold where both arms are at 0."""
+    leader, follower = told.loop.leader, told.loop.follower
+    steps: Fraction = leader.resolution + follower.resolution
+    return Fraction(leader.stiffness * steps**2 / 8)
+
+
+def pair_motion_energy(told: Read) -> Fraction:
+    """Energy that both hands take out over a motion from rest, both arms at 0 [J]."""
+    sides = sides_of(told.loop)
+    paths = told.leader_positions, told.follower_positions
+    if len(paths[0]) != len(paths[1]) or paths[0][0] or paths[1][0]:
+        raise Invalid("both arms must start at rest at 0 and move for as many samples")
+    require_apart(told.repeats, len(paths[0]))
+    turns = [
+        _turns(side, path, given)
+        for side, path, given in zip(
+            sides, paths, (told.leader_switch_positions, told.follower_switch_positions), strict=True
+        )
+    ]
+    per_unit = common_scale(
+        [*(v for path in (*paths, *turns) for v in path), *(side.resolution for side in sides)], MOST_BITS
+    )
+    taps = common_scale([c for side in sides for c in (*side.own, *side.other)])
+    arms = [
+        _Arm(side, [int(v * per_unit) for v in path], [int(v * per_unit) for v in turn], per_unit, taps)
+        for side, path, turn in zip(sides, paths, turns, strict=True)
+    ]
+    _run(arms, told.repeats)
+    period: Fraction = told.loop.sample_period
+    return -sum((arm.lost(per_unit, taps, period) for arm in arms), Fraction(0))
+
+
+def _turns(side: Side, path: list[Fraction], given: list[Fraction] | None) -> list[Fraction]:
+    """Positions at the instant in each interval when the force changes; none where it does not."""
+    only_if(bool(side.part), given, "switch positions")
+    if given is not None and len(given) != len(path) - 1:
+        raise Invalid("there must be one switch position in each interval")
+    return given or []
+
+
+class _Arm:
+    """One side in whole numbers: what it read, the forces on their way, and the sums of its work."""
+
+    def __init__(self, side: Side, x: list[int], turns: list[int], per_unit: int, taps: int) -> None:
+        self.side, self.x, self.turns = side, x, turns
+        self.count = int(side.resolution * per_unit)
+        self.own, self.other = ([int(c * taps) for c in part] for part in (side.own, side.other))
+        self.read = [0] * (side.age + 2)  # the newest first; replaced by the longer of both
+        self.forces = [0] * (side.whole + 2)
+        self.ahead = 0
+        self.work = self.path = self.early = self.late = 0
+        self.bits = max(v.bit_length() for v in x)
+
+    def look(self, k: int) -> None:
+        """Take the reading of sample k."""
+        here = self.x[k] + self.ahead
+        self.read = [self.count * (here // self.count) if self.count else here, *self.read[:-1]]
+
+    def push(self, partner: _Arm) -> None:
+        """Compute the force and send it on its way."""
+        mine = sum(c * v for c, v in zip(self.own, self.read, strict=False))
+        its = sum(c * v for c, v in zip(self.other, partner.read[self.side.age :], strict=False))
+        self.forces = [mine + its, *self.forces[:-1]]
+
+    def move(self, k: int) -> None:
+        """Go on to sample k + 1 under the forces that act meanwhile."""
+        late, d = self.x[k + 1] - self.x[k], self.side.whole
+        if self.turns:
+            early, late = self.turns[k] - self.x[k], self.x[k + 1] - self.turns[k]
+            self.work += self.forces[d + 1] * early
+            self.path += abs(early)
+            self.early += early * early
+        self.work += self.forces[d] * late
+        self.path += abs(late)
+        self.late += late * late
+
+    def advance_by(self, part: Read) -> int:
+        """How far a round leads."""
+        return self.x[part.last] - self.x[part.first]
+
+    def lost(self, per_unit: int, taps: int, period: Fraction) -> Fraction:
+        """What its hand gave, friction included, as often as it counts [J]."""
+        side, unit = self.side, Fraction(1, per_unit)
+        squares = self.early / side.part + self.late / (1 - side.part) if side.part else Fraction(self.late)
+        work = unit**2 * (Fraction(self.work, taps) + side.damping / period * squares)
+        return side.weight * (work + side.coulomb_friction * unit * self.path)
+
+
+def _run(arms: Sequence[_Arm], repeats: Sequence[Read]) -> None:
+    """Sample by sample, and repeated parts in closed form once nothing older is remembered."""
+    longest = max(arm.side.age for arm in arms) + 2
+    for arm in arms:
+        arm.read = [0] * longest
+    before = 0
+    for part in repeats:
+        _forward(arms, before, part.first)
+        _rounds(arms, part)
+        before = part.last
+    _forward(arms, before, len(arms[0].x) - 1)
+
+
+def _forward(arms: Sequence[_Arm], start: int, stop: int) -> None:
+    for k in range(start, stop):
+        for arm in arms:
+            arm.look(k)
+        for arm, partner in zip(arms, arms[::-1], strict=True):
+            arm.push(partner)
+            arm.move(k)
+            force = arm.forces[0].bit_length()
+            spend(20 + len(arm.read) + len(arm.forces), force, arm.bits)
+
+
+def _rounds(arms: Sequence[_Arm], part: Read) -> None:
+    """All rounds of a part.
+
+    Once the round before the last is older than whatever is remembered, every further round has the forces
+    of the last one and a constant more, as the laws are linear in readings that go on by as much each time.
+    """
+    length = part.last - part.first
+    memory = max(len(arm.read) + len(arm.forces) for arm in arms)
+    advances = [arm.advance_by(part) for arm in arms]
+    for done in range(1, part.times + 1):
+        before = [(arm.work, arm.path, arm.early, arm.late) for arm in arms]
+        _forward(arms, part.first, part.last)
+        for arm, advance in zip(arms, advances, strict=True):
+            arm.ahead += advance
+        even = all(
+            not arm.count or advance % arm.count == 0 for arm, advance in zip(arms, advances, strict=True)
+        )
+        left = part.times - done
+        if left and even and (done - 1) * length >= memory:
+            _skip(arms, advances, before, left)
+            break
+    for arm, advance in zip(arms, advances, strict=True):
+        arm.ahead -= advance  # the list after the part stands one advance ahead already
+
+
+def _skip(
+    arms: Sequence[_Arm], advances: Sequence[int], before: Sequence[tuple[int, int, int, int]], left: int
+) -> None:
+    """So many rounds more."""
+    for arm, advance, its, (work, path, early, late) in zip(
+        arms, advances, advances[::-1], before, strict=True
+    ):
+        push = sum(arm.own) * advance + sum(arm.other) * its
+        spend(
+            8 + len(arm.read) + len(arm.forces),
+            left.bit_length() + advance.bit_length(),
+            arm.work.bit_length(),
+        )
+        arm.work += left * (arm.work - work) + push * advance * (left * (left + 1) // 2)
+        arm.path += left * (arm.path - path)
+        arm.early += left * (arm.early - early)
+        arm.late += left * (arm.late - late)
+        arm.ahead += left * advance
+        arm.read = [v + left * advance for v in arm.read]
+        arm.forces = [f + left * push for f in arm.forces]

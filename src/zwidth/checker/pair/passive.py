@@ -1,0 +1,140 @@
+"""Two arms that no two hands take energy out of: the form of the work in both speeds is nowhere negative.
+
+With Δx = (z − 1) x, gᵢᵢ = bᵢ (1 − ζ) + T ζ Aᵢ and gᵢⱼ = T ζ Cᵢ for forces fᵢ = Aᵢ xᵢ + Cᵢ xⱼ, delays and all,
+the work of a motion is the integral over the unit circle of Δxᴴ M Δx/T,
+
+    |1 − ζ|² M = Herm(G (1 − ζ̄)) − |1 − ζ|² Σᵢ T² αᵢ (1 − αᵢ)/(4 bᵢ) hᵢᴴ hᵢ,
+
+where the last term is what a hand wins inside samples whose force changes at αᵢ T, hᵢ being row i without
+that delay.  With both Kᵢ in the ratio of the weights the pole at ζ = 1 has the residue of a spring, which is
+not negative.  So M ⪰ 0 at every θ is enough, and necessary; that is M_ll ≥ 0, M_ff ≥ 0 and det M ≥ 0,
+polynomials in c = cos θ (docs/theory/pairs.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import NamedTuple
+
+from ..document.effort import spend
+from ..document.fields import Number, Read, Record, document
+from ..document.number import about, common_scale
+from ..document.refusal import Invalid
+from ..exact.polynomial import bits, multiply, value
+from ..exact.positivity import POSITIVITY, require_nonnegative
+from .coupling import PAIR, Side, sides_of
+from .laurent import (
+    Laurent,
+    conjugate,
+    from_ascending,
+    in_cosine,
+    square_in_cosine,
+    times,
+    weighted,
+)
+
+PAIR_PROOF = document(
+    {
+        "loop": PAIR,
+        "proof": Record({"leader": POSITIVITY, "follower": POSITIVITY, "both": POSITIVITY}, shown=False),
+    }
+)
+PAIR_VIOLATION = document({"loop": PAIR, "proof": Record({"cosine": Number(least=-1, below=1)}, shown=False)})
+
+_STEP = from_ascending([Fraction(1), Fraction(-1)])
+_SQUARE = times(_STEP, conjugate(_STEP))
+_MOST_BITS = 100_000
+
+
+class Criterion(NamedTuple):
+    """What must not be negative for c in [−1, 1], ascending in c: times 2 − 2c, the last (2 − 2c)²."""
+
+    leader: list[int]
+    follower: list[int]
+    both: list[int]
+
+
+def pair(told: Read) -> str:
+    """Friction and encoders too."""
+    sides = sides_of(told.loop)
+    found = criterion(told.loop.sample_period, sides)
+    for name in Criterion._fields:
+        require_nonnegative([Fraction(c) for c in getattr(found, name)], getattr(told.proof, name))
+    for side, error in zip(sides, _errors(sides), strict=True):
+        if side.coulomb_friction < error:
+            raise Invalid(
+                f"Coulomb friction of {about(side.coulomb_friction)} is below the force error of both encoders, "
+                f"{about(error)}"
+            )
+    counted = any(side.resolution for side in sides)
+    more = ", and Coulomb friction covers the steps of both encoders" if counted else ""
+    return f"the work of both hands is nowhere negative{more}"
+
+
+def pair_violation(told: Read) -> str:
+    """One frequency at which some motion of both hands takes energy out, round after round."""
+    found = criterion(told.loop.sample_period, sides_of(told.loop))
+    c = told.proof.cosine
+    spend(sum(map(len, found)), bits(found.both), 2 * c.denominator.bit_length() * len(found.both))
+    if all(value([Fraction(x) for x in part], c) >= 0 for part in found):
+        raise Invalid("the work of both hands is not negative at this frequency")
+    return "at one frequency a motion of both hands takes energy out in every round"
+
+
+def _errors(sides: tuple[Side, Side]) -> Iterator[Fraction]:
+    """The largest error of each force: half a count of each reading, all at their worst."""
+    for side, other in (sides, sides[::-1]):
+        mine, its = (sum(map(abs, taps)) for taps in (side.own, side.other))
+        yield (mine * side.resolution + its * other.resolution) / 2
+
+
+def criterion(period: Fraction, sides: tuple[Side, Side]) -> Criterion:
+    """The diagonal of the form, and its determinant."""
+    for side in sides:
+        if side.part and not side.damping:
+            raise Invalid("without damping a force that changes inside a sample gives energy for free")
+    rows = [_row(side, period) for side in sides]
+    lost = [_inside(side, period) for side in sides]
+    own = [weighted((1, times(rows[i][0], conjugate(_STEP)))) for i in (0, 1)]
+    crossed = weighted(
+        (Fraction(1, 2), times(rows[0][1], conjugate(_STEP))),
+        (Fraction(1, 2), times(conjugate(rows[1][1]), _STEP)),
+    )
+    for i, (loss, mine, its) in enumerate(lost):
+        if not loss:
+            continue
+        own[i] = weighted((1, own[i]), (-loss, times(_SQUARE, times(mine, conjugate(mine)))))
+        own[1 - i] = weighted((1, own[1 - i]), (-loss, times(_SQUARE, times(its, conjugate(its)))))
+        mixed = times(conjugate(mine), its) if i == 0 else times(conjugate(its), mine)
+        crossed = weighted((1, crossed), (-loss, times(_SQUARE, mixed)))
+    forms = (*own, crossed)
+    scale = common_scale([c for form in forms for c in form.values()], _MOST_BITS)
+    leader, follower, cross = ({k: int(c * scale) for k, c in form.items()} for form in forms)
+    diagonal = in_cosine(leader), in_cosine(follower)
+    spend(len(diagonal[0]) * len(diagonal[1]), bits(diagonal[0]), bits(diagonal[1]))
+    product, square = multiply(*diagonal), square_in_cosine(cross)
+    width = max(len(product), len(square))
+    both = [a - b for a, b in zip(_padded(product, width), _padded(square, width), strict=True)]
+    return Criterion(*diagonal, both)
+
+
+def _row(side: Side, period: Fraction) -> tuple[Laurent, Laurent]:
+    """gᵢᵢ and gᵢⱼ."""
+    mixed = from_ascending([1 - side.part, side.part], side.whole + 1)
+    own, other = from_ascending(side.own), from_ascending(side.other, side.age)
+    rubbed = weighted((side.weight * side.damping, _STEP))
+    gain = side.weight * period
+    return weighted((1, rubbed), (gain, times(mixed, own))), weighted((gain, times(mixed, other)))
+
+
+def _inside(side: Side, period: Fraction) -> tuple[Fraction, Laurent, Laurent]:
+    """T² α (1 − α)/(4 b), and the row hᵢ."""
+    if not side.part:
+        return Fraction(0), {}, {}
+    loss = side.weight * period**2 * side.part * (1 - side.part) / (4 * side.damping)
+    return loss, from_ascending(side.own), from_ascending(side.other, side.age)
+
+
+def _padded(a: list[int], width: int) -> list[int]:
+    return a + [0] * (width - len(a))

@@ -1,0 +1,5 @@
+"""Two arms that follow each other: leader and follower, and what joins them."""
+
+from zwidth.pairs.pair import Pair, Side
+
+__all__ = ["Pair", "Side"]

@@ -1,0 +1,244 @@
+"""Two arms joined by a spring and a damper over a link: position–position coupling.
+
+Each side computes, once a sample, from its own reading and from the last one received of the other
+
+    f_l(k) = K_l (x_l(k) − x_f(k − n_l)) + B_l (v_l(k) − v_f(k − n_l)) + D_l v_l(k)
+    f_f(k) = K_f (x_f(k) − x_l(k − n_f)) + B_f (v_f(k) − v_l(k − n_f)) + D_f v_f(k)
+
+with v the backward difference of x, and holds it.  A reading that is sent at kT arrives a link delay
+later and is used at the next sample: n = ⌈delay/T⌉.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from zwidth.device import Device
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import (
+    Certain,
+    CertainOrNone,
+    Parametric,
+    parameter,
+    parameters_of,
+    read_number,
+)
+from zwidth.quantity.text import shown
+
+LONGEST = 400
+"""Samples that a reading may be old where it acts."""
+
+_EARLY = "a reading cannot arrive before it is sent"
+_CERTAIN = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
+
+
+@dataclass(frozen=True)
+class Side:
+    """One arm of a pair, every number exact: its device, its gains, and how old the other's reading is.
+
+    Attributes
+    ----------
+    damping, coulomb_friction, resolution
+        b [N·s/m; N·m·s/rad], f_c [N; N·m], Δ [m; rad] of the device.
+    delay
+        From reading to force [s].
+    stiffness, virtual_damping, local_damping
+        K, B and D of its controller [N/m, N·s/m; N·m/rad, N·m·s/rad].
+    link_delay
+        Of what it receives [s].
+    """
+
+    damping: Fraction
+    coulomb_friction: Fraction
+    resolution: Fraction
+    delay: Fraction
+    stiffness: Fraction
+    virtual_damping: Fraction
+    local_damping: Fraction
+    link_delay: Fraction
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class Pair(Parametric):
+    """Leader and follower, joined by a spring and a damper over a link.
+
+    ``f = K (x − x') + B (v − v') + D v`` on each side, of its own reading and of the last one received.
+
+    Parameters
+    ----------
+    leader, follower
+        The two devices: b, f_c, Δ, T and delay of each, as seen by one hand on each of them.  Both read at
+        the same instants and at one rate.
+    stiffness
+        K > 0 on both sides, or on the leader's [N/m; N·m/rad].
+    damping
+        B of the speed of one arm against the other, any sign [N·s/m; N·m·s/rad].
+    local_damping
+        D of each arm's own speed, any sign [N·s/m; N·m·s/rad].
+    follower_stiffness, follower_damping, follower_local_damping
+        The same on the follower's side, where they differ.  With another stiffness the energy of the
+        follower's hand is counted K_l/K_f times, see `power_ratio`.
+    delay
+        Of the link [s]: a number for each way, or (there, back): from leader to follower, and from follower
+        to leader.
+
+    Raises
+    ------
+    InputError
+        If the devices cannot be joined, a number is an interval, or outside its bound.
+    """
+
+    leader: Device
+    follower: Device
+    stiffness: Certain = parameter(
+        "stiffness", kept=Exact, bound="> 0", why="without a spring on both sides the arms do not follow"
+    )
+    damping: Certain = parameter("virtual_damping", 0, kept=Exact)
+    local_damping: Certain = parameter("local_damping", 0, kept=Exact)
+    follower_stiffness: CertainOrNone = parameter(
+        "stiffness",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="a follower that is not felt, or a leader that feels nothing, lets one hand work for the other",
+    )
+    follower_damping: CertainOrNone = parameter("virtual_damping", None, kept=Exact)
+    follower_local_damping: CertainOrNone = parameter("local_damping", None, kept=Exact)
+    there: Certain = parameter("link_delay", 0, kept=Exact, bound="≥ 0", why=_EARLY)
+    back: Certain = parameter("link_delay", 0, kept=Exact, bound="≥ 0", why=_EARLY)
+
+    def __init__(
+        self,
+        leader: Device,
+        follower: Device,
+        *,
+        stiffness: RealLike,
+        damping: RealLike = 0,
+        local_damping: RealLike = 0,
+        follower_stiffness: RealLike | None = None,
+        follower_damping: RealLike | None = None,
+        follower_local_damping: RealLike | None = None,
+        delay: RealLike | tuple[RealLike, RealLike] = 0,
+    ) -> None:
+        for name, device in (("leader", leader), ("follower", follower)):
+            if not isinstance(device, Device):
+                raise InputError(f"{name} is a Device, got {type(device).__name__}")
+        if leader.motion != follower.motion:
+            raise InputError(
+                f"a {leader.motion} leader and a {follower.motion} follower have no common spring; "
+                "give both as seen by the hand, in the same unit"
+            )
+        there, back = delay if isinstance(delay, (tuple, list)) and len(delay) == 2 else (delay, delay)
+        given: dict[str, Any] = {
+            "stiffness": stiffness,
+            "damping": damping,
+            "local_damping": local_damping,
+            "follower_stiffness": follower_stiffness,
+            "follower_damping": follower_damping,
+            "follower_local_damping": follower_local_damping,
+            "there": there,
+            "back": back,
+        }
+        self._keep(leader=leader, follower=follower, **given)
+        read = {name: self._number(name, value) for name, value in given.items()}
+        self._keep(**read)
+        for name, device in (("leader", leader), ("follower", follower)):
+            for key in _CERTAIN:
+                try:
+                    device.exact(key)
+                except InputError as error:
+                    raise InputError(f"{name}: {error}") from None
+        self._check_clocks()
+
+    def _number(self, name: str, value: Any) -> Exact | None:
+        if value is None:
+            return None
+        own = parameters_of(Pair)[name]
+        said = {"there": "delay there", "back": "delay back"}.get(name, name)
+        return Exact(read_number(value, own.quantity, said, bound=own.bound, why=own.why, motion=self.motion))
+
+    def _check_clocks(self) -> None:
+        periods = [device.exact("sample_period") for device in (self.leader, self.follower)]
+        if periods[0] != periods[1]:
+            rates = " and ".join(f"{float(1 / period):g} Hz" for period in periods)
+            raise InputError(
+                f"both arms are read at the same instants here, got {rates}: give both the slower rate, which "
+                "needs more damping, or the rate of the bus that reads both"
+            )
+        for name, side in zip(("leader", "follower"), self.sides, strict=True):
+            for what, time in (("delay", side.delay), ("link delay", side.link_delay)):
+                if time > LONGEST * periods[0]:
+                    raise InputError(
+                        f"the {what} of the {name} is {float(time / periods[0]):.0f} samples, at most {LONGEST} "
+                        "are decided; so old a reading leaves next to nothing that is passive: lower the rate"
+                    )
+
+    @property
+    def motion(self) -> str:
+        """ "linear" or "rotary"."""
+        return self.leader.motion
+
+    @property
+    def sample_period(self) -> Fraction:
+        """T [s]."""
+        return self.leader.exact("sample_period")
+
+    @property
+    def delay(self) -> tuple[Exact, Exact]:
+        """Of the link, there and back [s]."""
+        return self.there, self.back
+
+    @property
+    def power_ratio(self) -> Fraction:
+        """K_l/K_f: how often the work of the follower's hand counts.  1 where both springs are the same."""
+        return self.sides[0].stiffness / self.sides[1].stiffness
+
+    @property
+    def sides(self) -> tuple[Side, Side]:
+        """Leader and follower, with what each computes from."""
+        gains = [value.fraction for value in (self.stiffness, self.damping, self.local_damping)]
+        own = (self.follower_stiffness, self.follower_damping, self.follower_local_damping)
+        its = [mine if value is None else value.fraction for mine, value in zip(gains, own, strict=True)]
+        return _side(self.leader, gains, self.back), _side(self.follower, its, self.there)
+
+    def replace(self, **changes: Any) -> Pair:
+        """The same pair with some arguments changed."""
+        given: dict[str, Any] = {
+            "leader": self.leader,
+            "follower": self.follower,
+            "stiffness": self.stiffness,
+            "damping": self.damping,
+            "local_damping": self.local_damping,
+            "follower_stiffness": self.follower_stiffness,
+            "follower_damping": self.follower_damping,
+            "follower_local_damping": self.follower_local_damping,
+            "delay": self.delay,
+        }
+        return Pair(**{**given, **changes})
+
+    def describe(self) -> str:
+        """The coupling in a line."""
+        unit = self.leader.unit
+        parts = [f"K = {shown(self.stiffness, unit('stiffness'))}"]
+        if self.follower_stiffness is not None:
+            parts.append(f"{shown(self.follower_stiffness, unit('stiffness'))} on the follower's side")
+        if self.damping:
+            parts.append(f"B = {shown(self.damping, unit('virtual_damping'))}")
+        if self.local_damping:
+            parts.append(f"D = {shown(self.local_damping, unit('virtual_damping'))}")
+        there, back = (shown(value, "s") for value in self.delay)
+        parts.append(
+            f"link delay {there} there, {back} back" if there != back else f"link delay {there} each way"
+        )
+        return ", ".join(parts)
+
+    def __repr__(self) -> str:
+        return f"<Pair {self.leader.name} and {self.follower.name}: {self.describe()}>"
+
+
+def _side(device: Device, gains: list[Fraction], link: Exact) -> Side:
+    known = [device.exact(key) for key in ("damping", "coulomb_friction", "resolution", "delay")]
+    return Side(*known, *gains, link.fraction)

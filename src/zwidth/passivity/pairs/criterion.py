@@ -1,0 +1,227 @@
+"""The criterion of two arms: a form of both speeds that must not be negative at any frequency.
+
+With p = d_l + n_l + 1 and q = d_f + n_f + 1, whole samples of delay d and ages n, w the weight of each side,
+
+    M_ii = w [b − K T (½ + cos θ + … + cos dθ) + (B + D) cos (d + 1)θ]
+    M_lf = ½ [K T (z^{q−1} + … + z^{−(p−1)}) − B_l z^{−p} − w B_f z^q]
+
+M ⪰ 0 is three polynomials in c = cos θ that are not negative on [−1, 1].  Of springs alone they are least at
+θ → 0, so that with N = p + q − 1
+
+    (b_l − (2 d_l + 1) KT/2) (w b_f − (2 d_f + 1) KT/2) ≥ (N KT/2)²
+
+with no negative factor is necessary and sufficient.  Without delay: 1/b_l + 1/(w b_f) ≤ 2/(KT).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import isqrt, lcm
+
+import numpy as np
+from flint import fmpz_poly
+
+from zwidth.pairs import Pair, Side
+from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
+
+Sums = dict[int, Fraction]
+
+
+@dataclass(frozen=True)
+class Arm:
+    """One side in samples: `whole` + `part` of delay, `age` of the other's reading, and its weight."""
+
+    side: Side
+    period: Fraction
+    weight: Fraction
+
+    @property
+    def whole(self) -> int:
+        """d."""
+        return int(self.side.delay // self.period)
+
+    @property
+    def part(self) -> Fraction:
+        """α."""
+        return self.side.delay / self.period - self.whole
+
+    @property
+    def age(self) -> int:
+        """n."""
+        return int(-(-self.side.link_delay // self.period))
+
+    @property
+    def mixed(self) -> list[tuple[int, Fraction]]:
+        """Powers of ζ at which its force acts within a sample, and in which part of it."""
+        late = [(self.whole + 1, 1 - self.part)]
+        return [*late, (self.whole + 2, self.part)] if self.part else late
+
+    @property
+    def own(self) -> tuple[Fraction, Fraction]:
+        """Taps of its own readings, the newest first."""
+        side = self.side
+        past = (side.virtual_damping + side.local_damping) / self.period
+        return side.stiffness + past, -past
+
+    @property
+    def other(self) -> tuple[Fraction, Fraction]:
+        """Taps of the readings that it received."""
+        past = self.side.virtual_damping / self.period
+        return -self.side.stiffness - past, past
+
+    @property
+    def paying(self) -> Fraction:
+        """b, which pays for moves inside a sample; a thousandth of KT of an arm that has none, and never pays."""
+        return self.side.damping or self.side.stiffness * self.period / 1000
+
+    def force_error(self, other: Arm) -> Fraction:
+        """The largest error of its force by the steps of both encoders [N; N·m]."""
+        mine, its = (sum(map(abs, taps)) for taps in (self.own, self.other))
+        return (mine * self.side.resolution + its * other.side.resolution) / 2
+
+
+@dataclass(frozen=True)
+class PairCriterion:
+    """The form of a pair, exact."""
+
+    pair: Pair
+
+    @cached_property
+    def arms(self) -> tuple[Arm, Arm]:
+        """Leader and follower."""
+        leader, follower = self.pair.sides
+        period = self.pair.sample_period
+        return Arm(leader, period, Fraction(1)), Arm(follower, period, self.pair.power_ratio)
+
+    @cached_property
+    def forms(self) -> tuple[Sums, Sums, Sums]:
+        """M_ll and M_ff by cosines of kθ, M_lf by powers of z."""
+        leader, follower = self.arms
+        own = [_own(arm) for arm in self.arms]
+        crossed = _crossed(leader, follower)
+        for here, arm in enumerate(self.arms):
+            if not arm.part:
+                continue
+            loss = arm.weight * arm.period**2 * arm.part * (1 - arm.part) / (4 * arm.paying)
+            (a, b), (c, d) = arm.own, arm.other
+            for k, (x, y) in ((here, (a, b)), (1 - here, (c, d))):
+                _add(own[k], ((0, -loss * (x * x + y * y)), (1, -2 * loss * x * y)))
+            sign = 1 if here else -1  # of the power of z that a reading of age n has beside one's own
+            for k, value in ((0, a * c + b * d), (1, a * d), (-1, b * c)):
+                _add(crossed, ((sign * (arm.age + k), -loss * value),))
+        return own[0], own[1], crossed
+
+    @cached_property
+    def polynomials(self) -> tuple[fmpz_poly, fmpz_poly, fmpz_poly]:
+        """M_ll, M_ff and det M in c, times positive numbers."""
+        leader, follower, crossed = self.forms
+        scale = lcm(*(v.denominator for form in self.forms for v in form.values()))
+        first, second = (
+            _polynomial((k, int(v * scale)) for k, v in form.items()) for form in (leader, follower)
+        )
+        lags: dict[int, int] = {}
+        whole = {k: int(v * scale) for k, v in crossed.items()}
+        for i, x in whole.items():
+            for j, y in whole.items():
+                lags[abs(i - j)] = lags.get(abs(i - j), 0) + x * y
+        return first, second, first * second - _polynomial(lags.items())
+
+    @cached_property
+    def signs(self) -> tuple[Positivity, Positivity, Positivity] | Fraction:
+        """Why none of them is negative; or a c at which one is."""
+        found = []
+        for p in self.polynomials:
+            sign = prove_nonnegative(p)
+            if isinstance(sign, Fraction):
+                return sign
+            found.append(sign)
+        first, second, both = found
+        return first, second, both
+
+    @property
+    def holds(self) -> bool:
+        """True where none of them is negative: friction and encoders aside, no motion gains."""
+        return not self.undamped and not isinstance(self.signs, Fraction)
+
+    @property
+    def missing_friction(self) -> tuple[Fraction, Fraction]:
+        """What each arm lacks of Coulomb friction to cover the steps of both encoders, > 0 where it does."""
+        leader, follower = self.arms
+        return (
+            leader.force_error(follower) - leader.side.coulomb_friction,
+            follower.force_error(leader) - follower.side.coulomb_friction,
+        )
+
+    @property
+    def undamped(self) -> bool:
+        """True where a force changes inside a sample of an arm without damping: any size of that gains."""
+        return any(arm.part and not arm.side.damping for arm in self.arms)
+
+    def at(self, theta: float) -> np.ndarray[tuple[int, int], np.dtype[np.complex128]]:
+        """M at a frequency θ = ωT, to rounding [N·s/m; N·m·s/rad]."""
+        leader, follower, crossed = self.forms
+        diagonal = [sum(float(v) * np.cos(k * theta) for k, v in form.items()) for form in (leader, follower)]
+        off = sum(float(v) * np.exp(1j * k * theta) for k, v in crossed.items())
+        return np.array([[diagonal[0], off], [np.conj(off), diagonal[1]]])
+
+
+def _own(arm: Arm) -> Sums:
+    side, found = arm.side, {0: arm.weight * arm.side.damping}
+    stretch = arm.weight * side.stiffness * arm.period
+    rubbed = arm.weight * (side.virtual_damping + side.local_damping)
+    for power, share in arm.mixed:
+        parts = [(0, -stretch * share / 2), *((k, -stretch * share) for k in range(1, power))]
+        _add(found, [*parts, (power, share * rubbed)])
+    return found
+
+
+def _crossed(leader: Arm, follower: Arm) -> Sums:
+    found: Sums = {}
+    stretch = leader.side.stiffness * leader.period
+    mine = [(power + leader.age, share) for power, share in leader.mixed]
+    its = [(power + follower.age, share) for power, share in follower.mixed]
+    for p, share in mine:
+        for q, part in its:
+            _add(found, ((k, stretch * share * part / 2) for k in range(1 - p, q)))
+        _add(found, ((-p, -share * leader.side.virtual_damping / 2),))
+    _add(found, ((q, -part * follower.weight * follower.side.virtual_damping / 2) for q, part in its))
+    return found
+
+
+def _add(form: Sums, parts: Iterable[tuple[int, Fraction]]) -> None:
+    for k, value in parts:
+        form[k] = form.get(k, Fraction(0)) + value
+
+
+def _polynomial(sums: Iterable[tuple[int, int]]) -> fmpz_poly:
+    """Σ of cosines in powers of c."""
+    total = fmpz_poly([])
+    for k, value in sums:
+        if value:
+            total += value * fmpz_poly.chebyshev_t(k)
+    return total
+
+
+def largest_spring(pair: Pair) -> Fraction | None:
+    """The largest stiffness of springs alone, rounded down to 15 digits or so; None where it has no closed form.
+
+    From (b_l − pκ)(w b_f − qκ) = N² κ², κ = KT/2, the smaller root.
+    """
+    leader, follower = PairCriterion(pair).arms
+    sides = pair.sides
+    if any(side.virtual_damping or side.local_damping for side in sides) or leader.part or follower.part:
+        return None
+    b, f = leader.side.damping, follower.weight * follower.side.damping
+    p, q = 2 * leader.whole + 1, 2 * follower.whole + 1
+    n = leader.whole + leader.age + follower.whole + follower.age + 1
+    linear, square = p * f + q * b, n * n - p * q
+    if b == 0 or f == 0:
+        return Fraction(0)
+    # κ = 2 b f/(linear + √(linear² + 4 square b f)): the same for n² = pq, and without a difference
+    under = linear**2 + 4 * square * b * f
+    digits = 10**40
+    root = Fraction(isqrt(int(under * digits**2)) + 1, digits)
+    return 2 * b * f / (linear + root) * 2 / pair.sample_period

@@ -1,0 +1,187 @@
+"""Proofs and motions about a pair, as documents that the independent checker reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zwidth.checker import verify
+from zwidth.pairs import Pair, Side
+from zwidth.passivity.document import unit_key
+from zwidth.passivity.linear.positivity import Positivity
+from zwidth.passivity.linear.supremum import frequency
+from zwidth.passivity.result import Evidence
+from zwidth.passivity.witness.motion import Motion
+from zwidth.quantity.text import exact_text, quantity_unit
+
+CERTIFICATE = "zwidth certificate 1"
+VIOLATION = "zwidth violation 1"
+WITNESS = "zwidth witness 1"
+
+_WEIGHTED = (1, 1, 2)
+"""How often 2 − 2c is a factor of what the checker looks at."""
+
+
+def pair_document(pair: Pair) -> dict[str, Any]:
+    """The loop that a proof or a motion speaks of."""
+    sides = zip(("leader", "follower"), pair.sides, strict=True)
+    return {
+        unit_key("sample_period"): exact_text(pair.sample_period),
+        **{name: _side(side, pair.motion) for name, side in sides},
+    }
+
+
+def _side(side: Side, motion: str) -> dict[str, str]:
+    return {unit_key(name, motion): exact_text(value) for name, value in vars(side).items()}
+
+
+@dataclass(frozen=True, repr=False)
+class PairCertificate(Evidence):
+    """A proof that no motion of two hands takes energy out of a pair.
+
+    Attributes
+    ----------
+    pair
+        What it is about.
+    signs
+        Why M_ll, M_ff and det M are nowhere negative.
+    """
+
+    pair: Pair
+    signs: tuple[Positivity, Positivity, Positivity]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The proof as plain data."""
+        names = zip(("leader", "follower", "both"), self.signs, _WEIGHTED, strict=True)
+        proof = {name: _positivity(sign, more) for name, sign, more in names}
+        return {"format": CERTIFICATE, "kind": "pair", "loop": pair_document(self.pair), "proof": proof}
+
+    def describe(self) -> str:
+        """What was proved, in words."""
+        return "the work of both hands is nowhere negative"
+
+
+def _positivity(sign: Positivity, more: int) -> dict[str, Any]:
+    return {
+        "at_one": sign.at_one + more,
+        "at_minus_one": sign.at_minus_one,
+        "square": [str(c) for c in sign.square],
+        "factor": [str(c) for c in sign.factor],
+    }
+
+
+@dataclass(frozen=True, repr=False)
+class PairViolation(Evidence):
+    """A frequency at which some motion of two hands takes energy out in every round.
+
+    Attributes
+    ----------
+    pair
+        What it is about.
+    cosine
+        cos ωT.
+    """
+
+    pair: Pair
+    cosine: Fraction
+
+    @property
+    def frequency(self) -> float:
+        """Where [Hz]."""
+        return frequency(self.cosine, self.pair.sample_period)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The violation as plain data."""
+        proof = {"cosine": exact_text(self.cosine)}
+        return {
+            "format": VIOLATION,
+            "kind": "pair violation",
+            "loop": pair_document(self.pair),
+            "proof": proof,
+        }
+
+    def describe(self) -> str:
+        """What is violated, in words."""
+        return f"at {self.frequency:.6g} Hz some motion of both hands gains in every round"
+
+
+@dataclass(frozen=True, repr=False)
+class PairWitness(Evidence):
+    """A motion of both hands, from rest at 0, that takes energy out of the pair.
+
+    Attributes
+    ----------
+    pair
+        What they hold.
+    leader, follower
+        The motion of each, with the same repeated parts.
+    exact_energy
+        What comes out [J]; of the follower's hand `pair.power_ratio` times as much.
+    """
+
+    pair: Pair
+    leader: Motion
+    follower: Motion
+    exact_energy: Fraction
+
+    @property
+    def energy(self) -> float:
+        """What comes out by the whole motion [J]."""
+        return float(self.exact_energy)
+
+    @property
+    def samples(self) -> int:
+        """How long it takes."""
+        return self.leader.samples
+
+    @property
+    def duration(self) -> float:
+        """How long it takes [s]."""
+        return float(self.samples * self.pair.sample_period)
+
+    @property
+    def positions(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Of leader and follower at the samples [m; rad]; each repeated part once."""
+        first, second = (np.array([float(v) for v in m.positions]) for m in (self.leader, self.follower))
+        return first, second
+
+    def to_dict(self) -> dict[str, Any]:
+        """The motion as plain data."""
+        return motion_document(self.pair, self.leader, self.follower, self.exact_energy)
+
+    def describe(self) -> str:
+        """What comes out, in words."""
+        far = quantity_unit("position", self.pair.motion)
+        spans = [float(max(m.positions) - min(m.positions)) for m in (self.leader, self.follower)]
+        rounds = f", {self.leader.rounds} rounds" if self.leader.rounds > 1 else ""
+        return (
+            f"a motion of {self.samples} samples{rounds} takes {self.energy:.4g} J out, the leader over "
+            f"{spans[0]:.3g} {far}, the follower over {spans[1]:.3g} {far} in a round"
+        )
+
+
+def motion_document(pair: Pair, leader: Motion, follower: Motion, energy: Fraction) -> dict[str, Any]:
+    """A motion of both hands as a document for the checker."""
+    suffix = unit_key("position", pair.motion).removeprefix("position_")
+    document: dict[str, Any] = {
+        "format": WITNESS,
+        "kind": "pair motion",
+        "loop": pair_document(pair),
+        unit_key("sample_period"): pair.sample_period,
+        "energy_J": energy,
+        "repeats": [part._asdict() for part in leader.repeats if part.times > 1],
+    }
+    for name, path in (("leader", leader), ("follower", follower)):
+        document[f"{name}_positions_{suffix}"] = list(path.positions)
+        if path.switch_positions:
+            document[f"{name}_switch_positions_{suffix}"] = list(path.switch_positions)
+    return document
+
+
+def energy_of(pair: Pair, leader: Motion, follower: Motion) -> Fraction | None:
+    """What comes out by the checker's reckoning [J]; None if the motion is not admitted."""
+    return verify(motion_document(pair, leader, follower, Fraction(0))).energy

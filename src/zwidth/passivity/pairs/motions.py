@@ -1,0 +1,351 @@
+"""Motions of two hands that take energy out of a pair where the criterion, or friction, is violated.
+
+Three kinds, each made of what is violated:
+
+slow      at θ → 0: both hands go at constant speeds, far, and back; every sample gains.
+round     at θ = 2π p/q: both go round, with the phase between them that the form of the energy has.
+straddle  one hand to and fro over an edge of its encoder, the other crossing one of its own as it does so,
+          by next to nothing: the force is low on the way in and high on the way out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from math import ceil, pi
+
+import numpy as np
+from flint import arb
+
+from zwidth.device import Device
+from zwidth.pairs import Pair
+from zwidth.passivity.linear.positivity import prove_nonnegative
+from zwidth.passivity.linear.roots import roots_inside
+from zwidth.passivity.pairs.criterion import Arm, PairCriterion
+from zwidth.passivity.pairs.evidence import PairWitness, energy_of
+from zwidth.passivity.witness.motion import Motion, Repeat
+from zwidth.passivity.witness.sinusoid import simplest_between
+from zwidth.quantity.balls import as_fmpq, middle, precision
+
+LONGEST_ROUND = 20_000
+"""Samples of one round; a violation in a narrower band is proved without a motion."""
+
+_AMPLITUDE = Fraction(1, 1000)
+"""About how far a hand goes where nothing asks for more [m; rad]."""
+
+_TURN_BITS = 256
+_SIZES = (6, 10, 14, 18, 22, 28, 36, 44)
+"""Bits of the whole numbers that a round motion is made of."""
+
+Path = tuple[list[int], list[int]]
+
+
+def refute_criterion(criterion: PairCriterion) -> PairWitness | None:
+    """A motion where the form of the energy is negative; None if none is found that is short enough."""
+    pair = criterion.pair
+    if any(p(1) < 0 for p in criterion.polynomials):
+        for size in _SIZES:
+            path = _slow(criterion, size)
+            parts = Repeat(1, 2, 1), Repeat(3, 4, 1)
+            found = path and _enlarged(pair, path, parts)
+            if found:
+                return found
+    for turn in _turns(criterion):
+        if turn.denominator > LONGEST_ROUND:
+            continue
+        for size in _SIZES:
+            path = _round(criterion, turn, size)
+            found = _enlarged(pair, path, (Repeat(0, turn.denominator, 1),))
+            if found:
+                return found
+    return None
+
+
+def _slow(criterion: PairCriterion, bits: int) -> Path | None:
+    """Two samples out, two back: the second of each is done many times."""
+    values, vectors = np.linalg.eigh(criterion.at(0.0).real)
+    leader, follower = (round(float(v) * 2**bits) for v in vectors[:, 0])
+    if values[0] >= 0 and bits < _SIZES[-1]:
+        return None
+    return [0, leader, 2 * leader, leader, 0], [0, follower, 2 * follower, follower, 0]
+
+
+def _turns(criterion: PairCriterion) -> list[Fraction]:
+    """Turns per sample θ/2π of simple denominator where one of the three is negative."""
+    found = []
+    for p in criterion.polynomials:
+        point = prove_nonnegative(p)
+        if not isinstance(point, Fraction):
+            continue
+        low, high = Fraction(0), Fraction(1, 2)
+        with precision(_TURN_BITS):
+            here = _turn(point)
+            for root in roots_inside(p, _TURN_BITS):
+                turn = _turn(root)
+                low, high = (max(low, turn), high) if turn < here else (low, min(high, turn))
+        margin = (high - low) / 4
+        found.append(simplest_between(low + margin, high if high == Fraction(1, 2) else high - margin))
+    return sorted(found, key=lambda turn: turn.denominator)
+
+
+def _turn(cosine: Fraction) -> Fraction:
+    return middle(arb(as_fmpq(cosine)).acos() / (2 * arb.pi()))
+
+
+def _round(criterion: PairCriterion, turn: Fraction, bits: int) -> Path:
+    """One round of both hands, in whole numbers, from 0 to 0."""
+    p, q = turn.numerator, turn.denominator
+    vector = np.linalg.eigh(criterion.at(2 * pi * p / q))[1][:, 0]
+    vector = vector / np.abs(vector).max()
+    angles = 2 * pi * (p * np.arange(q + 1) % q) / q
+    waves = (vector[:, None] * (np.exp(1j * angles) - 1)).real * 2.0**bits
+    leader, follower = ([round(v) for v in wave] for wave in waves)
+    return leader, follower
+
+
+def _enlarged(pair: Pair, path: Path, parts: tuple[Repeat, ...]) -> PairWitness | None:
+    """Often enough for the way in and out, and large enough for friction and encoders."""
+    ideal = _without_friction(pair)
+    ratio = _units(pair)
+    one = _motions(path, parts, ratio, Fraction(1))
+    one = _with_turns(pair, one)
+    times = _enough(lambda n: energy_of(ideal, *_repeated(one, n)), pair, path)
+    if times is None:
+        return None
+    long = _repeated(one, times)
+    gain = energy_of(ideal, *long)
+    lost = _rubbed(pair, one, times)
+    if gain is None or gain <= 0:
+        return None
+    widest = max(abs(v) for motion in long for v in motion.positions)
+    unit = max(_AMPLITUDE / widest, 2 * lost / gain)
+    for _ in range(8):
+        unit = Fraction(ceil(unit)) if unit > 1 else _simple(unit)
+        if any(side.resolution for side in pair.sides):
+            unit = Fraction(ceil(unit))  # whole counts of both
+        found = _repeated(_with_turns(pair, _motions(path, parts, ratio, unit)), times)
+        energy = energy_of(pair, *found)
+        if energy is not None and energy > stored_at_start(pair):
+            return PairWitness(pair, *found, energy)
+        unit *= 8
+    return None
+
+
+def stored_at_start(pair: Pair) -> Fraction:
+    """K_l (Δ_l + Δ_f)²/8, what the spring between two readings may hold where both arms are at 0 [J]."""
+    leader, follower = pair.sides
+    return leader.stiffness * (leader.resolution + follower.resolution) ** 2 / 8
+
+
+def _without_friction(pair: Pair) -> Pair:
+    """With ideal encoders too: the energy is then quadratic in size."""
+    return pair.replace(leader=_bare(pair.leader), follower=_bare(pair.follower))
+
+
+def _bare(device: Device) -> Device:
+    return device.replace(coulomb_friction=0, stiction=None, resolution=0)
+
+
+def _units(pair: Pair) -> tuple[Fraction, Fraction]:
+    """Lengths of which the whole numbers of each hand are: counts where there are any, as alike as may be."""
+    steps = [side.resolution for side in pair.sides]
+    if not any(steps):
+        return Fraction(1), Fraction(1)
+    largest = max(steps)
+    first, second = (step * max(1, round(largest / step)) if step else largest for step in steps)
+    return first, second
+
+
+def _motions(
+    path: Path, parts: tuple[Repeat, ...], ratio: tuple[Fraction, Fraction], unit: Fraction
+) -> list[Motion]:
+    smallest = min(ratio)
+    return [
+        Motion(tuple(unit * step * round(v * smallest / step) for v in whole), (), parts)
+        for whole, step in zip(path, ratio, strict=True)
+    ]
+
+
+def _repeated(motions: list[Motion], times: int) -> tuple[Motion, Motion]:
+    leader, follower = (motion.repeated(times) for motion in motions)
+    return leader, follower
+
+
+def _enough(energy: Callable[[int], Fraction | None], pair: Pair, path: Path) -> int | None:
+    """Rounds after which it gains: beyond what is remembered, energy is affine in them."""
+    arms = PairCriterion(pair).arms
+    memory = max(arm.age for arm in arms) + max(arm.whole for arm in arms) + 6
+    first = 2 + ceil(memory / max(1, len(path[0]) - 1 if len(path[0]) != 5 else 1))
+    one = energy(1)
+    if one is not None and one > 0:
+        return 1
+    before, after = energy(first), energy(first + 1)
+    if before is None or after is None or after <= before:
+        return None
+    per_round = after - before
+    return first if before > 0 else first + 1 + ceil(-2 * before / per_round)
+
+
+def _rubbed(pair: Pair, one: list[Motion], times: int) -> Fraction:
+    """What Coulomb friction takes from the motion at this size [J]."""
+    total = Fraction(0)
+    for motion, side, weight in zip(one, pair.sides, (1, pair.power_ratio), strict=True):
+        x = motion.positions
+        path = sum((abs(b - a) for a, b in zip(x, x[1:], strict=False)), Fraction(0))
+        total += weight * side.coulomb_friction * path * times  # no less than what is gone
+    return total
+
+
+def _simple(value: Fraction) -> Fraction:
+    """A decimal of two digits at or above."""
+    power = Fraction(1)
+    while value * power < 10:
+        power *= 10
+    return Fraction(ceil(value * power)) / power
+
+
+def _with_turns(pair: Pair, motions: list[Motion]) -> list[Motion]:
+    """The best instants inside samples, where a force changes there.
+
+    y = x + α Δx − (T/2b) α (1 − α) (f before − f after), with the forces of a round when all before it were
+    the same.
+    """
+    arms = PairCriterion(pair).arms
+    if not any(arm.part for arm in arms):
+        return motions
+    length = motions[0].samples
+    memory = max(arm.age + arm.whole for arm in arms) + 4
+    times = 2 + ceil(memory / max(1, min(part.last - part.first for part in motions[0].repeats)))
+    listed = [motion.repeated(times).listed().positions for motion in motions]
+    forces = _forces(arms, listed)
+    out = []
+    rest = len(forces[0]) - len(listed[0])
+    for motion, arm, force in zip(motions, arms, forces, strict=True):
+        if not arm.part:
+            out.append(motion)
+            continue
+        places = _places(motion, times)
+        gain = arm.period / (2 * arm.paying) * arm.part * (1 - arm.part)
+        x = motion.positions
+        grid = max(abs(v) for v in (*x, Fraction(1, 10**9))) / 2**40
+        y = []
+        for k in range(length):
+            at = places[k] + rest - arm.whole
+            change = force[at - 1] - force[at]
+            ideal = x[k] + arm.part * (x[k + 1] - x[k]) - gain * Fraction(change)
+            y.append(round(ideal / grid) * grid)
+        out.append(replace(motion, switch_positions=tuple(y)))
+    return out
+
+
+def _places(motion: Motion, times: int) -> list[int]:
+    """The sample of the listed motion, in the last round of each part, that each one of the short one is."""
+    places, shift, before = [], 0, 0
+    for part in motion.repeats:
+        places += [k + shift for k in range(before, part.first)]
+        shift += (times - 1) * (part.last - part.first)
+        places += [k + shift for k in range(part.first, part.last)]
+        before = part.last
+    return places + [k + shift for k in range(before, len(motion.positions) - 1)]
+
+
+def _forces(arms: tuple[Arm, Arm], paths: list[tuple[Fraction, ...]]) -> list[list[Fraction]]:
+    """Forces computed at each sample, with enough of rest before."""
+    rest = max(arm.age + arm.whole for arm in arms) + 4
+    x = [[Fraction(0)] * rest + list(path) for path in paths]
+    found = []
+    for arm, own, its in zip(arms, x, x[::-1], strict=True):
+        (a, b), (c, d), n = arm.own, arm.other, arm.age
+        found.append(
+            [
+                a * own[k] + b * own[k - 1] + c * its[k - n] + d * its[k - n - 1] if k > n else Fraction(0)
+                for k in range(len(own))
+            ]
+        )
+    return found
+
+
+def refute_friction(criterion: PairCriterion) -> PairWitness | None:
+    """A motion over the edges of the encoders that Coulomb friction of one arm does not pay for."""
+    pair, arms = criterion.pair, criterion.arms
+    for here in (0, 1):
+        arm, other = arms[here], arms[1 - here]
+        missing = arm.force_error(other) - arm.side.coulomb_friction
+        if missing > 0:
+            found = _straddle(pair, here, missing)
+            if found:
+                return found
+    return None
+
+
+def _straddle(pair: Pair, here: int, missing: Fraction) -> PairWitness | None:
+    """One hand over its edge, the other's reading in the phase in which the force does most for it."""
+    arms = PairCriterion(pair).arms
+    arm, other = arms[here], arms[1 - here]
+    best = max(
+        (
+            (_won(arm, other, hold, phase), -hold, phase)
+            for hold in {arm.whole + 1, arm.whole + 2, arm.whole + arm.age + 2}
+            for phase in range(2 * hold)
+        ),
+    )
+    if best[0] <= arm.side.coulomb_friction:
+        return None
+    return _held(pair, here, best[0] - arm.side.coulomb_friction, -best[1], best[2])
+
+
+def _won(arm: Arm, other: Arm, hold: int, phase: int) -> Fraction:
+    """Half of the difference of the forces on the way out and on the way in [N; N·m]."""
+    own, its = arm.side.resolution, other.side.resolution
+
+    def force(k: int) -> Fraction:
+        mine = [-own * (((k - i) // hold) % 2) for i in (0, 1)]
+        theirs = [-its * (((k - arm.age - i + phase) // hold) % 2) for i in (0, 1)]
+        return sum(
+            (c * v for c, v in zip((*arm.own, *arm.other), (*mine, *theirs), strict=True)), Fraction(0)
+        )
+
+    # it goes out after the samples 0 … hold − 1, and in after as many below the edge
+    return (force(hold - 1 - arm.whole) - force(2 * hold - 1 - arm.whole)) / 2
+
+
+def _held(pair: Pair, here: int, missing: Fraction, hold: int, phase: int) -> PairWitness | None:
+    """`hold` samples above the edge and as many below it, the other by next to nothing."""
+    arms = PairCriterion(pair).arms
+    arm, other = arms[here], arms[1 - here]
+    period = 2 * hold
+    wait = -(-(arm.whole + arm.age + 4) // period) * period
+    small = _step(arm, missing)
+    rate = max(Fraction(1), *(one.weight for one in arms), *(1 / one.weight for one in arms))
+    against = other.force_error(arm) + other.side.coulomb_friction
+    tiny = _step(other, other.side.coulomb_friction + against)
+    if against:
+        tiny = min(tiny, small * missing / (16 * rate * against))
+    mine = [-small * ((k // hold) % 2) for k in range(wait + period + 1)]
+    theirs = [-tiny * (((k + phase) // hold) % 2) if k else Fraction(0) for k in range(wait + period + 1)]
+    paths = [mine, theirs] if here == 0 else [theirs, mine]
+    part = Repeat(wait, wait + period, 1)
+    motions = [
+        Motion(tuple(path), tuple(path[:-1]) if one.part else (), (part,))
+        for path, one in zip(paths, arms, strict=True)
+    ]
+    settled = 3 + wait // period
+    before, after = (energy_of(pair, *_repeated(motions, n)) for n in (settled, settled + 1))
+    if before is None or after is None or after <= before:
+        return None
+    times = settled + 1 + max(0, ceil(2 * (stored_at_start(pair) - before) / (after - before)))
+    found = _repeated(motions, times)
+    energy = energy_of(pair, *found)
+    if energy is None or energy <= stored_at_start(pair):
+        return None
+    return PairWitness(pair, *found, energy)
+
+
+def _step(arm: Arm, force: Fraction) -> Fraction:
+    """How far a hand may go in a sample for viscous friction to take little beside this force."""
+    side = arm.side
+    near = [side.resolution / 4] if side.resolution else []
+    if side.damping and force:
+        near.append(force * arm.period * (1 - arm.part) / (8 * side.damping))
+    return min(near, default=_AMPLITUDE)

@@ -1,0 +1,242 @@
+"""The verdict on two arms that follow each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, ClassVar
+
+from zwidth.device import Device
+from zwidth.pairs import Pair
+from zwidth.passivity.linear.boundary import COARSE, largest_holding, smallest_holding
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.pairs.criterion import PairCriterion, largest_spring
+from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, PairWitness
+from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
+from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.scope import Scope
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.text import quantity_unit, shown
+
+
+def check_pair(pair: Pair) -> PairVerdict:
+    """Decide whether two hands can ever take energy out of a pair of arms.
+
+    Passive means that ∫ (f_l v_l + w f_f v_f) dt, with the work of the follower counted w = K_l/K_f times, and
+    what the spring between the arms holds at the start are never less than nothing, for every motion of both
+    hands.  Exactly if M(θ) ⪰ 0 at every frequency (`PairCriterion`) and Coulomb friction of each arm is at
+    least
+
+        f_c ≥ (K + 2 |B + D|/T) Δ/2 + (K + 2 |B|/T) Δ'/2
+
+    for B, D ≥ 0, Δ' the other's encoder.  Equality counts as passive.  Derivation: docs/theory/pairs.md.
+
+    Raises
+    ------
+    InputError
+        If the sign of the criterion would take too long to decide.
+    """
+    criterion = PairCriterion(pair)
+    signs = criterion.signs
+    if isinstance(signs, Fraction):
+        violation = PairViolation(pair, signs)
+        if violation.verify():
+            return PairVerdict(pair, criterion, violation=violation)
+        return PairVerdict(pair, criterion, motion=refute_criterion(criterion))
+    if criterion.undamped:
+        return PairVerdict(pair, criterion)
+    if max(criterion.missing_friction) > 0:
+        return PairVerdict(pair, criterion, motion=refute_friction(criterion))
+    certificate = PairCertificate(pair, signs)
+    return PairVerdict(pair, criterion, certificate=certificate if certificate.verify() else None)
+
+
+@dataclass(frozen=True, repr=False)
+class PairVerdict(PassivityAnswer):
+    """Whether two hands can take energy out of a pair of arms.
+
+    Attributes
+    ----------
+    pair
+        What was asked.
+    certificate, violation
+        The proof, or the frequency at which the criterion is violated.
+    """
+
+    FORMAT: ClassVar[str] = "zwidth pair 1"
+    PICTURE: ClassVar[str] = "plot_pair"
+
+    pair: Pair
+    criterion: PairCriterion
+    certificate: PairCertificate | None = None
+    violation: PairViolation | None = None
+    motion: PairWitness | None = None
+
+    @cached_property
+    def witness(self) -> PairWitness | None:
+        """A motion of both hands that takes energy out; None where none that is short enough was found."""
+        return self.motion if self.violation is None else refute_criterion(self.criterion)
+
+    @property
+    def outcome(self) -> Outcome:
+        """ "passive", "active" or "undecided"."""
+        if self.certificate is not None:
+            return "passive"
+        return "undecided" if self.violation is None and self.motion is None else "active"
+
+    @property
+    def claim(self) -> str:
+        """The outcome in a sentence."""
+        if self.outcome == "passive":
+            return f"No motion of two hands, one on each arm, takes energy out of this pair{self._friction_goes_on}."
+        if self.outcome == "active":
+            return "Two hands, one on each arm, can take energy out of this pair, without end."
+        return "Neither a proof nor a motion that takes energy out was found."
+
+    @property
+    def _friction_goes_on(self) -> str:
+        speeds = [
+            (d.name, d.friction_speed) for d in (self.pair.leader, self.pair.follower) if d.friction_speed
+        ]
+        if not speeds:
+            return ""
+        unit = quantity_unit("friction_speed", self.pair.motion)
+        told = ", ".join(f"{name}: {float(getattr(v, 'low', v)):.6g} {unit}" for name, v in speeds)
+        return f", if friction beyond the speeds where it was measured ({told}) is no less than f_c + b |v|"
+
+    @property
+    def scope(self) -> Scope:
+        """Two hands, without limit, and what of the encoders is counted."""
+        steps = any(side.resolution for side in self.pair.sides)
+        return Scope(
+            contact="both sides", encoder="counted" if steps else "ideal", motion=self.pair.leader.motion
+        )
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted."""
+        return tuple(self._assumptions())
+
+    def _assumptions(self) -> Iterator[str]:
+        pair = self.pair
+        yield "two hands without limit on speed and force, one on each arm; the masses play no part"
+        yield "both arms move freely: what the spring between them holds at the start may come back"
+        if pair.power_ratio != 1:
+            ratio = float(pair.power_ratio)
+            yield (
+                f"the two springs differ, so the energy of the follower's hand counts {ratio:.6g} times: a pair of "
+                "hands that are passive each by itself stays stable; one body that holds both arms is not covered"
+            )
+        yield "both arms are read at the same instants, and each force is held for a period"
+        ages = [arm.age for arm in self.criterion.arms]
+        yield (
+            f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the leader "
+            f"{ages[1]} samples old; none is lost, none comes later"
+        )
+        yield "forces are given as computed: no limit, no steps of the converter, no compensation of friction or gravity"
+        if self.scope.encoder == "counted":
+            yield "encoder counts of each arm's own size, their phase unknown"
+        else:
+            yield "ideal position sensors: no quantization"
+        for name, device in (("leader", pair.leader), ("follower", pair.follower)):
+            if device.assumed:
+                yield f"{name}: {', '.join(device.assumed)} not given, taken as 0"
+
+    @cached_property
+    def largest_stiffness(self) -> float | None:
+        """The largest K, both sides in proportion and all else as it is, that is passive; None if none is."""
+        ratio = 1 / self.pair.power_ratio
+
+        def holds(k: Fraction) -> bool:
+            return k > 0 and self._passive(stiffness=k, follower_stiffness=k * ratio)
+
+        closed = largest_spring(self.pair)
+        guess = float(closed) if closed else float(self.pair.stiffness)
+        if guess <= 0 or not (holds(Exact(guess / 10**6).fraction) or self.criterion.holds):
+            return None
+        found = largest_holding(lambda k: not k or holds(k), guess, COARSE)
+        return found or None
+
+    @cached_property
+    def required_damping(self) -> tuple[float | None, float | None]:
+        """The least b of leader and follower, each with the other's as it is; None if none is enough."""
+        found = []
+        for name in ("leader", "follower"):
+            device: Device = getattr(self.pair, name)
+
+            def holds(b: Fraction, name: str = name, device: Device = device) -> bool:
+                return PairCriterion(self.pair.replace(**{name: device.replace(damping=b)})).holds
+
+            guess = max(float(device.exact("damping")), float(self.pair.stiffness * self.pair.sample_period))
+            found.append(smallest_holding(holds, guess, COARSE))
+        return found[0], found[1]
+
+    @cached_property
+    def required_friction(self) -> tuple[float, float]:
+        """The least f_c of leader and follower for the steps of both encoders [N; N·m]."""
+        leader, follower = self.criterion.arms
+        return float(leader.force_error(follower)), float(follower.force_error(leader))
+
+    def _passive(self, **changes: Any) -> bool:
+        criterion = PairCriterion(self.pair.replace(**changes))
+        return criterion.holds and max(criterion.missing_friction) <= 0
+
+    @property
+    def margin(self) -> float | None:
+        """How much stiffer the coupling may be [N/m; N·m/rad]; below 0 where it must be softer."""
+        largest = self.largest_stiffness
+        return None if largest is None else largest - float(self.pair.stiffness)
+
+    @property
+    def limit(self) -> str:
+        """What binds."""
+        if not self.criterion.holds:
+            return "damping of the arms: the hold, the delay and the link feed more energy than it takes"
+        if max(self.criterion.missing_friction) > 0:
+            return "Coulomb friction: one count of the encoders feeds more energy than it takes"
+        return "nothing is violated"
+
+    def rows(self) -> Iterator[tuple[str, str]]:
+        """The main numbers."""
+        pair = self.pair
+        unit = {name: pair.leader.unit(name) for name in ("stiffness", "damping", "coulomb_friction")}
+        yield "coupling", pair.describe()
+        yield "limit", self.limit
+        largest = self.largest_stiffness
+        yield (
+            "largest stiffness",
+            "none is passive"
+            if largest is None
+            else f"{shown(largest, unit['stiffness'])} with all else as it is",
+        )
+        needs = zip(("leader", "follower"), self.required_damping, self.required_friction, strict=True)
+        for name, damping, friction in needs:
+            device: Device = getattr(pair, name)
+            enough = "none is enough" if damping is None else f"{shown(damping, unit['damping'])} needed"
+            yield f"damping of the {name}", f"{shown(device.damping, unit['damping'])}, {enough}"
+            if friction:
+                needed = shown(friction, unit["coulomb_friction"])
+                has = shown(device.coulomb_friction, unit["coulomb_friction"])
+                yield f"friction of the {name}", f"{has}, {needed} needed"
+        evidence = self.witness if self.outcome == "active" else None
+        if self.violation is not None:
+            yield "violated", self.violation.describe()
+        if evidence is not None:
+            yield "motion", evidence.describe()
+
+    def numbers(self) -> dict[str, Any]:
+        """The main numbers as plain data, a unit in every key of a physical quantity."""
+        pair = self.pair
+        key = pair.leader.key
+        needs = zip(("leader", "follower"), self.required_damping, self.required_friction, strict=True)
+        return {
+            "limit": self.limit,
+            "power_ratio": float(pair.power_ratio),
+            f"largest_{key('stiffness')}": self.largest_stiffness,
+            "required": {
+                name: {key("damping"): damping, key("coulomb_friction"): friction}
+                for name, damping, friction in needs
+            },
+        }
