@@ -2,8 +2,8 @@
 
 Delays of whole samples and of part of one, links of 0 to 12 samples each way, unequal damping, coupling with
 and without B and D, equal and unequal stiffness, ideal encoders and counted ones.  The largest stiffness that
-is passive is found to the last double; a part in 10⁹ below it the checker must accept the certificate, a part
-in 10⁹ above it a motion, replayed, must take energy out.  Of pairs that friction limits the same for friction.
+is passive is found to the last double; a part in 10⁹ below it the checker must accept the certificate, a
+part in 10⁹ above it a motion, replayed, must take energy out.
 
     python random_pairs.py [PAIRS] [FIRST SEED]
 """
@@ -52,7 +52,15 @@ def random_pair(seed: int) -> zw.Pair:
     local = random.choice([0, 0, 0.3]) * float(leader.damping)
     more = {"follower_stiffness": number(0.5, 2)} if random.random() < 0.3 else {}
     link = tuple(Fraction(int(random.integers(0, 25)), 2) * period for _ in (0, 1))
-    return zw.Pair(leader, follower, stiffness=1, damping=f"{share:.4g}", local_damping=f"{local:.4g}", delay=link, **more)
+    return zw.Pair(
+        leader,
+        follower,
+        stiffness=1,
+        damping=f"{share:.4g}",
+        local_damping=f"{local:.4g}",
+        delay=link,
+        **more,
+    )
 
 
 def stiffer(pair: zw.Pair, stiffness: Fraction) -> zw.Pair:
@@ -85,7 +93,10 @@ def main() -> None:
             sides = [(pair, "active")]
         else:
             exact = Fraction(repr(limit))
-            sides = [(stiffer(pair, exact * (1 - BILLIONTH)), "passive"), (stiffer(pair, exact * (1 + BILLIONTH)), "active")]
+            sides = [
+                (stiffer(pair, exact * (1 - BILLIONTH)), "passive"),
+                (stiffer(pair, exact * (1 + BILLIONTH)), "active"),
+            ]
         for loop, expected in sides:
             began = time.perf_counter()
             verdict = zw.check(loop)

@@ -165,15 +165,16 @@ class Pair(Parametric):
         if periods[0] != periods[1]:
             rates = " and ".join(f"{float(1 / period):g} Hz" for period in periods)
             raise InputError(
-                f"both arms are read at the same instants here, got {rates}: give both the slower rate, which "
+                f"both arms are read at the same instants, got {rates}: give both the slower rate, which "
                 "needs more damping, or the rate of the bus that reads both"
             )
         for name, side in zip(("leader", "follower"), self.sides, strict=True):
             for what, time in (("delay", side.delay), ("link delay", side.link_delay)):
                 if time > LONGEST * periods[0]:
                     raise InputError(
-                        f"the {what} of the {name} is {float(time / periods[0]):.0f} samples, at most {LONGEST} "
-                        "are decided; so old a reading leaves next to nothing that is passive: lower the rate"
+                        f"the {what} of the {name} is {float(time / periods[0]):.0f} samples, at most "
+                        f"{LONGEST} are decided; so old a reading leaves next to nothing that is passive: "
+                        "lower the rate"
                     )
 
     @property
@@ -240,5 +241,14 @@ class Pair(Parametric):
 
 
 def _side(device: Device, gains: list[Fraction], link: Exact) -> Side:
-    known = [device.exact(key) for key in ("damping", "coulomb_friction", "resolution", "delay")]
-    return Side(*known, *gains, link.fraction)
+    stiffness, virtual, local = gains
+    return Side(
+        damping=device.exact("damping"),
+        coulomb_friction=device.exact("coulomb_friction"),
+        resolution=device.exact("resolution"),
+        delay=device.exact("delay"),
+        stiffness=stiffness,
+        virtual_damping=virtual,
+        local_damping=local,
+        link_delay=link.fraction,
+    )

@@ -105,7 +105,9 @@ class _Arm:
 
     def advance_by(self, part: Read) -> int:
         """How far a round leads."""
-        return self.x[part.last] - self.x[part.first]
+        first: int = self.x[part.first]
+        last: int = self.x[part.last]
+        return last - first
 
     def lost(self, per_unit: int, taps: int, period: Fraction) -> Fraction:
         """What its hand gave, friction included, as often as it counts [J]."""

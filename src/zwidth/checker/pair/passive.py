@@ -64,8 +64,8 @@ def pair(told: Read) -> str:
     for side, error in zip(sides, _errors(sides), strict=True):
         if side.coulomb_friction < error:
             raise Invalid(
-                f"Coulomb friction of {about(side.coulomb_friction)} is below the force error of both encoders, "
-                f"{about(error)}"
+                f"Coulomb friction of {about(side.coulomb_friction)} is below the force error of both "
+                f"encoders, {about(error)}"
             )
     counted = any(side.resolution for side in sides)
     more = ", and Coulomb friction covers the steps of both encoders" if counted else ""

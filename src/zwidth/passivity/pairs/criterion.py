@@ -74,7 +74,7 @@ class Arm:
 
     @property
     def paying(self) -> Fraction:
-        """b, which pays for moves inside a sample; a thousandth of KT of an arm that has none, and never pays."""
+        """b, which pays for moves inside a sample; a thousandth of KT of an arm that has none."""
         return self.side.damping or self.side.stiffness * self.period / 1000
 
     def force_error(self, other: Arm) -> Fraction:
@@ -206,7 +206,7 @@ def _polynomial(sums: Iterable[tuple[int, int]]) -> fmpz_poly:
 
 
 def largest_spring(pair: Pair) -> Fraction | None:
-    """The largest stiffness of springs alone, rounded down to 15 digits or so; None where it has no closed form.
+    """The largest stiffness of springs alone, rounded down in digit 40; None where it has no closed form.
 
     From (b_l − pκ)(w b_f − qκ) = N² κ², κ = KT/2, the smaller root.
     """

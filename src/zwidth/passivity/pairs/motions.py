@@ -97,7 +97,7 @@ def _round(criterion: PairCriterion, turn: Fraction, bits: int) -> Path:
     """One round of both hands, in whole numbers, from 0 to 0."""
     p, q = turn.numerator, turn.denominator
     vector = np.linalg.eigh(criterion.at(2 * pi * p / q))[1][:, 0]
-    vector = vector / np.abs(vector).max()
+    vector = vector / vector[np.argmax(np.abs(vector))]
     angles = 2 * pi * (p * np.arange(q + 1) % q) / q
     waves = (vector[:, None] * (np.exp(1j * angles) - 1)).real * 2.0**bits
     leader, follower = ([round(v) for v in wave] for wave in waves)
@@ -190,10 +190,10 @@ def _enough(energy: Callable[[int], Fraction | None], pair: Pair, path: Path) ->
 def _rubbed(pair: Pair, one: list[Motion], times: int) -> Fraction:
     """What Coulomb friction takes from the motion at this size [J]."""
     total = Fraction(0)
-    for motion, side, weight in zip(one, pair.sides, (1, pair.power_ratio), strict=True):
+    for motion, arm in zip(one, PairCriterion(pair).arms, strict=True):
         x = motion.positions
         path = sum((abs(b - a) for a, b in zip(x, x[1:], strict=False)), Fraction(0))
-        total += weight * side.coulomb_friction * path * times  # no less than what is gone
+        total += arm.weight * arm.side.coulomb_friction * path * times  # no less than what is gone
     return total
 
 

@@ -17,17 +17,17 @@ from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, Pair
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
-from zwidth.quantity.exact import Exact
+from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.text import quantity_unit, shown
 
 
 def check_pair(pair: Pair) -> PairVerdict:
     """Decide whether two hands can ever take energy out of a pair of arms.
 
-    Passive means that ∫ (f_l v_l + w f_f v_f) dt, with the work of the follower counted w = K_l/K_f times, and
-    what the spring between the arms holds at the start are never less than nothing, for every motion of both
-    hands.  Exactly if M(θ) ⪰ 0 at every frequency (`PairCriterion`) and Coulomb friction of each arm is at
-    least
+    Passive means that ∫ (f_l v_l + w f_f v_f) dt and what the spring between the arms holds at the start are
+    never less than nothing in all, for every motion of both hands, the work of the follower counted
+    w = K_l/K_f times.  Exactly if M(θ) ⪰ 0 at every frequency (`PairCriterion`) and Coulomb friction of each
+    arm is at least
 
         f_c ≥ (K + 2 |B + D|/T) Δ/2 + (K + 2 |B|/T) Δ'/2
 
@@ -90,20 +90,23 @@ class PairVerdict(PassivityAnswer):
     def claim(self) -> str:
         """The outcome in a sentence."""
         if self.outcome == "passive":
-            return f"No motion of two hands, one on each arm, takes energy out of this pair{self._friction_goes_on}."
+            hands = "No motion of two hands, one on each arm, takes energy out of this pair"
+            return f"{hands}{self._friction_goes_on}."
         if self.outcome == "active":
             return "Two hands, one on each arm, can take energy out of this pair, without end."
         return "Neither a proof nor a motion that takes energy out was found."
 
     @property
     def _friction_goes_on(self) -> str:
-        speeds = [
-            (d.name, d.friction_speed) for d in (self.pair.leader, self.pair.follower) if d.friction_speed
-        ]
-        if not speeds:
-            return ""
         unit = quantity_unit("friction_speed", self.pair.motion)
-        told = ", ".join(f"{name}: {float(getattr(v, 'low', v)):.6g} {unit}" for name, v in speeds)
+        devices = (("leader", self.pair.leader), ("follower", self.pair.follower))
+        told = ", ".join(
+            f"{name}: {float(ends(device.friction_speed)[0]):.6g} {unit}"
+            for name, device in devices
+            if device.friction_speed is not None
+        )
+        if not told:
+            return ""
         return f", if friction beyond the speeds where it was measured ({told}) is no less than f_c + b |v|"
 
     @property
@@ -126,16 +129,20 @@ class PairVerdict(PassivityAnswer):
         if pair.power_ratio != 1:
             ratio = float(pair.power_ratio)
             yield (
-                f"the two springs differ, so the energy of the follower's hand counts {ratio:.6g} times: a pair of "
-                "hands that are passive each by itself stays stable; one body that holds both arms is not covered"
+                f"the two springs differ, so the energy of the follower's hand counts {ratio:.6g} times: "
+                "with hands that are passive each by itself the whole is stable; one body that holds both "
+                "arms is not covered"
             )
         yield "both arms are read at the same instants, and each force is held for a period"
         ages = [arm.age for arm in self.criterion.arms]
         yield (
-            f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the leader "
-            f"{ages[1]} samples old; none is lost, none comes later"
+            f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the "
+            f"leader {ages[1]} samples old; none is lost, none comes later"
         )
-        yield "forces are given as computed: no limit, no steps of the converter, no compensation of friction or gravity"
+        yield (
+            "forces are given as computed: no limit, no steps of the converter, no compensation of friction "
+            "or gravity"
+        )
         if self.scope.encoder == "counted":
             yield "encoder counts of each arm's own size, their phase unknown"
         else:

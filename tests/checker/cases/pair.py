@@ -1,0 +1,194 @@
+"""Two arms that follow each other, T = 1 s: springs need (b_l − KT/2)(w b_f − KT/2) ≥ (N KT/2)².
+
+N is 1 and the samples that a force is late all round.  Without delay M = (b − K/2, K/2; K/2, b − K/2): its
+determinant is 0 at K = b.  With a link of a sample each way b − K/2 beside K/2 (1 + 2c): at K = 2, b = 4 that
+is 9 − (1 + 2c)² = 4 (1 − c)(2 + c).  The checker looks at these times 2 − 2c, and (2 − 2c)².
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import TINY, accepted, edge, put, refused, without
+from .linear import signs
+
+
+def arm(damping: Any, stiffness: Any, **more: Any) -> Any:
+    """What is not named is 0."""
+    zeros = (
+        "coulomb_friction_N",
+        "resolution_m",
+        "delay_s",
+        "virtual_damping_N_s_per_m",
+        "local_damping_N_s_per_m",
+        "link_delay_s",
+    )
+    return {"damping_N_s_per_m": damping, "stiffness_N_per_m": stiffness, **dict.fromkeys(zeros, 0), **more}
+
+
+def loop(leader: Any, follower: Any = None) -> Any:
+    return {
+        "sample_period_s": 1,
+        "leader": leader,
+        "follower": dict(leader if follower is None else follower),
+    }
+
+
+def proved(told: Any, both: Any, leader: Any = None, follower: Any = None) -> Any:
+    once = signs(at_one=1)
+    proof = {"leader": leader or once, "follower": follower or leader or once, "both": both}
+    return {"kind": "pair", "loop": told, "proof": proof}
+
+
+def violated(told: Any, cosine: Any) -> Any:
+    return {"kind": "pair violation", "loop": told, "proof": {"cosine": cosine}}
+
+
+def moved(told: Any, leader: Any, follower: Any, **more: Any) -> Any:
+    return {
+        "kind": "pair motion",
+        "loop": told,
+        "energy_J": 0,
+        "leader_positions_m": leader,
+        "follower_positions_m": follower,
+        **more,
+    }
+
+
+def told(document: Any, energy: Any) -> Any:
+    return put(document, {"energy_J": energy})
+
+
+def again(first: int, last: int, times: int) -> Any:
+    return [{"first": first, "last": last, "times": times}]
+
+
+NOWHERE = signs(square=[])
+SPRING = proved(loop(arm(4, 4)), NOWHERE)
+UNEQUAL = proved(loop(arm(4, 4), arm(2, 2)), NOWHERE)
+LINK = arm(4, 2, link_delay_s=1)
+LATE = proved(loop(LINK), signs(at_one=3, factor=[2, 1]))
+# B: M_ii = b − K/2 + B c, M_lf = K/2 − B c; det M = b (b − K + 2Bc)
+DAMPED = proved(
+    loop(arm(4, 2, virtual_damping_N_s_per_m=1)),
+    signs(at_one=2, at_minus_one=1),
+    signs(at_one=1, factor=[3, 1]),
+)
+# D alone adds to the diagonal: 3 + c, beside 1
+LOCAL = proved(
+    loop(arm(4, 2, local_damping_N_s_per_m=1)),
+    signs(at_one=2, factor=[8, 6, 1]),
+    signs(at_one=1, factor=[3, 1]),
+)
+ENCODERS = put(
+    SPRING,
+    {
+        f"loop.{side}.{key}": value
+        for side in ("leader", "follower")
+        for key, value in (("resolution_m", 1), ("coulomb_friction_N", 4), ("damping_N_s_per_m", 4))
+    },
+)
+ACTIVE = loop(arm("1/2", 4))
+TO_AND_FRO = moved(ACTIVE, [0, 1, 0], [0, 0, 0])
+LINKED = loop(arm(1, 4, link_delay_s=1))
+ROUND = moved(LINKED, [0, 1, 0, 0], [0, 0, -1, 0])
+ON = moved(loop(arm(1, 4)), [0, 1, 2], [0, 0, 0])
+PARTLY = moved(loop(arm("1/8", 4, delay_s="1/2"), arm(1, 4)), [0, 1, 0, 0], [0, 0, 0, 0])
+TURNED = {"leader_switch_positions_m": [1, "1/2", 0]}
+FACTORS, NEGATIVE = "do not multiply", "is not negative at this frequency"
+
+CASES = [
+    *edge(
+        "springs",
+        SPRING,
+        put(SPRING, {"loop.leader.damping_N_s_per_m": 4 - TINY}),
+        FACTORS,
+        "nowhere negative",
+        shows="passive",
+        hands="every",
+        contact="both sides",
+        encoder="ideal",
+    ),
+    refused("springs a hair stiffer", put(SPRING, {"loop.follower.stiffness_N_per_m": 4 + TINY}), FACTORS),
+    *edge(
+        "unequal springs, the follower counted twice",
+        UNEQUAL,
+        put(UNEQUAL, {"loop.follower.damping_N_s_per_m": 2 - TINY}),
+        FACTORS,
+    ),
+    *edge("a link", LATE, put(LATE, {"loop.follower.link_delay_s": 1 + TINY}), FACTORS),
+    accepted(
+        "a link of less than a sample is one of a sample",
+        put(LATE, {"loop.leader.link_delay_s": "1/9", "loop.follower.link_delay_s": "8/9"}),
+    ),
+    refused("no link at all", put(LATE, {"loop.leader.link_delay_s": 0}), "higher degree"),
+    *edge("a damper", DAMPED, put(DAMPED, {"loop.leader.virtual_damping_N_s_per_m": 1 + TINY}), FACTORS),
+    *edge(
+        "dampers of their own", LOCAL, put(LOCAL, {"loop.leader.local_damping_N_s_per_m": 1 + TINY}), FACTORS
+    ),
+    *edge(
+        "encoders",
+        ENCODERS,
+        put(ENCODERS, {"loop.follower.coulomb_friction_N": 4 - TINY}),
+        "below the force error",
+        "covers the steps of both",
+        encoder="counted",
+    ),
+    refused(
+        "encoders, the leader's friction",
+        put(ENCODERS, {"loop.leader.coulomb_friction_N": 4 - TINY}),
+        "below the force error",
+    ),
+    refused(
+        "a coarser one on the other side",
+        put(ENCODERS, {"loop.follower.resolution_m": 1 + TINY}),
+        "below the force error",
+    ),
+    refused("a diagonal that is negative", put(SPRING, {"proof.leader.factor": [-1]}), "not multiply"),
+    refused("a proof of less", without(SPRING, "proof.both"), "proof.both is missing"),
+    refused("a spring on one side", put(SPRING, {"loop.leader.stiffness_N_per_m": 0}), "must be > 0"),
+    refused(
+        "a force that changes inside a sample, undamped",
+        put(SPRING, {"loop.leader.delay_s": "1/2", "loop.leader.damping_N_s_per_m": 0}),
+        "without damping",
+    ),
+    refused("a very old reading", put(LATE, {"loop.leader.link_delay_s": 401}), "400 samples old"),
+    refused("a very late force", put(LATE, {"loop.leader.delay_s": 401}), "samples old"),
+    *edge(
+        "violated",
+        violated(put(SPRING["loop"], {"leader.damping_N_s_per_m": 4 - TINY}), "1/3"),
+        violated(SPRING["loop"], "1/3"),
+        NEGATIVE,
+        "in every round",
+        shows="active",
+        encoder="ideal",
+    ),
+    refused("violated at rest", violated(ACTIVE, 1), "must be < 1"),
+    *edge(
+        "to and fro",
+        told(TO_AND_FRO, 3),
+        told(TO_AND_FRO, 3 + 4 * TINY),
+        "not 3",
+        "extracts 3 J",
+        energy=3,
+        shows="active",
+        contact="both sides",
+    ),
+    refused(
+        "to and fro, rubbed", put(told(TO_AND_FRO, 0), {"loop.leader.coulomb_friction_N": "3/2"}), "0 J", 0
+    ),
+    accepted("both arms", told(ROUND, 8), energy=8),
+    accepted("five rounds", put(told(ROUND, 24), {"repeats": again(0, 3, 5)}), energy=24),
+    accepted("many rounds", put(told(ROUND, 4004), {"repeats": again(0, 3, 1000)}), energy=4004),
+    refused("always on", put(ON, {"repeats": again(1, 2, 10)}), "extracts -231", -231),
+    accepted("another weight", told(put(ROUND, {"loop.leader.stiffness_N_per_m": 8}), 18), energy=18),
+    accepted("inside a sample", told(put(PARTLY, TURNED), "13/8"), energy="13/8"),
+    refused("inside a sample, untold", PARTLY, "switch positions is missing"),
+    refused("too few instants", put(PARTLY, {"leader_switch_positions_m": [1]}), "one switch position"),
+    refused("instants of no use", put(TO_AND_FRO, {"follower_switch_positions_m": [0, 0]}), "of no use"),
+    refused(
+        "one longer than the other", put(TO_AND_FRO, {"follower_positions_m": [0, 0]}), "start at rest at 0"
+    ),
+    refused("apart at first", put(TO_AND_FRO, {"follower_positions_m": [1, 1, 1]}), "start at rest at 0"),
+    refused("rounds beyond the end", put(TO_AND_FRO, {"repeats": again(1, 3, 2)}), "must lie in the motion"),
+]
