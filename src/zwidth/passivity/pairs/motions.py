@@ -4,7 +4,7 @@ Three kinds, each made of what is violated:
 
 slow      at θ → 0: both hands go at constant speeds, far, and back; every sample gains.
 round     at θ = 2π p/q: both go round, with the phase between them that the form of the energy has.
-straddle  one hand to and fro over an edge of its encoder, the other crossing one of its own as it does so,
+edge      one hand to and fro over an edge of its encoder, the other crossing one of its own as it does so,
           by next to nothing: the force is low on the way in and high on the way out.
 """
 
@@ -273,13 +273,13 @@ def refute_friction(criterion: PairCriterion) -> PairWitness | None:
         arm, other = arms[here], arms[1 - here]
         missing = arm.force_error(other) - arm.side.coulomb_friction
         if missing > 0:
-            found = _straddle(pair, here, missing)
+            found = _over_an_edge(pair, here, missing)
             if found:
                 return found
     return None
 
 
-def _straddle(pair: Pair, here: int, missing: Fraction) -> PairWitness | None:
+def _over_an_edge(pair: Pair, here: int, missing: Fraction) -> PairWitness | None:
     """One hand over its edge, the other's reading in the phase in which the force does most for it."""
     arms = PairCriterion(pair).arms
     arm, other = arms[here], arms[1 - here]
