@@ -7,6 +7,10 @@ Each side computes, once a sample, from its own reading and from the last one re
 
 with v the backward difference of x, and holds it.  A reading that is sent at kT arrives a link delay
 later and is used at the next sample: n = ⌈delay/T⌉.
+
+Most arms close their own part of this inside the motor drive, at 10 to 40 kHz, and send each other only
+references, at 50 to 1000 Hz.  With a `drive_rate` x_l and v_l of the leader's own are read at that rate,
+the terms of the other stay what they are for T; and so on the follower's side.
 """
 
 from __future__ import annotations
@@ -30,6 +34,9 @@ from zwidth.quantity.text import shown
 
 LONGEST = 400
 """Samples that a reading may be old where it acts."""
+
+MOST_READINGS = 1000
+"""Of an arm's own in a sample period."""
 
 _EARLY = "a reading cannot arrive before it is sent"
 _CERTAIN = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
@@ -84,6 +91,9 @@ class Pair(Parametric):
     delay
         Of the link [s]: a number for each way, or (there, back): from leader to follower, and from follower
         to leader.
+    drive_rate
+        Of the drives, each of which holds its arm to the last reference at this rate [Hz], a whole number of
+        times in T; both devices then are without delay.  None: everything is computed once in T.
 
     Raises
     ------
@@ -109,6 +119,9 @@ class Pair(Parametric):
     follower_local_damping: CertainOrNone = parameter("local_damping", None, kept=Exact)
     there: Certain = parameter("link_delay", 0, kept=Exact, bound="≥ 0", why=_EARLY)
     back: Certain = parameter("link_delay", 0, kept=Exact, bound="≥ 0", why=_EARLY)
+    drive_rate: CertainOrNone = parameter(
+        "rate", None, kept=Exact, bound="> 0", why="leave it out where there is no loop inside the drive"
+    )
 
     def __init__(
         self,
@@ -122,6 +135,7 @@ class Pair(Parametric):
         follower_damping: RealLike | None = None,
         follower_local_damping: RealLike | None = None,
         delay: RealLike | tuple[RealLike, RealLike] = 0,
+        drive_rate: RealLike | None = None,
     ) -> None:
         for name, device in (("leader", leader), ("follower", follower)):
             if not isinstance(device, Device):
@@ -141,6 +155,7 @@ class Pair(Parametric):
             "follower_local_damping": follower_local_damping,
             "there": there,
             "back": back,
+            "drive_rate": drive_rate,
         }
         self._keep(leader=leader, follower=follower, **given)
         read = {name: self._number(name, value) for name, value in given.items()}
@@ -168,6 +183,8 @@ class Pair(Parametric):
                 f"both arms are read at the same instants, got {rates}: give both the slower rate, which "
                 "needs more damping, or the rate of the bus that reads both"
             )
+        if self.drive_rate is not None:
+            self._check_drives(self.drive_rate)
         for name, side in zip(("leader", "follower"), self.sides, strict=True):
             for what, time in (("delay", side.delay), ("link delay", side.link_delay)):
                 if time > LONGEST * periods[0]:
@@ -176,6 +193,25 @@ class Pair(Parametric):
                         f"{LONGEST} are decided; so old a reading leaves next to nothing that is passive: "
                         "lower the rate"
                     )
+
+    def _check_drives(self, rate: Exact) -> None:
+        often = rate.fraction * self.sample_period
+        if often.denominator != 1 or not 1 <= often <= MOST_READINGS:
+            raise InputError(
+                f"drive_rate must be 1 to {MOST_READINGS} whole times the "
+                f"{float(1 / self.sample_period):g} Hz of the references, got {float(rate):g} Hz: the loop "
+                "of the drive and the bus are taken in step"
+            )
+        if any(side.delay for side in self.sides):
+            raise InputError(
+                "with a drive_rate the devices are without delay: the drive's own is not decided here; leave "
+                "out the delay of both, and give that of the bus as delay of the link"
+            )
+
+    @property
+    def own_readings(self) -> int:
+        """Readings of its own that each arm takes in a sample period."""
+        return 1 if self.drive_rate is None else int(self.drive_rate.fraction * self.sample_period)
 
     @property
     def motion(self) -> str:
@@ -217,6 +253,7 @@ class Pair(Parametric):
             "follower_damping": self.follower_damping,
             "follower_local_damping": self.follower_local_damping,
             "delay": self.delay,
+            "drive_rate": self.drive_rate,
         }
         return Pair(**{**given, **changes})
 
@@ -230,6 +267,8 @@ class Pair(Parametric):
             parts.append(f"B = {shown(self.damping, unit('virtual_damping'))}")
         if self.local_damping:
             parts.append(f"D = {shown(self.local_damping, unit('virtual_damping'))}")
+        if self.drive_rate is not None:
+            parts.append(f"each arm's own part in its drive at {shown(self.drive_rate, 'Hz')}")
         there, back = (shown(value, "s") for value in self.delay)
         parts.append(
             f"link delay {there} there, {back} back" if there != back else f"link delay {there} each way"

@@ -80,6 +80,18 @@ LOCAL = proved(
     signs(at_one=2, factor=[8, 6, 1]),
     signs(at_one=1, factor=[3, 1]),
 )
+# m = 2 readings of its own: β = b − K/4; with K = 4 and β = 2 as K/2: b = 3
+DRIVEN = put(proved(loop(arm(3, 4)), NOWHERE), {"loop.own_readings": 2})
+# γ = D = 1, β = 3: t = 17, u = 6, g = 1; M_ii = (17 − c)/(5 − c), beside K/2 = 2: (7 + c)(27 − 3c)
+DRIVEN_DAMPED = put(
+    proved(
+        loop(arm(4, 4, local_damping_N_s_per_m=1)),
+        signs(at_one=2, factor=[63, 2, -1]),
+        signs(at_one=1, factor=[17, -1]),
+    ),
+    {"loop.own_readings": 2},
+)
+SLIPPING = put(loop(arm(2, 4, local_damping_N_s_per_m=1)), {"own_readings": 2})
 ENCODERS = put(
     SPRING,
     {
@@ -93,6 +105,8 @@ TO_AND_FRO = moved(ACTIVE, [0, 1, 0], [0, 0, 0])
 LINKED = loop(arm(1, 4, link_delay_s=1))
 ROUND = moved(LINKED, [0, 1, 0, 0], [0, 0, -1, 0])
 ON = moved(loop(arm(1, 4)), [0, 1, 2], [0, 0, 0])
+# own taps 4 + 2 and −2, twice in a sample
+TWICE = moved({**loop(arm("1/2", 4, local_damping_N_s_per_m=1)), "own_readings": 2}, [0, 1, 0], [0, 0, 0])
 PARTLY = moved(loop(arm("1/8", 4, delay_s="1/2"), arm(1, 4)), [0, 1, 0, 0], [0, 0, 0, 0])
 TURNED = {"leader_switch_positions_m": [1, "1/2", 0]}
 FACTORS, NEGATIVE = "do not multiply", "is not negative at this frequency"
@@ -133,6 +147,38 @@ CASES = [
         "below the force error",
         "covers the steps of both",
         encoder="counted",
+    ),
+    *edge(
+        "springs inside drives",
+        DRIVEN,
+        put(DRIVEN, {"loop.follower.damping_N_s_per_m": 3 - TINY}),
+        FACTORS,
+    ),
+    *edge(
+        "dampers inside drives",
+        DRIVEN_DAMPED,
+        put(DRIVEN_DAMPED, {"loop.follower.local_damping_N_s_per_m": 1 - TINY}),
+        FACTORS,
+    ),
+    accepted("one reading of its own", put(SPRING, {"loop.own_readings": 1})),
+    refused("no reading", put(SPRING, {"loop.own_readings": 0}), "must be ≥ 1"),
+    refused("a late drive", put(DRIVEN, {"loop.follower.delay_s": 1}), "without delay"),
+    refused(
+        "drives that gain",
+        {**DRIVEN_DAMPED, "loop": put(SLIPPING, {"leader.damping_N_s_per_m": "7/4"})},
+        "by itself",
+    ),
+    refused(
+        "drives at the edge",
+        {**DRIVEN_DAMPED, "loop": put(SLIPPING, {"leader.local_damping_N_s_per_m": -1})},
+        "very edge",
+    ),
+    *edge(
+        "drives that gain by themselves",
+        violated(put(SLIPPING, {"follower.damping_N_s_per_m": 2 - TINY}), 0),
+        violated(put(SLIPPING, {"follower.damping_N_s_per_m": 9, "leader.damping_N_s_per_m": 9}), 0),
+        NEGATIVE,
+        "by itself inside a sample",
     ),
     refused(
         "encoders, the leader's friction",
@@ -176,6 +222,15 @@ CASES = [
     ),
     refused(
         "to and fro, rubbed", put(told(TO_AND_FRO, 0), {"loop.leader.coulomb_friction_N": "3/2"}), "0 J", 0
+    ),
+    accepted("between two samples", told(TWICE, 4), energy=4),
+    refused(
+        "a part of a sample again", put(told(TWICE, 4), {"repeats": again(0, 1, 2)}), "that both arms send"
+    ),
+    refused(
+        "a sample again, from within one",
+        put(told(moved(TWICE["loop"], [0, 1, 0, 0], [0] * 4), 4), {"repeats": again(1, 3, 2)}),
+        "that both arms send",
     ),
     accepted("both arms", told(ROUND, 8), energy=8),
     accepted("five rounds", put(told(ROUND, 24), {"repeats": again(0, 3, 5)}), energy=24),

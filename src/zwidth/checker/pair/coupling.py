@@ -6,6 +6,9 @@ With ζ = z⁻¹, dᵢ + αᵢ samples of delay from reading to force, and nᵢ 
 
 A reading arrives between two samples and is used at the next, so nᵢ = ⌈link delay/T⌉.  The work of the
 follower counts K_l/K_f times: then the spring between the two gives back what it takes.
+
+With a drive that reads its own arm m times in T the part of xᵢ is computed with T/m in the place of T, m
+times as often; the part of xⱼ stays.
 """
 
 from __future__ import annotations
@@ -13,13 +16,16 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from ..document.fields import Number, Read, Record
+from ..document.fields import Number, Read, Record, Whole
 from ..document.number import common_scale
 from ..document.refusal import Invalid
 from ..document.unit import DAMPING, FORCE, LENGTH, SECONDS, STIFFNESS
 
 MOST_AGE = 400
 """Samples that a reading may be old where it acts."""
+
+MOST_READINGS = 1000
+"""Of its own that a drive takes in a sample period."""
 
 SIDE = Record(
     {
@@ -33,7 +39,14 @@ SIDE = Record(
         "link_delay": Number(SECONDS, least=0),
     }
 )
-PAIR = Record({"sample_period": Number(SECONDS, above=0), "leader": SIDE, "follower": SIDE})
+PAIR = Record(
+    {
+        "sample_period": Number(SECONDS, above=0),
+        "own_readings": Whole(least=1, most=MOST_READINGS, default=1),
+        "leader": SIDE,
+        "follower": SIDE,
+    }
+)
 
 
 class Side(NamedTuple):
@@ -56,16 +69,19 @@ class Side(NamedTuple):
 
 def sides_of(told: Read) -> tuple[Side, Side]:
     """Leader and follower."""
-    period, ratio = told.sample_period, told.leader.stiffness / told.follower.stiffness
-    return _side(told.leader, period, Fraction(1)), _side(told.follower, period, ratio)
+    ratio = told.leader.stiffness / told.follower.stiffness
+    period, often = told.sample_period, told.own_readings
+    if often > 1 and (told.leader.delay or told.follower.delay):
+        raise Invalid("the force of a drive that reads its arm more often must come without delay")
+    return _side(told.leader, period, often, Fraction(1)), _side(told.follower, period, often, ratio)
 
 
-def _side(told: Read, period: Fraction, weight: Fraction) -> Side:
+def _side(told: Read, period: Fraction, often: int, weight: Fraction) -> Side:
     whole, age = told.delay // period, -(-told.link_delay // period)
     if whole > MOST_AGE or age > MOST_AGE:
         raise Invalid(f"a reading is more than {MOST_AGE} samples old where it acts")
     shared = told.virtual_damping / period
-    mine = shared + told.local_damping / period
+    mine = often * (shared + told.local_damping / period)
     side = Side(
         told.damping,
         told.coulomb_friction,

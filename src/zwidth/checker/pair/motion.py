@@ -40,6 +40,9 @@ def pair_motion_energy(told: Read) -> Fraction:
     if len(paths[0]) != len(paths[1]) or paths[0][0] or paths[1][0]:
         raise Invalid("both arms must start at rest at 0 and move for as many samples")
     require_apart(told.repeats, len(paths[0]))
+    often = told.loop.own_readings
+    if any((part.last - part.first) % often or part.first % often for part in told.repeats):
+        raise Invalid("a repeated part must begin and end with a sample that both arms send")
     turns = [
         _turns(side, path, given)
         for side, path, given in zip(
@@ -54,8 +57,8 @@ def pair_motion_energy(told: Read) -> Fraction:
         _Arm(side, [int(v * per_unit) for v in path], [int(v * per_unit) for v in turn], per_unit, taps)
         for side, path, turn in zip(sides, paths, turns, strict=True)
     ]
-    _run(arms, told.repeats)
-    period: Fraction = told.loop.sample_period
+    _run(arms, told.repeats, often)
+    period: Fraction = told.loop.sample_period / often
     return -sum((arm.lost(per_unit, taps, period) for arm in arms), Fraction(0))
 
 
@@ -74,7 +77,9 @@ class _Arm:
         self.side, self.x, self.turns = side, x, turns
         self.count = int(side.resolution * per_unit)
         self.own, self.other = ([int(c * taps) for c in part] for part in (side.own, side.other))
-        self.read = [0] * (side.age + 2)  # the newest first; replaced by the longer of both
+        self.read = [0, 0]  # the newest first
+        self.sent: list[int] = []  # of those, what the other side may still need; made by `_run`
+        self.told = 0  # what the other's readings add to the force, until it hears again
         self.forces = [0] * (side.whole + 2)
         self.ahead = 0
         self.work = self.path = self.early = self.late = 0
@@ -83,13 +88,21 @@ class _Arm:
     def look(self, k: int) -> None:
         """Take the reading of sample k."""
         here = self.x[k] + self.ahead
-        self.read = [self.count * (here // self.count) if self.count else here, *self.read[:-1]]
+        self.read = [self.count * (here // self.count) if self.count else here, self.read[0]]
 
-    def push(self, partner: _Arm) -> None:
+    def send(self) -> None:
+        """Send it."""
+        self.sent = [self.read[0], *self.sent[:-1]]
+
+    def hear(self, partner: _Arm) -> None:
+        """Take what has arrived of the other."""
+        heard = partner.sent[self.side.age : self.side.age + 2]
+        self.told = sum(c * v for c, v in zip(self.other, heard, strict=True))
+
+    def push(self) -> None:
         """Compute the force and send it on its way."""
-        mine = sum(c * v for c, v in zip(self.own, self.read, strict=False))
-        its = sum(c * v for c, v in zip(self.other, partner.read[self.side.age :], strict=False))
-        self.forces = [mine + its, *self.forces[:-1]]
+        mine = sum(c * v for c, v in zip(self.own, self.read, strict=True))
+        self.forces = [mine + self.told, *self.forces[:-1]]
 
     def move(self, k: int) -> None:
         """Go on to sample k + 1 under the forces that act meanwhile."""
@@ -117,42 +130,46 @@ class _Arm:
         return side.weight * (work + side.coulomb_friction * unit * self.path)
 
 
-def _run(arms: Sequence[_Arm], repeats: Sequence[Read]) -> None:
+def _run(arms: Sequence[_Arm], repeats: Sequence[Read], often: int) -> None:
     """Sample by sample, and repeated parts in closed form once nothing older is remembered."""
-    longest = max(arm.side.age for arm in arms) + 2
     for arm in arms:
-        arm.read = [0] * longest
+        arm.sent = [0] * (max(arm.side.age for arm in arms) + 2)
     before = 0
     for part in repeats:
-        _forward(arms, before, part.first)
-        _rounds(arms, part)
+        _forward(arms, before, part.first, often)
+        _rounds(arms, part, often)
         before = part.last
-    _forward(arms, before, len(arms[0].x) - 1)
+    _forward(arms, before, len(arms[0].x) - 1, often)
 
 
-def _forward(arms: Sequence[_Arm], start: int, stop: int) -> None:
+def _forward(arms: Sequence[_Arm], start: int, stop: int, often: int) -> None:
     for k in range(start, stop):
         for arm in arms:
             arm.look(k)
-        for arm, partner in zip(arms, arms[::-1], strict=True):
-            arm.push(partner)
+        if k % often == 0:
+            for arm in arms:
+                arm.send()
+            for arm, partner in zip(arms, arms[::-1], strict=True):
+                arm.hear(partner)
+        for arm in arms:
+            arm.push()
             arm.move(k)
             force = arm.forces[0].bit_length()
-            spend(20 + len(arm.read) + len(arm.forces), force, arm.bits)
+            spend(24 + len(arm.sent) + len(arm.forces), force, arm.bits)
 
 
-def _rounds(arms: Sequence[_Arm], part: Read) -> None:
+def _rounds(arms: Sequence[_Arm], part: Read, often: int) -> None:
     """All rounds of a part.
 
     Once the round before the last is older than whatever is remembered, every further round has the forces
     of the last one and a constant more, as the laws are linear in readings that go on by as much each time.
     """
     length = part.last - part.first
-    memory = max(len(arm.read) + len(arm.forces) for arm in arms)
+    memory = max(often * len(arm.sent) + len(arm.forces) for arm in arms)
     advances = [arm.advance_by(part) for arm in arms]
     for done in range(1, part.times + 1):
         before = [(arm.work, arm.path, arm.early, arm.late) for arm in arms]
-        _forward(arms, part.first, part.last)
+        _forward(arms, part.first, part.last, often)
         for arm, advance in zip(arms, advances, strict=True):
             arm.ahead += advance
         even = all(
@@ -175,7 +192,7 @@ def _skip(
     ):
         push = sum(arm.own) * advance + sum(arm.other) * its
         spend(
-            8 + len(arm.read) + len(arm.forces),
+            12 + len(arm.sent) + len(arm.forces),
             left.bit_length() + advance.bit_length(),
             arm.work.bit_length(),
         )
@@ -185,4 +202,6 @@ def _skip(
         arm.late += left * (arm.late - late)
         arm.ahead += left * advance
         arm.read = [v + left * advance for v in arm.read]
+        arm.sent = [v + left * advance for v in arm.sent]
+        arm.told += left * sum(arm.other) * its
         arm.forces = [f + left * push for f in arm.forces]

@@ -9,6 +9,12 @@ where the last term is what a hand wins inside samples whose force changes at α
 that delay.  With both Kᵢ in the ratio of the weights the pole at ζ = 1 has the residue of a spring, which is
 not negative.  So M ⪰ 0 at every θ is enough, and necessary; that is M_ll ≥ 0, M_ff ≥ 0 and det M ≥ 0,
 polynomials in c = cos θ (docs/theory/pairs.md).
+
+With m readings of its own in a sample an arm loses the least, for given moves in whole samples, if
+
+    Mᵢᵢ = m (β + γ) (t − g c)/(m (t − g c) + γ u (1 − c)),    β = b − K T/2m ≥ |γ|,  γ = B + D,
+
+t = γᵐ T_m(β/γ), u = γᵐ⁻¹ U_{m−1}(β/γ), g = (−γ)ᵐ; where β < |γ| it gains inside a sample, by itself.
 """
 
 from __future__ import annotations
@@ -58,7 +64,9 @@ class Criterion(NamedTuple):
 def pair(told: Read) -> str:
     """Friction and encoders too."""
     sides = sides_of(told.loop)
-    found = criterion(told.loop.sample_period, sides)
+    found = criterion(told.loop, sides)
+    if found is None:
+        raise Invalid("an arm gains by itself inside a sample")
     for name in Criterion._fields:
         require_nonnegative([Fraction(c) for c in getattr(found, name)], getattr(told.proof, name))
     for side, error in zip(sides, _errors(sides), strict=True):
@@ -74,8 +82,10 @@ def pair(told: Read) -> str:
 
 def pair_violation(told: Read) -> str:
     """One frequency at which some motion of both hands takes energy out, round after round."""
-    found = criterion(told.loop.sample_period, sides_of(told.loop))
+    found = criterion(told.loop, sides_of(told.loop))
     c = told.proof.cosine
+    if found is None:
+        return "an arm gains by itself inside a sample"
     spend(sum(map(len, found)), bits(found.both), 2 * c.denominator.bit_length() * len(found.both))
     if all(value([Fraction(x) for x in part], c) >= 0 for part in found):
         raise Invalid("the work of both hands is not negative at this frequency")
@@ -89,8 +99,9 @@ def _errors(sides: tuple[Side, Side]) -> Iterator[Fraction]:
         yield (mine * side.resolution + its * other.resolution) / 2
 
 
-def criterion(period: Fraction, sides: tuple[Side, Side]) -> Criterion:
-    """The diagonal of the form, and its determinant."""
+def criterion(told: Read, sides: tuple[Side, Side]) -> Criterion | None:
+    """The diagonal of the form, and its determinant; None where the drive of an arm alone lets it gain."""
+    period: Fraction = told.sample_period
     for side in sides:
         if side.part and not side.damping:
             raise Invalid("without damping a force that changes inside a sample gives energy for free")
@@ -108,6 +119,8 @@ def criterion(period: Fraction, sides: tuple[Side, Side]) -> Criterion:
         own[1 - i] = weighted((1, own[1 - i]), (-loss, times(_SQUARE, times(its, conjugate(its)))))
         mixed = times(conjugate(mine), its) if i == 0 else times(conjugate(its), mine)
         crossed = weighted((1, crossed), (-loss, times(_SQUARE, mixed)))
+    if told.own_readings > 1:
+        return _driven(told, sides, crossed)
     forms = (*own, crossed)
     scale = common_scale([c for form in forms for c in form.values()], _MOST_BITS)
     leader, follower, cross = ({k: int(c * scale) for k, c in form.items()} for form in forms)
@@ -117,6 +130,41 @@ def criterion(period: Fraction, sides: tuple[Side, Side]) -> Criterion:
     width = max(len(product), len(square))
     both = [a - b for a, b in zip(_padded(product, width), _padded(square, width), strict=True)]
     return Criterion(*diagonal, both)
+
+
+def _driven(told: Read, sides: tuple[Side, Side], crossed: Laurent) -> Criterion | None:
+    """The same with what each arm loses at least: tops over bottoms, both positive."""
+    tops, bottoms = [], []
+    for side, arm in zip(sides, (told.leader, told.follower), strict=True):
+        often, period = told.own_readings, told.sample_period
+        beta = side.weight * (arm.damping - arm.stiffness * period / (2 * often))
+        gamma = side.weight * (arm.virtual_damping + arm.local_damping)
+        if beta < abs(gamma):
+            return None
+        if beta == -gamma:
+            raise Invalid("the drive of an arm is at the very edge of gaining by itself")
+        size = bits([beta.numerator, beta.denominator, gamma.numerator, gamma.denominator])
+        spend(20 * often, often * size, size)
+        t, t_next, u, u_next = Fraction(1), beta, Fraction(0), Fraction(1)
+        for _ in range(often):
+            t, t_next = t_next, 2 * beta * t_next - gamma**2 * t
+            u, u_next = u_next, 2 * beta * u_next - gamma**2 * u
+        g = (-gamma) ** often
+        line, slope = often * t, -often * g
+        tops.append([(beta + gamma) * line, (beta + gamma) * slope])
+        bottoms.append([line + gamma * u, slope - gamma * u])
+    scale = common_scale([*crossed.values(), *(c for line in (*tops, *bottoms) for c in line)], _MOST_BITS)
+    (top, its_top), (bottom, its_bottom) = (
+        [[int(c * scale) for c in line] for line in lines] for lines in (tops, bottoms)
+    )
+    square = square_in_cosine({k: int(c * scale) for k, c in crossed.items()})
+    first, second = (multiply(line, [2, -2]) for line in (top, its_top))
+    spend(9 * len(square), bits(square) + 2 * bits(bottom), bits(bottom))
+    product = [scale**2 * c for c in multiply(first, second)]
+    lost = multiply(square, multiply(bottom, its_bottom))
+    width = max(len(product), len(lost))
+    both = [a - b for a, b in zip(_padded(product, width), _padded(lost, width), strict=True)]
+    return Criterion(first, second, both)
 
 
 def _row(side: Side, period: Fraction) -> tuple[Laurent, Laurent]:

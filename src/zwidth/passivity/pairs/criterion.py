@@ -11,6 +11,14 @@ M ⪰ 0 is three polynomials in c = cos θ that are not negative on [−1, 1].  
     (b_l − (2 d_l + 1) KT/2) (w b_f − (2 d_f + 1) KT/2) ≥ (N KT/2)²
 
 with no negative factor is necessary and sufficient.  Without delay: 1/b_l + 1/(w b_f) ≤ 2/(KT).
+
+With a drive that reads its own arm m times in T, moves between samples are free: of all that lead from one
+sample to the next it loses least by
+
+    M_ii = m²/Σ_l (1 − cos θ)/((1 − cos φ_l)(β + γ cos φ_l)),  φ_l = (θ + 2πl)/m,
+    β = w (b − K T/2m),  γ = w (B + D),
+
+which with springs alone is β.  The cross term stays.
 """
 
 from __future__ import annotations
@@ -23,20 +31,26 @@ from math import isqrt, lcm
 
 import numpy as np
 from flint import fmpz_poly
+from numpy.typing import NDArray
 
 from zwidth.pairs import Pair, Side
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 
 Sums = dict[int, Fraction]
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Arm:
-    """One side in samples: `whole` + `part` of delay, `age` of the other's reading, and its weight."""
+    """One side in samples: `whole` + `part` of delay, `age` of the other's reading, and its weight.
+
+    `often` is how many readings of its own it takes in a sample period.
+    """
 
     side: Side
     period: Fraction
     weight: Fraction
+    often: int = 1
 
     @property
     def whole(self) -> int:
@@ -63,8 +77,52 @@ class Arm:
     def own(self) -> tuple[Fraction, Fraction]:
         """Taps of its own readings, the newest first."""
         side = self.side
-        past = (side.virtual_damping + side.local_damping) / self.period
+        past = self.often * (side.virtual_damping + side.local_damping) / self.period
         return side.stiffness + past, -past
+
+    @property
+    def inside(self) -> tuple[Fraction, Fraction]:
+        """β and γ of a drive: what a move between two of its own readings loses, and with the one before."""
+        side, step = self.side, self.period / self.often
+        gamma = side.virtual_damping + side.local_damping
+        return self.weight * (side.damping - side.stiffness * step / 2), self.weight * gamma
+
+    @property
+    def driven(self) -> tuple[fmpz_poly, fmpz_poly]:
+        """M_ii of a drive, top and bottom in c, both positive where β > |γ|.
+
+        From Σ_l 1/(y − cos φ_l) = m U_{m−1}(y)/(T_m(y) − cos θ), y = −β/γ.
+        """
+        beta, gamma = self.inside
+        scale = lcm(beta.denominator, gamma.denominator)
+        b, g, m = int(beta * scale), int(gamma * scale), self.often
+        t, u = _homogeneous(fmpz_poly.chebyshev_t(m), b, g), _homogeneous(fmpz_poly.chebyshev_u(m - 1), b, g)
+        at = (-g) ** m
+        return (
+            (b + g) * m * fmpz_poly([t, -at]),
+            scale * (m * fmpz_poly([t, -at]) + g * u * fmpz_poly([1, -1])),
+        )
+
+    def driven_at(self, theta: float) -> float:
+        """M_ii of a drive at a frequency θ, to rounding [N·s/m; N·m·s/rad]."""
+        beta, gamma = map(float, self.inside)
+        return 1 / float(np.sum(self.shares(theta) / (beta + gamma * np.cos(self.places(theta)))))
+
+    def places(self, theta: float) -> Floats:
+        """φ_l."""
+        return np.asarray((theta + 2 * np.pi * np.arange(self.often)) / self.often)
+
+    def shares(self, theta: float) -> Floats:
+        """(1 − cos θ)/(m² (1 − cos φ_l)), which add up to 1."""
+        if theta == 0:
+            return np.asarray([1.0] + [0.0] * (self.often - 1))
+        return np.asarray((np.sin(theta / 2) / (self.often * np.sin(self.places(theta) / 2))) ** 2)
+
+    @property
+    def slips(self) -> bool:
+        """True where it gains between two samples, by itself."""
+        beta, gamma = self.inside
+        return self.often > 1 and (beta < abs(gamma) or beta == -gamma)
 
     @property
     def other(self) -> tuple[Fraction, Fraction]:
@@ -94,7 +152,8 @@ class PairCriterion:
         """Leader and follower."""
         leader, follower = self.pair.sides
         period = self.pair.sample_period
-        return Arm(leader, period, Fraction(1)), Arm(follower, period, self.pair.power_ratio)
+        often = self.pair.own_readings
+        return Arm(leader, period, Fraction(1), often), Arm(follower, period, self.pair.power_ratio, often)
 
     @cached_property
     def forms(self) -> tuple[Sums, Sums, Sums]:
@@ -119,15 +178,19 @@ class PairCriterion:
         """M_ll, M_ff and det M in c, times positive numbers."""
         leader, follower, crossed = self.forms
         scale = lcm(*(v.denominator for form in self.forms for v in form.values()))
-        first, second = (
-            _polynomial((k, int(v * scale)) for k, v in form.items()) for form in (leader, follower)
-        )
         lags: dict[int, int] = {}
         whole = {k: int(v * scale) for k, v in crossed.items()}
         for i, x in whole.items():
             for j, y in whole.items():
                 lags[abs(i - j)] = lags.get(abs(i - j), 0) + x * y
-        return first, second, first * second - _polynomial(lags.items())
+        square = _polynomial(lags.items())
+        if self.pair.own_readings > 1:
+            (top, bottom), (its_top, its_bottom) = (arm.driven for arm in self.arms)
+            return top, its_top, scale**2 * top * its_top - square * bottom * its_bottom
+        first, second = (
+            _polynomial((k, int(v * scale)) for k, v in form.items()) for form in (leader, follower)
+        )
+        return first, second, first * second - square
 
     @cached_property
     def signs(self) -> tuple[Positivity, Positivity, Positivity] | Fraction:
@@ -144,7 +207,12 @@ class PairCriterion:
     @property
     def holds(self) -> bool:
         """True where none of them is negative: friction and encoders aside, no motion gains."""
-        return not self.undamped and not isinstance(self.signs, Fraction)
+        return not self.undamped and not self.slips and not isinstance(self.signs, Fraction)
+
+    @property
+    def slips(self) -> bool:
+        """True where the drive of an arm alone lets it gain between two samples."""
+        return any(arm.slips for arm in self.arms)
 
     @property
     def missing_friction(self) -> tuple[Fraction, Fraction]:
@@ -164,8 +232,18 @@ class PairCriterion:
         """M at a frequency θ = ωT, to rounding [N·s/m; N·m·s/rad]."""
         leader, follower, crossed = self.forms
         diagonal = [sum(float(v) * np.cos(k * theta) for k, v in form.items()) for form in (leader, follower)]
+        if self.pair.own_readings > 1:
+            diagonal = [arm.driven_at(theta) for arm in self.arms]
         off = sum(float(v) * np.exp(1j * k * theta) for k, v in crossed.items())
         return np.array([[diagonal[0], off], [np.conj(off), diagonal[1]]])
+
+
+def _homogeneous(p: fmpz_poly, b: int, g: int) -> int:
+    """gⁿ p(b/g), n the degree."""
+    total, power = 0, 1
+    for c in reversed(p.coeffs()):
+        total, power = total * b + int(c) * power, power * g
+    return total
 
 
 def _own(arm: Arm) -> Sums:
@@ -212,7 +290,12 @@ def largest_spring(pair: Pair) -> Fraction | None:
     """
     leader, follower = PairCriterion(pair).arms
     sides = pair.sides
-    if any(side.virtual_damping or side.local_damping for side in sides) or leader.part or follower.part:
+    if (
+        any(side.virtual_damping or side.local_damping for side in sides)
+        or leader.part
+        or follower.part
+        or pair.own_readings > 1
+    ):
         return None
     b, f = leader.side.damping, follower.weight * follower.side.damping
     p, q = 2 * leader.whole + 1, 2 * follower.whole + 1

@@ -31,6 +31,7 @@ def pair_document(pair: Pair) -> dict[str, Any]:
     sides = zip(("leader", "follower"), pair.sides, strict=True)
     return {
         unit_key("sample_period"): exact_text(pair.sample_period),
+        **({"own_readings": pair.own_readings} if pair.own_readings > 1 else {}),
         **{name: _side(side, pair.motion) for name, side in sides},
     }
 
@@ -135,13 +136,13 @@ class PairWitness(Evidence):
 
     @property
     def samples(self) -> int:
-        """How long it takes."""
+        """How long it takes, in readings of one's own."""
         return self.leader.samples
 
     @property
     def duration(self) -> float:
         """How long it takes [s]."""
-        return float(self.samples * self.pair.sample_period)
+        return float(self.samples * self.pair.sample_period / self.pair.own_readings)
 
     @property
     def positions(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -10,7 +10,7 @@ edge      one hand to and fro over an edge of its encoder, the other crossing on
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from math import ceil, pi
@@ -43,32 +43,51 @@ Path = tuple[list[int], list[int]]
 
 def refute_criterion(criterion: PairCriterion) -> PairWitness | None:
     """A motion where the form of the energy is negative; None if none is found that is short enough."""
-    pair = criterion.pair
-    if any(p(1) < 0 for p in criterion.polynomials):
-        for size in _SIZES:
-            path = _slow(criterion, size)
-            parts = Repeat(1, 2, 1), Repeat(3, 4, 1)
-            found = path and _enlarged(pair, path, parts)
-            if found:
-                return found
-    for turn in _turns(criterion):
-        if turn.denominator > LONGEST_ROUND:
-            continue
-        for size in _SIZES:
-            path = _round(criterion, turn, size)
-            found = _enlarged(pair, path, (Repeat(0, turn.denominator, 1),))
-            if found:
-                return found
+    for path, parts in _paths(criterion):
+        found = _enlarged(criterion, path, parts)
+        if found is not None:
+            return found
     return None
 
 
-def _slow(criterion: PairCriterion, bits: int) -> Path | None:
+def _paths(criterion: PairCriterion) -> Iterator[tuple[Path, tuple[Repeat, ...]]]:
+    """Motions in whole numbers, and the parts of them that are done many times; the finer the later."""
+    often = criterion.pair.own_readings
+    if criterion.slips:
+        yield from _inside_samples(criterion)
+        return
+    if any(p(1) < 0 for p in criterion.polynomials):
+        for size in _SIZES:
+            yield _slow(criterion, size), (Repeat(often, 2 * often, 1), Repeat(3 * often, 4 * often, 1))
+    for turn in _turns(criterion):
+        samples = often * turn.denominator
+        for size in _SIZES if samples <= LONGEST_ROUND else ():
+            yield _round(criterion, turn, size), (Repeat(0, samples, 1),)
+
+
+def _slow(criterion: PairCriterion, bits: int) -> Path:
     """Two samples out, two back: the second of each is done many times."""
-    values, vectors = np.linalg.eigh(criterion.at(0.0).real)
-    leader, follower = (round(float(v) * 2**bits) for v in vectors[:, 0])
-    if values[0] >= 0 and bits < _SIZES[-1]:
-        return None
-    return [0, leader, 2 * leader, leader, 0], [0, follower, 2 * follower, follower, 0]
+    often = criterion.pair.own_readings
+    speeds = [round(float(v) * 2**bits) for v in np.linalg.eigh(criterion.at(0.0).real)[1][:, 0]]
+    way = [*range(2 * often), *range(2 * often, -1, -1)]
+    leader, follower = ([speed * k for k in way] for speed in speeds)
+    return leader, follower
+
+
+def _inside_samples(criterion: PairCriterion) -> Iterator[tuple[Path, tuple[Repeat, ...]]]:
+    """One arm to and fro from reading to reading of its own, or straight on; the other rests."""
+    often = criterion.pair.own_readings
+    for here, arm in enumerate(criterion.arms):
+        if not arm.slips:
+            continue
+        length = often * (1 + often % 2)
+        rest = [0] * (length + 1)
+        fro = [k % 2 for k in range(length + 1)]
+        yield (fro, rest) if here == 0 else (rest, fro), (Repeat(0, length, 1),)
+        way = [*range(2 * often), *range(2 * often, -1, -1)]
+        still = [0] * len(way)
+        parts = Repeat(often, 2 * often, 1), Repeat(3 * often, 4 * often, 1)
+        yield (way, still) if here == 0 else (still, way), parts
 
 
 def _turns(criterion: PairCriterion) -> list[Fraction]:
@@ -94,23 +113,35 @@ def _turn(cosine: Fraction) -> Fraction:
 
 
 def _round(criterion: PairCriterion, turn: Fraction, bits: int) -> Path:
-    """One round of both hands, in whole numbers, from 0 to 0."""
+    """One round of both hands, in whole numbers, from 0 to 0.
+
+    Between samples each goes as loses least: of the places φ_l as much as it weighs there over what it loses.
+    """
     p, q = turn.numerator, turn.denominator
-    vector = np.linalg.eigh(criterion.at(2 * pi * p / q))[1][:, 0]
+    theta = 2 * pi * p / q
+    vector = np.linalg.eigh(criterion.at(theta))[1][:, 0]
     vector = vector / vector[np.argmax(np.abs(vector))]
-    angles = 2 * pi * (p * np.arange(q + 1) % q) / q
-    waves = (vector[:, None] * (np.exp(1j * angles) - 1)).real * 2.0**bits
+    samples = q * criterion.pair.own_readings
+    waves = np.zeros((2, samples + 1))
+    for row, (arm, amplitude) in enumerate(zip(criterion.arms, vector, strict=True)):
+        beta, gamma = map(float, arm.inside) if arm.often > 1 else (1.0, 0.0)
+        share = arm.shares(theta) / (beta + gamma * np.cos(arm.places(theta)))
+        for index, part in enumerate(share / share.sum()):
+            turned = 2 * pi * ((p + index * q) * np.arange(samples + 1) % samples) / samples
+            waves[row] += (amplitude * part * (np.exp(1j * turned) - 1)).real
+    waves *= 2.0**bits
     leader, follower = ([round(v) for v in wave] for wave in waves)
     return leader, follower
 
 
-def _enlarged(pair: Pair, path: Path, parts: tuple[Repeat, ...]) -> PairWitness | None:
+def _enlarged(criterion: PairCriterion, path: Path, parts: tuple[Repeat, ...]) -> PairWitness | None:
     """Often enough for the way in and out, and large enough for friction and encoders."""
+    pair = criterion.pair
     ideal = _without_friction(pair)
     ratio = _units(pair)
     one = _motions(path, parts, ratio, Fraction(1))
     one = _with_turns(pair, one)
-    times = _enough(lambda n: energy_of(ideal, *_repeated(one, n)), pair, path)
+    times = _enough(lambda n: energy_of(ideal, *_repeated(one, n)), criterion, parts)
     if times is None:
         return None
     long = _repeated(one, times)
@@ -172,11 +203,13 @@ def _repeated(motions: list[Motion], times: int) -> tuple[Motion, Motion]:
     return leader, follower
 
 
-def _enough(energy: Callable[[int], Fraction | None], pair: Pair, path: Path) -> int | None:
+def _enough(
+    energy: Callable[[int], Fraction | None], criterion: PairCriterion, parts: tuple[Repeat, ...]
+) -> int | None:
     """Rounds after which it gains: beyond what is remembered, energy is affine in them."""
-    arms = PairCriterion(pair).arms
-    memory = max(arm.age for arm in arms) + max(arm.whole for arm in arms) + 6
-    first = 2 + ceil(memory / max(1, len(path[0]) - 1 if len(path[0]) != 5 else 1))
+    arms = criterion.arms
+    memory = (max(arm.age for arm in arms) + max(arm.whole for arm in arms) + 6) * arms[0].often
+    first = 2 + ceil(memory / min(part.last - part.first for part in parts))
     one = energy(1)
     if one is not None and one > 0:
         return 1
@@ -286,13 +319,20 @@ def _over_an_edge(pair: Pair, here: int, missing: Fraction) -> PairWitness | Non
     best = max(
         (
             (_won(arm, other, hold, phase), -hold, phase)
-            for hold in {arm.whole + 1, arm.whole + 2, arm.whole + arm.age + 2}
-            for phase in range(2 * hold)
+            for hold in _holds(arm)
+            for phase in range(0, 2 * hold, arm.often)
         ),
     )
     if best[0] <= arm.side.coulomb_friction:
         return None
     return _held(pair, here, best[0] - arm.side.coulomb_friction, -best[1], best[2])
+
+
+def _holds(arm: Arm) -> set[int]:
+    """Readings for which the hand may stay on either side of the edge."""
+    if arm.often == 1:
+        return {arm.whole + 1, arm.whole + 2, arm.whole + arm.age + 2}
+    return {arm.often, 2 * arm.often, (arm.age + 2) * arm.often, *([1] if arm.often == 2 else [])}
 
 
 def _won(arm: Arm, other: Arm, hold: int, phase: int) -> Fraction:
@@ -301,7 +341,8 @@ def _won(arm: Arm, other: Arm, hold: int, phase: int) -> Fraction:
 
     def force(k: int) -> Fraction:
         mine = [-own * (((k - i) // hold) % 2) for i in (0, 1)]
-        theirs = [-its * (((k - arm.age - i + phase) // hold) % 2) for i in (0, 1)]
+        heard = [arm.often * (k // arm.often - arm.age - i) for i in (0, 1)]
+        theirs = [-its * (((sample + phase) // hold) % 2) for sample in heard]
         return sum(
             (c * v for c, v in zip((*arm.own, *arm.other), (*mine, *theirs), strict=True)), Fraction(0)
         )
@@ -315,7 +356,7 @@ def _held(pair: Pair, here: int, missing: Fraction, hold: int, phase: int) -> Pa
     arms = PairCriterion(pair).arms
     arm, other = arms[here], arms[1 - here]
     period = 2 * hold
-    wait = -(-(arm.whole + arm.age + 4) // period) * period
+    wait = -(-(arm.whole + arm.often * (arm.age + 4)) // period) * period
     small = _step(arm, missing)
     rate = max(Fraction(1), *(one.weight for one in arms), *(1 / one.weight for one in arms))
     against = other.force_error(arm) + other.side.coulomb_friction
@@ -347,5 +388,5 @@ def _step(arm: Arm, force: Fraction) -> Fraction:
     side = arm.side
     near = [side.resolution / 4] if side.resolution else []
     if side.damping and force:
-        near.append(force * arm.period * (1 - arm.part) / (8 * side.damping))
+        near.append(force * arm.period / arm.often * (1 - arm.part) / (8 * side.damping))
     return min(near, default=_AMPLITUDE)

@@ -39,7 +39,7 @@ def check_pair(pair: Pair) -> PairVerdict:
         If the sign of the criterion would take too long to decide.
     """
     criterion = PairCriterion(pair)
-    signs = criterion.signs
+    signs = Fraction(0) if criterion.slips else criterion.signs
     if isinstance(signs, Fraction):
         violation = PairViolation(pair, signs)
         if violation.verify():
