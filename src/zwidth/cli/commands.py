@@ -61,7 +61,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
         "pair": Command(
             "are two arms that follow each other passive?",
             "Two arms, leader and follower, joined by a spring and a damper over a link: prove that no two\n"
-            "hands take energy out, or find the motion of both that does; say what limits it and what to change.",
+            "hands take energy out, or find the motion of both that does; say what limits it, and what to\n"
+            "change.",
             "A plain number is SI; others carry a unit, as in --link-delay '2 ms'. --virtual-damping and\n"
             "--local-damping are of the coupling; the damping of an arm is that of its device.\n\n"
             "exit status: 0 passive, 1 active, 2 bad input, 3 undecided\n\n"

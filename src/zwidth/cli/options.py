@@ -84,7 +84,7 @@ def environment_parameters() -> Iterator[Parameter]:
 def coupling_parameters() -> Iterator[Parameter]:
     """The options of what joins two arms."""
     for key, own in pairs.option_keys().items():
-        yield Parameter(key, own.quantity.symbol, own.meaning + _bracket(_units(own.quantity)))
+        yield Parameter(key, own.quantity.symbol or _word(key), own.meaning + _bracket(_units(own.quantity)))
 
 
 def add_output(

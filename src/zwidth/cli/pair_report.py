@@ -71,7 +71,7 @@ def _motion(witness: PairWitness) -> Iterator[Text]:
             yield Text(f"samples {part.first} to {part.last} are a round, done {part.times:.6g} times")
     yield Text(f"extracts {shown(witness.energy, 'J')}", style="bold")
     for role, path in zip(("leader", "follower"), witness.positions, strict=True):
-        first = path[:_SAMPLES_SHOWN]
+        first = [float(x) for x in path[:_SAMPLES_SHOWN]]
         more = " …" if len(path) > len(first) else ""
         far = shown(float(path.max() - path.min()), length)
         yield Text(f"{role:8}  {levels(first, fancy)}{more}  over {far}", style="cyan")

@@ -23,6 +23,7 @@ from zwidth.quantity.kind import bracketed
 from zwidth.quantity.parameter import Parameter, parameters_of, read_number
 from zwidth.specification.read import PAIR_TABLES, build_device, question_time, read_tables
 from zwidth.specification.table import COMMAND_LINE, Table, located
+from zwidth.specification.values import read
 
 _LINKS = {"link_delay": "there", "link_delay_back": "back"}
 
@@ -62,15 +63,15 @@ def load_pair(sources: Sequence[Path | str], overrides: Mapping[str, str] | None
         )
     if len(sources) > 2:
         raise InputError(f"a pair has two arms, got {len(sources)} sources")
-    read = [read_tables([source], ("device", *PAIR_TABLES)) for source in sources]
-    if len(read) == 2:
-        return _of_two(read, overrides or {})
-    return pair_of(read[0], overrides)
+    files = [read_tables([source], ("device", *PAIR_TABLES)) for source in sources]
+    if len(files) == 2:
+        return _of_two(files, overrides or {})
+    return pair_of(files[0], overrides)
 
 
-def _of_two(read: Sequence[Mapping[str, Table]], overrides: Mapping[str, str]) -> Pair:
+def _of_two(files: Sequence[Mapping[str, Table]], overrides: Mapping[str, str]) -> Pair:
     arms = []
-    for tables in read:
+    for tables in files:
         other = next((table for key, table in tables.items() if key != "device"), None)
         if other is not None:
             raise InputError(f"{other.label}: a file with more than a [device] is given alone")
@@ -129,7 +130,9 @@ def _joined(leader: Device, follower: Device, coupling: Table, overrides: Mappin
 def _read(table: Table, key: str, motion: str) -> Any:
     own, value = KEYS[key], table.values[key]
     with located(table.where(key)):
+        if not own.is_number:
+            return read(value, key, own, motion)
         number = read_number(value, own.quantity, key, bound=own.bound, why=own.why, motion=motion)
         if key in _LINKS:
-            question_time(value, number, key.replace("_", " "))
+            question_time(value, number, key)
         return number
