@@ -322,7 +322,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
 
 @pytest.mark.parametrize(
     "command",
-    ["check", "limit", "map", "simulate", "compare", "identify", "plan", "traces", "devices", "verify"],
+    ["check", "limit", "pair", "map", "simulate", "compare", "identify", "plan", "traces", "devices", "verify"],
 )
 def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:
     """What `--help` offers, the page explains."""

@@ -8,10 +8,16 @@ from pathlib import Path
 import trust
 
 from zwidth import catalogue
-from zwidth.cli.options import Parameter, device_parameters, environment_parameters
+from zwidth.cli.options import (
+    Parameter,
+    coupling_parameters,
+    device_parameters,
+    environment_parameters,
+)
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.kind import Kind
 from zwidth.rendering import ESTIMATORS, LAWS
+from zwidth.specification import pairs
 from zwidth.specification.environments import TYPES, all_keys
 
 GENERATED = Path(__file__).parent.parent / "_generated"
@@ -62,6 +68,18 @@ def device_keys() -> str:
     """Every key that a device table may have."""
     rows = [(f"`{p.key}`", _pretty(p.help)) for p in device_parameters()]
     return markdown(("key", "meaning"), rows)
+
+
+def coupling_keys() -> str:
+    """Every key that a coupling table may have, with its unit."""
+    rows = [(f"`{name}`", _unit(key.unit_for("linear")), key.meaning) for name, key in pairs.KEYS.items()]
+    return markdown(("key", "unit", "meaning"), rows)
+
+
+def coupling_options() -> str:
+    """What joins two arms, as options of the command line."""
+    rows = [(f"`{p.option}`", p.metavar, _pretty(p.help)) for p in coupling_parameters()]
+    return markdown(("option", "symbol", "meaning"), rows)
 
 
 def environment_types() -> str:
@@ -151,6 +169,8 @@ def lines_to_trust() -> str:
 
 
 TABLES: dict[str, Callable[[], str]] = {
+    "coupling_keys": coupling_keys,
+    "coupling_options": coupling_options,
     "device_keys": device_keys,
     "device_options": device_options,
     "devices": devices,

@@ -17,12 +17,13 @@ from hypothesis import strategies as st
 from strategies import texts
 
 from zwidth.cli.main import main
-from zwidth.cli.options import device_parameters, environment_parameters
+from zwidth.cli.options import coupling_parameters, device_parameters, environment_parameters
 from zwidth.specification.environments import TYPES
 
 quick = settings(
     max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
 )
+COUPLING = [p.option for p in coupling_parameters()]
 OPTIONS = [p.option for p in (*device_parameters(), *environment_parameters())]
 
 numbers = st.one_of(
@@ -53,7 +54,7 @@ def status(*argv: str) -> int:
     assert code in (0, 1, 2, 3, 4)
     assert (code == 2) == err.getvalue().startswith("zwidth: ")
     assert err.getvalue().count("\n") == (code == 2)
-    if code != 2 and "--json" in argv and argv[0] == "check" and "--help" not in argv:
+    if code != 2 and "--json" in argv and argv[0] in ("check", "pair") and "--help" not in argv:
         assert json.loads(out.getvalue())["outcome"] in ("passive", "active", "undecided")
     return code
 
@@ -73,7 +74,9 @@ def written(content: str | bytes, name: str = "document") -> Iterator[str]:
 @quick
 @given(
     st.lists(
-        st.one_of(st.sampled_from(["check", "devices", "verify", "--json", "--help", *OPTIONS]), texts())
+        st.one_of(
+            st.sampled_from(["check", "pair", "devices", "verify", "--json", "--help", *OPTIONS]), texts()
+        )
     )
 )
 def test_any_words(argv: list[str]) -> None:
@@ -110,6 +113,16 @@ def test_any_parameters(parameters: dict[str, str], others: dict[str, str], as_j
     pairs = {**device, **others, **parameters}.items()
     options = [word for pair in pairs for word in pair]
     status("check", *options, *(["--json"] if as_json else []))
+
+
+@quick
+@given(st.dictionaries(st.sampled_from(COUPLING), values, max_size=2), st.booleans())
+@example({"--stiffness": "1e40"}, True)
+@example({"--link-delay": "0.4 s", "--stiffness": "1/3"}, False)
+@example({"--virtual-damping": "1e-40", "--local-damping": "-1e40"}, True)
+def test_any_coupling(parameters: dict[str, str], as_json: bool) -> None:
+    options = [word for pair in ({"--stiffness": "50"} | parameters).items() for word in pair]
+    status("pair", "haptic-paddle", *options, *(["--json"] if as_json else []))
 
 
 @quick
@@ -152,6 +165,7 @@ toml_lines = st.one_of(
     ),
     st.sampled_from(
         ["[device]", "[environment]", "[environment.environment]", 'type = "wall"', "[[device]]", "#"]
+        + ["[leader]", "[follower]", "[coupling]"]
     ),
     texts(),
 )
@@ -165,6 +179,8 @@ def test_any_toml(content: str) -> None:
     with written(content, "loop.toml") as path:
         status("check", path)
         status("check", path, "--stiffness", "100", "--damping", "0.2", "--rate", "1000")
+        status("pair", path)
+        status("pair", path, "--stiffness", "100")
 
 
 @quick
@@ -202,10 +218,12 @@ def saved(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
         ["--stiffness=10", "--resolution=0.1"],
         ["--stiffness=100 .. 200", "--virtual-damping=0.01"],
     ]
+    asked = [("check", *line) for line in lines]
+    asked += [("pair", "--stiffness=100"), ("pair", "--stiffness=100", "--link-delay=0.002")]
     documents = []
-    for number, line in enumerate(lines):
+    for number, (command, *line) in enumerate(asked):
         path = tmp_path_factory.mktemp("saved") / f"{number}.json"
-        status("check", "haptic-paddle", *line, "-o", str(path))
+        status(command, "haptic-paddle", *line, "-o", str(path))
         assert status("verify", str(path)) == 0
         verdict = json.loads(path.read_text(encoding="utf-8"), parse_float=str)
         documents.append(verdict.get("certificate") or verdict["witness"])

@@ -58,6 +58,19 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth limit haptic-paddle --stiffness 100 --virtual-damping 0.05 --speed '0.5 m/s'\n"
             "  zwidth limit my-wheel.toml my-wall.toml --parameter rate -o limit.json",
         ),
+        "pair": Command(
+            "are two arms that follow each other passive?",
+            "Two arms, leader and follower, joined by a spring and a damper over a link: prove that no two\n"
+            "hands take energy out, or find the motion of both that does; say what limits it, and what to\n"
+            "change.",
+            "A plain number is SI; others carry a unit, as in --link-delay '2 ms'. --virtual-damping and\n"
+            "--local-damping are of the coupling; the damping of an arm is that of its device.\n\n"
+            "exit status: 0 passive, 1 active, 2 bad input, 3 undecided\n\n"
+            "examples:\n"
+            "  zwidth pair haptic-paddle --stiffness 100\n"
+            "  zwidth pair leader.toml follower.toml --stiffness 100 --link-delay '2 ms'\n"
+            "  zwidth pair my-pair.toml --link-delay '5 ms' -o pair.json",
+        ),
         "map": Command(
             "which walls can this device render?",
             "Map the Z-width: over stiffness and virtual damping, which walls are passive with every hand,\n"

@@ -15,6 +15,7 @@ from zwidth.device.rotary import ROTARY
 from zwidth.errors import InputError
 from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.rendering import LAWS
+from zwidth.specification import pairs
 from zwidth.specification.environments import TYPES, option_keys
 from zwidth.specification.read import DEVICE_KEYS
 from zwidth.specification.table import quoted
@@ -78,6 +79,12 @@ def environment_parameters() -> Iterator[Parameter]:
     for key, kind in option_keys().items():
         symbol = kind.quantity.symbol if kind.is_number else _word(key)
         yield Parameter(key, symbol, kind.meaning + _bracket(_units(kind.quantity)))
+
+
+def coupling_parameters() -> Iterator[Parameter]:
+    """The options of what joins two arms."""
+    for key, own in pairs.option_keys().items():
+        yield Parameter(key, own.quantity.symbol or _word(key), own.meaning + _bracket(_units(own.quantity)))
 
 
 def add_output(

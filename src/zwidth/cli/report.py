@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 _LONGEST_BAR = 34
 _ORDER = (
-    "stiffness", "virtual_damping", "velocity_filter", "time_constant", "rate", "delay", "damping",
-    "resolution", "coulomb_friction",
+    "stiffness", "virtual_damping", "local_damping", "velocity_filter", "time_constant", "link_delay", "rate",
+    "delay", "damping", "resolution", "coulomb_friction",
 )  # fmt: skip
 """What is changed most easily comes first: the law, then the loop, then the machine."""
 
@@ -57,7 +57,7 @@ def print_verdict(
         if active_hand is not None:
             section(out, "an active hand", [grid(active_hand.rows())])
         if isinstance(verdict, LinearVerdict):
-            section(out, *_advice(verdict))
+            section(out, *advice_section(verdict.advice, verdict.is_proved))
             section(out, "actuator", _actuator(verdict))
         beside_the_loop = intervals(verdict.scope, verdict.outcome)
         assumed = (line for line in verdict.assumptions if line != beside_the_loop)
@@ -153,9 +153,9 @@ def _balance(
     table.add_row(name, picture, shown(have, unit))
 
 
-def _advice(verdict: LinearVerdict) -> tuple[str, Iterator[Text]]:
-    title = "slack" if verdict.is_proved else "what to change, any one of"
-    return title, _advice_lines(verdict.advice)
+def advice_section(advice: Iterable[Advice], passive: bool) -> tuple[str, Iterator[Text]]:
+    """The title and the lines of what to change, or of what is left."""
+    return "slack" if passive else "what to change, any one of", _advice_lines(advice)
 
 
 def _advice_lines(advice: Iterable[Advice]) -> Iterator[Text]:
@@ -171,7 +171,13 @@ def _advice_lines(advice: Iterable[Advice]) -> Iterator[Text]:
 
 
 def _names(advice: Iterable[Advice]) -> str:
-    return ", ".join(in_words(a.parameter) for a in advice)
+    return ", ".join(_name(a.parameter) for a in advice)
+
+
+def _name(parameter: str) -> str:
+    """In words; "leader.damping" is that of one arm of a pair."""
+    arm, _, key = parameter.rpartition(".")
+    return in_words(key) + (f" of the {arm}" if arm else "")
 
 
 def _actuator(verdict: LinearVerdict) -> Iterator[Text]:

@@ -23,6 +23,9 @@ _LAWS_IN_A_ROW = ("row storage", "row motion")
 _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 """A document that claims nothing of hands beyond its bounds."""
 
+_OF_TWO_ARMS = ("pair", "pair violation")
+"""Proofs about arms that follow each other."""
+
 _OF_A_PORT = "zwidth indices 1"
 """A document about a port by itself."""
 
@@ -178,6 +181,10 @@ def _head(covered: Scope, kind: str) -> str:
         return "Proved"
     if covered.shows in ("index at least", "index below"):
         return "Of the port below, proved"
+    if kind in _OF_TWO_ARMS:
+        if covered.shows == "active":
+            return "Two hands can take any amount of energy out of the arms below, proved"
+        return "The two arms below are passive, proved"
     kept = " as long as contact is kept" if covered.contact == "kept" else ""
     if covered.shows == "active":
         return "A hand can take any amount of energy out of the loop below, proved"

@@ -104,9 +104,15 @@ class Pair(Parametric):
     leader: Device
     follower: Device
     stiffness: Certain = parameter(
-        "stiffness", kept=Exact, bound="> 0", why="without a spring on both sides the arms do not follow"
+        "stiffness",
+        kept=Exact,
+        bound="> 0",
+        why="without a spring on both sides the arms do not follow",
+        meaning="spring between the arms",
     )
-    damping: Certain = parameter("virtual_damping", 0, kept=Exact)
+    damping: Certain = parameter(
+        "virtual_damping", 0, kept=Exact, meaning="virtual damping of the speed of one arm against the other"
+    )
     local_damping: Certain = parameter("local_damping", 0, kept=Exact)
     follower_stiffness: CertainOrNone = parameter(
         "stiffness",
@@ -114,13 +120,35 @@ class Pair(Parametric):
         kept=Exact,
         bound="> 0",
         why="a follower that is not felt, or a leader that feels nothing, lets one hand work for the other",
+        meaning="stiffness on the follower's side, where it is another",
     )
-    follower_damping: CertainOrNone = parameter("virtual_damping", None, kept=Exact)
-    follower_local_damping: CertainOrNone = parameter("local_damping", None, kept=Exact)
-    there: Certain = parameter("link_delay", 0, kept=Exact, bound="≥ 0", why=_EARLY)
-    back: Certain = parameter("link_delay", 0, kept=Exact, bound="≥ 0", why=_EARLY)
+    follower_damping: CertainOrNone = parameter(
+        "virtual_damping",
+        None,
+        kept=Exact,
+        meaning="virtual damping on the follower's side, where it is another",
+    )
+    follower_local_damping: CertainOrNone = parameter(
+        "local_damping", None, kept=Exact, meaning="local damping on the follower's side, where it is another"
+    )
+    there: Certain = parameter(
+        "link_delay", 0, kept=Exact, bound="≥ 0", why=_EARLY, meaning="from leader to follower, or each way"
+    )
+    back: Certain = parameter(
+        "link_delay",
+        0,
+        kept=Exact,
+        bound="≥ 0",
+        why=_EARLY,
+        meaning="from follower to leader, where it is another",
+    )
     drive_rate: CertainOrNone = parameter(
-        "rate", None, kept=Exact, bound="> 0", why="leave it out where there is no loop inside the drive"
+        "rate",
+        None,
+        kept=Exact,
+        bound="> 0",
+        why="leave it out where there is no loop inside the drive",
+        meaning="of the loop inside each drive, a whole number of times the device's",
     )
 
     def __init__(

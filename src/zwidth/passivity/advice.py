@@ -6,7 +6,7 @@ Every value given was itself proved passive, all else as it was.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, inf, isinf, log10
 from typing import Literal
@@ -27,6 +27,9 @@ from zwidth.passivity.parameter_limits import Change, has_stiffness, is_of_high_
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_words, unit_text
+
+_NEVER_NOTHING = ("stiffness", "resolution", "link_delay")
+"""What nobody can set to 0 and keep what it is there for."""
 
 _WINDOWS = (2, 3, 4, 5, 6, 8, 10, 15, 20)
 
@@ -61,19 +64,17 @@ class Advice:
 
 
 @dataclass(frozen=True)
-class _Knob:
-    """A number that one can turn; `more` is True when more of it is safer, `contact` as for `provable`."""
+class Knob:
+    """A number that one can turn: `holds` of a value that is proved; with `more`, more of it is safer.
+
+    `parameter` is a name of the glossary, behind "leader." or "follower." where it is of one arm.
+    """
 
     parameter: str
     current: float
-    change: Change
+    holds: Holds
     more: bool
     name: str
-    contact: bool = False
-
-    def holds(self, value: Fraction) -> bool:
-        """True when the loop with this value is proved passive."""
-        return provable(self.change, value, self.contact)
 
 
 def advise(
@@ -81,51 +82,51 @@ def advise(
 ) -> tuple[Advice, ...]:
     """Advice on every parameter of a certain loop; `contact` as for `provable`."""
     kind: Literal["change", "slack"] = "slack" if passive else "change"
-    knobs = (replace(knob, contact=contact) for knob in _knobs(device, environment))
     grain = COARSER if is_of_high_degree(device, environment) else COARSE
-    found = [_turn(knob, device.motion, kind, grain) for knob in knobs]
+    knobs = _knobs(device, environment, contact)
+    found = [turn(knob, device.motion, kind, grain) for knob in knobs]
     wall = wall_of(environment)
     if not passive and wall is not None and wall.damping != 0:
         found.extend(_estimators(device, wall, contact))
     return tuple(found)
 
 
-def _knobs(device: Device, environment: Environment) -> Iterator[_Knob]:
-    def on_device(key: str) -> Change:
-        return lambda value: (device.replace(**{key: Exact(value)}), environment)
+def _knobs(device: Device, environment: Environment, contact: bool) -> Iterator[Knob]:
+    def on_device(key: str) -> Holds:
+        return _proved(lambda value: (device.replace(**{key: Exact(value)}), environment), contact)
 
-    yield _Knob("rate", float(device.exact("sample_period") ** -1), _rate(device, environment), True, "rate")
+    rate = _proved(lambda value: (device.replace(rate=Exact(value)), environment), contact)
+    yield Knob("rate", float(device.exact("sample_period") ** -1), rate, True, "rate")
     for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False), ("delay", False)):
         name = {"damping": "device damping", "resolution": "encoder resolution"}.get(key, in_words(key))
-        yield _Knob(key, float(device.exact(key)), on_device(key), more, name)
+        yield Knob(key, float(device.exact(key)), on_device(key), more, name)
     if has_stiffness(environment):
         now = float(stiffness_of(environment))
         change: Change = lambda k: (device, environment.replace(stiffness=Exact(k)))  # noqa: E731
-        yield _Knob("stiffness", now, change, False, "stiffness")
+        yield Knob("stiffness", now, _proved(change, contact), False, "stiffness")
     if (wall := wall_of(environment)) is not None:
         b = wall.damping
         assert isinstance(b, Exact)
         sign = -1 if b < 0 else 1
         law: Change = lambda v: (device, environment.replace(damping=Exact(sign * v)))  # noqa: E731
-        yield _Knob("virtual_damping", abs(float(b)), law, False, "virtual damping")
-        yield from _time_constant(device, wall)
+        yield Knob("virtual_damping", abs(float(b)), _proved(law, contact), False, "virtual damping")
+        yield from _time_constant(device, wall, contact)
 
 
-def _rate(device: Device, environment: Environment) -> Change:
-    def change(rate: Fraction) -> tuple[Device, Environment]:
-        return device.replace(rate=Exact(rate)), environment
-
-    return change
+def _proved(change: Change, contact: bool) -> Holds:
+    """Whether the loop with a value is proved passive; `contact` as for `provable`."""
+    return lambda value: provable(change, value, contact)
 
 
-def _time_constant(device: Device, wall: Wall) -> Iterator[_Knob]:
+def _time_constant(device: Device, wall: Wall, contact: bool) -> Iterator[Knob]:
     now = wall.velocity_filter.time_constant
     if isinstance(now, Exact) and wall.damping != 0:
         change: Change = lambda t: (device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
-        yield _Knob("time_constant", float(now), change, True, "filter time constant")
+        yield Knob("time_constant", float(now), _proved(change, contact), True, "filter time constant")
 
 
-def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"], grain: int) -> Advice:
+def turn(knob: Knob, motion: str, kind: Literal["change", "slack"], grain: int = COARSE) -> Advice:
+    """How far a knob must be turned, or may be; `grain` as for `largest_holding`."""
     search = smallest_holding if knob.more else largest_holding
     to = search(knob.holds, knob.current or 1e-4, grain)
     if to is not None and SMALLEST < to < inf:
@@ -134,8 +135,8 @@ def _turn(knob: _Knob, motion: str, kind: Literal["change", "slack"], grain: int
         to = inf if knob.parameter == "rate" else 0.0
     if kind == "change" and to is not None and not _is_change(knob, to):
         to = None
-    unit = GLOSSARY[knob.parameter].unit_for(motion)
-    shown = None if to is None else _outward(to, knob)
+    unit = GLOSSARY[knob.parameter.rpartition(".")[2]].unit_for(motion)
+    shown = None if to is None else outward(to, knob)
     return Advice(knob.parameter, knob.current, to, unit, kind, _text(knob, shown, unit_text(unit), kind))
 
 
@@ -150,14 +151,14 @@ def _simplest_near(value: float, holds: Holds, more: bool, grain: int) -> float:
     return value
 
 
-def _is_change(knob: _Knob, to: float) -> bool:
+def _is_change(knob: Knob, to: float) -> bool:
     """A remedy must lie on the safer side of where the parameter is and be something one can set."""
-    if to == inf or (to == 0 and knob.parameter in ("stiffness", "resolution")):
+    if to == inf or (to == 0 and knob.parameter.rpartition(".")[2] in _NEVER_NOTHING):
         return False
     return to > knob.current if knob.more else to < knob.current
 
 
-def _outward(value: float, knob: _Knob) -> float:
+def outward(value: float, knob: Knob) -> float:
     """Four significant digits on the safe side, if those are proved too."""
     if value == 0 or isinf(value):
         return value
@@ -166,7 +167,7 @@ def _outward(value: float, knob: _Knob) -> float:
     return rounded if knob.holds(Exact(rounded).fraction) else value
 
 
-def _text(knob: _Knob, to: float | None, unit: str, kind: str) -> str:
+def _text(knob: Knob, to: float | None, unit: str, kind: str) -> str:
     now = f"{knob.current:.4g} {unit}"
     if kind == "change":
         if to is None:
@@ -193,16 +194,16 @@ def _estimators(device: Device, wall: Wall, contact: bool) -> Iterator[Advice]:
             break
     if wall.velocity_filter.time_constant is None:
         change: Change = lambda t: (device, wall.replace(velocity_filter=OnePole(Exact(t))))  # noqa: E731
-        knob = _Knob("time_constant", 0.0, change, True, "time constant", contact)
+        knob = Knob("time_constant", 0.0, _proved(change, contact), True, "time constant")
         tau = _first_scanned(knob, device)
         if tau is not None:
-            shown = _outward(tau, knob)
+            shown = outward(tau, knob)
             to = f"one-pole filter of {shown:.4g} s"
             text = f"estimate velocity with a {to} (time constant) instead of the {now}"
             yield Advice("velocity_filter", now, to, "", "change", text)
 
 
-def _first_scanned(knob: _Knob, device: Device) -> float | None:
+def _first_scanned(knob: Knob, device: Device) -> float | None:
     """The smallest time constant found, from one sample to a thousand."""
     period = float(device.exact("sample_period"))
     for power in range(10):

@@ -1,16 +1,20 @@
-"""The device and the environment of files, in Python: `zw.check(*zw.load("wheel.toml", "bumpstop.toml"))`."""
+"""What files describe, in Python: `zw.check(*zw.load("wheel.toml", "bumpstop.toml"))`.
+
+Of two arms that follow each other it is `zw.check(zw.load("pair.toml"))`.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from zwidth.device import Device
 from zwidth.environment import Environment
 from zwidth.errors import InputError
 from zwidth.specification.environments import build_environment
 from zwidth.specification.laws import with_laws
-from zwidth.specification.read import WITH_LAWS, read_tables, specified_device
+from zwidth.specification.pairs import pair_of
+from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, read_tables, specified_device
 
 
 class Loaded(NamedTuple):
@@ -21,14 +25,20 @@ class Loaded(NamedTuple):
     """Behind its laws, if the files have [[law]] tables; None if they have no [environment]."""
 
 
-def load(*sources: Path | str) -> Loaded:
-    """The device and the environment that specifications describe, as the command line reads them.
+def load(*sources: Path | str) -> Loaded | Any:
+    """The device and the environment, or the pair of arms, that specifications describe.
 
     Parameters
     ----------
     sources
         TOML files with [device], [environment] and [[law]] tables, each in one of them; a name of the
-        catalogue stands for a [device].
+        catalogue stands for a [device].  Or one file with a [coupling], and [leader] and [follower] or one
+        [device] for both arms.
+
+    Returns
+    -------
+    Loaded
+        Device and environment; of a file with a [coupling], or with a [leader] and a [follower], a `Pair`.
 
     Raises
     ------
@@ -38,7 +48,14 @@ def load(*sources: Path | str) -> Loaded:
     """
     if not sources:
         raise InputError("no file is given: name TOML files with a [device], or a device of the catalogue")
-    tables = read_tables(sources, WITH_LAWS)
+    tables = read_tables(sources, (*WITH_LAWS, *PAIR_TABLES))
+    if joined := [tables[key] for key in PAIR_TABLES if key in tables]:
+        for key in ("environment", "law"):
+            if key in tables:
+                raise InputError(f"{tables[key].label}: two arms meet each other, and no environment")
+        if len(sources) > 1:
+            raise InputError(f"{joined[0].label}: a file of two arms that follow each other is read alone")
+        return pair_of(tables)
     device, laws = specified_device(tables, {}), tables.get("law")
     if "environment" not in tables:
         if laws is not None:

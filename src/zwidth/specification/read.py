@@ -44,6 +44,9 @@ WITH_LAWS = (*LOOP_TABLES, "law")
 TABLES = (*WITH_LAWS, "operator", "simulation")
 """The tables of a specification: of a loop, with laws behind its environment, and of a touch to simulate."""
 
+PAIR_TABLES = ("leader", "follower", "coupling")
+"""The tables of two arms that follow each other."""
+
 _ONE_OF = (("rate", "sample_period"), ("resolution", "counts_per_turn"))
 """Two ways to say the same: overriding one puts the other aside."""
 
@@ -151,19 +154,29 @@ def _device_value(table: Table, key: str, motion: str) -> Any:
     with located(table.where(key)):
         value = parse(table.values[key], unit, key)
         if key == "delay":
-            _question_delay(table.values[key], value)
+            question_time(table.values[key], value, key)
         return value
 
 
-def _question_delay(written: object, delay: Exact | Interval) -> None:
-    """Ask for the unit of a delay that is hardly meant in seconds."""
+def question_time(written: object, delay: Exact | Interval, name: str) -> None:
+    """Ask for the unit of a delay that is hardly meant in seconds.
+
+    Raises
+    ------
+    InputError
+        If it has none, and is half a second or more.
+    """
     bare = not (isinstance(written, str) and any(map(str.isalpha, written)))
     if bare and ends(delay)[1] >= _LONG_DELAY:
         seconds = f"{float(ends(delay)[1]):g}"
         raise InputError(
-            f"delay {seconds} without a unit is {seconds} s between sample and force; write "
+            f"{name} {seconds} without a unit is {seconds} s{_BETWEEN.get(name, '')}; write "
             f'"{seconds} ms", or "{seconds} s" if that is meant'
         )
+
+
+_BETWEEN = {"delay": " between sample and force"}
+"""What lies between, where the name alone does not say it."""
 
 
 def _catalogue_device(table: Table, arguments: Mapping[str, Any], turning: list[str], motion: str) -> Device:
@@ -220,7 +233,7 @@ def tables_of(text: str, name: str, kinds: Sequence[str] = LOOP_TABLES) -> dict[
         if key == "law" and key not in kinds:
             raise InputError(f"{name}: [[law]]: {NOT_PROVED}")
         if key not in kinds:
-            hint = "it is for zwidth simulate" if key in TABLES else suggestion(key, kinds)
+            hint = _CHECKED_BY.get(key) or suggestion(key, kinds)
             raise InputError(f"{name}: there is no table or key {quoted(key)} in a specification; {hint}")
         if key == "law":
             content[key] = _row_of_laws(value, name)
@@ -232,6 +245,13 @@ def tables_of(text: str, name: str, kinds: Sequence[str] = LOOP_TABLES) -> dict[
         key: Table(f"{name}: [[law]]" if key == "law" else f"{name}: [{key}]", value)
         for key, value in content.items()
     }
+
+
+_CHECKED_BY = {
+    **dict.fromkeys(TABLES, "it is for zwidth simulate"),
+    **dict.fromkeys(PAIR_TABLES, "it is of two arms that follow each other: zwidth pair decides them"),
+}
+"""Who reads a table that a command does not."""
 
 
 def _row_of_laws(value: object, name: str) -> dict[str, object]:

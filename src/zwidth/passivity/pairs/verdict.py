@@ -10,15 +10,19 @@ from typing import Any, ClassVar
 
 from zwidth.device import Device
 from zwidth.pairs import Pair
-from zwidth.passivity.linear.boundary import COARSE, largest_holding, smallest_holding
+from zwidth.passivity.advice import Advice
+from zwidth.passivity.linear.boundary import smallest_holding
 from zwidth.passivity.outcome import Outcome
-from zwidth.passivity.pairs.criterion import PairCriterion, largest_spring
+from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere
+from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, PairWitness
+from zwidth.passivity.pairs.limits import grain_of, largest_stiffness
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
-from zwidth.quantity.exact import Exact, ends
+from zwidth.quantity.exact import ends
 from zwidth.quantity.text import quantity_unit, shown
+from zwidth.showing import Lines, Part, Table
 
 
 def check_pair(pair: Pair) -> PairVerdict:
@@ -154,17 +158,7 @@ class PairVerdict(PassivityAnswer):
     @cached_property
     def largest_stiffness(self) -> float | None:
         """The largest K, both sides in proportion and all else as it is, that is passive; None if none is."""
-        ratio = 1 / self.pair.power_ratio
-
-        def holds(k: Fraction) -> bool:
-            return k > 0 and self._passive(stiffness=k, follower_stiffness=k * ratio)
-
-        closed = largest_spring(self.pair)
-        guess = float(closed) if closed else float(self.pair.stiffness)
-        if guess <= 0 or not (holds(Exact(guess / 10**6).fraction) or self.criterion.holds):
-            return None
-        found = largest_holding(lambda k: not k or holds(k), guess, COARSE)
-        return found or None
+        return largest_stiffness(self.pair)
 
     @cached_property
     def required_damping(self) -> tuple[float | None, float | None]:
@@ -177,7 +171,7 @@ class PairVerdict(PassivityAnswer):
                 return PairCriterion(self.pair.replace(**{name: device.replace(damping=b)})).holds
 
             guess = max(float(device.exact("damping")), float(self.pair.stiffness * self.pair.sample_period))
-            found.append(smallest_holding(holds, guess, COARSE))
+            found.append(smallest_holding(holds, guess, grain_of(self.pair)))
         return found[0], found[1]
 
     @cached_property
@@ -186,9 +180,15 @@ class PairVerdict(PassivityAnswer):
         leader, follower = self.criterion.arms
         return float(leader.force_error(follower)), float(follower.force_error(leader))
 
-    def _passive(self, **changes: Any) -> bool:
-        criterion = PairCriterion(self.pair.replace(**changes))
-        return criterion.holds and max(criterion.missing_friction) <= 0
+    @cached_property
+    def advice(self) -> tuple[Advice, ...]:
+        """The smallest single changes that would do, or the slack of each number."""
+        return advise(self.pair, self.passive)
+
+    @cached_property
+    def stiffness_elsewhere(self) -> tuple[StiffnessAt, ...]:
+        """How stiff the coupling could be at half the link delay, and at twice the rate."""
+        return stiffness_elsewhere(self.pair)
 
     @property
     def margin(self) -> float | None:
@@ -233,6 +233,16 @@ class PairVerdict(PassivityAnswer):
         if evidence is not None:
             yield "motion", evidence.describe()
 
+    def report(self) -> Iterator[Part]:
+        """The sentence, the numbers, what to change or what is left, and what is taken for granted."""
+        yield self._headline()
+        yield Table(rows=list(self.rows()))
+        found = [advice.text for advice in self.advice if advice.to is not None]
+        found += [other.text for other in self.stiffness_elsewhere]
+        if found:
+            yield Lines(found, "slack" if self.passive else "what to change, any one of")
+        yield Lines(self.small_print(), "assumptions")
+
     def numbers(self) -> dict[str, Any]:
         """The main numbers as plain data, a unit in every key of a physical quantity."""
         pair = self.pair
@@ -246,4 +256,6 @@ class PairVerdict(PassivityAnswer):
                 name: {key("damping"): damping, key("coulomb_friction"): friction}
                 for name, damping, friction in needs
             },
+            "advice": [advice.to_dict() for advice in self.advice],
+            "largest_stiffness_at": [other.to_dict() for other in self.stiffness_elsewhere],
         }

@@ -1,0 +1,77 @@
+"""The verdict on two arms as a report in the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rich.text import Text
+
+from zwidth.cli.bars import PICTURE, levels
+from zwidth.cli.description import device_line
+from zwidth.cli.output import encodes
+from zwidth.cli.page import below, grid, headline, items, page, section
+from zwidth.cli.report import advice_section
+from zwidth.device import Device
+from zwidth.pairs import Pair
+from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.pairs import PairVerdict, PairWitness
+from zwidth.quantity.text import quantity_unit, shown
+
+_SAMPLES_SHOWN = 48
+
+
+def print_pair(verdict: PairVerdict) -> None:
+    """Print the report on standard output."""
+    witness = verdict.witness if verdict.outcome == "active" else None
+    with page() as out:
+        out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, _claim(verdict, witness)))
+        out.print(below(grid(_arms(verdict.pair))))
+        out.print(below(grid(_numbers(verdict))))
+        if witness is not None:
+            section(out, "the motion", _motion(witness))
+        title, lines = advice_section(verdict.advice, verdict.passive)
+        section(out, title, lines)
+        section(out, "with something else changed", items(at.text for at in verdict.stiffness_elsewhere))
+        section(out, "assumes", items(verdict.small_print(), "dim"))
+
+
+def _claim(verdict: PairVerdict, witness: PairWitness | None) -> str:
+    if verdict.outcome != "active" or witness is not None:
+        return verdict.claim
+    return f"{verdict.claim} No motion that shows it was found short enough to be written down."
+
+
+def _arms(pair: Pair) -> Iterator[tuple[str, str]]:
+    if pair.leader == pair.follower:
+        yield "both arms", device_line(pair.leader)
+        return
+    for role, device in (("leader", pair.leader), ("follower", pair.follower)):
+        yield role, _line(role, device)
+
+
+def _line(role: str, device: Device) -> str:
+    """The device in a line; one that is called after its role is not called so twice."""
+    return device_line(device).removeprefix(f"{role}: ")
+
+
+def _numbers(verdict: PairVerdict) -> Iterator[tuple[str, str | Text]]:
+    """All but the motion, which has a section of its own."""
+    for name, text in verdict.rows():
+        if name != "motion":
+            yield name, Text(text, style="bold" if name == "limit" else "")
+
+
+def _motion(witness: PairWitness) -> Iterator[Text]:
+    length, fancy = quantity_unit("position", witness.pair.motion), encodes(PICTURE)
+    yield Text(
+        f"{witness.samples:.6g} samples in {shown(witness.duration, 's')}, of both hands from rest at 0"
+    )
+    for part in witness.leader.repeats:
+        if part.times > 1:
+            yield Text(f"samples {part.first} to {part.last} are a round, done {part.times:.6g} times")
+    yield Text(f"extracts {shown(witness.energy, 'J')}", style="bold")
+    for role, path in zip(("leader", "follower"), witness.positions, strict=True):
+        first = [float(x) for x in path[:_SAMPLES_SHOWN]]
+        more = " …" if len(path) > len(first) else ""
+        far = shown(float(path.max() - path.min()), length)
+        yield Text(f"{role:8}  {levels(first, fancy)}{more}  over {far}", style="cyan")

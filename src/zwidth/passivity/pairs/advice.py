@@ -1,0 +1,179 @@
+"""What to change about a pair: the smallest change that makes it passive, or the slack of each number.
+
+Every value given was itself proved passive, all else as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any, Literal
+
+from zwidth.device import Device
+from zwidth.errors import InputError
+from zwidth.pairs import Pair
+from zwidth.passivity.advice import Advice, Knob, outward, turn
+from zwidth.passivity.linear.boundary import Holds
+from zwidth.passivity.pairs.limits import grain_of, is_passive, largest_stiffness, samples_around
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import unit_suffix
+from zwidth.quantity.text import in_words, unit_text
+
+MOST_SAMPLES = 200
+"""Delays around the whole loop, in samples, beyond which a look at every number takes too long."""
+
+_EIGHTHS = 10
+"""Local dampings that are tried where another one might help, in eighths of the lesser b."""
+
+Change = Callable[[Fraction], Pair]
+
+
+@dataclass(frozen=True)
+class StiffnessAt:
+    """The largest passive stiffness, if link delay or rate were so many `times` what they are."""
+
+    parameter: Literal["link_delay", "rate"]
+    times: Fraction
+    stiffness: float | None
+    unit: str
+    text: str
+
+    def to_dict(self) -> dict[str, object]:
+        """As plain data, the unit in the key."""
+        key = f"stiffness_{unit_suffix(self.unit)}"
+        return {
+            "parameter": self.parameter,
+            "times": float(self.times),
+            key: self.stiffness,
+            "text": self.text,
+        }
+
+
+def advise(pair: Pair, passive: bool) -> tuple[Advice, ...]:
+    """Advice on every number of a pair; none where its readings are so old that this takes too long."""
+    if samples_around(pair) > MOST_SAMPLES:
+        return ()
+    kind: Literal["change", "slack"] = "slack" if passive else "change"
+    grain = grain_of(pair)
+    knobs = [*_of_the_coupling(pair), *_of_the_arms(pair)]
+    found = [turn(knob, pair.motion, kind, grain) for knob in knobs]
+    if not passive:
+        found += _both_arms(pair, grain)
+        found += [turn(knob, pair.motion, kind, grain) for knob in _more_local_damping(pair)]
+    return tuple(found)
+
+
+def stiffness_elsewhere(pair: Pair) -> tuple[StiffnessAt, ...]:
+    """How stiff the coupling may be at half the link delay, if there is one, and at twice the rate."""
+    if samples_around(pair) > MOST_SAMPLES:
+        return ()
+    found = []
+    half = pair.replace(delay=tuple(Exact(d.fraction / 2) for d in pair.delay))
+    if samples_around(half) < samples_around(pair):
+        found.append(_stiffness_at(half, "link_delay", Fraction(1, 2), "at half the link delay"))
+    try:
+        double = _at_rate(pair, 2 / pair.sample_period)
+    except InputError:  # at this rate the delays are too many samples
+        return tuple(found)
+    return (*found, _stiffness_at(double, "rate", Fraction(2), "at twice the rate"))
+
+
+def _stiffness_at(
+    pair: Pair, parameter: Literal["link_delay", "rate"], times: Fraction, where: str
+) -> StiffnessAt:
+    largest, unit = largest_stiffness(pair), pair.leader.unit("stiffness")
+    if largest is None:
+        return StiffnessAt(parameter, times, None, unit, f"{where} no stiffness is passive")
+    safe = outward(largest, next(_of_the_coupling(pair)))
+    text = f"{where} a stiffness of up to {safe:.6g} {unit_text(unit)} is passive"
+    return StiffnessAt(parameter, times, largest, unit, text)
+
+
+def _holds(change: Change) -> Holds:
+    """Whether the pair with a value is passive; one that cannot be built, or decided, is not."""
+
+    def holds(value: Fraction) -> bool:
+        try:
+            return is_passive(change(value))
+        except (InputError, ZeroDivisionError):
+            return False
+
+    return holds
+
+
+def _at_rate(pair: Pair, rate: Fraction) -> Pair:
+    return pair.replace(
+        leader=pair.leader.replace(rate=Exact(rate)), follower=pair.follower.replace(rate=Exact(rate))
+    )
+
+
+def _of_the_coupling(pair: Pair) -> Iterator[Knob]:
+    ratio = 1 / pair.power_ratio
+
+    def stiffness(k: Fraction) -> Pair:
+        return pair.replace(stiffness=Exact(k), follower_stiffness=Exact(k * ratio))
+
+    yield Knob("stiffness", float(pair.stiffness), _holds(stiffness), False, "stiffness")
+    for key, quantity in (("damping", "virtual_damping"), ("local_damping", "local_damping")):
+        gain: Exact = getattr(pair, key)
+        if gain and getattr(pair, f"follower_{key}") is None:
+            sign = -1 if gain < 0 else 1
+            change: Change = lambda v, key=key, sign=sign: pair.replace(**{key: Exact(sign * v)})  # type: ignore[misc]  # noqa: E731
+            yield Knob(quantity, abs(float(gain)), _holds(change), False, in_words(quantity))
+    longer = max(pair.delay)
+
+    def link(delay: Fraction) -> Pair:
+        parts = (d.fraction / longer.fraction if longer else Fraction(1) for d in pair.delay)
+        return pair.replace(delay=tuple(Exact(delay * part) for part in parts))
+
+    name = "link delay" if pair.there == pair.back else "longer link delay, the other in proportion,"
+    yield Knob("link_delay", float(longer), _holds(link), False, name)
+    yield Knob("rate", float(1 / pair.sample_period), _holds(lambda rate: _at_rate(pair, rate)), True, "rate")
+
+
+def _of_the_arms(pair: Pair) -> Iterator[Knob]:
+    for arm in ("leader", "follower"):
+        device: Device = getattr(pair, arm)
+
+        def change(key: str, arm: str = arm, device: Device = device) -> Change:
+            return lambda value: pair.replace(**{arm: device.replace(**{key: Exact(value)})})
+
+        for key, more in (("damping", True), ("coulomb_friction", True), ("resolution", False)):
+            name = f"{'encoder resolution' if key == 'resolution' else in_words(key)} of the {arm}"
+            yield Knob(f"{arm}.{key}", float(device.exact(key)), _holds(change(key)), more, name)
+
+
+def _both_arms(pair: Pair, grain: int) -> Iterator[Advice]:
+    """What one arm alone cannot do: the same value of both, where that is more than either has."""
+    for key in ("damping", "coulomb_friction"):
+        now = [device.exact(key) for device in (pair.leader, pair.follower)]
+
+        def change(value: Fraction, key: str = key) -> Pair:
+            arms = {"leader": pair.leader, "follower": pair.follower}
+            raised: dict[str, Any] = {
+                arm: device.replace(**{key: Exact(max(value, device.exact(key)))})
+                for arm, device in arms.items()
+            }
+            return pair.replace(**raised)
+
+        knob = Knob(key, float(min(now)), _holds(change), True, f"{in_words(key)} of both arms")
+        advice = turn(knob, pair.motion, "change", grain)
+        if not isinstance(advice.to, float) or advice.to <= max(now):
+            continue
+        if now[0] != now[1]:
+            to = f"{outward(advice.to, knob):.6g} {unit_text(advice.unit)}"
+            advice = replace(advice, text=f"raise the {knob.name} to {to}")
+        yield advice
+
+
+def _more_local_damping(pair: Pair) -> Iterator[Knob]:
+    """Local damping helps slow motions and hurts quick ones: if any does, what does lies in an interval."""
+    if pair.follower_local_damping is not None or pair.local_damping < 0:
+        return
+    now = pair.local_damping.fraction
+    holds = _holds(lambda d: pair.replace(local_damping=Exact(d)))
+    step = min(device.exact("damping") for device in (pair.leader, pair.follower)) / 8
+    enough = next((d for d in (now + n * step for n in range(1, _EIGHTHS + 1)) if holds(d)), None)
+    if step and enough is not None:
+        yield Knob("local_damping", float(now), lambda d: d >= enough or holds(d), True, "local damping")
