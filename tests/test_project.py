@@ -275,6 +275,9 @@ def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> 
         for k, text in enumerate(tables):
             path = tmp_path / f"{number}-{k}.toml"
             path.write_text(text, encoding="utf-8")
+            if "[coupling]" in text:
+                zw.load(path)
+                continue
             given = {} if "[device]" in text else {"damping": "1", "rate": "1 kHz"}
             given |= {"motion": "rotary"} if given and "rad" in text else {}
             given |= {} if "[environment]" in text else {"stiffness": "1"}
@@ -322,7 +325,19 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
 
 @pytest.mark.parametrize(
     "command",
-    ["check", "limit", "pair", "map", "simulate", "compare", "identify", "plan", "traces", "devices", "verify"],
+    [
+        "check",
+        "limit",
+        "pair",
+        "map",
+        "simulate",
+        "compare",
+        "identify",
+        "plan",
+        "traces",
+        "devices",
+        "verify",
+    ],
 )
 def test_every_option_in_the_help_is_on_the_command_line_page(command: str) -> None:
     """What `--help` offers, the page explains."""

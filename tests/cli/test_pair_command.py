@@ -86,7 +86,7 @@ def test_the_report_of_an_active_pair(files, capsys):
     """The limit, what each arm needs, the frequency, the motion of both hands, and what to change."""
     assert main(["pair", files["leader"], files["follower"], "--stiffness", "300"]) == 1
     said = capsys.readouterr().out
-    for part in (" ACTIVE ", "leader    leader: b = 0.2", "follower  follower: b = 0.4", "damping of the arms",
+    for part in (" ACTIVE ", "leader    b = 0.2", "follower  b = 0.4", "damping of the arms",
                  "largest stiffness", "some motion of both hands gains", "the motion", "extracts",
                  "what to change, any one of", "lower the stiffness from 300 N/m",
                  "at twice the rate a stiffness of up to", "assumes"):  # fmt: skip

@@ -85,10 +85,13 @@ class PairViolation(Evidence):
         What it is about.
     cosine
         cos ωT.
+    inside
+        True where the drive of an arm lets it gain between two samples, by itself, whatever the frequency.
     """
 
     pair: Pair
     cosine: Fraction
+    inside: bool = False
 
     @property
     def frequency(self) -> float:
@@ -107,6 +110,8 @@ class PairViolation(Evidence):
 
     def describe(self) -> str:
         """What is violated, in words."""
+        if self.inside:
+            return "the drive of an arm alone lets it gain, from one reading of its own to the next"
         return f"at {self.frequency:.6g} Hz some motion of both hands gains in every round"
 
 

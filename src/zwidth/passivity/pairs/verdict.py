@@ -45,7 +45,7 @@ def check_pair(pair: Pair) -> PairVerdict:
     criterion = PairCriterion(pair)
     signs = Fraction(0) if criterion.slips else criterion.signs
     if isinstance(signs, Fraction):
-        violation = PairViolation(pair, signs)
+        violation = PairViolation(pair, signs, criterion.slips)
         if violation.verify():
             return PairVerdict(pair, criterion, violation=violation)
         return PairVerdict(pair, criterion, motion=refute_criterion(criterion))
@@ -199,6 +199,8 @@ class PairVerdict(PassivityAnswer):
     @property
     def limit(self) -> str:
         """What binds."""
+        if self.criterion.slips:
+            return "damping of an arm: its own drive feeds more energy than it takes"
         if not self.criterion.holds:
             return "damping of the arms: the hold, the delay and the link feed more energy than it takes"
         if max(self.criterion.missing_friction) > 0:

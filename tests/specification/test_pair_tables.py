@@ -55,7 +55,7 @@ def test_one_device_is_both_arms_and_may_turn(tmp_path: Path) -> None:
         (ARMS, r"no spring joins the arms: set --stiffness \[N/m\], or write it in a \[coupling\]"),
         (ARMS + "[coupling]\ndamping = 1\n", r"\[coupling\]: stiffness \[N/m\] is missing"),
         (ARMS + COUPLING + "stifness = 3\n", r'a coupling has no "stifness"; did you mean "stiffness"'),
-        (ARMS + COUPLING + "mass = 3\n", r'a coupling has no "mass"; it may be: damping, follower_damping'),
+        (ARMS + COUPLING + "mass = 3\n", r'a coupling has no "mass"; it may be: damping, drive_rate, follower_damping'),
         (ARMS + COUPLING + "damping = 1\nvirtual_damping = 1\n", "are the same quantity"),
         (ARMS + COUPLING + 'local_damping = "3 N/m"\n', r"\[coupling\]: local_damping is in N\*s/m"),
         (ARMS + COUPLING + "link_delay = -1\n", r"\[coupling\]: link_delay must be ≥ 0"),

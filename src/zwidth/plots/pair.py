@@ -1,0 +1,165 @@
+"""A pair of arms: which dampings are enough, and how much stiffness the delay of a link leaves."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import partial
+from textwrap import fill
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from zwidth.pairs import Pair
+from zwidth.passivity.linear.boundary import COARSER, smallest_holding
+from zwidth.passivity.pairs import PairCriterion, PairVerdict
+from zwidth.passivity.pairs.limits import largest_stiffness
+from zwidth.plots.style import BLUE, GREEN, GREY, LOOK, OUTCOME, RED, new_figure, scale
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.text import quantity_unit
+
+_DAMPINGS, _AGES = 40, 8
+"""Points of the boundary; samples of link delay that are shown at least."""
+
+
+@rc_context(LOOK)
+def plot_pair(verdict: PairVerdict) -> Figure:
+    """The plane of both dampings, the largest stiffness against the delay of the link, and the motion.
+
+    Parameters
+    ----------
+    verdict
+        What `zwidth.check` returned of a `zwidth.Pair`.
+    """
+    moved = verdict.witness is not None
+    figure = new_figure(7.2, 5.4 if moved else 3.7)
+    grid = figure.add_gridspec(2 if moved else 1, 2, height_ratios=[2.2, 1] if moved else [1])
+    draw_pair_damping(figure.add_subplot(grid[0, 0]), verdict)
+    draw_pair_link(figure.add_subplot(grid[0, 1]), verdict)
+    if moved:
+        draw_pair_motion(figure.add_subplot(grid[1, :]), verdict)
+    figure.suptitle(
+        fill(f"{verdict.outcome}: {verdict.claim}", 92),
+        x=0.01, ha="left", fontsize=10, color=OUTCOME[verdict.outcome], parse_math=False,
+    )  # fmt: skip
+    return figure
+
+
+def draw_pair_damping(axes: Axes, verdict: PairVerdict) -> None:
+    """Damping of the follower that is enough beside that of the leader, at this stiffness and link.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    verdict
+        What `zwidth.check` returned of a `zwidth.Pair`.
+    """
+    leader, follower = damping_boundary(verdict.pair)
+    here = [float(side.damping) for side in verdict.pair.sides]
+    unit = quantity_unit("damping", verdict.pair.motion)
+    top = float(leader.max())
+    shown = np.isfinite(follower)
+    axes.fill_between(leader[shown], follower[shown], 1e3 * top, color=GREEN, alpha=0.16, lw=0)
+    axes.plot(leader[shown], follower[shown], color=GREEN, gid="boundary")
+    axes.set(xlim=(0, top), ylim=(0, top))
+    axes.set_xlabel(f"damping of the leader [{unit}]")
+    axes.set_ylabel(f"damping of the follower [{unit}]")
+    axes.set_title("shaded: enough damping")
+    _mark(axes, verdict, here[0], here[1])
+
+
+def damping_boundary(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
+    """Dampings of the leader, and the least of the follower beside each; inf where none is enough."""
+
+    def holds(leader: Fraction, follower: Fraction) -> bool:
+        arms = {
+            "leader": pair.leader.replace(damping=leader),
+            "follower": pair.follower.replace(damping=follower),
+        }
+        return PairCriterion(pair.replace(**arms)).holds
+
+    ratio = 1 / pair.power_ratio
+    guess = float(pair.stiffness * pair.sample_period)
+    equal = smallest_holding(lambda b: holds(b, b * ratio), guess, COARSER) or guess
+    found = []
+    top = 1.25 * max(3 * equal, *(float(side.damping) for side in pair.sides))
+    steps = np.geomspace(0.1 * equal, top, _DAMPINGS)
+    for step in steps:
+        least = smallest_holding(partial(holds, Exact(float(step)).fraction), equal, COARSER)
+        found.append(np.inf if least is None else least)
+    return steps, np.array(found)
+
+
+def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
+    """The largest passive stiffness against the delay of the link: it falls with every sample.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    verdict
+        What `zwidth.check` returned of a `zwidth.Pair`.
+    """
+    pair = verdict.pair
+    ages, stiffness = link_limits(pair)
+    seconds, unit = scale([float(ages[-1] * pair.sample_period)], "s")
+    ends = seconds * float(pair.sample_period) * ages
+    axes.stairs(stiffness[1:], ends, baseline=0, color=GREEN, fill=True, alpha=0.16, lw=0)
+    axes.stairs(stiffness[1:], ends, baseline=None, color=GREEN, lw=1.6, gid="stairs")
+    axes.plot([0], stiffness[:1], ".", color=GREEN, clip_on=False)
+    mean = float(pair.there + pair.back) / 2
+    axes.set(xlim=(0, ends[-1]), ylim=(0, 1.3 * max(float(pair.stiffness), float(stiffness.max()))))
+    axes.set_xlabel(f"link delay, each way [{unit}]")
+    axes.set_ylabel(f"stiffness [{quantity_unit('stiffness', pair.motion)}]")
+    axes.set_title("shaded: passive")
+    _mark(axes, verdict, seconds * mean, float(pair.stiffness))
+
+
+def link_limits(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
+    """Samples of link delay each way, from 0, and the largest passive stiffness at each."""
+    longest = max(side.link_delay for side in pair.sides) / pair.sample_period
+    most = max(_AGES, int(2 * longest))
+    ages = np.unique(np.linspace(0, most, min(most, 40) + 1).round().astype(int))
+    found = []
+    for age in ages:
+        delay = Exact(int(age) * pair.sample_period)
+        found.append(largest_stiffness(pair.replace(delay=(delay, delay))) or 0.0)
+    return ages, np.array(found)
+
+
+def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
+    """Positions of both hands in the motion that takes energy out, each repeated part once.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    verdict
+        What `zwidth.check` returned of a `zwidth.Pair` that is active.
+    """
+    found = verdict.witness
+    assert found is not None
+    pair = verdict.pair
+    step = float(pair.sample_period) / pair.own_readings
+    time, unit = scale([step * len(found.positions[0])], "s")
+    length, far = scale(
+        [float(np.ptp(path)) for path in found.positions], quantity_unit("position", pair.motion)
+    )
+    for path, name, colour, line in zip(
+        found.positions, ("leader", "follower"), (BLUE, RED), ("-", "--"), strict=True
+    ):
+        axes.plot(time * step * np.arange(len(path)), length * path, line, color=colour, label=name, gid=name)
+    rounds = [
+        f"samples {p.first} to {p.last}: {p.times:.3g} times" for p in found.leader.repeats if p.times > 1
+    ]
+    axes.set_title("; ".join([f"takes {found.energy:.3g} J out", *rounds]), color=GREY)
+    axes.set_xlabel(f"time [{unit}]")
+    axes.set_ylabel(f"position [{far}]")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
+def _mark(axes: Axes, verdict: PairVerdict, x: float, y: float) -> None:
+    marker = "o" if verdict.outcome == "passive" else "X"
+    axes.plot([x], [y], marker, color=OUTCOME[verdict.outcome], ms=8, clip_on=False, zorder=6, gid="pair")

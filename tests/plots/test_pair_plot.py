@@ -1,0 +1,50 @@
+"""Pictures of two arms: what is drawn is what the criterion says."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth import plots
+from zwidth.passivity.pairs import PairCriterion, largest_spring
+from zwidth.plots.pair import damping_boundary, link_limits
+
+ARM = zw.Device(damping="0.5", coulomb_friction="0.1", resolution=0, delay=0, rate="1 kHz")
+PAIR = zw.Pair(ARM, ARM.replace(damping=1), stiffness=100, damping="0.02", delay="2 ms")
+
+
+def test_inside_the_boundary_the_pair_is_passive():
+    """A little more damping than drawn is enough, a little less is not."""
+    leader, follower = damping_boundary(PAIR)
+    for b, f in list(zip(leader, follower, strict=True))[::6]:
+        for share, holds in ((1.01, True), (0.99, False)) if np.isfinite(f) else ():
+            arms = {
+                "leader": ARM.replace(damping=float(b)),
+                "follower": ARM.replace(damping=float(f * share)),
+            }
+            assert PairCriterion(PAIR.replace(**arms)).holds is holds
+
+
+def test_the_stairs_are_the_limits():
+    """At every delay of whole samples."""
+    springs = PAIR.replace(damping=0)
+    ages, stiffness = link_limits(springs)
+    for age, limit in zip(ages, stiffness, strict=True):
+        late = springs.replace(delay=Fraction(int(age), 1000))
+        assert limit == pytest.approx(float(largest_spring(late)), rel=1e-5)
+
+
+@pytest.mark.parametrize("stiffness", [10, 1000])
+def test_a_picture_of_either(stiffness, tmp_path):
+    """The motion is shown where there is one; the pair stands where it is."""
+    verdict = zw.check(PAIR.replace(stiffness=stiffness))
+    figure = plots.plot_pair(verdict)
+    assert len(figure.axes) == (2 if verdict.passive else 3)
+    (mark,) = (line for line in figure.axes[1].lines if line.get_gid() == "pair")
+    assert mark.get_ydata()[0] == stiffness
+    assert mark.get_xdata()[0] == pytest.approx(2)
+    verdict.plot(tmp_path / "pair.png")
+    assert (tmp_path / "pair.png").stat().st_size > 1000
