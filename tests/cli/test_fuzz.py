@@ -164,8 +164,10 @@ toml_lines = st.one_of(
         lambda p: f"{p[0]} = {p[1]}"
     ),
     st.sampled_from(
-        ["[device]", "[environment]", "[environment.environment]", 'type = "wall"', "[[device]]", "#"]
-        + ["[leader]", "[follower]", "[coupling]"]
+        [
+            *("[device]", "[environment]", "[environment.environment]", 'type = "wall"', "[[device]]", "#"),
+            *("[leader]", "[follower]", "[coupling]"),
+        ]
     ),
     texts(),
 )

@@ -1,4 +1,4 @@
-"""`zwidth pair`: two arms that follow each other, decided, reported, saved, and one clear line on bad input."""
+"""`zwidth pair`: two arms that follow each other, decided, reported, saved; one clear line on bad input."""
 
 from __future__ import annotations
 
@@ -185,11 +185,11 @@ def test_every_key_of_the_json_is_on_its_page(files, capsys):
         (["leader"], ("no spring joins the arms", "--stiffness [N/m]")),
         (["leader", "follower", "pair", "--stiffness", "3"], ("two arms", "3 sources")),
         (["leader", "pair"], ("[leader]", "given alone")),
-        (["leader", "--stiffness", "0"], ("command line", "stiffness must be > 0 N/m, got 0", "do not follow")),
+        (["leader", "--stiffness", "0"], ("command line", "stiffness must be > 0 N/m, got 0", "not follow")),
         (["leader", "--stiffness", "3 N*m/rad"], ("stiffness is in N/m",)),
         (["leader", "--stiffness", "10 .. 20"], ("stiffness",)),
         (["leader", "--stiffness", "9", "--link-delay", "3"], ("without a unit", '"3 ms"')),
-        (["leader", "--stiffness", "9", "--link-delay", "-1 ms"], ("link_delay must be ≥ 0", "before it is sent")),
+        (["leader", "--stiffness", "9", "--link-delay", "-1 ms"], ("link_delay must be ≥ 0", "is sent")),
         (["leader", "--stiffness", "9", "--link-delay", "0.49"], ("490 samples", "at most 400")),
         (["leader", "--stiffness", "9", "--damping", "1"], ("no option --damping",)),
         (["leader", "--stiffness", "9", "--plot", "a.txt"], (".png",)),

@@ -3,13 +3,18 @@
 N is 1 and the samples that a force is late all round.  Without delay M = (b − K/2, K/2; K/2, b − K/2): its
 determinant is 0 at K = b.  With a link of a sample each way b − K/2 beside K/2 (1 + 2c): at K = 2, b = 4 that
 is 9 − (1 + 2c)² = 4 (1 − c)(2 + c).  The checker looks at these times 2 − 2c, and (2 − 2c)².
+
+`pairs.json` has proofs, violations and motions of pairs drawn at random, near their limits, of whole delays,
+of delays within a sample and of drives that read their arm more often; the prover found them.
 """
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
-from . import TINY, accepted, edge, put, refused, without
+from . import TINY, Fraction, accepted, edge, put, refused, without
 from .linear import signs
 
 
@@ -111,7 +116,27 @@ PARTLY = moved(loop(arm("1/8", 4, delay_s="1/2"), arm(1, 4)), [0, 1, 0, 0], [0, 
 TURNED = {"leader_switch_positions_m": [1, "1/2", 0]}
 FACTORS, NEGATIVE = "do not multiply", "is not negative at this frequency"
 
+DRAWN = json.loads(Path(__file__).with_name("pairs.json").read_text(encoding="utf-8"))
+
+
+def drawn() -> Any:
+    """Each as it is, and with another number."""
+    for place, told_ in enumerate(DRAWN):
+        name = f"drawn {place}, {told_['kind']}"
+        yield accepted(name, told_)
+        if told_["kind"] == "pair motion":
+            energy = Fraction(told_["energy_J"])
+            yield refused(f"{name}, more", told(told_, energy * (1 + 5 * TINY)), "not ")
+            yield refused(f"{name}, less", told(told_, energy * (1 - 5 * TINY)), "not ")
+        elif told_["kind"] == "pair":
+            for side in ("leader", "follower"):
+                key = f"loop.{side}.damping_N_s_per_m"
+                value = Fraction(told_["loop"][side]["damping_N_s_per_m"])
+                yield refused(f"{name}, {side}", put(told_, {key: value * (1 - TINY)}), "multiply")
+
+
 CASES = [
+    *drawn(),
     *edge(
         "springs",
         SPRING,

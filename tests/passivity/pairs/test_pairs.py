@@ -15,7 +15,7 @@ from zwidth.checker.pair.passive import PAIR_PROOF, criterion
 from zwidth.passivity.linear.boundary import largest_holding
 from zwidth.passivity.pairs import PairCriterion, largest_spring
 from zwidth.passivity.pairs.evidence import energy_of, pair_document
-from zwidth.passivity.witness.motion import Motion
+from zwidth.passivity.witness.motion import Motion, Repeat
 
 BILLIONTH = Fraction(1, 10**9)
 PADDLE = zw.Device(damping="0.5", coulomb_friction="0.1", resolution=0, delay=0, rate="1 kHz")
@@ -120,7 +120,7 @@ def test_a_round_takes_what_the_form_says(seed):
     random, q = np.random.default_rng(seed), 7
     paths = [[0, *(int(v) for v in random.integers(-9, 9, q - 1)), 0] for _ in (0, 1)]
 
-    def taken(rounds: int) -> Fraction:
+    def energy_out(rounds: int) -> Fraction:
         motions = [Motion(tuple(Fraction(v) for v in path[:-1] * rounds + [0])) for path in paths]
         energy = energy_of(bare, *motions)
         assert energy is not None
@@ -131,7 +131,61 @@ def test_a_round_takes_what_the_form_says(seed):
         (moved[:, k].conj() @ PairCriterion(bare).at(2 * np.pi * k / q) @ moved[:, k]).real
         for k in range(1, q)
     )
-    assert float(taken(6) - taken(5)) == pytest.approx(-found * q * 1000, rel=1e-9)
+    assert float(energy_out(6) - energy_out(5)) == pytest.approx(-found * q * 1000, rel=1e-9)
+
+
+def taken(pair: zw.Pair, paths: list[list[Fraction]], turns: list[list[Fraction]]) -> float:
+    """Energy out of a motion, every reading listed, from the definitions."""
+    often = pair.own_readings
+    step, total = float(pair.sample_period) / often, 0.0
+    read = []
+    for side, path in zip(pair.sides, paths, strict=True):
+        count = side.resolution
+        read.append([float(count * (x // count) if count else x) for x in path])
+    for i, side in enumerate(pair.sides):
+        weight = 1.0 if i == 0 else float(pair.power_ratio)
+        K, B, D = (float(v) for v in (side.stiffness, side.virtual_damping, side.local_damping))
+        age = int(np.ceil(float(side.link_delay / pair.sample_period) - 1e-12))
+        whole = int(side.delay // pair.sample_period)
+        part = float(side.delay / pair.sample_period - whole)
+        own, its = read[i], read[1 - i]
+        forces = [0.0] * (whole + 1)
+        for k in range(len(own) - 1):
+            sent = often * (k // often - age)
+            other, old = (its[max(at, 0)] for at in (sent, sent - often))
+            was = own[max(k - 1, 0)]
+            forces.append(K * (own[k] - other) + B * ((own[k] - was) / step - (other - old) / (often * step)))
+            forces[-1] += D * (own[k] - was) / step
+        for k in range(len(own) - 1):
+            x, y, z = (
+                float(v) for v in (paths[i][k], turns[i][k] if turns[i] else paths[i][k], paths[i][k + 1])
+            )
+            for held, move, length in ((forces[k], y - x, part), (forces[k + 1], z - y, 1 - part)):
+                rubbed = float(side.damping) / (length * step) * move**2 if length else 0.0
+                total -= weight * (held * move + rubbed + float(side.coulomb_friction) * abs(move))
+    return total
+
+
+@pytest.mark.parametrize("drives", [False, True])
+@seeds(15)
+def test_energy_of_any_motion_by_the_definitions(drives, seed):
+    """Encoders, friction, delays, parts that lead on many times: the checker's sums are those of all rounds."""
+    pair, random = random_pair(seed, drives=drives, counted=True), np.random.default_rng(seed)
+    often, motions = pair.own_readings, []
+    arms = PairCriterion(pair).arms
+    for arm in arms:
+        count = arm.side.resolution
+        x = [Fraction(0), *(Fraction(int(v), 7) * count for v in random.integers(-40, 40, 6 * often))]
+        x[4 * often] = x[2 * often] + count * int(random.integers(-3, 4))  # whole counts on in each round
+        y = tuple(v + count * Fraction(int(random.integers(-9, 9)), 5) for v in x[:-1]) if arm.part else ()
+        motions.append(Motion(tuple(x), y, (Repeat(2 * often, 4 * often, 40),)))
+    energy = energy_of(pair, *motions)
+    assert energy is not None
+    listed = [motion.listed() for motion in motions]
+    by_definition = taken(
+        pair, [list(m.positions) for m in listed], [list(m.switch_positions) for m in listed]
+    )
+    assert float(energy) == pytest.approx(by_definition, rel=1e-9)
 
 
 @pytest.mark.parametrize("drives", [False, True])
