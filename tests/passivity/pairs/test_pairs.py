@@ -169,7 +169,7 @@ def taken(pair: zw.Pair, paths: list[list[Fraction]], turns: list[list[Fraction]
 @pytest.mark.parametrize("drives", [False, True])
 @seeds(15)
 def test_energy_of_any_motion_by_the_definitions(drives, seed):
-    """Encoders, friction, delays, parts that lead on many times: the checker's sums are those of all rounds."""
+    """Encoders, friction, delays, parts that lead on many times: the sums are those of all rounds."""
     pair, random = random_pair(seed, drives=drives, counted=True), np.random.default_rng(seed)
     often, motions = pair.own_readings, []
     arms = PairCriterion(pair).arms
