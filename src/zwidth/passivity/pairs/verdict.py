@@ -65,8 +65,8 @@ class PairVerdict(PassivityAnswer):
     ----------
     pair
         What was asked.
-    certificate, violation
-        The proof, or the frequency at which the criterion is violated.
+    criterion
+        What decided it, encoders and Coulomb friction aside.
     """
 
     FORMAT: ClassVar[str] = "zwidth pair 1"
