@@ -114,6 +114,10 @@ ON = moved(loop(arm(1, 4)), [0, 1, 2], [0, 0, 0])
 TWICE = moved({**loop(arm("1/2", 4, local_damping_N_s_per_m=1)), "own_readings": 2}, [0, 1, 0], [0, 0, 0])
 PARTLY = moved(loop(arm("1/8", 4, delay_s="1/2"), arm(1, 4)), [0, 1, 0, 0], [0, 0, 0, 0])
 TURNED = {"leader_switch_positions_m": [1, "1/2", 0]}
+# half a count of the leader's spring holds 1/2 J; the force is −4 N just below the edge, and 0 above it
+FINE = arm(0, 4)
+COUNTED = moved(loop({**FINE, "resolution_m": 1}, FINE), [0, "-1/8", 0], [0, 0, 0])
+BOTH_COUNTED = moved(loop({**FINE, "resolution_m": "1/2"}), [0, "-1/4", 0], [0, 0, 0])
 FACTORS, NEGATIVE = "do not multiply", "is not negative at this frequency"
 
 DRAWN = json.loads(Path(__file__).with_name("pairs.json").read_text(encoding="utf-8"))
@@ -234,6 +238,12 @@ CASES = [
         shows="active",
         encoder="ideal",
     ),
+    accepted("no damping at all", violated(loop(arm(0, 4)), 0)),
+    accepted("as old as may be", violated(loop(arm(0, 4, link_delay_s=400, delay_s=400)), 0)),
+    accepted(
+        "a drive that drives on",
+        violated({**loop(arm(2, 4, local_damping_N_s_per_m=-3)), "own_readings": 2}, 0),
+    ),
     refused("violated at rest", violated(ACTIVE, 1), "must be < 1"),
     *edge(
         "to and fro",
@@ -268,6 +278,36 @@ CASES = [
     refused("instants of no use", put(TO_AND_FRO, {"follower_switch_positions_m": [0, 0]}), "of no use"),
     refused(
         "one longer than the other", put(TO_AND_FRO, {"follower_positions_m": [0, 0]}), "start at rest at 0"
+    ),
+    *edge(
+        "over an edge",
+        told(put(COUNTED, {"leader_positions_m": [0, -Fraction(1, 8) - TINY, 0]}), Fraction(1, 2) + 4 * TINY),
+        COUNTED,
+        "no more than the 0.5 J stored",
+        energy=Fraction(1, 2) + 4 * TINY,
+        encoder="counted",
+    ),
+    *edge(
+        "over an edge of both",
+        told(
+            put(BOTH_COUNTED, {"leader_positions_m": [0, -Fraction(1, 4) - TINY, 0]}),
+            Fraction(1, 2) + 2 * TINY,
+        ),
+        BOTH_COUNTED,
+        "no more than the 0.5 J stored",
+    ),
+    refused(
+        "on by half a count in each round",
+        put(
+            COUNTED,
+            {"leader_positions_m": [0, "-1/2"], "follower_positions_m": [0, 0], "repeats": again(0, 1, 8)},
+        ),
+        "extracts -32",
+        -32,
+    ),
+    refused("shorter than the other", put(TO_AND_FRO, {"leader_positions_m": [0, 0]}), "start at rest at 0"),
+    refused(
+        "the leader apart at first", put(TO_AND_FRO, {"leader_positions_m": [1, 1, 0]}), "start at rest at 0"
     ),
     refused("apart at first", put(TO_AND_FRO, {"follower_positions_m": [1, 1, 1]}), "start at rest at 0"),
     refused("rounds beyond the end", put(TO_AND_FRO, {"repeats": again(1, 3, 2)}), "must lie in the motion"),
