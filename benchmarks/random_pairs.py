@@ -1,9 +1,9 @@
 """Random pairs of arms on both sides of their limit: the proof, and the motion of both hands.
 
 Delays of whole samples and of part of one, links of 0 to 12 samples each way, unequal damping, coupling with
-and without B and D, equal and unequal stiffness, ideal encoders and counted ones.  The largest stiffness that
-is passive is found to the last double; a part in 10⁹ below it the checker must accept the certificate, a
-part in 10⁹ above it a motion, replayed, must take energy out.
+and without B and D, equal and unequal stiffness, ideal encoders and counted ones, some with drives.  The
+largest stiffness that is passive is found to the last double; a part in 10⁹ below it the checker must accept
+the certificate, a part in 10⁹ above it a motion, replayed, must take energy out.
 
     python random_pairs.py [PAIRS] [FIRST SEED]
 """
@@ -48,10 +48,14 @@ def random_pair(seed: int) -> zw.Pair:
         )
 
     leader, follower = arm(), arm()
+    often = int(random.choice([1, 1, 1, 2, 5, 20, 100]))
+    if often > 1:
+        leader, follower = leader.replace(delay=0), follower.replace(delay=0)
     share = random.choice([0, 0.1, 0.4, -0.2]) * float(leader.damping)
     local = random.choice([0, 0, 0.3]) * float(leader.damping)
     more = {"follower_stiffness": number(0.5, 2)} if random.random() < 0.3 else {}
     link = tuple(Fraction(int(random.integers(0, 25)), 2) * period for _ in (0, 1))
+    more |= {"drive_rate": often / period} if often > 1 else {}
     return zw.Pair(
         leader,
         follower,

@@ -94,6 +94,8 @@ class Arm:
         From Σ_l 1/(y − cos φ_l) = m U_{m−1}(y)/(T_m(y) − cos θ), y = −β/γ.
         """
         beta, gamma = self.inside
+        if gamma == 0:
+            return fmpz_poly([beta.numerator]), fmpz_poly([beta.denominator])
         scale = lcm(beta.denominator, gamma.denominator)
         b, g, m = int(beta * scale), int(gamma * scale), self.often
         t, u = _homogeneous(fmpz_poly.chebyshev_t(m), b, g), _homogeneous(fmpz_poly.chebyshev_u(m - 1), b, g)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -70,8 +71,8 @@ def _positivity(sign: Positivity, more: int) -> dict[str, Any]:
     return {
         "at_one": sign.at_one + more,
         "at_minus_one": sign.at_minus_one,
-        "square": [str(c) for c in sign.square],
-        "factor": [str(c) for c in sign.factor],
+        "square": [str(Decimal(c)) for c in sign.square],  # str(int) stops at 4300 digits
+        "factor": [str(Decimal(c)) for c in sign.factor],
     }
 
 
