@@ -28,13 +28,26 @@ def test_inside_the_boundary_the_pair_is_passive():
             assert PairCriterion(PAIR.replace(**arms)).holds is holds
 
 
-def test_the_stairs_are_the_limits():
-    """At every delay of whole samples."""
-    springs = PAIR.replace(damping=0)
-    ages, stiffness = link_limits(springs)
-    for age, limit in zip(ages, stiffness, strict=True):
-        late = springs.replace(delay=Fraction(int(age), 1000))
+@pytest.mark.parametrize("delay", [("2 ms", "2 ms"), ("2 ms", "3 ms"), ("0", "0"), ("0", "0.5 ms")])
+def test_the_stairs_are_the_limits(delay):
+    """At every delay at which a reading becomes older, those there and back in proportion."""
+    springs = PAIR.replace(damping=0, delay=delay)
+    ways = [value.fraction for value in springs.delay]
+    ways = ways if any(ways) else [1, 1]
+    delays, stiffness = link_limits(springs)
+    assert len(delays) > 5
+    for mean, limit in zip(delays, stiffness, strict=True):
+        share = 2 * Fraction(mean).limit_denominator(10**7) / sum(ways)
+        late = springs.replace(delay=(share * ways[0], share * ways[1]))
         assert limit == pytest.approx(float(largest_spring(late)), rel=1e-5)
+
+
+def test_the_pair_stands_beside_its_own_limit():
+    """With delays that differ too: passive below the stairs at its place, active above them."""
+    pair = zw.Pair(ARM.replace(damping=2), ARM.replace(damping=2), stiffness=570.9, delay=("2 ms", "3 ms"))
+    delays, stiffness = link_limits(pair)
+    (here,) = np.flatnonzero(np.isclose(delays, 0.0025))
+    assert stiffness[here] == pytest.approx(4000 / 7, rel=1e-6)
 
 
 @pytest.mark.parametrize("stiffness", [10, 1000])

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from zwidth.pairs import Pair
 from zwidth.passivity.linear.boundary import COARSER, smallest_holding
@@ -19,8 +20,10 @@ from zwidth.plots.style import BLUE, GREEN, GREY, LOOK, OUTCOME, RED, new_figure
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import quantity_unit
 
-_DAMPINGS, _AGES = 40, 8
-"""Points of the boundary; samples of link delay that are shown at least."""
+Array = NDArray[np.float64]
+
+_DAMPINGS, _AGES, _MOST = 40, 8, 24
+"""Points of the boundary; samples of link delay that are shown at least, and steps at most."""
 
 
 @rc_context(LOOK)
@@ -70,7 +73,7 @@ def draw_pair_damping(axes: Axes, verdict: PairVerdict) -> None:
     _mark(axes, verdict, here[0], here[1])
 
 
-def damping_boundary(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
+def damping_boundary(pair: Pair) -> tuple[Array, Array]:
     """Dampings of the leader, and the least of the follower beside each; inf where none is enough."""
 
     def holds(leader: Fraction, follower: Fraction) -> bool:
@@ -103,30 +106,39 @@ def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
         What `zwidth.check` returned of a `zwidth.Pair`.
     """
     pair = verdict.pair
-    ages, stiffness = link_limits(pair)
-    seconds, unit = scale([float(ages[-1] * pair.sample_period)], "s")
-    ends = seconds * float(pair.sample_period) * ages
+    delays, stiffness = link_limits(pair)
+    seconds, unit = scale([float(delays[-1])], "s")
+    ends = seconds * delays
     axes.stairs(stiffness[1:], ends, baseline=0, color=GREEN, fill=True, alpha=0.16, lw=0)
     axes.stairs(stiffness[1:], ends, baseline=None, color=GREEN, lw=1.6, gid="stairs")
     axes.plot([0], stiffness[:1], ".", color=GREEN, clip_on=False)
-    mean = float(pair.there + pair.back) / 2
     axes.set(xlim=(0, ends[-1]), ylim=(0, 1.3 * max(float(pair.stiffness), float(stiffness.max()))))
-    axes.set_xlabel(f"link delay, each way [{unit}]")
+    which = "each way" if pair.there == pair.back else "mean of there and back"
+    axes.set_xlabel(f"link delay, {which} [{unit}]")
     axes.set_ylabel(f"stiffness [{quantity_unit('stiffness', pair.motion)}]")
-    axes.set_title("shaded: passive")
-    _mark(axes, verdict, seconds * mean, float(pair.stiffness))
+    axes.set_title("shaded: passive" if stiffness.any() else "none is passive")
+    _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, float(pair.stiffness))
 
 
-def link_limits(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
-    """Samples of link delay each way, from 0, and the largest passive stiffness at each."""
-    longest = max(side.link_delay for side in pair.sides) / pair.sample_period
-    most = max(_AGES, int(2 * longest))
-    ages = np.unique(np.linspace(0, most, min(most, 40) + 1).round().astype(int))
-    found = []
-    for age in ages:
-        delay = Exact(int(age) * pair.sample_period)
-        found.append(largest_stiffness(pair.replace(delay=(delay, delay))) or 0.0)
-    return ages, np.array(found)
+def link_limits(pair: Pair) -> tuple[Array, Array]:
+    """Mean delays of the link up to which readings stay as old [s], and the largest passive stiffness.
+
+    Delays there and back are in proportion as they are.
+    """
+    period = pair.sample_period
+    ways = [value.fraction for value in pair.delay]
+    ways = ways if any(ways) else [period, period]
+    last = max(Fraction(2), _AGES * period / max(ways)) if any(pair.delay) else Fraction(_AGES)
+    counts = [(way, int(last * way / period)) for way in ways if way]
+    shares = sorted({k * period / way for way, most in counts for k in range(most + 1)} | {Fraction(1)})
+    chosen = {0, len(shares) - 1, *np.linspace(0, len(shares) - 1, _MOST).round().astype(int).tolist()}
+    shares = [share for k, share in enumerate(shares) if k in chosen or share == 1]
+    found = [
+        largest_stiffness(pair.replace(delay=(Exact(share * ways[0]), Exact(share * ways[1])))) or 0.0
+        for share in shares
+    ]
+    mean = float(sum(ways)) / 2
+    return np.array([float(share) * mean for share in shares]), np.array(found)
 
 
 def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
