@@ -15,15 +15,16 @@ from numpy.typing import NDArray
 from zwidth.pairs import Pair
 from zwidth.passivity.linear.boundary import COARSER, smallest_holding
 from zwidth.passivity.pairs import PairCriterion, PairVerdict
-from zwidth.passivity.pairs.limits import largest_stiffness
+from zwidth.passivity.pairs.advice import MOST_SAMPLES
+from zwidth.passivity.pairs.limits import largest_stiffness, samples_around
 from zwidth.plots.style import BLUE, GREEN, GREY, LOOK, OUTCOME, RED, new_figure, scale
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import quantity_unit
 
 Array = NDArray[np.float64]
 
-_DAMPINGS, _AGES, _MOST = 40, 8, 24
-"""Points of the boundary; samples of link delay that are shown at least, and steps at most."""
+_DAMPINGS, _AGES, _MOST, _FEW = 40, 8, 24, 6
+"""Points of the boundary; samples of link delay shown at least, and steps at most; a few of either."""
 
 
 @rc_context(LOOK)
@@ -88,7 +89,7 @@ def damping_boundary(pair: Pair) -> tuple[Array, Array]:
     equal = smallest_holding(lambda b: holds(b, b * ratio), guess, COARSER) or guess
     found = []
     top = 1.25 * max(3 * equal, *(float(side.damping) for side in pair.sides))
-    steps = np.geomspace(0.1 * equal, top, _DAMPINGS)
+    steps = np.geomspace(0.1 * equal, top, _number(pair, _DAMPINGS))
     for step in steps:
         least = smallest_holding(partial(holds, Exact(float(step)).fraction), equal, COARSER)
         found.append(np.inf if least is None else least)
@@ -131,7 +132,11 @@ def link_limits(pair: Pair) -> tuple[Array, Array]:
     last = max(Fraction(2), _AGES * period / max(ways)) if any(pair.delay) else Fraction(_AGES)
     counts = [(way, int(last * way / period)) for way in ways if way]
     shares = sorted({k * period / way for way, most in counts for k in range(most + 1)} | {Fraction(1)})
-    chosen = {0, len(shares) - 1, *np.linspace(0, len(shares) - 1, _MOST).round().astype(int).tolist()}
+    chosen = {
+        0,
+        len(shares) - 1,
+        *np.linspace(0, len(shares) - 1, _number(pair, _MOST)).round().astype(int).tolist(),
+    }
     shares = [share for k, share in enumerate(shares) if k in chosen or share == 1]
     found = [
         largest_stiffness(pair.replace(delay=(Exact(share * ways[0]), Exact(share * ways[1])))) or 0.0
@@ -139,6 +144,11 @@ def link_limits(pair: Pair) -> tuple[Array, Array]:
     ]
     mean = float(sum(ways)) / 2
     return np.array([float(share) * mean for share in shares]), np.array(found)
+
+
+def _number(pair: Pair, usual: int) -> int:
+    """Fewer points where readings are so old that each of them takes a second."""
+    return usual if samples_around(pair) <= MOST_SAMPLES else _FEW
 
 
 def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
