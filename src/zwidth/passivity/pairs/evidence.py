@@ -38,7 +38,11 @@ def pair_document(pair: Pair) -> dict[str, Any]:
 
 
 def _side(side: Side, motion: str) -> dict[str, str]:
-    return {unit_key(name, motion): exact_text(value) for name, value in vars(side).items()}
+    return {
+        unit_key(name, motion): exact_text(value)
+        for name, value in vars(side).items()
+        if isinstance(value, Fraction)
+    }
 
 
 @dataclass(frozen=True, repr=False)

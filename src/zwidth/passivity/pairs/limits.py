@@ -15,6 +15,8 @@ from zwidth.quantity.exact import Exact
 def is_passive(pair: Pair) -> bool:
     """True where the criterion holds and friction covers the steps of both encoders."""
     criterion = PairCriterion(pair)
+    if any(pair.compensations):  # not decided yet
+        return False
     return max(criterion.missing_friction) <= 0 and criterion.holds
 
 

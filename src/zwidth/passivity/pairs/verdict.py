@@ -43,6 +43,8 @@ def check_pair(pair: Pair) -> PairVerdict:
         If the sign of the criterion would take too long to decide.
     """
     criterion = PairCriterion(pair)
+    if any(pair.compensations):  # not decided yet
+        return PairVerdict(pair, criterion)
     signs = Fraction(0) if criterion.slips else criterion.signs
     if isinstance(signs, Fraction):
         violation = PairViolation(pair, signs, criterion.slips)
