@@ -8,10 +8,10 @@ friction, C of the viscous one.  As the controllers of low-cost arms have it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 
-from zwidth.quantity.exact import Exact
-from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import Certain, Parametric, parameter
 
 _DRIVES = "it helps the motion; what brakes it is the friction of the device, or its local damping"
@@ -37,37 +37,23 @@ class FrictionCompensation(Parametric):
         If a number is below 0, or an interval.
     """
 
-    coulomb: Certain = parameter(
-        Quantity("compensation_coulomb", "F", "N", "N*m", "Coulomb friction that is compensated"),
-        0,
-        kept=Exact,
-        bound="≥ 0",
-        why=_DRIVES,
-    )
-    viscous: Certain = parameter(
-        Quantity("compensation_viscous", "C", "N*s/m", "N*m*s/rad", "viscous friction that is compensated"),
-        0,
-        kept=Exact,
-        bound="≥ 0",
-        why=_DRIVES,
-    )
+    coulomb: Certain = parameter("compensated_coulomb_friction", 0, kept=Exact, bound="≥ 0", why=_DRIVES)
+    viscous: Certain = parameter("compensated_damping", 0, kept=Exact, bound="≥ 0", why=_DRIVES)
     speed: Certain = parameter(
-        Quantity(
-            "compensation_speed",
-            "v_s",
-            "m/s",
-            "rad/s",
-            "speed at which compensation of Coulomb friction has come to three quarters; 0: at any speed",
-        ),
-        0,
-        kept=Exact,
-        bound="≥ 0",
-        why="0 stands for the sign of the speed",
+        "compensation_speed", 0, kept=Exact, bound="≥ 0", why="0 stands for the sign of the speed"
     )
 
     def __bool__(self) -> bool:
         """False where it adds no force."""
         return bool(self.coulomb or self.viscous)
+
+    def replace(self, **changes: RealLike) -> FrictionCompensation:
+        """The same law with some numbers changed."""
+        return replace(self, **changes)
+
+    def scaled(self, share: Fraction) -> FrictionCompensation:
+        """So many times the force at every speed."""
+        return self.replace(coulomb=share * self.coulomb.fraction, viscous=share * self.viscous.fraction)
 
     def describe(self, motion: str = "linear") -> str:
         """The law with its numbers, in a few words."""
