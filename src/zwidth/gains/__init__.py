@@ -1,4 +1,4 @@
-"""Gain files of arms that people have: what their numbers mean, the pairs that they make, and which are passive."""
+"""Gain files of arms that people have: what their numbers mean, the pairs they make, which are passive."""
 
 from zwidth.gains.arms import ArmGains
 from zwidth.gains.joint import Gains, JointGains

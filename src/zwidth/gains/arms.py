@@ -9,9 +9,10 @@ from typing import Any
 
 from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.gains.joint import Gains, JointGains
+from zwidth.gains.coupled import CoupledJoint, coupled
+from zwidth.gains.joint import JointGains
 from zwidth.gains.plant import GivenPlant, plant_of
-from zwidth.gains.published import Family, family
+from zwidth.gains.published import Family, Value, family
 from zwidth.pairs import Pair
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.text import shown
@@ -23,9 +24,9 @@ Delay = RealLike | tuple[RealLike, RealLike]
 
 @dataclass(frozen=True)
 class Setting:
-    """The pairs of an arm's joints, and what was taken for granted to make them."""
+    """The joints of both arms with all that decides them, and what was taken for granted to make them."""
 
-    pairs: dict[str, Pair]
+    joints: tuple[CoupledJoint, ...]
     notes: tuple[str, ...]
 
 
@@ -43,12 +44,15 @@ class ArmGains(Shown):
         What each number is, and what is not known of it.
     drives
         True where each arm's own part is computed in its motor drive.
+    follows
+        True where the files are of a follower alone, whatever was taken for the leader.
     """
 
     family: str
     joints: tuple[JointGains, ...]
     notes: tuple[str, ...]
     drives: bool = True
+    follows: bool = False
 
     @property
     def published(self) -> Family:
@@ -66,6 +70,8 @@ class ArmGains(Shown):
         rate: RealLike | None = None,
         delay: Delay | None = None,
         drive_rate: RealLike | None = None,
+        ideal_drive: bool = False,
+        compensated: bool = True,
     ) -> dict[str, Pair]:
         """The pair of each joint, by its name.
 
@@ -80,13 +86,19 @@ class ArmGains(Shown):
             Of the link, one number or (there, back) [s]; None: the family's.
         drive_rate
             Of the loop in each drive [Hz], 0 where there is none; None: the family's, an assumption.
+        ideal_drive
+            True: what a drive does with its own speed is a damper, at once and without steps; the damping of
+            each device then holds it.
+        compensated
+            False: compensation of friction is left out.
 
         Raises
         ------
         InputError
             If there is no law of both arms, no plant, or a number is outside its bound.
         """
-        return self.setting(plant, rate, delay, drive_rate).pairs
+        setting = self.setting(plant, rate, delay, drive_rate, ideal_drive, compensated)
+        return {joint.name: joint.pair() for joint in setting.joints}
 
     def setting(
         self,
@@ -94,43 +106,79 @@ class ArmGains(Shown):
         rate: RealLike | None = None,
         delay: Delay | None = None,
         drive_rate: RealLike | None = None,
+        ideal_drive: bool = False,
+        compensated: bool = True,
     ) -> Setting:
-        """`pairs`, with what was taken for granted."""
+        """The joints that `pairs` is made of, with what was taken for granted."""
         if not self.is_pair:
             raise InputError(
-                f"{self.published.title}: the leader feels nothing, so this is no pair; --both takes the "
-                "follower's gains on both sides"
+                f"{self.published.title}: the leader feels nothing, so this is no pair"
+                + ("; --both takes the follower's gains on both sides" if self.follows else "")
             )
         known = self.published
         arms = plant_of(self.joints, known, plant)
         often = known.rate.value if rate is None else parse_number(rate, "Hz", "rate")
+        if often.fraction <= 0:
+            raise InputError(f"rate must be > 0, got {float(often):g} Hz: references are sent that often")
         link = known.link_delay.value if delay is None else delay
+        there, back = link if isinstance(link, (tuple, list)) and len(link) == 2 else (link, link)
+        ways = parse_number(there, "s", "link delay"), parse_number(back, "s", "link delay back")
         inside = self._drive_rate(often, drive_rate)
-        pairs = {}
-        for n, joint in enumerate(self.joints):
+        joints = []
+        for joint, *rows in zip(self.joints, arms.leader, arms.follower, strict=True):
             leader, follower = (
-                Device(**rows[n], rate=often, delay=0, motion="rotary", name=f"{joint.name}, {side}")
-                for side, rows in (("leader", arms.leader), ("follower", arms.follower))
+                Device(**row, rate=often, delay=0, motion="rotary", name=f"{joint.name} of the {side}")
+                for side, row in zip(("leader", "follower"), rows, strict=True)
             )
-            assert joint.leader is not None
-            pairs[joint.name] = Pair(
-                leader,
-                follower,
-                delay=link if isinstance(link, tuple) else parse_number(link, "s", "link delay"),
-                drive_rate=inside,
-                **coupling(joint.leader, joint.follower),
+            joints.append(
+                coupled(
+                    joint,
+                    (leader, follower),
+                    delay=ways,
+                    drive_rate=inside,
+                    ideal_drive=ideal_drive,
+                    compensated=compensated,
+                    largest_stiffness=_of(known.largest_stiffness),
+                    largest_damping=_of(known.largest_damping),
+                )
             )
-        taken = (
-            *(f"rate {shown(often, 'Hz')}: {known.rate.source}" for _ in [0] if rate is None),
+        notes = [
+            *([f"rate {shown(often, 'Hz')}: {known.rate.source}"] if rate is None else []),
+            *([self._said_of_link(known)] if delay is None else []),
+            self._said_of_drives(inside, drive_rate is None, ideal_drive),
             *(
-                f"link delay {shown(known.link_delay.value, 's')} each way: {known.link_delay.source}"
-                for _ in [0]
-                if delay is None
+                []
+                if compensated
+                else ["compensation of friction is left out: the claim is of arms without it"]
             ),
-            *self._said_of_drives(inside, drive_rate is None),
             arms.note,
+            *self._beyond(known),
+        ]
+        return Setting(tuple(joints), tuple(notes))
+
+    def _beyond(self, known: Family) -> Iterator[str]:
+        """Gains that the drive does not take as they are."""
+        limits = (
+            (known.largest_stiffness, ("stiffness",), "kp"),
+            (known.largest_damping, ("damping", "local_damping"), "kd"),
         )
-        return Setting(pairs, taken)
+        for limit, keys, said in limits:
+            names = [
+                joint.name
+                for joint in self.joints
+                for gains in (joint.leader, joint.follower)
+                if limit and gains and any(getattr(gains, key) > limit.value.fraction for key in keys)
+            ]
+            if limit and names:
+                yield (
+                    f"{said} of {', '.join(dict.fromkeys(names))} is more than {float(limit.value):g} "
+                    f"({limit.source}): decided as it stands in the file"
+                )
+
+    @staticmethod
+    def _said_of_link(known: Family) -> str:
+        delay = known.link_delay
+        return f"link delay {shown(delay.value, 's')} each way: {delay.source}"
 
     def _drive_rate(self, rate: Exact, given: RealLike | None) -> Exact | None:
         if given is not None:
@@ -141,15 +189,14 @@ class ArmGains(Shown):
         often = self.published.drive_rate.value.fraction // rate.fraction
         return Exact(rate.fraction * often) if often > 1 else None
 
-    def _said_of_drives(self, rate: Exact | None, assumed: bool) -> Iterator[str]:
+    def _said_of_drives(self, rate: Exact | None, assumed: bool, ideal: bool) -> str:
         if rate is None:
-            yield "everything is computed once in a sample period: no loop inside the drive"
-            return
-        source = f": {self.published.drive_rate.source}" if assumed else ""
-        yield (
-            f"each arm's own part is computed in its drive at {shown(rate, 'Hz')}{source}; speed is the difference "
-            "of two positions there, without filter, and current follows at once"
-        )
+            return "everything is computed once in a sample period: no loop inside the drive"
+        source = f" ({self.published.drive_rate.source})" if assumed else ""
+        speed = "its speed is the difference of two positions there, without filter or lag"
+        if ideal:
+            speed = "its kd of its own speed acts as a damper, at once and without steps"
+        return f"each arm's own part is computed in its drive at {shown(rate, 'Hz')}{source}; {speed}"
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys."""
@@ -161,7 +208,7 @@ class ArmGains(Shown):
 
     def report(self) -> Iterator[Part]:
         """The gains joint by joint, and what they are."""
-        yield f"{self.published.title}, {len(self.joints)} joints"
+        yield f"{self.published.title}, {len(self.joints)} {'joint' if len(self.joints) == 1 else 'joints'}"
         heads = [["joint", "side", "K", "kd, against the other", "kd, of its own speed"]]
         heads.append(["", "", "N·m/rad", "N·m·s/rad", "N·m·s/rad"])
         rows = []
@@ -176,15 +223,5 @@ class ArmGains(Shown):
         yield Lines(self.notes, "what they are")
 
 
-def coupling(leader: Gains, follower: Gains, times: Fraction = Fraction(1)) -> dict[str, Any]:
-    """The arguments of `Pair` that the gains of both sides are; damping `times` what it is."""
-    return {
-        "stiffness": Exact(leader.stiffness),
-        "damping": Exact(times * leader.damping),
-        "local_damping": Exact(times * leader.local_damping),
-        "follower_stiffness": Exact(follower.stiffness) if follower.stiffness != leader.stiffness else None,
-        "follower_damping": Exact(times * follower.damping) if follower.damping != leader.damping else None,
-        "follower_local_damping": Exact(times * follower.local_damping)
-        if follower.local_damping != leader.local_damping
-        else None,
-    }
+def _of(value: Value | None) -> Fraction | None:
+    return None if value is None else value.value.fraction

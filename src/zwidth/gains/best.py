@@ -1,20 +1,21 @@
 """The gains of a joint that are still passive: how stiff, with which damping, or for how much friction.
 
-M(θ) is affine in K, B and D (of drives the diagonal is concave in them, a parallel sum), and friction for the
-steps of the encoders goes with |B| and |B + D|.  So the gains that are passive make a convex set: the largest K
-over a multiple of the damping is concave in it, and a golden section finds its top.  What is found is rounded
-inward, and then proved by itself: no more is said than was proved.
+M(θ) is affine in K, B and D (of drives the diagonal is concave in them, a parallel sum), and friction for
+the steps of the encoders goes with |B| and |B + D|; what compensation may spend makes a convex set too.  So
+the gains that are passive do: the largest K over a multiple of the damping is concave in it, and a golden
+section finds its top.  What is found is rounded inward and proved by itself: no more is said than was proved.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from math import floor, log10, sqrt
-from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.pairs import Pair
+from zwidth.gains.coupled import CoupledJoint
+from zwidth.gains.joint import Gains
 from zwidth.passivity.linear.boundary import COARSER, largest_holding, smallest_holding
 from zwidth.passivity.pairs import check_pair
 from zwidth.passivity.pairs.limits import is_passive
@@ -23,7 +24,6 @@ from zwidth.quantity.exact import Exact
 DIGITS = 3
 """Significant digits of the gains that are told."""
 
-_DAMPINGS = ("damping", "follower_damping", "local_damping", "follower_local_damping")
 _STEPS = 14
 """Of the golden section: a thousandth of its range."""
 
@@ -31,32 +31,41 @@ _TRIES = 6
 _WORTH = 1.02
 """With less than 2 % more stiffness the damping is left out."""
 
-
-def stiffest(pair: Pair) -> Pair | None:
-    """The stiffest pair with the damping as it is, both springs in proportion, rounded down and proved."""
-    found = _largest(pair)
-    return None if found is None else _proved(pair, found)
+_GRID = 8
+"""Places at which gains that are passive are looked for; without compensation the first of all is one."""
 
 
-def best(pair: Pair) -> Pair | None:
-    """The stiffest pair over multiples of the damping, rounded and proved; None where no spring is passive.
+Both = tuple[Gains, Gains]
 
-    Where the pair has no damping, over B on both sides.
+
+def stiffest(joint: CoupledJoint) -> CoupledJoint | None:
+    """The stiffest joint with the damping as it is, both springs in proportion, rounded down and proved."""
+    found = _largest(joint)
+    return None if found is None else _proved(joint, found)
+
+
+def best(joint: CoupledJoint) -> CoupledJoint | None:
+    """The stiffest joint over multiples of the damping, rounded and proved; None where none was found.
+
+    Where the gains have no damping, over B on both sides.  Up to twice b, or twice the damping that the gains
+    have; no more than the drive takes.
     """
-    direction = [Fraction(getattr(pair, key).fraction if getattr(pair, key) else 0) for key in _DAMPINGS]
-    if not any(direction):
-        direction[0] = Fraction(1)
-    top = max(map(abs, direction))
-    high = 2 * max(float(side.damping) for side in pair.sides) / float(top)
+    one = _direction(joint)
+    top = max(abs(v) for gains in one for v in (gains.damping, gains.local_damping))
+    own = max(abs(v) for gains in joint.gains for v in (gains.damping, gains.local_damping))
+    room = 2 * max(*joint.damping, own)
+    if joint.largest_damping is not None:
+        room = min(room, joint.largest_damping)
+    high = float(room / top)
 
-    def damped(times: float) -> Pair:
-        return pair.replace(**_scaled(pair, direction, times))
+    def value(times: float) -> float:
+        return _largest(_damped(joint, one, times)) or 0.0
 
-    none = _largest(damped(0))
-    if none is None or not high:
+    start = next((x for x in (0.0, *(high * n / _GRID for n in range(1, _GRID + 1))) if value(x)), None)
+    if start is None:
         return None
-    times = _top(lambda x: _largest(damped(x)) or 0.0, high)
-    candidates = [damped(times), damped(0)]
+    times = _top(value, high, start)
+    candidates = [_damped(joint, one, x) for x in (times, start)]
     stiffness = [_largest(candidate) or 0.0 for candidate in candidates]
     if stiffness[0] < _WORTH * stiffness[1]:
         candidates.reverse()
@@ -68,98 +77,118 @@ def best(pair: Pair) -> Pair | None:
     return None
 
 
-def required_damping(pair: Pair) -> float | None:
-    """The least b of both arms with the gains as they are, where an arm has less; rounded up and proved."""
+def required_damping(joint: CoupledJoint) -> float | None:
+    """The least b, the same of both arms, with the gains as they are [N·m·s/rad]; rounded up and proved."""
 
-    def raised(b: Fraction) -> Pair:
-        return pair.replace(
-            leader=pair.leader.replace(damping=max(Exact(b), pair.leader.exact("damping"))),
-            follower=pair.follower.replace(damping=max(Exact(b), pair.follower.exact("damping"))),
-        )
+    def with_b(b: Fraction) -> CoupledJoint:
+        return joint.with_damping(b, b)
 
-    guess = max(float(side.damping) for side in pair.sides) or 1.0
-    found = smallest_holding(lambda b: _holds(raised(b)), guess, COARSER)
-    if found is None:
-        return None
+    guess = float(max(joint.damping)) or 1.0
+    found = smallest_holding(lambda b: _holds(with_b(b)), guess, COARSER)
+    if not found:
+        return found
     value = _rounded(found, up=True)
     for _ in range(_TRIES):
-        if _is_proved(raised(value)):
+        if _is_proved(with_b(value)):
             return float(value)
         value += _unit(value)
     return None
 
 
-def _scaled(pair: Pair, direction: list[Fraction], times: float) -> dict[str, Any]:
-    """Damping in the file's proportion, of a few digits; what the follower takes from the leader it still takes."""
-    found: dict[str, Any] = {}
-    for key, share in zip(_DAMPINGS, direction, strict=True):
-        leaders = not key.startswith("follower_")
-        if leaders or getattr(pair, key) is not None:
-            found[key] = Exact(_near(times * float(share)))
-    return found
+def _direction(joint: CoupledJoint) -> Both:
+    if any(gains.damping or gains.local_damping for gains in joint.gains):
+        return joint.gains
+    leader, follower = (replace(gains, damping=Fraction(1)) for gains in joint.gains)
+    return leader, follower
 
 
-def _largest(pair: Pair) -> float | None:
-    """The largest K, both sides in proportion, to a thousandth."""
-    ratio = 1 / pair.power_ratio
+def _damped(joint: CoupledJoint, one: Both, times: float) -> CoupledJoint:
+    """With the damping of `one` so many times, in few digits."""
+    leader, follower = (
+        replace(
+            gains,
+            damping=_near(times * float(gains.damping)),
+            local_damping=_near(times * float(gains.local_damping)),
+        )
+        for gains in one
+    )
+    return replace(joint, gains=(leader, follower))
+
+
+def _stiff(joint: CoupledJoint, leader: Fraction, follower: Fraction) -> CoupledJoint:
+    first, second = (
+        replace(gains, stiffness=k) for gains, k in zip(joint.gains, (leader, follower), strict=True)
+    )
+    return replace(joint, gains=(first, second))
+
+
+def _ratio(joint: CoupledJoint) -> Fraction:
+    """K_f/K_l."""
+    leader, follower = joint.gains
+    return follower.stiffness / leader.stiffness
+
+
+def _largest(joint: CoupledJoint) -> float | None:
+    """The largest K of the leader, both sides in proportion, to a thousandth."""
+    ratio = _ratio(joint)
 
     def holds(k: Fraction) -> bool:
-        return k > 0 and _holds(_with_stiffness(pair, k, k * ratio))
+        return k > 0 and _holds(_stiff(joint, k, k * ratio))
 
-    guess = float(min(side.damping for side in pair.sides) / pair.sample_period) or float(pair.stiffness)
+    period = joint.devices[0].exact("sample_period")
+    guess = float(min(joint.damping) / period) or float(joint.gains[0].stiffness)
     if not holds(Exact(guess / 10**6).fraction):
         return None
     return largest_holding(lambda k: not k or holds(k), guess, COARSER) or None
 
 
-def _proved(pair: Pair, largest: float) -> Pair | None:
+def _proved(joint: CoupledJoint, largest: float) -> CoupledJoint | None:
     """With both springs rounded down, and lower until the checker accepts the proof."""
+    ratio = _ratio(joint)
+    if joint.largest_stiffness is not None:
+        largest = min(largest, float(joint.largest_stiffness / max(Fraction(1), ratio)))
     stiffness = _rounded(largest)
     for _ in range(_TRIES):
         if stiffness <= 0:
             return None
-        candidate = _with_stiffness(pair, stiffness, _rounded(float(stiffness / pair.power_ratio)))
+        candidate = _stiff(joint, stiffness, _rounded(stiffness * ratio))
         if _is_proved(candidate):
             return candidate
         stiffness -= _unit(stiffness)
     return None
 
 
-def _with_stiffness(pair: Pair, leader: Fraction, follower: Fraction) -> Pair:
-    other = None if pair.follower_stiffness is None else Exact(follower)
-    return pair.replace(stiffness=Exact(leader), follower_stiffness=other)
-
-
-def _holds(pair: Pair) -> bool:
+def _holds(joint: CoupledJoint) -> bool:
     try:
-        return is_passive(pair)
+        return is_passive(joint.pair())
     except (InputError, ZeroDivisionError):
         return False
 
 
-def _is_proved(pair: Pair) -> bool:
+def _is_proved(joint: CoupledJoint) -> bool:
     try:
-        return check_pair(pair).passive
+        return check_pair(joint.pair()).passive
     except InputError:
         return False
 
 
-def _top(value: Callable[[float], float], high: float) -> float:
-    """Where a concave function on [0, high], 0 beyond some place, is largest."""
+def _top(value: Callable[[float], float], high: float, start: float) -> float:
+    """Where a function on [0, high] is largest that is concave around `start` and 0 elsewhere."""
+
+    def at(x: float) -> tuple[float, float, float]:
+        return value(x), -abs(x - start), x
+
     golden = (sqrt(5) - 1) / 2
     low = 0.0
-    left, right = high - golden * (high - low), low + golden * (high - low)
-    at_left, at_right = value(left), value(right)
+    left, right = at(high - golden * (high - low)), at(low + golden * (high - low))
     for _ in range(_STEPS):
-        if at_left >= at_right:
-            high, right, at_right = right, left, at_left
-            left = high - golden * (high - low)
-            at_left = value(left)
+        if left[:2] >= right[:2]:
+            high, right = right[2], left
+            left = at(high - golden * (high - low))
         else:
-            low, left, at_left = left, right, at_right
-            right = low + golden * (high - low)
-            at_right = value(right)
-    return left if at_left >= at_right else right
+            low, left = left[2], right
+            right = at(low + golden * (high - low))
+    return max(left, right)[2]
 
 
 def _unit(value: Fraction) -> Fraction:
@@ -167,7 +196,7 @@ def _unit(value: Fraction) -> Fraction:
     return Fraction(10) ** (floor(log10(value)) - DIGITS + 1)
 
 
-def _rounded(value: float, up: bool = False) -> Fraction:
+def _rounded(value: float | Fraction, up: bool = False) -> Fraction:
     exact = Fraction(value)
     if exact <= 0:
         return Fraction(0)

@@ -51,27 +51,26 @@ def read(tables: Sequence[GainTable], supply_voltage: Fraction | None, both: boo
     notes = [
         *_NOTES,
         f"K = {float(motor.stiffness(Fraction(1), supply_voltage)):.4g} N·m/rad for each count of P at "
-        f"{float(supply_voltage):g} V, and in proportion to the voltage, which sags under load ({motor.source})",
+        f"{float(supply_voltage):g} V, and in proportion to the voltage, which sags under load "
+        f"({motor.source})",
     ]
-    for table in tables:
-        for place in _servos(table):
-            if _P in place:
-                counts = place.number(_P, "1")
-            else:
-                counts = Fraction(_DEFAULT)
-                notes.append(f"{place.label}: no {_P}, LeRobot's default of {_DEFAULT} is taken")
-            if not 0 < counts <= 255:
-                raise InputError(
-                    f"{place.where(_P)} must be 1 to 255, one byte of the servo, got {float(counts):g}"
-                )
-            if "position_i_coefficient" in place and place.number("position_i_coefficient", "1"):
-                notes.append(
-                    f"{place.label}: the integral part is left out; with it no stiffness is passive at rest"
-                )
-            gains = Gains(motor.stiffness(counts, supply_voltage), source=place.where(_P))
-            name = place.label.rpartition(", ")[2] if "," in place.label else "each joint"
-            joints.append(JointGains(name, gains if both else None, gains, motor.name))
-    return ArmGains(NAME, tuple(joints), tuple(notes), drives=True)
+    places = [place for table in tables for place in _servos(table)]
+    for place in places:
+        if _P in place:
+            counts = place.number(_P, "1")
+        else:
+            counts = Fraction(_DEFAULT)
+            notes.append(f"{place.label}: no {_P}, LeRobot's default of {_DEFAULT} is taken")
+        if not 0 < counts <= 255:
+            raise InputError(
+                f"{place.where(_P)} must be 1 to 255, one byte of the servo, got {float(counts):g}"
+            )
+        if "position_i_coefficient" in place and place.number("position_i_coefficient", "1"):
+            notes.append(f"{place.label}: the integral part is left out")
+        gains = Gains(motor.stiffness(counts, supply_voltage), source=place.where(_P))
+        name = f"each of {place.label}" if len(places) > 1 else "each joint"
+        joints.append(JointGains(name, gains if both else None, gains, motor.name))
+    return ArmGains(NAME, tuple(joints), tuple(notes), drives=True, follows=True)
 
 
 def _servos(table: GainTable, depth: int = 0) -> Iterator[GainTable]:

@@ -71,7 +71,9 @@ class GainTable:
                 f"{self.where(key)}: {len(given)} numbers where the arm has {joints} joints; "
                 "each list has one for each joint"
             )
-        return [parse_number(value, unit, f"{self.where(key)}[{n}]").fraction for n, value in enumerate(given)]
+        return [
+            parse_number(value, unit, f"{self.where(key)}[{n}]").fraction for n, value in enumerate(given)
+        ]
 
 
 def read_table(path: str | Path) -> GainTable:
@@ -103,7 +105,7 @@ def _yaml(text: str) -> Any:
     import yaml  # only where such a file is read
 
     try:
-        return yaml.load(text, Loader=yaml.BaseLoader)  # noqa: S506  # text, lists and mappings alone
+        return yaml.load(text, Loader=yaml.BaseLoader)  # text, lists and mappings alone
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f"line {mark.line + 1}: " if mark else ""

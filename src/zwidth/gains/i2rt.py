@@ -3,8 +3,8 @@
     follower  τ = kp (q_l − q_f) − kd q̇_f + gravity
     leader    τ = β kp (q_f − q_l) + gravity
 
-with β the bilateral_kp that a person gives when the arms are started, 0.2 by default here.  v_des is 0: kd is of
-the follower's own speed, and the leader has no damping of its own.  Source: i2rt-robotics/i2rt,
+with β the bilateral_kp that a person gives when the arms are started, 0.2 by default here.  v_des is 0: kd is
+of the follower's own speed, and the leader has no damping of its own.  Source: i2rt-robotics/i2rt,
 examples/minimum_gello and robots/motor_chain_robot.py.
 """
 
@@ -16,13 +16,15 @@ from fractions import Fraction
 from zwidth.errors import InputError
 from zwidth.gains.arms import ArmGains
 from zwidth.gains.file import GainTable
-from zwidth.gains.joint import Compensation, Gains, JointGains
+from zwidth.gains.joint import NONE, Gains, JointGains
+from zwidth.pairs import FrictionCompensation
+from zwidth.quantity.exact import Exact
 
 NAME = "i2rt"
 
 _NOTES = (
-    "kd is of the follower's own speed: v_des is 0 (i2rt-robotics/i2rt, minimum_gello); the leader has no damping "
-    "of its own",
+    "kd is of the follower's own speed: v_des is 0 (i2rt-robotics/i2rt, minimum_gello); the leader has no "
+    "damping of its own",
     "grav_comp_kd, of an arm that floats by itself, plays no part between the arms",
 )
 
@@ -84,18 +86,18 @@ def _lists(table: GainTable) -> tuple[list[Fraction], list[Fraction]]:
     return stiffness, table.numbers("kd", "N*m*s/rad", len(stiffness))
 
 
-def _compensation(table: GainTable, count: int) -> list[Compensation | None]:
+def _compensation(table: GainTable, count: int) -> list[FrictionCompensation]:
     """breakaway tanh(v/eps), of the versions that had it."""
     if "friction_comp" not in table:
-        return [None] * count
+        return [NONE] * count
     inner = table.table("friction_comp")
     if str(inner.values.get("enable", "false")).lower() != "true":
-        return [None] * count
+        return [NONE] * count
     speed = inner.number("eps", "rad/s") if "eps" in inner else Fraction(0)
     coulomb = inner.numbers("breakaway", "N*m", count)
     if speed < 0 or min(coulomb) < 0:
         raise InputError(f"{inner.label}: breakaway and eps must be ≥ 0: what is compensated is friction")
-    return [Compensation(f, Fraction(0), speed) for f in coulomb]
+    return [FrictionCompensation(coulomb=Exact(f), speed=Exact(speed)) for f in coulomb]
 
 
 def _motor(table: GainTable, joint: int) -> str:

@@ -5,30 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+from zwidth.pairs import FrictionCompensation
 from zwidth.quantity.text import exact_text
 
-
-@dataclass(frozen=True)
-class Compensation:
-    """φ(v) = F tanh(v/v_s) + C v + F_o, a torque in the direction of motion that an arm adds itself.
-
-    Attributes
-    ----------
-    coulomb, viscous, speed
-        F [N·m], C [N·m·s/rad], v_s [rad/s]; v_s = 0 for the sign of the speed.
-    offset
-        F_o [N·m]: like a weight it gives back what it takes.
-    """
-
-    coulomb: Fraction
-    viscous: Fraction
-    speed: Fraction
-    offset: Fraction = Fraction(0)
+NONE = FrictionCompensation()
+"""No compensation of friction."""
 
 
 @dataclass(frozen=True)
 class Gains:
-    """τ = K (q' − q) + B (q̇' − q̇) − D q̇ + φ(q̇) of one side of a joint, q' the other arm's position.
+    """τ = K (q' − q) + B (q̇' − q̇) − D q̇ + φ(q̇) + F_o of one side of a joint, q' the other arm's position.
 
     Attributes
     ----------
@@ -39,7 +25,9 @@ class Gains:
     local_damping
         D, of the arm's own speed [N·m·s/rad].
     compensation
-        Of friction; None where there is none.
+        φ, of friction.
+    offset
+        F_o [N·m]; like a weight it gives back what it takes.
     source
         The file and the key that the stiffness is from.
     """
@@ -47,7 +35,8 @@ class Gains:
     stiffness: Fraction
     damping: Fraction = Fraction(0)
     local_damping: Fraction = Fraction(0)
-    compensation: Compensation | None = None
+    compensation: FrictionCompensation = NONE
+    offset: Fraction = Fraction(0)
     source: str = ""
 
     def to_dict(self) -> dict[str, object]:
@@ -58,12 +47,13 @@ class Gains:
             "local_damping_N_m_s_per_rad": exact_text(self.local_damping),
             "source": self.source,
         }
-        if self.compensation is not None:
+        if self.compensation:
+            law = self.compensation
             found["compensation"] = {
-                "coulomb_N_m": exact_text(self.compensation.coulomb),
-                "viscous_N_m_s_per_rad": exact_text(self.compensation.viscous),
-                "speed_rad_per_s": exact_text(self.compensation.speed),
-                "offset_N_m": exact_text(self.compensation.offset),
+                "coulomb_N_m": str(law.coulomb),
+                "viscous_N_m_s_per_rad": str(law.viscous),
+                "speed_rad_per_s": str(law.speed),
+                "offset_N_m": exact_text(self.offset),
             }
         return found
 

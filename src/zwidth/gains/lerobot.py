@@ -48,7 +48,7 @@ def read(tables: Sequence[GainTable], both: bool) -> ArmGains:
         name = "gripper" if len(stiffness) == 8 and n == 7 else f"J{n + 1}"
         motor = motors[n] if len(motors) == len(stiffness) else ""
         joints.append(JointGains(name, gains if both else None, gains, motor))
-    return ArmGains(NAME, tuple(joints), _NOTES, drives=True)
+    return ArmGains(NAME, tuple(joints), _NOTES, drives=True, follows=True)
 
 
 def _places(table: GainTable, depth: int = 0) -> Iterator[GainTable]:

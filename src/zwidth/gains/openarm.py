@@ -1,9 +1,9 @@
-"""OpenArm (enactic/openarm_teleop, bilateral): lists Kp, Kd, Fc, k, Fv, Fo below LeaderArmParam, FollowerArmParam.
+"""OpenArm (enactic/openarm_teleop): lists Kp, Kd, Fc, k, Fv, Fo of LeaderArmParam and FollowerArmParam.
 
     τ = Kp (q' − q) + Kd (q̇' − q̇) + gravity + Fc tanh(0.1 k q̇) + Fv q̇ + Fo
 
-on both sides, q' the other arm's position: Kd is of the speed of one arm against the other.  The factor 0.1 is
-in the code (ComputeFriction), although the comment beside the numbers says tanh(k q̇).  Source: the file
+on both sides, q' the other arm's position: Kd is of the speed of one arm against the other.  The factor 0.1
+is in the code (ComputeFriction), although the comment beside the numbers says tanh(k q̇).  Source: the file
 src/controller/control.cpp of that repository, function bilateral_step.
 """
 
@@ -15,8 +15,10 @@ from fractions import Fraction
 from zwidth.errors import InputError
 from zwidth.gains.arms import ArmGains
 from zwidth.gains.file import GainTable
-from zwidth.gains.joint import Compensation, Gains, JointGains
+from zwidth.gains.joint import NONE, Gains, JointGains
 from zwidth.gains.published import family
+from zwidth.pairs import FrictionCompensation
+from zwidth.quantity.exact import Exact
 
 NAME = "openarm"
 
@@ -29,9 +31,10 @@ _SLOPE = Fraction(1, 10)
 _NOTES = (
     "Kd is of the speed of one arm against the other: v_des is the partner's speed on both sides "
     "(enactic/openarm_teleop, bilateral_step); it damps nothing when both arms move together",
-    "friction is compensated by Fc tanh(0.1 k v) + Fv v: the factor 0.1 is in the code, although the comment in "
-    "the file says tanh(k v); the offset Fo gives back what it takes, like a weight",
-    "the speed in the law is the drive's estimate, of an unknown filter; here it is the difference of two positions",
+    "friction is compensated by Fc tanh(0.1 k v) + Fv v: the factor 0.1 is in the code, although the comment "
+    "in the file says tanh(k v); the offset Fo gives back what it takes, like a weight",
+    "the speed in the law is the drive's estimate, of an unknown filter; here it is the difference of two "
+    "positions",
 )
 
 
@@ -54,8 +57,8 @@ def read(tables: Sequence[GainTable]) -> ArmGains:
     if bilateral:
         found["leader"] = _on_the_host(bilateral[0], found.get("leader"))
         notes += [
-            "the leader's gains are those of Bilateral, K (q' − q) − Kd v, computed on the host: Kd is of its own "
-            "speed; the follower's are taken as in openarm_teleop, v_des the leader's speed",
+            "the leader's gains are those of Bilateral, K (q' − q) − Kd v, computed on the host: Kd is of "
+            "its own speed; the follower's are taken as in openarm_teleop, v_des the leader's speed",
             "both arms are taken as computed once in a sample period, the follower's drive too",
         ]
     if not found:
@@ -86,26 +89,26 @@ def _gains(table: GainTable) -> list[Gains]:
         if key in table:
             raise InputError(
                 f"{table.where(key)}: gains of a law with disturbance observers (an early openarm_teleop, or "
-                "openarm_bilateral): its Kp and Kd are per unit of inertia, and no spring and damper joins the "
-                "arms; not decided here"
+                "openarm_bilateral): its Kp and Kd are per unit of inertia, and no spring and damper joins "
+                "the arms; not decided here"
             )
     stiffness = table.numbers("Kp", "N*m/rad")
     count = len(stiffness)
     damping = table.numbers("Kd", "N*m*s/rad", count)
-    compensation = _compensation(table, count)
+    offset = table.numbers("Fo", "N*m", count) if "Fo" in table else [Fraction(0)] * count
+    rows = zip(stiffness, damping, _compensation(table, count), offset, strict=True)
     return [
-        Gains(k, damping=b, compensation=law, source=f"{table.label}, Kp[{n}]")
-        for n, (k, b, law) in enumerate(zip(stiffness, damping, compensation, strict=True))
+        Gains(k, damping=b, compensation=law, offset=o, source=f"{table.label}, Kp[{n}]")
+        for n, (k, b, law, o) in enumerate(rows)
     ]
 
 
-def _compensation(table: GainTable, count: int) -> list[Compensation | None]:
+def _compensation(table: GainTable, count: int) -> list[FrictionCompensation]:
     if not any(key in table for key in _FRICTION):
-        return [None] * count
+        return [NONE] * count
     coulomb = table.numbers("Fc", "N*m", count)
     steepness = table.numbers("k", "s/rad", count)
     viscous = table.numbers("Fv", "N*m*s/rad", count)
-    offset = table.numbers("Fo", "N*m", count) if "Fo" in table else [Fraction(0)] * count
     for key, values in (("Fc", coulomb), ("k", steepness), ("Fv", viscous)):
         for n, value in enumerate(values):
             if value < 0:
@@ -114,8 +117,10 @@ def _compensation(table: GainTable, count: int) -> list[Compensation | None]:
                     "friction, and that is not negative"
                 )
     return [
-        Compensation(f if k else Fraction(0), c, 1 / (_SLOPE * k) if k else Fraction(0), o)
-        for f, k, c, o in zip(coulomb, steepness, viscous, offset, strict=True)
+        FrictionCompensation(
+            coulomb=Exact(f) if k else 0, viscous=Exact(c), speed=Exact(1 / (_SLOPE * k)) if k else 0
+        )
+        for f, k, c in zip(coulomb, steepness, viscous, strict=True)
     ]
 
 
@@ -125,10 +130,10 @@ def _on_the_host(table: GainTable, stock: list[Gains] | None) -> list[Gains]:
     local = table.numbers("Kd", "N*m*s/rad", len(stiffness))
     if "Kf" in table and any(table.numbers("Kf", "1", len(stiffness))):
         raise InputError(
-            f"{table.where('Kf')}: the leader is also given the follower's measured torque; that is no spring and "
-            "damper between the arms, and is not decided here. Set Kf to 0 for the rest of the law"
+            f"{table.where('Kf')}: the leader is also given the follower's measured torque; that is no "
+            "spring and damper between the arms, and is not decided here. Set Kf to 0 for the rest of the law"
         )
-    laws: list[Compensation | None] = [None] * len(stiffness)
+    laws: list[FrictionCompensation] = [NONE] * len(stiffness)
     if stock is not None and len(stock) == len(stiffness):
         laws = [gains.compensation for gains in stock]
     return [

@@ -2,9 +2,8 @@
 
     τ = κ (kp (q_des − q) + kd (v_des − q̇)),    κ in 1 … 4 on J1 to J3, 1 on the others
 
-κ is not documented for kp and kd: of the feed-forward torque it is 4 on J1 to J3.  Where κ is not known a row is
-made for either end.  Gains that are passive at κ = 4 are so in between: those that are make a convex set, and 0 is
-in it.  Source: agilexrobotics/piper_sdk, asserts/Q&A.MD; agilexrobotics/pyAgxArm#52, #59.
+κ is not documented for kp and kd: of the feed-forward torque it is 4 on J1 to J3.  Where κ is not known a row
+is made for either end.  Source: agilexrobotics/piper_sdk, asserts/Q&A.MD; agilexrobotics/pyAgxArm#52, #59.
 """
 
 from __future__ import annotations
@@ -25,8 +24,8 @@ _UNSURE = 3
 _HIDDEN = Fraction(4)
 _NOTES = (
     "Piper publishes no law of both arms: its own leader sends targets, and its gains are in the firmware",
-    "on J1 to J3 the motor may multiply kp and kd by a factor of up to 4 that is not documented: a row for either "
-    "end; what is passive at 4 is passive in between",
+    "on J1 to J3 the motor may multiply kp and kd by a factor of up to 4 that is not documented: a row for "
+    "either end (agilexrobotics/pyAgxArm#52)",
     "kd is of the arm's own speed, v_des = 0",
 )
 
@@ -49,4 +48,4 @@ def read(tables: Sequence[GainTable], both: bool) -> ArmGains:
             gains = Gains(k * factor, local_damping=d * factor, source=table.where(f"kp[{n}]"))
             name = f"J{n + 1}" + (f" ×{factor}" if n < _UNSURE else "")
             joints.append(JointGains(name, gains if both else None, gains))
-    return ArmGains(NAME, tuple(joints), _NOTES, drives=True)
+    return ArmGains(NAME, tuple(joints), _NOTES, drives=True, follows=True)

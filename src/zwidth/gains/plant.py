@@ -41,7 +41,7 @@ class Plant:
 
 
 def plant_of(joints: Sequence[JointGains], family: Family, given: GivenPlant) -> Plant:
-    """The plant that was given: a file, a published name, a device for each joint or one for all; or the family's.
+    """The plant that was given: a file, a published name, a device for all joints or for each; the family's.
 
     Raises
     ------
@@ -95,7 +95,10 @@ def _published(joints: Sequence[JointGains], family: Family, plant: PublishedPla
                 "file that has [arm] damping = [...] and coulomb_friction = [...]"
             )
         rows.append({"damping": found[0], "coulomb_friction": found[1]})
-    note = f"damping and friction are published numbers, measured on no arm of yours: {plant.name}, {plant.source}"
+    note = (
+        f"damping and friction are published numbers, measured on no arm of yours: {plant.name}, "
+        f"{plant.source}"
+    )
     return Plant(tuple(rows), tuple(rows), note)
 
 
@@ -105,7 +108,9 @@ def _of_file(joints: Sequence[JointGains], path: str | Path) -> Plant:
     for key in table.values:
         if key not in allowed:
             raise InputError(f"{table.label}: a plant has no {quoted(key)}; {suggestion(key, allowed)}")
-    if ("arm" in table) == ("leader" in table and "follower" in table) or ("arm" in table and len(table.values) > 1):
+    if ("arm" in table) == ("leader" in table and "follower" in table) or (
+        "arm" in table and len(table.values) > 1
+    ):
         raise InputError(f"{table.label}: give [arm] for both arms, or [leader] and [follower]")
     sides = ("arm", "arm") if "arm" in table else ("leader", "follower")
     leader, follower = (_rows(table.table(side), len(joints)) for side in sides)

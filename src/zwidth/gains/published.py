@@ -33,6 +33,8 @@ class Family:
         Of the joints in the order of the file; none where the file says it.
     plant
         The published plant that is taken where none is given; "" where none is published.
+    largest_stiffness, largest_damping
+        What the drive takes [N·m/rad, N·m·s/rad]; None where that is not known.
     """
 
     name: str
@@ -43,6 +45,8 @@ class Family:
     position_step: Value
     motors: tuple[str, ...]
     plant: str
+    largest_stiffness: Value | None = None
+    largest_damping: Value | None = None
 
 
 @dataclass(frozen=True)
@@ -86,8 +90,9 @@ def family(name: str) -> Family:
     """What is published about a family."""
     table = _data()[name]
     values = {
-        key: Value(Exact(table[key]["value"]), table[key]["source"])
-        for key in ("rate", "link_delay", "drive_rate", "position_step")
+        key: Value(Exact(row["value"]), row["source"])
+        for key, row in table.items()
+        if isinstance(row, Mapping)
     }
     return Family(
         name, table["title"], **values, motors=tuple(table.get("motors", ())), plant=table.get("plant", "")
@@ -112,8 +117,8 @@ def servo(voltage: Fraction) -> Servo:
         if 0 < voltage <= one.highest_voltage:
             return one
     raise InputError(
-        f"--supply-voltage must be > 0 and at most {float(found[-1].highest_voltage):g} V, what an STS3215 is "
-        f"made for, got {float(voltage):g} V"
+        f"--supply-voltage must be > 0 and at most {float(found[-1].highest_voltage):g} V, what an STS3215 "
+        f"is made for, got {float(voltage):g} V"
     )
 
 
@@ -138,9 +143,7 @@ def _servo_plant(name: str) -> Mapping[str, tuple[Exact, Exact]]:
 
 
 def _servo(name: str, table: Mapping[str, Any]) -> Servo:
-    numbers = {
-        key: Exact(value).fraction for key, value in table.items() if not isinstance(value, str)
-    }
+    numbers = {key: Exact(value).fraction for key, value in table.items() if not isinstance(value, str)}
     return Servo(name, table["source"], **numbers)
 
 

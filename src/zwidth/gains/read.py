@@ -56,7 +56,9 @@ def read_gains(
         If a file cannot be read, is of no known family, or lacks a number.
     """
     if not 1 <= len(paths) <= 2:
-        raise InputError(f"gains are read from one file, or from two of leader and follower, got {len(paths)}")
+        raise InputError(
+            f"gains are read from one file, or from two of leader and follower, got {len(paths)}"
+        )
     tables = [read_table(path) for path in paths]
     name = _recognised(tables) if family is None else _known(family)
     if bilateral_kp is not None and name != i2rt.NAME:
@@ -65,6 +67,8 @@ def read_gains(
         raise InputError(
             f"--supply-voltage belongs to gains of {feetech.NAME}, these are of {name}; leave it out"
         )
+    if both and name in (openarm.NAME, i2rt.NAME):
+        raise InputError("--both is for gains of a follower alone; these are of both arms: leave it out")
     return _read(name, tables, bilateral_kp, supply_voltage, both)
 
 
@@ -87,8 +91,6 @@ def _read(
         return lerobot.read(tables, both)
     if name == piper.NAME:
         return piper.read(tables, both)
-    if both:
-        raise InputError("--both is for gains of a follower alone; these are of both arms: leave it out")
     return openarm.read(tables)
 
 
@@ -98,8 +100,9 @@ def _recognised(tables: list[GainTable]) -> str:
         name = next((name for name, fits in FAMILIES.items() if fits(table)), None)
         if name is None:
             raise InputError(
-                f"{table.label}: no gains of a known arm; read are LeaderArmParam, FollowerArmParam (OpenArm), "
-                "kp, kd and motor_list (i2rt), position_p_coefficient or position_kp (LeRobot), piper"
+                f"{table.label}: no gains of a known arm; read are LeaderArmParam, FollowerArmParam "
+                "(OpenArm), kp, kd and motor_list (i2rt), position_p_coefficient or position_kp (LeRobot), "
+                "piper"
             )
         found.append(name)
     if len(set(found)) > 1:
@@ -109,5 +112,7 @@ def _recognised(tables: list[GainTable]) -> str:
 
 def _known(family: str) -> str:
     if family not in FAMILIES:
-        raise InputError(f"there is no family {quoted(str(family))} of gain files; {suggestion(str(family), FAMILIES)}")
+        raise InputError(
+            f"there is no family {quoted(str(family))} of gain files; {suggestion(str(family), FAMILIES)}"
+        )
     return family

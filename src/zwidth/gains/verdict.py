@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar
 
 from zwidth.gains.arms import ArmGains, Delay
 from zwidth.gains.best import best, required_damping, stiffest
+from zwidth.gains.coupled import CoupledJoint
 from zwidth.gains.joint import JointGains
 from zwidth.gains.plant import GivenPlant
-from zwidth.pairs import Pair
 from zwidth.passivity.outcome import COLOUR, Outcome
 from zwidth.passivity.pairs import PairVerdict, check_pair
 from zwidth.passivity.result import Documented
@@ -19,6 +20,7 @@ from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.showing import Headline, Lines, Part, Table
 
+UNITS = "K in N·m/rad, kd and b in N·m·s/rad; leader/follower where they differ"
 _NONE = "none"
 
 
@@ -28,6 +30,8 @@ def check_gains(
     rate: RealLike | None = None,
     delay: Delay | None = None,
     drive_rate: RealLike | None = None,
+    ideal_drive: bool = False,
+    compensated: bool = True,
 ) -> GainsVerdict:
     """Decide for each joint whether two hands can take energy out of it, with the gains of the files.
 
@@ -35,7 +39,7 @@ def check_gains(
     ----------
     gains
         As `read_gains` reads them.
-    plant, rate, delay, drive_rate
+    plant, rate, delay, drive_rate, ideal_drive, compensated
         As `ArmGains.pairs` takes them; what is not given is the family's, and is said.
 
     Raises
@@ -43,10 +47,9 @@ def check_gains(
     InputError
         If the leader feels nothing, no plant is known, or a number is outside its bound.
     """
-    setting = gains.setting(plant, rate, delay, drive_rate)
-    joints = tuple(
-        JointVerdict(joint, check_pair(setting.pairs[joint.name])) for joint in gains.joints
-    )
+    setting = gains.setting(plant, rate, delay, drive_rate, ideal_drive, compensated)
+    pairs = zip(gains.joints, setting.joints, strict=True)
+    joints = tuple(JointVerdict(joint, model, check_pair(model.pair())) for joint, model in pairs)
     return GainsVerdict(gains, joints, setting.notes)
 
 
@@ -58,11 +61,14 @@ class JointVerdict:
     ----------
     gains
         Of the files.
+    model
+        The joint of both arms with all that decides it.
     verdict
         On the pair that they make.
     """
 
     gains: JointGains
+    model: CoupledJoint
     verdict: PairVerdict
 
     @property
@@ -76,26 +82,33 @@ class JointVerdict:
         return self.verdict.outcome
 
     @cached_property
-    def stiffest(self) -> Pair | None:
-        """The stiffest passive pair with the damping of the files, rounded down and proved; None if none is."""
-        return stiffest(self.verdict.pair)
+    def stiffest(self) -> CoupledJoint | None:
+        """The stiffest passive joint with the damping of the files, rounded down, proved; None if none is."""
+        return stiffest(self.model)
 
     @cached_property
-    def best(self) -> Pair | None:
-        """The stiffest passive pair over multiples of the damping, rounded and proved; None if none is."""
-        return best(self.verdict.pair)
+    def best(self) -> CoupledJoint | None:
+        """The stiffest passive joint over multiples of the damping, rounded and proved; None if none is."""
+        return best(self.model)
 
     @cached_property
     def required_damping(self) -> float | None:
-        """The least b of both arms for the gains of the files [N·m·s/rad], rounded up and proved."""
-        return required_damping(self.verdict.pair)
+        """The least b of both arms, the same, for the gains of the files [N·m·s/rad]; rounded up, proved."""
+        return required_damping(self.model)
+
+    @cached_property
+    def with_ideal_drive(self) -> Outcome | None:
+        """The outcome if kd in the drive were a damper; None without a drive, or where it is taken so."""
+        if self.model.drive_rate is None or self.model.ideal_drive:
+            return None
+        return check_pair(replace(self.model, ideal_drive=True).pair()).outcome
 
     @property
     def limit(self) -> str:
         """What binds, in a few words."""
         verdict = self.verdict
         if verdict.criterion.slips:
-            return "kd, inside the drive"
+            return "kd in the drive"
         if verdict.violation is not None:
             return f"at {verdict.violation.frequency:.3g} Hz"
         return "" if verdict.passive else "Coulomb friction"
@@ -107,6 +120,8 @@ class JointVerdict:
             "outcome": self.outcome,
             "claim": self.verdict.claim,
             "limit": self.limit,
+            "with_ideal_drive": self.with_ideal_drive,
+            "damping_N_m_s_per_rad": [float(b) for b in self.model.damping],
             "assumptions": list(self.verdict.small_print()),
             "stiffest": _gains(self.stiffest),
             "best": _gains(self.best),
@@ -164,7 +179,17 @@ class GainsVerdict(Documented):
     @property
     def notes(self) -> tuple[str, ...]:
         """What each number is, what was taken for granted, and what is not counted."""
-        return (*self.gains.notes, *self.taken, *self._steps(), *self._each())
+        return (*self.gains.notes, *self.taken, *self._slips(), *self._steps(), *self._each())
+
+    def _slips(self) -> Iterator[str]:
+        slipping = [joint for joint in self.joints if joint.verdict.criterion.slips]
+        if slipping:
+            rate = slipping[0].verdict.pair.drive_rate
+            assert rate is not None, "only a drive gains between two samples"
+            yield (
+                f"kd in the drive: to and fro at {shown(float(rate) / 2, 'Hz')} the drive alone gives more than b "
+                "takes; no arm moves so, and drives filter: with an ideal drive that part is left out"
+            )
 
     def _steps(self) -> Iterator[str]:
         if any(side.resolution for joint in self.joints for side in joint.verdict.pair.sides):
@@ -173,9 +198,9 @@ class GainsVerdict(Documented):
         stiff = max(self.joints, key=lambda joint: joint.verdict.pair.stiffness.fraction)
         friction = float(stiff.verdict.pair.stiffness) * float(step.value)
         yield (
-            f"positions come in steps of {shown(step.value, 'rad')} ({step.source}): not counted, for the plant "
-            f"gives no resolution; of {stiff.name} the spring alone needs {shown(friction, 'N*m')} of Coulomb "
-            "friction for them"
+            f"positions come in steps of {shown(step.value, 'rad')} ({step.source}): not counted, for the "
+            f"plant gives no resolution; of {stiff.name} the spring alone needs {shown(friction, 'N*m')} of "
+            "Coulomb friction for them"
         )
 
     def _each(self) -> Iterator[str]:
@@ -183,19 +208,21 @@ class GainsVerdict(Documented):
         shared = [set(joint.verdict.small_print()) for joint in self.joints]
         yield from (text for text in self.joints[0].verdict.small_print() if all(text in s for s in shared))
 
-    def table(self) -> tuple[list[list[str]], list[list[str]]]:
-        """Heads and rows, joint by joint."""
-        heads = [
-            ["joint", "K", "kd", "verdict", "", "largest K", "best K", "best kd", "needs b", "has b"],
-            ["", "N·m/rad", "N·m·s/rad", "", "", "N·m/rad", "N·m/rad", "N·m·s/rad", "N·m·s/rad", "N·m·s/rad"],
-        ]
-        return heads, [_row(joint) for joint in self.joints]
+    def tables(self) -> tuple[Table, Table]:
+        """The verdict on each joint, and the gains that would be passive."""
+        decided = [["joint", "K", "kd", "b", "verdict", "limit", "with ideal drive"]]
+        better = [["joint", "largest K", "best K", "with kd", "b needed"]]
+        return (
+            Table(rows=[_decided(joint) for joint in self.joints], heads=decided, lefts=1, caption=UNITS),
+            Table(rows=[_better(joint) for joint in self.joints], heads=better, lefts=1),
+        )
 
     def report(self) -> Iterator[Part]:
-        """The sentence, the joints, and what is taken for granted."""
+        """The sentence, the joints, the gains that would be passive, and what is taken for granted."""
         yield Headline(self.outcome, COLOUR[self.outcome], self.claim)
-        heads, rows = self.table()
-        yield Table(rows=rows, heads=heads, lefts=1)
+        first, second = self.tables()
+        yield first
+        yield second
         yield Lines(self.notes, "assumptions")
 
     def to_dict(self) -> dict[str, Any]:
@@ -217,51 +244,52 @@ class GainsVerdict(Documented):
         }
 
 
-def _row(joint: JointVerdict) -> list[str]:
-    pair, best_one, stiff = joint.verdict.pair, joint.best, joint.stiffest
-    need = joint.required_damping
+def _decided(joint: JointVerdict) -> list[str]:
     return [
         joint.name,
-        _both(pair, "stiffness"),
-        _damping(pair),
+        _stiffness(joint.model),
+        _damping(joint.model),
+        _sides(*joint.model.damping),
         joint.outcome,
         joint.limit,
-        _NONE if stiff is None else _both(stiff, "stiffness"),
-        _NONE if best_one is None else _both(best_one, "stiffness"),
-        "" if best_one is None else _damping(best_one),
-        _NONE if need is None else f"{need:.4g}",
-        _sides(*(side.damping for side in pair.sides)),
+        joint.with_ideal_drive or "",
     ]
 
 
-def _both(pair: Pair, key: str) -> str:
-    other = getattr(pair, f"follower_{key}")
-    own = getattr(pair, key)
-    return _sides(own, own if other is None else other)
+def _better(joint: JointVerdict) -> list[str]:
+    top, stiff, need = joint.best, joint.stiffest, joint.required_damping
+    return [
+        joint.name,
+        _NONE if stiff is None else _stiffness(stiff),
+        _NONE if top is None else _stiffness(top),
+        "" if top is None else _damping(top),
+        _NONE if need is None else f"{need:.4g}",
+    ]
 
 
-def _damping(pair: Pair) -> str:
-    """B, or D where there is no B."""
-    leader, follower = pair.sides
-    if leader.virtual_damping or follower.virtual_damping:
-        return _sides(leader.virtual_damping, follower.virtual_damping)
-    return _sides(leader.local_damping, follower.local_damping)
+def _stiffness(joint: CoupledJoint) -> str:
+    return _sides(*(gains.stiffness for gains in joint.gains))
 
 
-def _sides(leader: Any, follower: Any) -> str:
+def _damping(joint: CoupledJoint) -> str:
+    """kd as the files have it: of the speed against the other arm, or of its own."""
+    return _sides(*(gains.damping or gains.local_damping for gains in joint.gains))
+
+
+def _sides(leader: Fraction, follower: Fraction) -> str:
     """One number, or leader / follower."""
     first, second = (f"{float(value):.4g}" for value in (leader, follower))
-    return first if first == second else f"{first} / {second}"
+    return first if first == second else f"{first}/{second}"
 
 
-def _gains(pair: Pair | None) -> dict[str, Any] | None:
-    if pair is None:
+def _gains(joint: CoupledJoint | None) -> dict[str, Any] | None:
+    if joint is None:
         return None
     return {
         side: {
             "stiffness_N_m_per_rad": float(own.stiffness),
-            "damping_N_m_s_per_rad": float(own.virtual_damping),
+            "damping_N_m_s_per_rad": float(own.damping),
             "local_damping_N_m_s_per_rad": float(own.local_damping),
         }
-        for side, own in zip(("leader", "follower"), pair.sides, strict=True)
+        for side, own in zip(("leader", "follower"), joint.gains, strict=True)
     }
