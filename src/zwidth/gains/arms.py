@@ -19,6 +19,9 @@ from zwidth.quantity.text import shown
 from zwidth.quantity.units import parse_number
 from zwidth.showing import Lines, Part, Shown, Table
 
+MOST_READINGS = 200
+"""Of a drive's own in a sample period where its rate is assumed: more change little and take long."""
+
 Delay = RealLike | tuple[RealLike, RealLike]
 
 
@@ -186,7 +189,7 @@ class ArmGains(Shown):
             return number if number else None
         if not self.drives:
             return None
-        often = self.published.drive_rate.value.fraction // rate.fraction
+        often = min(self.published.drive_rate.value.fraction // rate.fraction, MOST_READINGS)
         return Exact(rate.fraction * often) if often > 1 else None
 
     def _said_of_drives(self, rate: Exact | None, assumed: bool, ideal: bool) -> str:

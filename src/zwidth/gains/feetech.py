@@ -9,7 +9,7 @@ follower alone: the leader is limp.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from zwidth.errors import InputError
@@ -21,8 +21,7 @@ from zwidth.gains.published import servo
 NAME = "lerobot-feetech"
 
 _P = "position_p_coefficient"
-_TYPES = ("so100_follower", "so101_follower", "so_follower", "bi_so_follower")
-_DEEPEST = 4
+_TYPES = ("so100_follower", "so101_follower", "so_follower")
 _DEFAULT = 16
 """Of LeRobot where the file gives none."""
 
@@ -73,10 +72,5 @@ def read(tables: Sequence[GainTable], supply_voltage: Fraction | None, both: boo
     return ArmGains(NAME, tuple(joints), tuple(notes), drives=True, follows=True)
 
 
-def _servos(table: GainTable, depth: int = 0) -> Iterator[GainTable]:
-    if _P in table or str(table.values.get("type", "")) in _TYPES[:-1]:
-        yield table
-        return
-    for key, value in table.values.items():
-        if isinstance(value, Mapping) and depth < _DEEPEST:
-            yield from _servos(GainTable(f"{table.label}, {key}", value), depth + 1)
+def _servos(table: GainTable) -> Iterator[GainTable]:
+    return (place for place in table.below() if _P in place or place.values.get("type") in _TYPES)

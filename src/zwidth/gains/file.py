@@ -6,7 +6,7 @@ A small file, and nothing in it is obeyed: YAML is read as text and lists alone,
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -22,6 +22,10 @@ LARGEST_FILE = 1 << 20
 
 MOST_JOINTS = 64
 """In one file."""
+
+
+DEEPEST = 4
+"""Tables inside tables in which gains are looked for."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,19 @@ class GainTable:
         if not isinstance(inner, Mapping):
             raise InputError(f"{self.where(key)}: expected keys below it, got {_kind(inner)}")
         return GainTable(f"{self.label}, {key}", inner)
+
+    def below(self) -> Iterator[GainTable]:
+        """This table and those inside it, each once, the outer ones first."""
+        seen: set[int] = set()
+        waiting = [(self, 0)]
+        while waiting:
+            table, depth = waiting.pop(0)
+            if id(table.values) in seen:  # YAML may name one place often
+                continue
+            seen.add(id(table.values))
+            yield table
+            inner = (key for key, value in table.values.items() if isinstance(value, Mapping))
+            waiting += [(table.table(key), depth + 1) for key in inner if depth < DEEPEST]
 
     def number(self, key: str, unit: str) -> Fraction:
         """One number."""

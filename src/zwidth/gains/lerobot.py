@@ -8,7 +8,7 @@ huggingface/lerobot, robots/openarm_follower.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from zwidth.errors import InputError
 from zwidth.gains.arms import ArmGains
@@ -18,7 +18,6 @@ from zwidth.gains.published import family
 
 NAME = "lerobot-damiao"
 
-_DEEPEST = 4
 _NOTES = (
     "LeRobot moves the follower alone and the leader is limp: there is no law of both arms",
     "position_kd is of the arm's own speed: v_des is 0 (huggingface/lerobot, openarm_follower)",
@@ -51,10 +50,5 @@ def read(tables: Sequence[GainTable], both: bool) -> ArmGains:
     return ArmGains(NAME, tuple(joints), _NOTES, drives=True, follows=True)
 
 
-def _places(table: GainTable, depth: int = 0) -> Iterator[GainTable]:
-    if "position_kp" in table:
-        yield table
-        return
-    for key, value in table.values.items():
-        if isinstance(value, Mapping) and depth < _DEEPEST:
-            yield from _places(GainTable(f"{table.label}, {key}", value), depth + 1)
+def _places(table: GainTable) -> Iterator[GainTable]:
+    return (place for place in table.below() if "position_kp" in place)

@@ -8,17 +8,21 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar
 
-from zwidth.gains.arms import ArmGains, Delay
+from zwidth.gains.arms import MOST_READINGS, ArmGains, Delay
 from zwidth.gains.best import best, required_damping, stiffest
 from zwidth.gains.coupled import CoupledJoint
 from zwidth.gains.joint import JointGains
 from zwidth.gains.plant import GivenPlant
 from zwidth.passivity.outcome import COLOUR, Outcome
 from zwidth.passivity.pairs import PairVerdict, check_pair
+from zwidth.passivity.pairs.limits import samples_around
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.showing import Headline, Lines, Part, Table
+
+MOST_SAMPLES = 100
+"""Samples that readings may be old around both arms; beyond, a search takes seconds for a joint."""
 
 UNITS = "K in N·m/rad, kd and b in N·m·s/rad; leader/follower where they differ"
 _NONE = "none"
@@ -81,20 +85,26 @@ class JointVerdict:
         """ "passive", "active" or "undecided"."""
         return self.verdict.outcome
 
+    @property
+    def is_searched(self) -> bool:
+        """False where readings are too old, or a drive's too many, to look for passive gains."""
+        pair = self.verdict.pair
+        return samples_around(pair) <= MOST_SAMPLES and pair.own_readings <= MOST_READINGS
+
     @cached_property
     def stiffest(self) -> CoupledJoint | None:
         """The stiffest passive joint with the damping of the files, rounded down, proved; None if none is."""
-        return stiffest(self.model)
+        return stiffest(self.model) if self.is_searched else None
 
     @cached_property
     def best(self) -> CoupledJoint | None:
         """The stiffest passive joint over multiples of the damping, rounded and proved; None if none is."""
-        return best(self.model)
+        return best(self.model) if self.is_searched else None
 
     @cached_property
     def required_damping(self) -> float | None:
         """The least b of both arms, the same, for the gains of the files [N·m·s/rad]; rounded up, proved."""
-        return required_damping(self.model)
+        return required_damping(self.model) if self.is_searched else None
 
     @cached_property
     def with_ideal_drive(self) -> Outcome | None:
@@ -123,6 +133,7 @@ class JointVerdict:
             "with_ideal_drive": self.with_ideal_drive,
             "damping_N_m_s_per_rad": [float(b) for b in self.model.damping],
             "assumptions": list(self.verdict.small_print()),
+            "is_searched": self.is_searched,
             "stiffest": _gains(self.stiffest),
             "best": _gains(self.best),
             "required_damping_N_m_s_per_rad": self.required_damping,
@@ -187,8 +198,8 @@ class GainsVerdict(Documented):
             rate = slipping[0].verdict.pair.drive_rate
             assert rate is not None, "only a drive gains between two samples"
             yield (
-                f"kd in the drive: to and fro at {shown(float(rate) / 2, 'Hz')} the drive alone gives more than b "
-                "takes; no arm moves so, and drives filter: with an ideal drive that part is left out"
+                f"kd in the drive: to and fro at {shown(float(rate) / 2, 'Hz')} the drive alone gives more "
+                "than b takes; no arm moves so, and drives filter: an ideal drive leaves that part out"
             )
 
     def _steps(self) -> Iterator[str]:
@@ -257,6 +268,8 @@ def _decided(joint: JointVerdict) -> list[str]:
 
 
 def _better(joint: JointVerdict) -> list[str]:
+    if not joint.is_searched:
+        return [joint.name, *["not looked for"] * 4]
     top, stiff, need = joint.best, joint.stiffest, joint.required_damping
     return [
         joint.name,
