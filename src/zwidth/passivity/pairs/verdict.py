@@ -58,13 +58,13 @@ def check_pair(pair: Pair) -> PairVerdict:
         if violation.verify():
             return PairVerdict(pair, wide, violation=violation)
         return PairVerdict(pair, wide, motion=refute_criterion(wide))
+    if wide.undamped:
+        return PairVerdict(pair, wide)
     criterion = spending(pair)
-    if criterion.undamped:
-        return PairVerdict(pair, criterion)
     if max(criterion.missing_friction) > 0:
         motion = refute_compensation(pair) or refute_friction(wide)
         return PairVerdict(pair, criterion, motion=motion)
-    if isinstance(criterion.signs, Fraction):
+    if criterion.undamped or isinstance(criterion.signs, Fraction):
         return PairVerdict(pair, criterion, motion=refute_compensation(pair))
     certificate = PairCertificate(pair, criterion.signs, criterion.tangents)
     return PairVerdict(pair, criterion, certificate=certificate if certificate.verify() else None)
