@@ -37,7 +37,8 @@ SIDE = Record(
         "virtual_damping": Number(DAMPING),
         "local_damping": Number(DAMPING),
         "link_delay": Number(SECONDS, least=0),
-    }
+    },
+    named=True,
 )
 PAIR = Record(
     {
