@@ -24,7 +24,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ..document.effort import spend
-from ..document.fields import Number, Read, Record, document
+from ..document.fields import Number, Read, Record, document, only_if
 from ..document.number import about, common_scale
 from ..document.refusal import Invalid
 from ..exact.polynomial import bits, multiply, value
@@ -46,7 +46,9 @@ PAIR_PROOF = document(
         "proof": Record({"leader": POSITIVITY, "follower": POSITIVITY, "both": POSITIVITY}, shown=False),
     }
 )
-PAIR_VIOLATION = document({"loop": PAIR, "proof": Record({"cosine": Number(least=-1, below=1)}, shown=False)})
+PAIR_VIOLATION = document(
+    {"loop": PAIR, "proof": Record({"cosine": Number(least=-1, below=1)}, default=None, shown=False)}
+)
 
 _STEP = from_ascending([Fraction(1), Fraction(-1)])
 _SQUARE = times(_STEP, conjugate(_STEP))
@@ -81,11 +83,12 @@ def pair(told: Read) -> str:
 
 
 def pair_violation(told: Read) -> str:
-    """One frequency at which some motion of both hands takes energy out, round after round."""
+    """A frequency at which some motion of both hands takes energy out, or without one a drive that does."""
     found = criterion(told.loop, sides_of(told.loop))
-    c = told.proof.cosine
+    proof = only_if(found is not None, told.proof, "proof")
     if found is None:
         return "an arm gains by itself inside a sample"
+    c = proof.cosine
     spend(sum(map(len, found)), bits(found.both), 2 * c.denominator.bit_length() * len(found.both))
     if all(value([Fraction(x) for x in part], c) >= 0 for part in found):
         raise Invalid("the work of both hands is not negative at this frequency")
