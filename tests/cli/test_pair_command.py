@@ -106,6 +106,8 @@ def test_what_is_saved_is_verified(files, stiffness, kinds, tmp_path, capsys):
     said = capsys.readouterr().out
     assert said.count(" VALID ") == len(kinds)
     assert re.findall(r"^kind +(.+)$", said, re.MULTILINE) == kinds
+    for arm, damping in (("leader", "0.2"), ("follower", "0.4")):
+        assert re.findall(rf"^{arm}: damping +(.+)$", said, re.MULTILINE) == [f"{damping} N·s/m"] * len(kinds)
     document = json.loads(path.read_text(encoding="utf-8"))
     document["outcome"] = "active" if document["outcome"] == "passive" else "passive"
     path.write_text(json.dumps(document), encoding="utf-8")

@@ -37,8 +37,23 @@ def pair_document(pair: Pair) -> dict[str, Any]:
     }
 
 
-def _side(side: Side, motion: str) -> dict[str, str]:
-    return {unit_key(name, motion): exact_text(value) for name, value in vars(side).items()}
+def _side(side: Side, motion: str) -> dict[str, Any]:
+    told: dict[str, Any] = {
+        unit_key(name, motion): exact_text(value)
+        for name, value in vars(side).items()
+        if name != "compensation"
+    }
+    law = side.compensation
+    if law:
+        numbers = {
+            "compensated_coulomb_friction": law.coulomb,
+            "compensated_damping": law.viscous,
+            "compensation_speed": law.speed,
+        }
+        told["compensation"] = {
+            unit_key(name, motion): exact_text(value.fraction) for name, value in numbers.items()
+        }
+    return told
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,15 +66,21 @@ class PairCertificate(Evidence):
         What it is about.
     signs
         Why M_ll, M_ff and det M are nowhere negative.
+    tangents
+        r of the line above the compensation of friction of each arm.
     """
 
     pair: Pair
     signs: tuple[Positivity, Positivity, Positivity]
+    tangents: tuple[Fraction, Fraction] = (Fraction(1), Fraction(1))
 
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data."""
         names = zip(("leader", "follower", "both"), self.signs, _WEIGHTED, strict=True)
-        proof = {name: _positivity(sign, more) for name, sign, more in names}
+        proof: dict[str, Any] = {name: _positivity(sign, more) for name, sign, more in names}
+        if any(self.pair.compensations):
+            arms = zip(("leader", "follower"), self.tangents, strict=True)
+            proof["tangents"] = {name: exact_text(r) for name, r in arms}
         return {"format": CERTIFICATE, "kind": "pair", "loop": pair_document(self.pair), "proof": proof}
 
     def describe(self) -> str:
@@ -78,40 +99,37 @@ def _positivity(sign: Positivity, more: int) -> dict[str, Any]:
 
 @dataclass(frozen=True, repr=False)
 class PairViolation(Evidence):
-    """A frequency at which some motion of two hands takes energy out in every round.
+    """A frequency at which some motion of two hands takes energy out in every round, or a drive that gains.
 
     Attributes
     ----------
     pair
         What it is about.
     cosine
-        cos ωT.
-    inside
-        True where the drive of an arm lets it gain between two samples, by itself, whatever the frequency.
+        cos ωT; None where the drive of an arm lets it gain between two samples, by itself.
     """
 
     pair: Pair
-    cosine: Fraction
-    inside: bool = False
+    cosine: Fraction | None
 
     @property
-    def frequency(self) -> float:
+    def frequency(self) -> float | None:
         """Where [Hz]."""
-        return frequency(self.cosine, self.pair.sample_period)
+        return None if self.cosine is None else frequency(self.cosine, self.pair.sample_period)
 
     def to_dict(self) -> dict[str, Any]:
         """The violation as plain data."""
-        proof = {"cosine": exact_text(self.cosine)}
+        proof = {} if self.cosine is None else {"proof": {"cosine": exact_text(self.cosine)}}
         return {
             "format": VIOLATION,
             "kind": "pair violation",
             "loop": pair_document(self.pair),
-            "proof": proof,
+            **proof,
         }
 
     def describe(self) -> str:
         """What is violated, in words."""
-        if self.inside:
+        if self.frequency is None:
             return "the drive of an arm alone lets it gain, from one reading of its own to the next"
         return f"at {self.frequency:.6g} Hz some motion of both hands gains in every round"
 

@@ -14,10 +14,11 @@ from zwidth.passivity.advice import Advice
 from zwidth.passivity.linear.boundary import smallest_holding
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere
-from zwidth.passivity.pairs.criterion import PairCriterion
+from zwidth.passivity.pairs.criterion import PairCriterion, spending
 from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, PairWitness
 from zwidth.passivity.pairs.limits import grain_of, largest_stiffness
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
+from zwidth.passivity.pairs.slow import refute_compensation
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
 from zwidth.quantity.exact import ends
@@ -33,27 +34,32 @@ def check_pair(pair: Pair) -> PairVerdict:
     w = K_l/K_f times.  Exactly if M(θ) ⪰ 0 at every frequency (`PairCriterion`) and Coulomb friction of each
     arm is at least
 
-        f_c ≥ (K + 2 |B + D|/T) Δ/2 + (K + 2 |B|/T) Δ'/2
+        f_c ≥ (K + 2 |B + D| m/T) Δ/2 + (K + 2 |B|/T) Δ'/2
 
-    for B, D ≥ 0, Δ' the other's encoder.  Equality counts as passive.  Derivation: docs/theory/pairs.md.
+    for B, B + D ≥ 0, Δ' the other's encoder and m the readings of its own that an arm takes in T, 1 without
+    a drive.  Equality counts as passive.  Derivation: docs/theory/pairs.md.
 
     Raises
     ------
     InputError
         If the sign of the criterion would take too long to decide.
     """
-    criterion = PairCriterion(pair)
-    signs = Fraction(0) if criterion.slips else criterion.signs
-    if isinstance(signs, Fraction):
-        violation = PairViolation(pair, signs, criterion.slips)
+    wide = PairCriterion(pair)
+    signs = None if wide.slips else wide.signs
+    if signs is None or isinstance(signs, Fraction):
+        violation = PairViolation(pair, signs)
         if violation.verify():
-            return PairVerdict(pair, criterion, violation=violation)
-        return PairVerdict(pair, criterion, motion=refute_criterion(criterion))
+            return PairVerdict(pair, wide, violation=violation)
+        return PairVerdict(pair, wide, motion=refute_criterion(wide))
+    criterion = spending(pair)
     if criterion.undamped:
         return PairVerdict(pair, criterion)
     if max(criterion.missing_friction) > 0:
-        return PairVerdict(pair, criterion, motion=refute_friction(criterion))
-    certificate = PairCertificate(pair, signs)
+        motion = refute_compensation(pair) or refute_friction(wide)
+        return PairVerdict(pair, criterion, motion=motion)
+    if isinstance(criterion.signs, Fraction):
+        return PairVerdict(pair, criterion, motion=refute_compensation(pair))
+    certificate = PairCertificate(pair, criterion.signs, criterion.tangents)
     return PairVerdict(pair, criterion, certificate=certificate if certificate.verify() else None)
 
 
@@ -81,7 +87,7 @@ class PairVerdict(PassivityAnswer):
     @cached_property
     def witness(self) -> PairWitness | None:
         """A motion of both hands that takes energy out; None where none that is short enough was found."""
-        return self.motion if self.violation is None else refute_criterion(self.criterion)
+        return self.motion if self.violation is None else refute_criterion(PairCriterion(self.pair))
 
     @property
     def outcome(self) -> Outcome:
@@ -137,7 +143,7 @@ class PairVerdict(PassivityAnswer):
                 "with hands that are passive each by itself the whole is stable; one body that holds both "
                 "arms is not covered"
             )
-        yield "both arms are read at the same instants, and each force is held for a period"
+        yield f"both arms are read at the same instants, and {self._held}"
         ages = [arm.age for arm in self.criterion.arms]
         yield (
             f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the "
@@ -154,6 +160,16 @@ class PairVerdict(PassivityAnswer):
         for name, device in (("leader", pair.leader), ("follower", pair.follower)):
             if device.assumed:
                 yield f"{name}: {', '.join(device.assumed)} not given, taken as 0"
+
+    @property
+    def _held(self) -> str:
+        often = self.pair.own_readings
+        if often == 1:
+            return "each force is held for a period"
+        return (
+            f"what comes of the other's reading is held for a period; each drive reads its own arm {often} "
+            "times in it, at equal distances, and holds what comes of that until it reads again"
+        )
 
     @cached_property
     def largest_stiffness(self) -> float | None:
