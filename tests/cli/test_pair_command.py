@@ -106,6 +106,8 @@ def test_what_is_saved_is_verified(files, stiffness, kinds, tmp_path, capsys):
     said = capsys.readouterr().out
     assert said.count(" VALID ") == len(kinds)
     assert re.findall(r"^kind +(.+)$", said, re.MULTILINE) == kinds
+    for arm, damping in (("leader", "0.2"), ("follower", "0.4")):
+        assert re.findall(rf"^{arm}: damping +(.+)$", said, re.MULTILINE) == [f"{damping} N·s/m"] * len(kinds)
     document = json.loads(path.read_text(encoding="utf-8"))
     document["outcome"] = "active" if document["outcome"] == "passive" else "passive"
     path.write_text(json.dumps(document), encoding="utf-8")
@@ -206,7 +208,7 @@ def test_bad_input_ends_in_one_line(files, argv, parts, capsys):
     assert all(part in error for part in parts), error
 
 
-@pytest.mark.parametrize("command", ["check", "limit", "simulate", "plan"])
+@pytest.mark.parametrize("command", ["check", "limit", "plan"])
 def test_other_commands_point_to_it(files, command, capsys):
     """Whoever gives them a pair is told who reads one."""
     assert main([command, files["pair"]]) == 2

@@ -42,9 +42,10 @@ def check_pair(pair: Pair) -> PairVerdict:
     w = K_l/K_f times.  Exactly if M(θ) ⪰ 0 at every frequency (`PairCriterion`) and Coulomb friction of each
     arm is at least
 
-        f_c ≥ (K + 2 |B + D|/T) Δ/2 + (K + 2 |B|/T) Δ'/2
+        f_c ≥ (K + 2 |B + D| m/T) Δ/2 + (K + 2 |B|/T) Δ'/2
 
-    for B, D ≥ 0, Δ' the other's encoder.  Equality counts as passive.  Derivation: docs/theory/pairs.md.
+    for B, B + D ≥ 0, Δ' the other's encoder and m the readings of its own that an arm takes in T, 1 without
+    a drive.  Equality counts as passive.  Derivation: docs/theory/pairs.md.
 
     Raises
     ------
@@ -52,9 +53,9 @@ def check_pair(pair: Pair) -> PairVerdict:
         If the sign of the criterion would take too long to decide.
     """
     wide = PairCriterion(pair)
-    signs = Fraction(0) if wide.slips else wide.signs
-    if isinstance(signs, Fraction):
-        violation = PairViolation(pair, signs, wide.slips)
+    signs = None if wide.slips else wide.signs
+    if signs is None or isinstance(signs, Fraction):
+        violation = PairViolation(pair, signs)
         if violation.verify():
             return PairVerdict(pair, wide, violation=violation)
         return PairVerdict(pair, wide, motion=refute_criterion(wide))
@@ -150,7 +151,7 @@ class PairVerdict(PassivityAnswer):
                 "with hands that are passive each by itself the whole is stable; one body that holds both "
                 "arms is not covered"
             )
-        yield "both arms are read at the same instants, and each force is held for a period"
+        yield f"both arms are read at the same instants, and {self._held}"
         ages = [arm.age for arm in self.criterion.arms]
         yield (
             f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the "
@@ -164,6 +165,16 @@ class PairVerdict(PassivityAnswer):
         for name, device in (("leader", pair.leader), ("follower", pair.follower)):
             if device.assumed:
                 yield f"{name}: {', '.join(device.assumed)} not given, taken as 0"
+
+    @property
+    def _held(self) -> str:
+        often = self.pair.own_readings
+        if often == 1:
+            return "each force is held for a period"
+        return (
+            f"what comes of the other's reading is held for a period; each drive reads its own arm {often} "
+            "times in it, at equal distances, and holds what comes of that until it reads again"
+        )
 
     @cached_property
     def largest_stiffness(self) -> float | None:
