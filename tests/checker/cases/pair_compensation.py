@@ -22,13 +22,11 @@ from typing import Any
 from . import TINY, Case, accepted, edge, put, refused, without
 from .linear import signs
 from .pair import (
-    ACTIVE,
     FACTORS,
     NEGATIVE,
     NOWHERE,
     SPRING,
     TO_AND_FRO,
-    TWICE,
     arm,
     loop,
     moved,
