@@ -47,6 +47,9 @@ def replayed(pair: zw.Pair) -> tuple[float, float]:
         {"stiffness": 240, "damping": "0.3", "delay": ("0.4 ms", "3 ms")},
         {"stiffness": 240, "follower_stiffness": 300, "local_damping": "0.1", "follower_damping": "-0.02"},
         {"stiffness": 20, "local_damping": "-0.3", "drive_rate": "4 kHz"},
+        {"compensation": zw.FrictionCompensation(coulomb="0.012")},
+        {"compensation": zw.FrictionCompensation(coulomb="0.05", speed="0.2"), "delay": "2 ms"},
+        {"compensation": zw.FrictionCompensation(viscous="0.2"), "drive_rate": "2 kHz"},
     ],
 )
 def test_a_witness_gains_what_it_says_when_it_is_simulated(changes):
@@ -110,7 +113,14 @@ def test_no_hands_get_more_out_of_a_passive_pair_than_it_holds(seed):
         )
         for _ in (0, 1)
     ]
-    pair = zw.Pair(*arms, stiffness=15, delay=(random.uniform(0, 0.003), random.uniform(0, 0.003)))
+    pair = zw.Pair(
+        *arms,
+        stiffness=15,
+        delay=(random.uniform(0, 0.003), random.uniform(0, 0.003)),
+        compensation=zw.FrictionCompensation(coulomb="0.05", speed=random.choice(["0", "0.1"]))
+        if random.uniform() < 0.5
+        else None,
+    )
     assert zw.check(pair).passive
 
     def hand() -> Operator:

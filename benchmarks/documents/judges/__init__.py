@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..opinion import Opinion, cannot_say, first
-from . import arms, boards, closed, hands, loops, mixes, motions, ports
+from . import arms, boards, closed, hands, loops, mixes, motions, pair_motions, pairs, ports
 
 Judge = Callable[[dict[str, Any], np.random.Generator], Opinion]
 
@@ -20,6 +20,8 @@ JUDGES: dict[str, Judge] = {
     **hands.JUDGES,
     **ports.JUDGES,
     **arms.JUDGES,
+    **pairs.JUDGES,
+    **pair_motions.JUDGES,
 }
 
 

@@ -141,7 +141,8 @@ def touched_forces(loop: Document, fed: str, never_pulls: bool, x: Sequence[Frac
         yield 0 * f if q <= 0 or pulls else f
 
 
-def _parts(document: Document, size: int) -> list[Part] | None:
+def parts_of(document: Document, size: int) -> list[Part] | None:
+    """Repeated parts of a motion, in order and apart; None where they are not."""
     listed = document.get("repeats", [])
     listed = listed if isinstance(listed, list) else [listed]
     parts = [tuple(int(exact(e[k])) for k in ("first", "last", "times")) for e in listed]
@@ -244,7 +245,7 @@ def _motion(document: Document, rng: Rng) -> Opinion:
     x = exacts(entry(document, "positions"))
     late = quantity(loop, "delay") / quantity(loop, "sample_period") % 1
     y = exacts(entry(document, "switch_positions")) if late else None
-    parts = _parts(document, len(x))
+    parts = parts_of(document, len(x))
     first = next(_readings(loop, x))
     if parts is None or _told(document) or (x[0] > 0 if loop["unilateral"] else first != 0):
         return false("parts that do not follow one another, another period, or a start that is loaded")

@@ -45,8 +45,10 @@ def proved(told: Any, both: Any, leader: Any = None, follower: Any = None) -> An
     return {"kind": "pair", "loop": told, "proof": proof}
 
 
-def violated(told: Any, cosine: Any) -> Any:
-    return {"kind": "pair violation", "loop": told, "proof": {"cosine": cosine}}
+def violated(told: Any, cosine: Any = None) -> Any:
+    """At a frequency, or by a drive alone."""
+    proof = {} if cosine is None else {"proof": {"cosine": cosine}}
+    return {"kind": "pair violation", "loop": told, **proof}
 
 
 def moved(told: Any, leader: Any, follower: Any, **more: Any) -> Any:
@@ -204,11 +206,17 @@ CASES = [
     ),
     *edge(
         "drives that gain by themselves",
-        violated(put(SLIPPING, {"follower.damping_N_s_per_m": 2 - TINY}), 0),
-        violated(put(SLIPPING, {"follower.damping_N_s_per_m": 9, "leader.damping_N_s_per_m": 9}), 0),
-        NEGATIVE,
+        violated(put(SLIPPING, {"follower.damping_N_s_per_m": 2 - TINY})),
+        violated(SLIPPING),
+        "proof is missing",
         "by itself inside a sample",
     ),
+    refused(
+        "at a frequency, drives that gain by themselves",
+        violated(put(SLIPPING, {"follower.damping_N_s_per_m": 2 - TINY}), 0),
+        "proof is of no use",
+    ),
+    refused("at no frequency", violated(ACTIVE), "proof is missing"),
     refused(
         "encoders, the leader's friction",
         put(ENCODERS, {"loop.leader.coulomb_friction_N": 4 - TINY}),
@@ -242,7 +250,7 @@ CASES = [
     accepted("as old as may be", violated(loop(arm(0, 4, link_delay_s=400, delay_s=400)), 0)),
     accepted(
         "a drive that drives on",
-        violated({**loop(arm(2, 4, local_damping_N_s_per_m=-3)), "own_readings": 2}, 0),
+        violated({**loop(arm(2, 4, local_damping_N_s_per_m=-3)), "own_readings": 2}),
     ),
     refused("violated at rest", violated(ACTIVE, 1), "must be < 1"),
     *edge(

@@ -288,7 +288,20 @@ def test_a_drive_that_gains_by_itself(damping):
         verdict = zw.check(pair)
         assert verdict.outcome == "active"
         assert verdict.violation.verify()
+        assert verdict.violation.cosine is verdict.violation.frequency is None
+        assert "the drive of an arm alone" in verdict.violation.describe()
+        assert "proof" not in verdict.violation.to_dict()
         assert verdict.witness.verify()
+
+
+def test_what_is_held_for_how_long():
+    """With a drive each arm's own part of the force is held for a period of the drive."""
+    arm = zw.Device(damping=1, coulomb_friction="0.1", resolution=0, delay=0, rate="200 Hz")
+    pair = zw.Pair(arm, arm, stiffness="0.1")
+    assert "each force is held for a period" in " ".join(zw.check(pair).assumptions)
+    inside = " ".join(zw.check(pair.replace(drive_rate="800 Hz")).assumptions)
+    assert "each drive reads its own arm 4 times in it" in inside
+    assert "each force is held" not in inside
 
 
 def test_steps_of_encoders_that_a_drive_reads():

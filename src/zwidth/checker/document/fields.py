@@ -319,15 +319,28 @@ class Between(Field):
 
 
 class Record(Field):
-    """An object with these entries and no others."""
+    """An object with these entries and no others.
 
-    def __init__(self, fields: Mapping[str, Field], *, default: Any = _REQUIRED, shown: bool = True) -> None:
+    Parameters
+    ----------
+    named
+        True if its name stands before each of its rows, as there is another one with the same entries.
+    """
+
+    def __init__(
+        self,
+        fields: Mapping[str, Field],
+        *,
+        default: Any = _REQUIRED,
+        shown: bool = True,
+        named: bool = False,
+    ) -> None:
         super().__init__(default=default, shown=shown)
-        self.fields = dict(fields)
+        self.fields, self.named = dict(fields), named
 
     def extended(self, **more: Field) -> Record:
         """The same with more entries."""
-        return Record({**self.fields, **more}, default=self.default, shown=self.shown)
+        return Record({**self.fields, **more}, default=self.default, shown=self.shown, named=self.named)
 
     def read(self, value: Any, at: str, motion: str) -> Read:
         if not isinstance(value, Mapping):
@@ -374,10 +387,12 @@ class Record(Field):
             yield from field.keys(motion)
 
     def rows(self, name: str, value: Any, motion: str) -> Iterator[Row]:
+        before = f"{name}: " if self.named else ""
         for inner, field in self.fields.items():
             found = getattr(value, inner)
             if field.shown and (field.required or found != field.default):
-                yield from field.rows(inner, found, motion)
+                for row in field.rows(inner, found, motion):
+                    yield row._replace(name=before + row.name)
 
     def text(self, value: Any, motion: str) -> str:
         rows = self.rows("", value, motion)

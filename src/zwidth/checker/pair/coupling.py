@@ -40,7 +40,8 @@ SIDE = Record(
         "local_damping": Number(DAMPING),
         "link_delay": Number(SECONDS, least=0),
         "compensation": COMPENSATION,
-    }
+    },
+    named=True,
 )
 PAIR = Record(
     {

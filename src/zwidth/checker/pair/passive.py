@@ -54,7 +54,9 @@ PAIR_PROOF = document(
         ),
     }
 )
-PAIR_VIOLATION = document({"loop": PAIR, "proof": Record({"cosine": Number(least=-1, below=1)}, shown=False)})
+PAIR_VIOLATION = document(
+    {"loop": PAIR, "proof": Record({"cosine": Number(least=-1, below=1)}, default=None, shown=False)}
+)
 
 _STEP = from_ascending([Fraction(1), Fraction(-1)])
 _SQUARE = times(_STEP, conjugate(_STEP))
@@ -101,17 +103,18 @@ def _lines(told: Read, sides: tuple[Side, Side]) -> tuple[Line, Line]:
 
 
 def pair_violation(told: Read) -> str:
-    """One frequency at which some motion of both hands takes energy out, round after round."""
+    """A frequency at which some motion of both hands takes energy out, or without one a drive that does."""
     sides = sides_of(told.loop)
     lines = [line_of(side.law, Fraction(1)) for side in sides]
     found = criterion(told.loop, sides, lines)
-    c = told.proof.cosine
     if found is None and any(_viscous(side) for side in sides):
         raise Invalid(
             "an arm gains by itself inside a sample, unless compensation of its viscous friction brakes"
         )
+    proof = only_if(found is not None, told.proof, "proof")
     if found is None:
         return "an arm gains by itself inside a sample"
+    c = proof.cosine
     spend(sum(map(len, found)), bits(found.both), 2 * c.denominator.bit_length() * len(found.both))
     if all(value([Fraction(x) for x in part], c) >= 0 for part in found):
         raise Invalid("the work of both hands is not negative at this frequency")

@@ -99,40 +99,37 @@ def _positivity(sign: Positivity, more: int) -> dict[str, Any]:
 
 @dataclass(frozen=True, repr=False)
 class PairViolation(Evidence):
-    """A frequency at which some motion of two hands takes energy out in every round.
+    """A frequency at which some motion of two hands takes energy out in every round, or a drive that gains.
 
     Attributes
     ----------
     pair
         What it is about.
     cosine
-        cos ωT.
-    inside
-        True where the drive of an arm lets it gain between two samples, by itself, whatever the frequency.
+        cos ωT; None where the drive of an arm lets it gain between two samples, by itself.
     """
 
     pair: Pair
-    cosine: Fraction
-    inside: bool = False
+    cosine: Fraction | None
 
     @property
-    def frequency(self) -> float:
+    def frequency(self) -> float | None:
         """Where [Hz]."""
-        return frequency(self.cosine, self.pair.sample_period)
+        return None if self.cosine is None else frequency(self.cosine, self.pair.sample_period)
 
     def to_dict(self) -> dict[str, Any]:
         """The violation as plain data."""
-        proof = {"cosine": exact_text(self.cosine)}
+        proof = {} if self.cosine is None else {"proof": {"cosine": exact_text(self.cosine)}}
         return {
             "format": VIOLATION,
             "kind": "pair violation",
             "loop": pair_document(self.pair),
-            "proof": proof,
+            **proof,
         }
 
     def describe(self) -> str:
         """What is violated, in words."""
-        if self.inside:
+        if self.frequency is None:
             return "the drive of an arm alone lets it gain, from one reading of its own to the next"
         return f"at {self.frequency:.6g} Hz some motion of both hands gains in every round"
 

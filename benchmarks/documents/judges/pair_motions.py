@@ -1,0 +1,138 @@
+"""Motions of two hands run again from the definitions, reading by reading, in fractions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import lcm
+from typing import Any
+
+import numpy as np
+from flint import arb, ctx, fmpq
+
+from ..opinion import Opinion, false
+from ..plain import entry, exact, exacts, quantity
+from .motions import compared, parts_of, unrolled
+from .pairs import Arm, Law, arms_of
+
+Document = dict[str, Any]
+
+LONGEST = 60_000
+"""Readings of a motion that are run."""
+
+
+def _motion(document: Document, rng: np.random.Generator) -> Opinion:
+    loop = document["loop"]
+    arms = arms_of(loop)
+    if arms is None:
+        return false("there is no pair with such numbers")
+    paths = [exacts(entry(document, f"{name}_positions")) for name in ("leader", "follower")]
+    turns = [entry(document, f"{name}_switch_positions") for name in ("leader", "follower")]
+    parts = parts_of(document, len(paths[0]))
+    own = entry(document, "sample_period")
+    often = arms[0].often
+    if (
+        parts is None
+        or len({len(path) for path in paths}) > 1
+        or any(path[0] for path in paths)
+        or (own is not None and exact(own) != quantity(loop, "sample_period"))
+        or any((last - first) % often for first, last, _ in parts)
+        or any(bool(arm.part) != bool(turn) for arm, turn in zip(arms, turns, strict=True))
+    ):
+        return false("parts that do not follow one another, another period, or no start at rest at 0")
+    given = [exacts(turn) if turn else path[:-1] for turn, path in zip(turns, paths, strict=True)]
+    stored = arms[0].stiffness * sum(arm.resolution for arm in arms) ** 2 / 8
+    return compared(_taken(arms, paths, given, parts), exact(document["energy_J"]), stored)
+
+
+def _taken(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction | None:
+    """By all rounds; of very many by four smaller numbers of them, between which it is a quadratic."""
+    size = len(paths[0]) + sum((last - first) * (times - 1) for first, last, times in parts)
+    if size <= LONGEST:
+        return taken_out(arms, paths, turns, parts)
+    rounds = {times for *_, times in parts if times > 1}
+    most = (LONGEST // 8 - len(paths[0])) // sum(last - first for first, last, times in parts if times > 1)
+    counts = [most - 3 * k for k in range(4)]
+    if len(rounds) > 1 or counts[-1] < 4:
+        return None
+    fewer = [[(first, last, min(times, n)) for first, last, times in parts] for n in counts]
+    e0, e1, e2, e3 = (taken_out(arms, paths, turns, some) for some in fewer)
+    if e0 - 2 * e1 + e2 != e1 - 2 * e2 + e3:
+        return None  # what is remembered is older, or counts do not come again
+    n = Fraction(rounds.pop() - counts[0], 3)
+    return e0 + n * (e0 - e1) + n * (n + 1) / 2 * (e0 - 2 * e1 + e2)
+
+
+def taken_out(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction:
+    """−Σ w (f Δx + f_c |Δx| + b Δx²/t) of a motion from rest, in fractions."""
+    scale = lcm(*(v.denominator for some in (*paths, *turns) for v in some))
+    scale = lcm(scale, *(arm.resolution.denominator for arm in arms))
+    motions, read = [], []
+    for arm, path, turn in zip(arms, paths, turns, strict=True):
+        x, y = ([int(v * scale) for v in some] for some in (path, turn))
+        motion, places = unrolled(x, parts)  # type: ignore[arg-type]
+        motions.append((motion, [motion[k] + y[at] - x[at] for k, at in enumerate(places)]))
+        step = int(arm.resolution * scale)
+        read.append([step * (v // step) if step else v for v in motion])
+    total = Fraction(0)
+    for i, arm in enumerate(arms):
+        taps = [arm.force(*(Fraction(j == n) for n in range(4))) for j in range(4)]
+        common = lcm(*(c.denominator for c in taps))
+        whole = [int(c * common) for c in taps]
+        total += arm.weight * _lost(arm, motions[i], (read[i], read[1 - i]), whole, common, scale)
+        total -= arm.weight * _helped(arm, motions[i], read[i], scale)
+    return -total
+
+
+def _lost(arm: Arm, motion: Any, read: Any, taps: Sequence[int], common: int, scale: int) -> Fraction:
+    """What one hand gives, its positions `scale` times as large, its taps `common` times."""
+    (x, y), (own, its) = motion, read
+    forces = [0] * (arm.whole + 1)
+    for k in range(len(x) - 1):
+        sent = arm.often * (k // arm.often - arm.age)
+        seen = (own[k], own[max(k - 1, 0)], its[max(sent, 0)], its[max(sent - arm.often, 0)])
+        forces.append(sum(c * v for c, v in zip(taps, seen, strict=True)))
+    work = path = early = late = 0
+    for k in range(len(x) - 1):
+        first, then = (y[k] - x[k], x[k + 1] - y[k]) if arm.part else (0, x[k + 1] - x[k])
+        work += forces[k] * first + forces[k + 1] * then
+        path += abs(first) + abs(then)
+        early, late = early + first * first, late + then * then
+    squares = late / (1 - arm.part) + (early / arm.part if arm.part else 0)
+    paid = arm.damping / arm.period * squares
+    return (Fraction(work, common) + paid) / scale**2 + arm.friction * Fraction(path, scale)
+
+
+def _helped(arm: Arm, motion: Any, own: Sequence[int], scale: int) -> Fraction:
+    """What compensation of friction gives, held for T from the newest move over T on."""
+    if arm.law is None:
+        return Fraction(0)
+    (x, y), known = motion, {0: Fraction(0)}
+    period = arm.period * arm.often
+    forces = [Fraction(0)] * (arm.whole + 1)
+    for k in range(len(x) - 1):
+        sent = arm.often * (k // arm.often)
+        move = own[sent] - own[max(sent - arm.often, 0)]
+        if move not in known:
+            known[move] = _compensation(arm.law, Fraction(move, scale) / period)
+        forces.append(known[move])
+    total = Fraction(0)
+    for k in range(len(x) - 1):
+        first = y[k] - x[k] if arm.part else 0
+        total += forces[k] * first + forces[k + 1] * (x[k + 1] - x[k] - first)
+    return total / scale
+
+
+def _compensation(law: Law, v: Fraction) -> Fraction:
+    """F tanh(v/v_s) + C v, to far more digits than are compared."""
+    bent = Fraction(1 if v > 0 else -1)
+    if law.speed:
+        x = v / law.speed
+        before, ctx.prec = ctx.prec, 200
+        found = arb(fmpq(x.numerator, x.denominator)).tanh().mid().fmpq()
+        ctx.prec = before
+        bent = Fraction(int(found.p), int(found.q))
+    return law.coulomb * bent + law.viscous * v
+
+
+JUDGES: dict[str, Callable[[Document, np.random.Generator], Opinion]] = {"pair motion": _motion}
