@@ -140,7 +140,7 @@ class ArmGains(Shown):
                     delay=ways,
                     drive_rate=inside,
                     ideal_drive=ideal_drive,
-                    compensated=compensated,
+                    compensation=Fraction(compensated),
                     largest_stiffness=_of(known.largest_stiffness),
                     largest_damping=_of(known.largest_damping),
                 )

@@ -1,4 +1,4 @@
-"""The gains of a joint that are still passive: how stiff, with which damping, or for how much friction.
+"""The gains of a joint that are passive: how stiff, how damped, for how much friction or compensation.
 
 M(θ) is affine in K, B and D (of drives the diagonal is concave in them, a parallel sum), and friction for
 the steps of the encoders goes with |B| and |B + D|; what compensation may spend makes a convex set too.  So
@@ -93,6 +93,23 @@ def required_damping(joint: CoupledJoint) -> float | None:
             return float(value)
         value += _unit(value)
     return None
+
+
+def passive_compensation(joint: CoupledJoint) -> float | None:
+    """How much of its compensation of friction is passive with the gains as they are, at most 1, and proved.
+
+    In hundredths, rounded down; None where none is passive, or there is no compensation.
+    """
+    if not joint.is_compensated or not _holds(replace(joint, compensation=Fraction(0))):
+        return None
+    low, high = 0, 100
+    while low < high:
+        middle = (low + high + 1) // 2
+        if _is_proved(replace(joint, compensation=Fraction(middle, 100))):
+            low = middle
+        else:
+            high = middle - 1
+    return low / 100
 
 
 def _direction(joint: CoupledJoint) -> Both:

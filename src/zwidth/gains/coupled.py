@@ -37,8 +37,8 @@ class CoupledJoint:
         Of the loop in each drive [Hz]; None where there is none.
     ideal_drive
         True: what a drive does with its own speed is a damper.
-    compensated
-        False: the compensation of friction is left out.
+    compensation
+        How much of the compensation of friction in the gains there is: 1 for all, 0 for none.
     largest_stiffness, largest_damping
         What a drive takes [N·m/rad, N·m·s/rad]; None where that is not known.
     """
@@ -49,7 +49,7 @@ class CoupledJoint:
     delay: tuple[Exact, Exact]
     drive_rate: Exact | None
     ideal_drive: bool = False
-    compensated: bool = True
+    compensation: Fraction = Fraction(1)
     largest_stiffness: Fraction | None = None
     largest_damping: Fraction | None = None
 
@@ -57,6 +57,11 @@ class CoupledJoint:
     def is_ideal(self) -> bool:
         """True where there is a drive, and it is ideal."""
         return self.ideal_drive and self.drive_rate is not None
+
+    @property
+    def is_compensated(self) -> bool:
+        """True where there is compensation of friction on a side, and it is not left out."""
+        return bool(self.compensation) and any(gains.compensation for gains in self.gains)
 
     @property
     def damping(self) -> tuple[Fraction, Fraction]:
@@ -75,8 +80,9 @@ class CoupledJoint:
         (leader, its_damping), (follower, damping) = map(self._side, self.devices, self.gains)
         mine, other = self.gains
         laws: dict[str, Any] = {}
-        if self.compensated and (mine.compensation or other.compensation):
-            laws = {"compensation": mine.compensation, "follower_compensation": other.compensation}
+        if self.is_compensated:
+            first, second = (gains.compensation.scaled(self.compensation) for gains in self.gains)
+            laws = {"compensation": first, "follower_compensation": second}
         return Pair(
             leader,
             follower,

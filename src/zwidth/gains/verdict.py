@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 from zwidth.gains.arms import MOST_READINGS, ArmGains, Delay
-from zwidth.gains.best import best, required_damping, stiffest
+from zwidth.gains.best import best, passive_compensation, required_damping, stiffest
 from zwidth.gains.coupled import CoupledJoint
 from zwidth.gains.joint import JointGains
 from zwidth.gains.plant import GivenPlant
@@ -107,6 +107,11 @@ class JointVerdict:
         return required_damping(self.model) if self.is_searched else None
 
     @cached_property
+    def compensation(self) -> float | None:
+        """How much of the compensation of friction is passive, 1 for all; None if none, or there is none."""
+        return passive_compensation(self.model) if self.is_searched else None
+
+    @cached_property
     def with_ideal_drive(self) -> Outcome | None:
         """The outcome if kd in the drive were a damper; None without a drive, or where it is taken so."""
         if self.model.drive_rate is None or self.model.ideal_drive:
@@ -136,6 +141,7 @@ class JointVerdict:
             "is_searched": self.is_searched,
             "stiffest": _gains(self.stiffest),
             "best": _gains(self.best),
+            "largest_compensation": self.compensation,
             "required_damping_N_m_s_per_rad": self.required_damping,
         }
 
@@ -222,7 +228,7 @@ class GainsVerdict(Documented):
     def tables(self) -> tuple[Table, Table]:
         """The verdict on each joint, and the gains that would be passive."""
         decided = [["joint", "K", "kd", "b", "verdict", "limit", "with ideal drive"]]
-        better = [["joint", "largest K", "best K", "with kd", "b needed"]]
+        better = [["joint", "largest K", "best K", "with kd", "b needed", "compensation"]]
         return (
             Table(rows=[_decided(joint) for joint in self.joints], heads=decided, lefts=1, caption=UNITS),
             Table(rows=[_better(joint) for joint in self.joints], heads=better, lefts=1),
@@ -269,7 +275,7 @@ def _decided(joint: JointVerdict) -> list[str]:
 
 def _better(joint: JointVerdict) -> list[str]:
     if not joint.is_searched:
-        return [joint.name, *["not looked for"] * 4]
+        return [joint.name, *["not looked for"] * 5]
     top, stiff, need = joint.best, joint.stiffest, joint.required_damping
     return [
         joint.name,
@@ -277,7 +283,15 @@ def _better(joint: JointVerdict) -> list[str]:
         _NONE if top is None else _stiffness(top),
         "" if top is None else _damping(top),
         _NONE if need is None else f"{need:.4g}",
+        _share(joint),
     ]
+
+
+def _share(joint: JointVerdict) -> str:
+    """Of the compensation of friction, in percent."""
+    if not joint.model.is_compensated:
+        return ""
+    return _NONE if joint.compensation is None else f"{100 * joint.compensation:.0f} %"
 
 
 def _stiffness(joint: CoupledJoint) -> str:
