@@ -196,7 +196,14 @@ class GainsVerdict(Documented):
     @property
     def notes(self) -> tuple[str, ...]:
         """What each number is, what was taken for granted, and what is not counted."""
-        return (*self.gains.notes, *self.taken, *self._slips(), *self._steps(), *self._each())
+        return (
+            *self.gains.notes,
+            *self.taken,
+            *self._slips(),
+            *self._unsearched(),
+            *self._steps(),
+            *self._each(),
+        )
 
     def _slips(self) -> Iterator[str]:
         slipping = [joint for joint in self.joints if joint.verdict.criterion.slips]
@@ -206,6 +213,13 @@ class GainsVerdict(Documented):
             yield (
                 f"kd in the drive: to and fro at {shown(float(rate) / 2, 'Hz')} the drive alone gives more "
                 "than b takes; no arm moves so, and drives filter: an ideal drive leaves that part out"
+            )
+
+    def _unsearched(self) -> Iterator[str]:
+        if not all(joint.is_searched for joint in self.joints):
+            yield (
+                f"gains that would be passive are looked for where readings are at most {MOST_SAMPLES} samples "
+                f"old around both arms, and a drive has at most {MOST_READINGS} in a sample"
             )
 
     def _steps(self) -> Iterator[str]:
@@ -275,7 +289,7 @@ def _decided(joint: JointVerdict) -> list[str]:
 
 def _better(joint: JointVerdict) -> list[str]:
     if not joint.is_searched:
-        return [joint.name, *["not looked for"] * 5]
+        return [joint.name, *["–"] * 5]
     top, stiff, need = joint.best, joint.stiffest, joint.required_damping
     return [
         joint.name,
