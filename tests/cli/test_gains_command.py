@@ -121,6 +121,7 @@ def test_a_document_without_proofs_is_no_evidence(tmp_path, capsys):
         (["--drive-rate", "500 Hz"], "whole times"),
         (["--link-delay-back", "1 ms"], "give --link-delay"),
         (["--link-delay", "-1 ms"], "≥ 0"),
+        (["--link-delay", "2"], 'write "2 ms"'),
         (["--rate", "fast"], "rate"),
         (["--bilateral-kp", "0.1"], "belongs to gains of i2rt"),
         (["--both"], "leave it out"),

@@ -10,6 +10,8 @@ from zwidth.cli.decision import exit_status
 from zwidth.cli.options import Once
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
+from zwidth.quantity.units import parse_number
+from zwidth.specification.read import question_time
 
 if TYPE_CHECKING:
     from zwidth.gains import ArmGains
@@ -130,4 +132,7 @@ def _delay(arguments: argparse.Namespace) -> tuple[str, str] | None:
     there, back = arguments.link_delay, arguments.link_delay_back
     if there is None and back is not None:
         raise InputError("--link-delay-back is of one way alone; give --link-delay, of the other, too")
+    for option, value in (("--link-delay", there), ("--link-delay-back", back)):
+        if value is not None:
+            question_time(value, parse_number(value, "s", option), option)
     return None if there is None else (there, there if back is None else back)

@@ -32,7 +32,8 @@ _NOTES = (
     "Kd is of the speed of one arm against the other: v_des is the partner's speed on both sides "
     "(enactic/openarm_teleop, bilateral_step); it damps nothing when both arms move together",
     "friction is compensated by Fc tanh(0.1 k v) + Fv v: the factor 0.1 is in the code, although the comment "
-    "in the file says tanh(k v); the offset Fo gives back what it takes, like a weight",
+    "in the file says tanh(k v); taken as computed once in a sample period, from the move before; the offset "
+    "Fo gives back what it takes, like a weight",
     "the speed in the law is the drive's estimate, of an unknown filter; here it is the difference of two "
     "positions",
 )

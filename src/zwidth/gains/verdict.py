@@ -128,6 +128,12 @@ class JointVerdict:
             return f"at {verdict.violation.frequency:.3g} Hz"
         return "" if verdict.passive else "Coulomb friction"
 
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted."""
+        ideal = "kd of an arm's own speed, in its drive, is a damper at once: the b of the proof holds it"
+        return (*self.verdict.small_print(), *([ideal] if self.model.is_ideal else []))
+
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys; every gain that is told was proved."""
         return {
@@ -137,7 +143,7 @@ class JointVerdict:
             "limit": self.limit,
             "with_ideal_drive": self.with_ideal_drive,
             "damping_N_m_s_per_rad": [float(b) for b in self.model.damping],
-            "assumptions": list(self.verdict.small_print()),
+            "assumptions": list(self.assumptions),
             "is_searched": self.is_searched,
             "stiffest": _gains(self.stiffest),
             "best": _gains(self.best),
@@ -218,8 +224,8 @@ class GainsVerdict(Documented):
     def _unsearched(self) -> Iterator[str]:
         if not all(joint.is_searched for joint in self.joints):
             yield (
-                f"gains that would be passive are looked for where readings are at most {MOST_SAMPLES} samples "
-                f"old around both arms, and a drive has at most {MOST_READINGS} in a sample"
+                f"gains that would be passive are looked for where readings are at most {MOST_SAMPLES} "
+                f"samples old around both arms, and a drive has at most {MOST_READINGS} in a sample"
             )
 
     def _steps(self) -> Iterator[str]:
@@ -236,8 +242,8 @@ class GainsVerdict(Documented):
 
     def _each(self) -> Iterator[str]:
         """What every joint's verdict takes for granted."""
-        shared = [set(joint.verdict.small_print()) for joint in self.joints]
-        yield from (text for text in self.joints[0].verdict.small_print() if all(text in s for s in shared))
+        shared = [set(joint.assumptions) for joint in self.joints]
+        yield from (text for text in self.joints[0].assumptions if all(text in s for s in shared))
 
     def tables(self) -> tuple[Table, Table]:
         """The verdict on each joint, and the gains that would be passive."""
