@@ -85,7 +85,7 @@ def damping_boundary(pair: Pair) -> tuple[Array, Array]:
         return PairCriterion(pair.replace(**arms)).holds
 
     ratio = 1 / pair.power_ratio
-    guess = float(pair.stiffness * pair.sample_period)
+    guess = float(pair.felt_stiffness * pair.sample_period)
     equal = smallest_holding(lambda b: holds(b, b * ratio), guess, COARSER) or guess
     found = []
     top = 1.25 * max(3 * equal, *(float(side.damping) for side in pair.sides))
@@ -113,12 +113,12 @@ def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
     axes.stairs(stiffness[1:], ends, baseline=0, color=GREEN, fill=True, alpha=0.16, lw=0)
     axes.stairs(stiffness[1:], ends, baseline=None, color=GREEN, lw=1.6, gid="stairs")
     axes.plot([0], stiffness[:1], ".", color=GREEN, clip_on=False)
-    axes.set(xlim=(0, ends[-1]), ylim=(0, 1.3 * max(float(pair.stiffness), float(stiffness.max()))))
+    axes.set(xlim=(0, ends[-1]), ylim=(0, 1.3 * max(float(pair.felt_stiffness), float(stiffness.max()))))
     which = "each way" if pair.there == pair.back else "mean of there and back"
     axes.set_xlabel(f"link delay, {which} [{unit}]")
     axes.set_ylabel(f"stiffness [{quantity_unit('stiffness', pair.motion)}]")
     axes.set_title("shaded: passive" if stiffness.any() else "none is passive")
-    _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, float(pair.stiffness))
+    _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, float(pair.felt_stiffness))
 
 
 def link_limits(pair: Pair) -> tuple[Array, Array]:
