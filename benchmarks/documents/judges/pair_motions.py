@@ -8,11 +8,12 @@ from math import lcm
 from typing import Any
 
 import numpy as np
+from flint import arb, ctx, fmpq
 
 from ..opinion import Opinion, false
 from ..plain import entry, exact, exacts, quantity
 from .motions import compared, parts_of, unrolled
-from .pairs import Arm, arms_of
+from .pairs import Arm, Law, arms_of
 
 Document = dict[str, Any]
 
@@ -79,6 +80,7 @@ def taken_out(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fracti
         common = lcm(*(c.denominator for c in taps))
         whole = [int(c * common) for c in taps]
         total += arm.weight * _lost(arm, motions[i], (read[i], read[1 - i]), whole, common, scale)
+        total -= arm.weight * _helped(arm, motions[i], read[i], scale)
     return -total
 
 
@@ -99,6 +101,38 @@ def _lost(arm: Arm, motion: Any, read: Any, taps: Sequence[int], common: int, sc
     squares = late / (1 - arm.part) + (early / arm.part if arm.part else 0)
     paid = arm.damping / arm.period * squares
     return (Fraction(work, common) + paid) / scale**2 + arm.friction * Fraction(path, scale)
+
+
+def _helped(arm: Arm, motion: Any, own: Sequence[int], scale: int) -> Fraction:
+    """What compensation of friction gives, held for T from the newest move over T on."""
+    if arm.law is None:
+        return Fraction(0)
+    (x, y), known = motion, {0: Fraction(0)}
+    period = arm.period * arm.often
+    forces = [Fraction(0)] * (arm.whole + 1)
+    for k in range(len(x) - 1):
+        sent = arm.often * (k // arm.often)
+        move = own[sent] - own[max(sent - arm.often, 0)]
+        if move not in known:
+            known[move] = _compensation(arm.law, Fraction(move, scale) / period)
+        forces.append(known[move])
+    total = Fraction(0)
+    for k in range(len(x) - 1):
+        first = y[k] - x[k] if arm.part else 0
+        total += forces[k] * first + forces[k + 1] * (x[k + 1] - x[k] - first)
+    return total / scale
+
+
+def _compensation(law: Law, v: Fraction) -> Fraction:
+    """F tanh(v/v_s) + C v, to far more digits than are compared."""
+    bent = Fraction(1 if v > 0 else -1)
+    if law.speed:
+        x = v / law.speed
+        before, ctx.prec = ctx.prec, 200
+        found = arb(fmpq(x.numerator, x.denominator)).tanh().mid().fmpq()
+        ctx.prec = before
+        bent = Fraction(int(found.p), int(found.q))
+    return law.coulomb * bent + law.viscous * v
 
 
 JUDGES: dict[str, Callable[[Document, np.random.Generator], Opinion]] = {"pair motion": _motion}
