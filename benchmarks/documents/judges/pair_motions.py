@@ -16,7 +16,7 @@ from .pairs import Arm, arms_of
 
 Document = dict[str, Any]
 
-LONGEST = 60_000
+LONGEST = 4_000
 """Readings of a motion that are run."""
 
 
@@ -41,28 +41,30 @@ def _motion(document: Document, rng: np.random.Generator) -> Opinion:
         return false("parts that do not follow one another, another period, or no start at rest at 0")
     given = [exacts(turn) if turn else path[:-1] for turn, path in zip(turns, paths, strict=True)]
     stored = arms[0].stiffness * sum(arm.resolution for arm in arms) ** 2 / 8
-    return compared(_taken(arms, paths, given, parts), exact(document["energy_J"]), stored)
+    return compared(taken_out(arms, paths, given, parts), exact(document["energy_J"]), stored)
 
 
-def _taken(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction | None:
+def taken_out(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction | None:
     """By all rounds; of very many by four smaller numbers of them, between which it is a quadratic."""
     size = len(paths[0]) + sum((last - first) * (times - 1) for first, last, times in parts)
     if size <= LONGEST:
-        return taken_out(arms, paths, turns, parts)
+        return _of_all_readings(arms, paths, turns, parts)
     rounds = {times for *_, times in parts if times > 1}
-    most = (LONGEST // 8 - len(paths[0])) // sum(last - first for first, last, times in parts if times > 1)
-    counts = [most - 3 * k for k in range(4)]
-    if len(rounds) > 1 or counts[-1] < 4:
+    most = (LONGEST // 4 - len(paths[0])) // sum(last - first for first, last, times in parts if times > 1)
+    if len(rounds) > 1 or most < 15:
         return None
-    fewer = [[(first, last, min(times, n)) for first, last, times in parts] for n in counts]
-    e0, e1, e2, e3 = (taken_out(arms, paths, turns, some) for some in fewer)
+    times = rounds.pop()
+    most -= (most - times) % 3
+    counts = [most - 3 * k for k in range(4)]
+    fewer = [[(first, last, min(own, n)) for first, last, own in parts] for n in counts]
+    e0, e1, e2, e3 = (_of_all_readings(arms, paths, turns, some) for some in fewer)
     if e0 - 2 * e1 + e2 != e1 - 2 * e2 + e3:
         return None  # what is remembered is older, or counts do not come again
-    n = Fraction(rounds.pop() - counts[0], 3)
+    n = Fraction(times - most, 3)
     return e0 + n * (e0 - e1) + n * (n + 1) / 2 * (e0 - 2 * e1 + e2)
 
 
-def taken_out(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction:
+def _of_all_readings(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction:
     """−Σ w (f Δx + f_c |Δx| + b Δx²/t) of a motion from rest, in fractions."""
     scale = lcm(*(v.denominator for some in (*paths, *turns) for v in some))
     scale = lcm(scale, *(arm.resolution.denominator for arm in arms))

@@ -163,7 +163,7 @@ def _pair(document: Document, rng: Rng) -> Opinion:
     if not all(arm.damping for arm in arms):
         return false("nothing pays for the hold of an arm without damping")
     for arm, other in (arms, arms[::-1]):
-        error = _error(arm, other)
+        error = friction_for(arm, other)
         if arm.friction < error:
             return false(f"readings at their worst change a force by {float(error):.9g}")
     if arms[0].often > MOST_READINGS:
@@ -181,7 +181,7 @@ def _angles(arms: Sequence[Arm], rng: Rng) -> Array:
     return np.concatenate([some, np.clip(worst * (1 + 0.05 * rng.standard_normal(6)), ANGLES[0], np.pi)])
 
 
-def _error(arm: Arm, other: Arm) -> Fraction:
+def friction_for(arm: Arm, other: Arm) -> Fraction:
     """Each of the readings half a count off, to the side that is worst."""
     return max(
         abs(arm.force(*(s * r.resolution / 2 for s, r in zip(signs, (arm, arm, other, other), strict=True))))
