@@ -57,6 +57,13 @@ def operator_options() -> str:
     return _options(operator_parameters())
 
 
+def follower_options() -> str:
+    """What holds the follower of a pair, as options of the command line."""
+    from zwidth.cli.simulation_tables import follower_parameters
+
+    return _options(follower_parameters())
+
+
 def simulation_options() -> str:
     """How a simulation is run, as options of the command line."""
     from zwidth.cli.simulation_tables import simulation_parameters
@@ -180,6 +187,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "law_types": law_types,
     "lines_to_trust": lines_to_trust,
     "operator_options": operator_options,
+    "follower_options": follower_options,
     "simulation_options": simulation_options,
     "environment_types": environment_types,
     "glossary": glossary,

@@ -27,6 +27,7 @@ from zwidth.identification.device.plan import plan_identification as plan
 from zwidth.identification.logs import Log as Log
 from zwidth.identification.logs import read_log as read_log
 from zwidth.maps import z_width as z_width
+from zwidth.pairs import FrictionCompensation as FrictionCompensation
 from zwidth.pairs import Pair as Pair
 from zwidth.passivity import coupling as coupling
 from zwidth.passivity import formulas as formulas

@@ -208,7 +208,7 @@ def test_bad_input_ends_in_one_line(files, argv, parts, capsys):
     assert all(part in error for part in parts), error
 
 
-@pytest.mark.parametrize("command", ["check", "limit", "simulate", "plan"])
+@pytest.mark.parametrize("command", ["check", "limit", "plan"])
 def test_other_commands_point_to_it(files, command, capsys):
     """Whoever gives them a pair is told who reads one."""
     assert main([command, files["pair"]]) == 2

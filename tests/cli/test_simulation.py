@@ -15,7 +15,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.cli.main import main
-from zwidth.cli.simulation_tables import KEYS, operator_parameters, simulation_parameters
+from zwidth.cli.simulation_tables import KEYS, follower_parameters, operator_parameters, simulation_parameters
 
 DOWEL = ("simulate", "haptic-paddle", "--stiffness", "770", "--operator", "dowel", "--duration", "0.2")
 
@@ -255,6 +255,6 @@ def test_ctrl_c_keeps_what_is_finished_and_says_so(run: Run, monkeypatch) -> Non
 
 def test_every_option_of_a_touch_has_a_unit_or_needs_none() -> None:
     """The help of each says what it is and in what unit."""
-    for parameter in (*operator_parameters(), *simulation_parameters()):
+    for parameter in (*operator_parameters(), *follower_parameters(), *simulation_parameters()):
         assert parameter.help
         assert parameter.metavar

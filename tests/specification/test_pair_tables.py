@@ -55,7 +55,7 @@ def test_one_device_is_both_arms_and_may_turn(tmp_path: Path) -> None:
         (ARMS, r"no spring joins the arms: set --stiffness \[N/m\], or write it in a \[coupling\]"),
         (ARMS + "[coupling]\ndamping = 1\n", r"\[coupling\]: stiffness \[N/m\] is missing"),
         (ARMS + COUPLING + "stifness = 3\n", r'a coupling has no "stifness"; did you mean "stiffness"'),
-        (ARMS + COUPLING + "mass = 3\n", r'a coupling has no "mass"; it may be: damping, drive_rate'),
+        (ARMS + COUPLING + "mass = 3\n", r'a coupling has no "mass"; it may be: compensation_coulomb'),
         (ARMS + COUPLING + "damping = 1\nvirtual_damping = 1\n", "are the same quantity"),
         (ARMS + COUPLING + 'local_damping = "3 N/m"\n', r"\[coupling\]: local_damping is in N\*s/m"),
         (ARMS + COUPLING + "link_delay = -1\n", r"\[coupling\]: link_delay must be ≥ 0"),
@@ -83,3 +83,12 @@ def test_a_pair_is_read_alone(tmp_path: Path) -> None:
     (tmp_path / "two.toml").write_text(ARMS + COUPLING, encoding="utf-8")
     with pytest.raises(zw.InputError, match="read alone"):
         zw.load("haptic-paddle", tmp_path / "two.toml")
+
+
+def test_compensation_of_friction_is_of_both_sides_unless_told(tmp_path: Path) -> None:
+    """A number that the follower has none of is the leader's; 0 where it has none of that."""
+    law = 'compensation_coulomb = "80 mN"\ncompensation_viscous = 0.01\ncompensation_speed = "2 cm/s"\n'
+    both = zw.FrictionCompensation(coulomb="0.08", viscous="0.01", speed="0.02")
+    assert read(tmp_path, ARMS + COUPLING + law).compensations == (both, both)
+    other = read(tmp_path, ARMS + COUPLING + law + "follower_compensation_coulomb = 0\n")
+    assert other.compensations == (both, zw.FrictionCompensation(viscous="0.01", speed="0.02"))

@@ -95,7 +95,9 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth simulate haptic-paddle --stiffness 300 --operator malicious --duration 1 -o touch.nc\n"
             "  zwidth simulate haptic-paddle --stiffness 770 --law passivity-controller --operator dowel "
             "--duration 2\n"
-            "  zwidth simulate my-wheel.toml my-touch.toml --sound buzz.wav",
+            "  zwidth simulate my-wheel.toml my-touch.toml --sound buzz.wav\n"
+            "  zwidth simulate my-arms.toml --operator finger --follower-operator wall "
+            "--follower-operator.stiffness '2 kN/m' --duration 1",
         ),
         "traces": Command(
             "compare saved touches",

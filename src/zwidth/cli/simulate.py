@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import Once, add_all, add_law_option, add_output, add_parameters, given, overrides
 from zwidth.cli.output import check_new, print_json, say_written, writing
+from zwidth.cli.simulate_pair import pair_measures, simulated_pair
 from zwidth.errors import InputError
 from zwidth.specification.laws import with_laws
-from zwidth.specification.read import TABLES, read_tables, specified
+from zwidth.specification.read import PAIR_TABLES, TABLES, read_tables, specified
+from zwidth.specification.table import Table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,7 +27,7 @@ INTERRUPTED = 130
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth simulate`."""
-    from zwidth.cli.simulation_tables import operator_parameters, simulation_parameters
+    from zwidth.cli.simulation_tables import follower_parameters, operator_parameters, simulation_parameters
 
     parser.usage = (
         "%(prog)s [SOURCE ...] --operator TYPE --duration TIME [--law NAMES] [--PARAMETER VALUE ...] "
@@ -35,36 +38,28 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="SOURCE",
         nargs="*",
         help="device of the catalogue, or TOML file with tables [device], [environment], [[law]], "
-        "[operator], [simulation]",
+        "[operator], [simulation]; or one with [leader], [follower], [coupling], [operator], "
+        "[follower_operator], [simulation]",
     )
     add_law_option(parser)
     output = add_output(parser, "the summary", "the plot", "the trace: .nc, .parquet, .csv")
     output.add_argument("--sound", metavar="FILE", action=Once, help="save the actuator force as sound: .wav")
     hand = parser.add_argument_group("hand", "a key of the hand is written --operator.force, …")
     add_all(hand, operator_parameters())
+    add_all(parser.add_argument_group("what holds the follower of a pair"), follower_parameters())
     add_all(parser.add_argument_group("simulation"), simulation_parameters())
     add_parameters(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth simulate`: 0, or 130 after Ctrl-C."""
-    from zwidth.cli.simulation_tables import build_touch, operator_parameters, simulation_parameters
+    from zwidth.cli.simulation_tables import FOLLOWER
+    from zwidth.traces import save_sound, save_trace
 
     plot, sound, save = _targets(arguments)
-    tables = read_tables(arguments.sources, TABLES)
-    loop = specified(tables, overrides(arguments))
-    environment = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
-    keys = [p.key for p in (*operator_parameters(), *simulation_parameters())]
-    words = given(arguments, keys)
-    touch = build_touch(tables.get("operator"), tables.get("simulation"), words, loop.device.motion)
-    duration = touch.duration
-    if duration is None:
-        duration = _own_duration(touch.operator, float(loop.device.exact("sample_period")))
-    from zwidth.cli.compile_notice import warn_of_compiling
-    from zwidth.traces import save_sound, save_trace, simulate
-
-    warn_of_compiling()
-    trace = simulate(loop.device, environment, touch.operator, duration, **touch.options)
+    tables = read_tables(arguments.sources, (*TABLES, *PAIR_TABLES, FOLLOWER))
+    pair = any(name in tables for name in PAIR_TABLES)
+    trace = simulated_pair(arguments, tables) if pair else _simulated(arguments, tables)
     if save is not None:
         save_trace(trace, save, force=True)
     if sound is not None:
@@ -75,14 +70,43 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json(json.dumps(summary(trace), indent=2, ensure_ascii=False))
     else:
+        from zwidth.cli.pair_trace_report import print_pair_trace
         from zwidth.cli.trace_report import print_trace
 
-        print_trace(trace)
+        (print_pair_trace if pair else print_trace)(trace)
         say_written(save, plot, sound)
     return INTERRUPTED if "interrupted_at_s" in trace.attrs else 0
 
 
-def _own_duration(operator: Any, period: float) -> float:
+def _simulated(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> xr.Dataset:
+    from zwidth.cli.compile_notice import warn_of_compiling
+    from zwidth.cli.simulation_tables import (
+        FOLLOWER,
+        build_touch,
+        follower_parameters,
+        operator_parameters,
+        simulation_parameters,
+    )
+    from zwidth.traces import simulate
+
+    if FOLLOWER in tables or given(arguments, [p.key for p in follower_parameters()]):
+        raise InputError(
+            "the loop of one device has no follower: give a file with [leader], [follower] and [coupling], "
+            "or leave out what holds the follower"
+        )
+    loop = specified(tables, overrides(arguments))
+    environment = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
+    keys = [p.key for p in (*operator_parameters(), *simulation_parameters())]
+    words = given(arguments, keys)
+    touch = build_touch(tables.get("operator"), tables.get("simulation"), words, loop.device.motion)
+    duration = touch.duration
+    if duration is None:
+        duration = own_duration(touch.operator, float(loop.device.exact("sample_period")))
+    warn_of_compiling()
+    return simulate(loop.device, environment, touch.operator, duration, **touch.options)
+
+
+def own_duration(operator: Any, period: float) -> float:
     """How long a record or a witness lasts [s].
 
     Raises
@@ -99,10 +123,12 @@ def _own_duration(operator: Any, period: float) -> float:
 
 def summary(trace: xr.Dataset) -> dict[str, Any]:
     """What the command prints as JSON: the trace's attributes, its measures and its energies."""
+    about = {key: value for key, value in trace.attrs.items() if key != "format"}
+    if "arm" in trace.dims:
+        return {"format": "zwidth pair simulation 1", **about, **pair_measures(trace)}
     from zwidth.traces import compare_traces
 
     measures = compare_traces({"this": trace}).to_dict()["this"]
-    about = {key: value for key, value in trace.attrs.items() if key != "format"}
     return {"format": "zwidth simulation 1", **about, **measures, "energy": trace.zwidth.energy.to_dict()}
 
 

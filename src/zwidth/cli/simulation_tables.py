@@ -16,18 +16,18 @@ from typing import Any, NamedTuple
 from zwidth.cli.options import Parameter
 from zwidth.device import amplifier as amplifiers
 from zwidth.device.amplifier import Amplifier
+from zwidth.environment import Wall
 from zwidth.errors import InputError
 from zwidth.operator import OPERATORS, Operator, ParametricOperator, RecordedForce, WitnessMotion
-from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.glossary import GLOSSARY, Quantity
 from zwidth.quantity.units import parse_number
 from zwidth.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
 
-OPERATOR = "operator"
-BEFORE = "operator."
-"""What stands before a key of the operator on the command line."""
+OPERATOR, FOLLOWER = "operator", "follower_operator"
+"""The hand, and that on the follower of a pair; on the command line with a dot before its keys."""
 
-RECORD, WITNESS = "force-record", "witness"
-"""Operators that come out of a file."""
+RECORD, WITNESS, WALL = "force-record", "witness", "wall"
+"""Operators that come out of a file; and what else may hold a follower."""
 
 AMPLIFIERS = ("current", "ideal", "voltage-limited", "lag")
 
@@ -51,6 +51,10 @@ KEYS: dict[str, Quantity] = {
 """The keys of [simulation]."""
 
 
+_WALL_KEYS = {"stiffness": GLOSSARY["stiffness"], "damping": GLOSSARY["virtual_damping"]}
+"""Of a real wall that a follower meets."""
+
+
 class Touch(NamedTuple):
     """A hand, and the arguments of `simulate` that go with it; duration None: as long as the hand's own."""
 
@@ -61,17 +65,35 @@ class Touch(NamedTuple):
 
 def operator_parameters() -> Iterator[Parameter]:
     """The options of an operator."""
+    before = f"{OPERATOR}."
     kinds = ", ".join((*OPERATORS, RECORD, WITNESS))
-    yield Parameter(OPERATOR, "TYPE", f"the hand: {kinds}")
-    yield Parameter(BEFORE + "file", "FILE", f"of a {RECORD} or {WITNESS}")
-    yield Parameter(BEFORE + "column", "COLUMN", f"of the file of a {RECORD}, where it has several")
-    yield Parameter(BEFORE + "rounds", "N", f"how often a {WITNESS} does its cycle (default: 100 at most)")
+    yield Parameter(OPERATOR, "TYPE", f"the hand, or that on the leader: {kinds}")
+    yield Parameter(before + "file", "FILE", f"of a {RECORD} or {WITNESS}")
+    yield Parameter(before + "column", "COLUMN", f"of the file of a {RECORD}, where it has several")
+    yield Parameter(before + "rounds", "N", f"how often a {WITNESS} does its cycle (default: 100 at most)")
     for name, (quantity, kinds_with) in _shared().items():
-        units = quantity.unit
-        if units != quantity.rotary_unit:
-            units += f"; rotary {quantity.rotary_unit}"
-        help_text = f"{quantity.meaning} [{units}]; of {', '.join(kinds_with)}"
-        yield Parameter(BEFORE + name, quantity.symbol, help_text)
+        yield Parameter(before + name, quantity.symbol, _help(quantity, kinds_with))
+
+
+def follower_parameters() -> Iterator[Parameter]:
+    """The options of what holds the follower of a pair."""
+    before = f"{FOLLOWER}."
+    kinds = ", ".join((*OPERATORS, RECORD, WALL))
+    yield Parameter(FOLLOWER, "TYPE", f"what holds the follower of a pair: {kinds} (default: nobody)")
+    yield Parameter(before + "file", "FILE", f"of a {RECORD}")
+    yield Parameter(before + "column", "COLUMN", f"of the file of a {RECORD}, where it has several")
+    own = _shared()
+    for name, quantity in _WALL_KEYS.items():
+        own[name] = (quantity, [*own.get(name, (quantity, []))[1], WALL])
+    for name, (quantity, kinds_with) in own.items():
+        yield Parameter(before + name, quantity.symbol, _help(quantity, kinds_with))
+
+
+def _help(quantity: Quantity, kinds: list[str]) -> str:
+    units = quantity.unit
+    if units != quantity.rotary_unit:
+        units += f"; rotary {quantity.rotary_unit}"
+    return f"{quantity.meaning} [{units}]; of {', '.join(kinds)}"
 
 
 def simulation_parameters() -> Iterator[Parameter]:
@@ -107,20 +129,47 @@ def build_touch(
     for key, value in overrides.items():
         if key == OPERATOR:
             hand_table.override("type", value)
-        elif key.startswith(BEFORE):
-            hand_table.override(key.removeprefix(BEFORE), value)
+        elif key.startswith(f"{OPERATOR}."):
+            hand_table.override(key.removeprefix(f"{OPERATOR}."), value)
         else:
             run_table.override(key, value)
-    hand = _hand(hand_table, motion)
+    hand = _hand(hand_table, motion, OPERATOR)
     run_table.check_keys(KEYS, "a simulation")
     options = _options(run_table, motion)
     return Touch(hand, options.pop("duration", None), options)
 
 
-def _hand(table: Table, motion: str) -> Operator:
+def build_follower(table: Table | None, overrides: Mapping[str, str], motion: str) -> Operator | Wall | None:
+    """What holds the follower of a pair, as tables and command line describe it; None for nobody.
+
+    Raises
+    ------
+    InputError
+        As `build_touch`.
+    """
+    table = table or Table(COMMAND_LINE, {})
+    for key, value in overrides.items():
+        table.override("type" if key == FOLLOWER else key.removeprefix(f"{FOLLOWER}."), value)
+    if not table.values:
+        return None
+    if table.values.get("type") != WALL:
+        return _hand(table, motion, FOLLOWER)
+    table.check_keys(("type", *_WALL_KEYS), "a wall that the follower meets")
+    if "stiffness" not in table.values:
+        raise InputError(f"{table.label}: the wall that the follower meets needs a stiffness")
+    numbers = {
+        name: _number(table, name, quantity, motion)
+        for name, quantity in _WALL_KEYS.items()
+        if name in table.values
+    }
+    with located(table.label):
+        return Wall(numbers["stiffness"], numbers.get("damping", 0))
+
+
+def _hand(table: Table, motion: str, option: str) -> Operator:
     if "type" not in table.values:
         kinds = ", ".join((*OPERATORS, RECORD, WITNESS))
-        raise InputError(f"no hand is given: set --operator to one of {kinds}")
+        raise InputError(f"no hand is given: set --{option.replace('_', '-')} to one of {kinds}")
     kind = table.text("type")
     if kind == RECORD:
         return _record(table)
@@ -143,7 +192,7 @@ def _hand(table: Table, motion: str) -> Operator:
 def _record(table: Table) -> Operator:
     table.check_keys(("type", "file", "column"), f"the hand {RECORD}")
     if "file" not in table.values:
-        raise InputError(f"{table.label}: a {RECORD} needs the file of its forces: --{BEFORE}file")
+        raise InputError(f"{table.label}: a {RECORD} needs the file of its forces: --{OPERATOR}.file")
     return RecordedForce.from_file(table.text("file"), table.values.get("column"))  # type: ignore[arg-type]
 
 
@@ -154,7 +203,7 @@ def _witness(table: Table) -> Operator:
     table.check_keys(("type", "file", "rounds"), f"the hand {WITNESS}")
     if "file" not in table.values:
         raise InputError(
-            f"{table.label}: a {WITNESS} needs the file that zwidth check or limit saved: --{BEFORE}file"
+            f"{table.label}: a {WITNESS} needs the file that zwidth check or limit saved: --{OPERATOR}.file"
         )
     name = table.text("file")
     motion = saved_motion(read_document(name), name)

@@ -112,7 +112,7 @@ def prepare(
     """
     law = as_environment(environment)
     rest, operator = _at_rest(device, law, operator, initial_position, known)
-    frame = _frame(device, operator, duration, amplifier, timing, points_per_sample, known)
+    frame = frame_of(device, operator, duration, amplifier, timing, points_per_sample, known)
     phase = _number(encoder_phase, "encoder_phase")
     if not 0 <= phase < 1:
         raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
@@ -189,15 +189,16 @@ class Frame(NamedTuple):
     signals: Signals
 
 
-def _frame(
+def frame_of(
     device: Device,
     operator: Operator,
     duration: RealLike,
     amplifier: Amplifier | None,
     timing: Timing | None,
     points_per_sample: int,
-    known: dict[Any, Any] | None,
+    known: dict[Any, Any] | None = None,
 ) -> Frame:
+    """Device, hand and clock checked and laid out, whatever the law; arguments as of `prepare`."""
     key = (id(device), id(operator))
     if known is not None and key in known:
         return known[key]

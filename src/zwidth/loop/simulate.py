@@ -7,7 +7,7 @@ energies; nothing is integrated numerically.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
@@ -16,12 +16,15 @@ from zwidth.device.device import Device
 from zwidth.errors import InputError
 from zwidth.loop.kernel import run
 from zwidth.loop.law import PHASE, RESOLUTION, STEP
+from zwidth.loop.pair.setup import Holder
+from zwidth.loop.pair.simulate import simulate_pair
 from zwidth.loop.plain import run_plain
 from zwidth.loop.plant import FAULT, STOPS
 from zwidth.loop.setup import Setup, empty_record, prepare
 from zwidth.loop.timing import Timing
 from zwidth.loop.trace import build_trace
 from zwidth.operator.operator import Operator
+from zwidth.pairs import Pair
 from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
@@ -35,21 +38,51 @@ _STRIDE = 200_000
 """Samples between two looks at progress and Ctrl-C."""
 
 
+@overload
 def simulate(
     device: Device,
     environment: object,
     operator: Operator,
     duration: RealLike,
     *,
+    initial_position: float | None = ...,
+    initial_velocity: float = ...,
+    encoder_phase: float = ...,
+    amplifier: Amplifier | None = ...,
+    timing: Timing | None = ...,
+    points_per_sample: int = ...,
+    progress: Progress | None = ...,
+) -> xr.Dataset: ...
+@overload
+def simulate(
+    device: Pair,
+    environment: Holder,
+    operator: Holder,
+    duration: RealLike,
+    *,
+    encoder_phase: tuple[float, float] | float = ...,
+    amplifier: Amplifier | None = ...,
+    points_per_sample: int = ...,
+    progress: Progress | None = ...,
+) -> xr.Dataset: ...
+def simulate(
+    device: Device | Pair,
+    environment: object,
+    operator: Operator | Holder,
+    duration: RealLike,
+    *,
     initial_position: float | None = None,
     initial_velocity: float = 0.0,
-    encoder_phase: float = 0.0,
+    encoder_phase: float | tuple[float, float] = 0.0,
     amplifier: Amplifier | None = None,
     timing: Timing | None = None,
     points_per_sample: int = 1,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Simulate a hand on the device, ``m ẍ = f_h − f_a − f_c sgn ẋ − b ẋ``, exactly.
+
+    Of a `Pair`, ``simulate(pair, leader, follower, duration)`` with what holds either arm, see
+    `simulation.simulate_pair`.
 
     Parameters
     ----------
@@ -92,14 +125,30 @@ def simulate(
     InputError
         If something is missing, not finite, of the wrong length, or out of its bounds.
     """
+    if isinstance(device, Pair):
+        if initial_position is not None or initial_velocity or timing is not None:
+            raise InputError(
+                "a pair starts where its hands do, at rest, with a regular clock: leave out "
+                "initial_position, initial_velocity and timing"
+            )
+        return simulate_pair(
+            device,
+            environment,  # type: ignore[arg-type]  # what it is, is looked at there
+            operator,
+            duration,
+            encoder_phase=encoder_phase,
+            amplifier=amplifier,
+            points_per_sample=points_per_sample,
+            progress=progress,
+        )
     setup = prepare(
         device,
         environment,
-        operator,
+        operator,  # type: ignore[arg-type]  # what it is, is looked at there
         duration,
         initial_position=initial_position,
         initial_velocity=initial_velocity,
-        encoder_phase=encoder_phase,
+        encoder_phase=encoder_phase,  # type: ignore[arg-type]
         amplifier=amplifier,
         timing=timing,
         points_per_sample=points_per_sample,

@@ -16,7 +16,7 @@ import xarray as xr
 
 from zwidth.loop import kernel
 from zwidth.loop.plant import POSITION
-from zwidth.loop.setup import Setup
+from zwidth.loop.setup import Frame, Setup
 from zwidth.loop.start import Start, held_at_start
 from zwidth.quantity.glossary import GLOSSARY
 
@@ -69,16 +69,16 @@ VARIABLES = {
 def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> xr.Dataset:
     """The Dataset of the first `done` samples of a record, up to where the numbers outgrow any meaning."""
     finished = min(setup.columns, done * setup.frame.points if done <= setup.frame.samples else setup.columns)
-    columns = _before_overflow(record, finished)
-    values = _values(setup, record, columns)
+    columns = before_overflow(record, finished)
+    values = values_of(setup.frame, record, columns)
     device = setup.device
     units = (*UNITS[device.motion], "J")
     variables = {
-        name: ("time", values[name], _attributes(variable, units))
+        name: ("time", values[name], attributes_of(variable, units))
         for name, variable in VARIABLES.items()
         if name in values
     }
-    time = _instants(setup)[:columns]
+    time = instants(setup.frame)[:columns]
     sampled = np.arange(columns) % setup.frame.points == 0
     coordinates = {
         "time": ("time", time, {"units": "s", "long_name": "time since sample 0", "symbol": "t"}),
@@ -92,7 +92,7 @@ def build_trace(setup: Setup, record: Array, done: int, *, stops: int) -> xr.Dat
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
-def _before_overflow(record: Array, columns: int) -> int:
+def before_overflow(record: Array, columns: int) -> int:
     """How many of the columns, one at least, come before the first number that is not below `LARGEST`."""
     if (np.abs(record[:, columns - 1]) < LARGEST).all():
         return columns  # what has grown so large does not come back: the energies sum up all that was
@@ -100,20 +100,22 @@ def _before_overflow(record: Array, columns: int) -> int:
     return max(1, int(np.argmax(beyond)))
 
 
-def _attributes(variable: Variable, units: tuple[str, ...]) -> dict[str, str]:
+def attributes_of(variable: Variable, units: tuple[str, ...]) -> dict[str, str]:
+    """Unit, meaning and symbol."""
     return {"units": units[variable.kind], "long_name": variable.long_name, "symbol": variable.symbol}
 
 
-def _instants(setup: Setup) -> Array:
-    if setup.frame.points == 1:
-        return setup.frame.times
-    share = np.arange(setup.frame.points) / setup.frame.points
-    inside = setup.frame.times[:-1, None] + np.diff(setup.frame.times)[:, None] * share
-    return np.append(inside.ravel(), setup.frame.times[-1])
+def instants(frame: Frame) -> Array:
+    if frame.points == 1:
+        return frame.times
+    share = np.arange(frame.points) / frame.points
+    inside = frame.times[:-1, None] + np.diff(frame.times)[:, None] * share
+    return np.append(inside.ravel(), frame.times[-1])
 
 
-def _values(setup: Setup, record: Array, columns: int) -> dict[str, Array]:
-    k, p = kernel, setup.frame.plant
+def values_of(frame: Frame, record: Array, columns: int) -> dict[str, Array]:
+    """The variables of a trace, from the record of an arm."""
+    k, p = kernel, frame.plant
     rows = {
         "position": k.R_POSITION,
         "velocity": k.R_VELOCITY,
@@ -131,16 +133,16 @@ def _values(setup: Setup, record: Array, columns: int) -> dict[str, Array]:
     x, v = values["position"], values["velocity"]
     values["kinetic_energy"] = 0.5 * p.mass * v * v
     values["hand_kinetic_energy"] = 0.5 * p.hand_mass * v * v
-    anchor, speed = _anchor(setup, columns)
+    anchor, speed = _anchor(frame, columns)
     if anchor is None:
         values["hand_spring_energy"] = np.zeros(columns)
     else:
         values["anchor_position"] = anchor
         values["hand_spring_energy"] = 0.5 * p.stiffness * (anchor - x) ** 2
-    if setup.operator.kinematic:
-        values["hand_force"] = _needed_force(setup, values)
+    if frame.signals.position is not None:
+        values["hand_force"] = _needed_force(frame, values)
     else:
-        values["hand_force"] = _hand_force(setup, values, anchor, speed)
+        values["hand_force"] = _hand_force(frame, values, anchor, speed)
     return values
 
 
@@ -150,26 +152,26 @@ def _held(values: Array, points: int, columns: int) -> Array:
     return np.append(repeated, repeated[-1])[:columns]
 
 
-def _anchor(setup: Setup, columns: int) -> tuple[Array | None, Array | float]:
-    anchor = setup.frame.signals.anchor
+def _anchor(frame: Frame, columns: int) -> tuple[Array | None, Array | float]:
+    anchor = frame.signals.anchor
     if anchor is None:
         return None, 0.0
-    speed = np.diff(anchor) / np.diff(setup.frame.times)
-    if setup.frame.points == 1:
+    speed = np.diff(anchor) / np.diff(frame.times)
+    if frame.points == 1:
         return anchor[:columns], _held(speed, 1, columns)
-    share = np.arange(setup.frame.points) / setup.frame.points
+    share = np.arange(frame.points) / frame.points
     inside = anchor[:-1, None] + np.diff(anchor)[:, None] * share
-    return np.append(inside.ravel(), anchor[-1])[:columns], _held(speed, setup.frame.points, columns)
+    return np.append(inside.ravel(), anchor[-1])[:columns], _held(speed, frame.points, columns)
 
 
-def _hand_force(setup: Setup, values: dict[str, Array], anchor: Array | None, speed: Array | float) -> Array:
+def _hand_force(frame: Frame, values: dict[str, Array], anchor: Array | None, speed: Array | float) -> Array:
     """F + k (x_a − x) + c (ẋ_a − v) − m_h v̇, with v̇ just after the instant."""
-    p, v = setup.frame.plant, values["velocity"]
+    p, v = frame.plant, values["velocity"]
     columns = v.size
     applied: Array = np.zeros(columns) if anchor is None else p.stiffness * (anchor - values["position"])
     applied = applied + p.hand_damping * (speed - v)
-    if setup.frame.signals.force is not None:
-        applied = applied + _held(setup.frame.signals.force, setup.frame.points, columns)
+    if frame.signals.force is not None:
+        applied = applied + _held(frame.signals.force, frame.points, columns)
     if p.hand_mass == 0.0:
         return applied
     external = applied - values["actuator_force"]
@@ -179,19 +181,19 @@ def _hand_force(setup: Setup, values: dict[str, Array], anchor: Array | None, sp
     return applied - p.hand_mass * np.where(resting, 0.0, acceleration)
 
 
-def _needed_force(setup: Setup, values: dict[str, Array]) -> Array:
+def _needed_force(frame: Frame, values: dict[str, Array]) -> Array:
     """What a prescribed motion takes just after the instant, impulses left out: f_a + f_c sgn v + b v."""
-    p, columns = setup.frame.plant, values["position"].size
-    target, bend = setup.frame.signals.position, setup.frame.signals.switch_position
+    p, columns = frame.plant, values["position"].size
+    target, bend = frame.signals.position, frame.signals.switch_position
     assert target is not None
-    h = np.diff(setup.frame.times)
+    h = np.diff(frame.times)
     if bend is None:
-        speed = _held(np.diff(target) / h, setup.frame.points, columns)
+        speed = _held(np.diff(target) / h, frame.points, columns)
     else:
-        before = _held((bend - target[:-1]) / setup.frame.offset, setup.frame.points, columns)
-        after = _held((target[1:] - bend) / (h - setup.frame.offset), setup.frame.points, columns)
-        into = np.arange(columns) % setup.frame.points / setup.frame.points * float(setup.frame.lengths[0])
-        speed = np.where(into < setup.frame.offset, before, after)
+        before = _held((bend - target[:-1]) / frame.offset, frame.points, columns)
+        after = _held((target[1:] - bend) / (h - frame.offset), frame.points, columns)
+        into = np.arange(columns) % frame.points / frame.points * float(frame.lengths[0])
+        speed = np.where(into < frame.offset, before, after)
     return values["actuator_force"] + p.coulomb * np.sign(speed) + p.damping * speed
 
 
@@ -237,7 +239,8 @@ def _beyond_samples(setup: Setup, velocity: Array) -> float:
 
 
 @cache  # it is read from a file
-def _version() -> str:
+def own_version() -> str:
+    """Of this package."""
     return version("zwidth")
 
 
@@ -245,7 +248,7 @@ def _attrs(setup: Setup, stops: int) -> dict[str, Any]:
     device, plant = setup.device, setup.frame.plant
     result: dict[str, Any] = {
         "format": FORMAT,
-        "zwidth_version": _version(),
+        "zwidth_version": own_version(),
         "device": device.name,
         "environment": setup.environment.describe(device.motion),
         "operator": setup.operator.describe(device.motion),

@@ -21,6 +21,7 @@ from typing import Any
 
 from zwidth.device import Device
 from zwidth.errors import InputError
+from zwidth.pairs.compensation import FrictionCompensation
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import (
     Certain,
@@ -56,6 +57,8 @@ class Side:
         K, B and D of its controller [N/m, N·s/m; N·m/rad, N·m·s/rad].
     link_delay
         Of what it receives [s].
+    compensation
+        Of its friction, by its own controller.
     """
 
     damping: Fraction
@@ -66,6 +69,7 @@ class Side:
     virtual_damping: Fraction
     local_damping: Fraction
     link_delay: Fraction
+    compensation: FrictionCompensation
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -94,6 +98,10 @@ class Pair(Parametric):
     drive_rate
         Of the drives, each of which holds its arm to the last reference at this rate [Hz], a whole number of
         times in T; both devices then are without delay.  None: everything is computed once in T.
+    compensation
+        Of each arm's friction, computed once in T; None: none.
+    follower_compensation
+        On the follower's side, where it is another; `FrictionCompensation()` where there is none.
 
     Raises
     ------
@@ -150,6 +158,8 @@ class Pair(Parametric):
         why="leave it out where there is no loop inside the drive",
         meaning="of the loop inside each drive, a whole number of times the device's",
     )
+    compensation: FrictionCompensation | None = None
+    follower_compensation: FrictionCompensation | None = None
 
     def __init__(
         self,
@@ -164,6 +174,8 @@ class Pair(Parametric):
         follower_local_damping: RealLike | None = None,
         delay: RealLike | tuple[RealLike, RealLike] = 0,
         drive_rate: RealLike | None = None,
+        compensation: FrictionCompensation | None = None,
+        follower_compensation: FrictionCompensation | None = None,
     ) -> None:
         for name, device in (("leader", leader), ("follower", follower)):
             if not isinstance(device, Device):
@@ -173,6 +185,10 @@ class Pair(Parametric):
                 f"a {leader.motion} leader and a {follower.motion} follower have no common spring; "
                 "give both as seen by the hand, in the same unit"
             )
+        laws = {"compensation": compensation, "follower_compensation": follower_compensation}
+        for name, law in laws.items():
+            if not isinstance(law, FrictionCompensation | None):
+                raise InputError(f"{name} is a FrictionCompensation or None, got {type(law).__name__}")
         there, back = delay if isinstance(delay, (tuple, list)) and len(delay) == 2 else (delay, delay)
         given: dict[str, Any] = {
             "stiffness": stiffness,
@@ -185,7 +201,7 @@ class Pair(Parametric):
             "back": back,
             "drive_rate": drive_rate,
         }
-        self._keep(leader=leader, follower=follower, **given)
+        self._keep(leader=leader, follower=follower, **laws, **given)
         read = {name: self._number(name, value) for name, value in given.items()}
         self._keep(**read)
         for name, device in (("leader", leader), ("follower", follower)):
@@ -267,7 +283,14 @@ class Pair(Parametric):
         gains = [value.fraction for value in (self.stiffness, self.damping, self.local_damping)]
         own = (self.follower_stiffness, self.follower_damping, self.follower_local_damping)
         its = [mine if value is None else value.fraction for mine, value in zip(gains, own, strict=True)]
-        return _side(self.leader, gains, self.back), _side(self.follower, its, self.there)
+        law, other = self.compensations
+        return _side(self.leader, gains, self.back, law), _side(self.follower, its, self.there, other)
+
+    @property
+    def compensations(self) -> tuple[FrictionCompensation, FrictionCompensation]:
+        """Of leader and follower; of zeros where there is none."""
+        law = self.compensation or FrictionCompensation()
+        return law, law if self.follower_compensation is None else self.follower_compensation
 
     def replace(self, **changes: Any) -> Pair:
         """The same pair with some arguments changed."""
@@ -282,6 +305,8 @@ class Pair(Parametric):
             "follower_local_damping": self.follower_local_damping,
             "delay": self.delay,
             "drive_rate": self.drive_rate,
+            "compensation": self.compensation,
+            "follower_compensation": self.follower_compensation,
         }
         return Pair(**{**given, **changes})
 
@@ -297,6 +322,11 @@ class Pair(Parametric):
             parts.append(f"D = {shown(self.local_damping, unit('virtual_damping'))}")
         if self.drive_rate is not None:
             parts.append(f"each arm's own part in its drive at {shown(self.drive_rate, 'Hz')}")
+        law, other = self.compensations
+        if law:
+            parts.append(law.describe(self.motion))
+        if other != law:
+            parts.append(f"on the follower's side {other.describe(self.motion)}")
         there, back = (shown(value, "s") for value in self.delay)
         parts.append(
             f"link delay {there} there, {back} back" if there != back else f"link delay {there} each way"
@@ -307,7 +337,7 @@ class Pair(Parametric):
         return f"<Pair {self.leader.name} and {self.follower.name}: {self.describe()}>"
 
 
-def _side(device: Device, gains: list[Fraction], link: Exact) -> Side:
+def _side(device: Device, gains: list[Fraction], link: Exact, law: FrictionCompensation) -> Side:
     stiffness, virtual, local = gains
     return Side(
         damping=device.exact("damping"),
@@ -318,4 +348,5 @@ def _side(device: Device, gains: list[Fraction], link: Exact) -> Side:
         virtual_damping=virtual,
         local_damping=local,
         link_delay=link.fraction,
+        compensation=law,
     )

@@ -18,7 +18,7 @@ from typing import Any
 
 from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.pairs import Pair
+from zwidth.pairs import FrictionCompensation, Pair
 from zwidth.quantity.kind import bracketed
 from zwidth.quantity.parameter import Parameter, parameters_of, read_number
 from zwidth.specification.read import PAIR_TABLES, build_device, question_time, read_tables
@@ -27,11 +27,22 @@ from zwidth.specification.values import read
 
 _LINKS = {"link_delay": "there", "link_delay_back": "back"}
 
+_LAW = {f"compensation_{name}": own for name, own in parameters_of(FrictionCompensation).items()}
+_ITS_LAW = {
+    f"follower_{key}": own._replace(
+        quantity=own.quantity._replace(meaning=f"{own.meaning}, on the follower's side where it is another")
+    )
+    for key, own in _LAW.items()
+}
+
 KEYS: Mapping[str, Parameter] = MappingProxyType(
     {name: own for name, own in parameters_of(Pair).items() if name not in _LINKS.values()}
     | {key: parameters_of(Pair)[name] for key, name in _LINKS.items()}
+    | _LAW
+    | _ITS_LAW
 )
-"""The keys of a [coupling] table: the arguments of `Pair`, each way of its delay by a name of its own."""
+"""The keys of a [coupling] table: the arguments of `Pair`, each way of its delay by a name of its own, and of
+a `FrictionCompensation` each number."""
 
 _ALIASES = {"virtual_damping": "damping", "follower_virtual_damping": "follower_damping"}
 
@@ -124,7 +135,18 @@ def _joined(leader: Device, follower: Device, coupling: Table, overrides: Mappin
     given = {key: _read(coupling, key, leader.motion) for key in coupling.values}
     there = given.pop("link_delay", 0)
     back = given.pop("link_delay_back", there)
+    given |= _compensations(given)
     return Pair(leader, follower, **given, delay=(there, back))
+
+
+def _compensations(given: dict[str, Any]) -> dict[str, Any]:
+    """Those of both sides, taken out of what was given; a number that the follower lacks is the leader's."""
+    law, its = (
+        {name.removeprefix(prefix): given.pop(name) for name in keys if name in given}
+        for keys, prefix in ((_LAW, "compensation_"), (_ITS_LAW, "follower_compensation_"))
+    )
+    found = {"compensation": FrictionCompensation(**law)} if law else {}
+    return found | ({"follower_compensation": FrictionCompensation(**{**law, **its})} if its else {})
 
 
 def _read(table: Table, key: str, motion: str) -> Any:

@@ -248,7 +248,7 @@ def tables_of(text: str, name: str, kinds: Sequence[str] = LOOP_TABLES) -> dict[
 
 
 _CHECKED_BY = {
-    **dict.fromkeys(TABLES, "it is for zwidth simulate"),
+    **dict.fromkeys((*TABLES, "follower_operator"), "it is for zwidth simulate"),
     **dict.fromkeys(PAIR_TABLES, "it is of two arms that follow each other: zwidth pair decides them"),
 }
 """Who reads a table that a command does not."""

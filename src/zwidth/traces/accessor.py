@@ -6,12 +6,15 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import xarray as xr
 
 from zwidth.bench.perceived import WEBER, noticeable_differences
 from zwidth.bench.scores import static_stiffness
-from zwidth.energy import Ledger, ledger
+from zwidth.energy import Ledger, PairLedger, ledger
+from zwidth.energy.pair_ledger import arm_of
 from zwidth.errors import InputError
+from zwidth.loop.pair.trace import FORMAT as OF_A_PAIR
 from zwidth.loop.trace import FORMAT
 from zwidth.traces.files import save_trace
 from zwidth.traces.sound import save_sound
@@ -31,7 +34,7 @@ class TraceAccessor:
     """
 
     def __init__(self, trace: xr.Dataset) -> None:
-        if trace.attrs.get("format") != FORMAT:
+        if trace.attrs.get("format") not in (FORMAT, OF_A_PAIR):
             raise InputError(
                 f"this Dataset is no zwidth trace: its attribute format is {trace.attrs.get('format')!r}, "
                 f"not {FORMAT!r}; traces come from zwidth.simulate and zwidth.traces.load_trace"
@@ -39,17 +42,42 @@ class TraceAccessor:
         self._trace = trace
 
     @property
-    def energy(self) -> Ledger:
-        """The energy ledger."""
-        return ledger(self._trace)
+    def energy(self) -> Ledger | PairLedger:
+        """The energy ledger; of a pair, that of both arms."""
+        if self._both:
+            return PairLedger(self._trace)
+        return ledger(arm_of(self._trace, "") if self._trace.attrs["format"] == OF_A_PAIR else self._trace)
+
+    @property
+    def _both(self) -> bool:
+        """True for the trace of a pair; False for that of one arm, also of one out of a pair's."""
+        return "arm" in self._trace.dims
 
     @property
     def felt_stiffness(self) -> float:
         """Mean force of the wall over mean depth in the last half, when the hand rests [N/m; N·m/rad].
 
-        nan where that is not contact.
+        Of a pair it is that of the leader.  nan where that is not contact.
         """
-        return static_stiffness(self._trace)
+        return static_stiffness(self._one)
+
+    @property
+    def _one(self) -> xr.Dataset:
+        return self._trace.sel(arm="leader") if self._both else self._trace
+
+    @property
+    def tracking_error(self) -> float:
+        """Root of the mean of (x_l − x_f)² of a pair [m; rad].
+
+        Raises
+        ------
+        InputError
+            If it is no trace of a pair.
+        """
+        if not self._both:
+            raise InputError("one arm alone tracks nothing: this is of the trace of a pair, both arms")
+        leader, follower = self._trace["position"].values
+        return float(np.sqrt(np.mean((leader - follower) ** 2)))
 
     def stiffness_jnds(self, wanted: float, weber: float = WEBER) -> float:
         """How many just-noticeable differences this is from a stiffness, see `noticeable_differences`."""
@@ -58,9 +86,10 @@ class TraceAccessor:
     def plot(self, path: str | PathLike[str] | None = None) -> Figure:
         """Position, force and energy against time, as the papers draw them; saved if a path is given."""
         from zwidth.plots.files import save_figure  # matplotlib takes its time
+        from zwidth.plots.pair_trace import pair_trace_figure
         from zwidth.plots.trace import trace_figure
 
-        figure = trace_figure(self._trace)
+        figure = (pair_trace_figure if self._both else trace_figure)(self._trace)
         if path is not None:
             save_figure(lambda: figure, Path(path), overwrite=True)
         return figure
@@ -70,5 +99,5 @@ class TraceAccessor:
         save_trace(self._trace, path, force=force)
 
     def sound(self, path: str | PathLike[str], *, force: bool = False) -> None:
-        """Save the actuator force as sound, see `save_sound`."""
-        save_sound(self._trace, path, force=force)
+        """Save the actuator force as sound, see `save_sound`; of a pair that of the leader."""
+        save_sound(self._one, path, force=force)

@@ -19,6 +19,8 @@ import numpy as np
 import xarray as xr
 
 from zwidth.errors import InputError
+from zwidth.loop.pair.trace import ARMS, labelled
+from zwidth.loop.pair.trace import FORMAT as OF_A_PAIR
 from zwidth.loop.trace import FORMAT, UNITS, VARIABLES
 from zwidth.reading import check_hdf5, check_parquet
 from zwidth.writing import check_target, first_line, writing_whole
@@ -33,6 +35,13 @@ _ATTRIBUTES: dict[str, Callable[[Any], bool]] = {
     "stops": lambda value: isinstance(value, Real),
 }
 """What is computed with, and what it must be."""
+
+_OF_BOTH: dict[str, Callable[[Any], bool]] = {
+    "motion": _ATTRIBUTES["motion"],
+    "power_ratio": lambda value: isinstance(value, Real),
+    "stored_at_start_J": lambda value: isinstance(value, Real),
+}
+"""The same of a pair."""
 
 _KEYS = {"m/s": "m_per_s", "rad/s": "rad_per_s", "N*m": "N_m"}
 
@@ -113,9 +122,11 @@ def _format(path: Path) -> tuple[Callable[[xr.Dataset, IO[bytes]], None], Callab
 
 
 def _refuse_foreign(trace: xr.Dataset, what: str) -> None:
-    if trace.attrs.get("format") != FORMAT or "time" not in trace.coords:
+    both = trace.attrs.get("format") == OF_A_PAIR and "arm" in trace.dims
+    if not (both or trace.attrs.get("format") == FORMAT) or "time" not in trace.coords:
         raise InputError(f"{what} is no zwidth trace: its attribute format is not {FORMAT!r}")
-    wrong = [key for key, fits in _ATTRIBUTES.items() if not fits(trace.attrs.get(key))]
+    needed = _OF_BOTH if both else _ATTRIBUTES
+    wrong = [key for key, fits in needed.items() if not fits(trace.attrs.get(key))]
     if wrong:
         raise InputError(f"{what} is no whole zwidth trace: its attribute {wrong[0]} is missing or wrong")
     missing = [name for name in VARIABLES if name not in trace and name != "anchor_position"]
@@ -146,18 +157,31 @@ def _read_netcdf(path: Path) -> xr.Dataset:
 
 def _columns(trace: xr.Dataset) -> dict[str, NDArray[Any]]:
     columns: dict[str, NDArray[Any]] = {"time_s": trace["time"].values}
-    for name in VARIABLES:
-        if name in trace:
-            columns[column_name(name, trace[name].attrs["units"])] = trace[name].values
+    parts = {f"{arm}_": trace.sel(arm=arm) for arm in ARMS} if "arm" in trace.dims else {"": trace}
+    for before, part in parts.items():
+        for name in VARIABLES:
+            if name in part:
+                columns[before + column_name(name, part[name].attrs["units"])] = part[name].values
     columns["sampled"] = trace["sampled"].values
     return columns
 
 
 def _from_columns(columns: dict[str, Any], attributes: dict[str, Any], source: Path) -> xr.Dataset:
-    motion = attributes.get("motion")
-    if attributes.get("format") != FORMAT or motion not in UNITS:
+    motion, kind = attributes.get("motion"), attributes.get("format")
+    if kind not in (FORMAT, OF_A_PAIR) or motion not in UNITS:
         raise InputError(f"{source} holds no zwidth trace: its attributes are not there")
     units = (*UNITS[motion], "J")
+    if kind == OF_A_PAIR:
+        parts = [
+            {
+                name: np.asarray(columns[key], dtype=np.float64)
+                for name, variable in VARIABLES.items()
+                if (key := f"{arm}_{column_name(name, units[variable.kind])}") in columns
+            }
+            for arm in ARMS
+        ]
+        time, sampled = np.asarray(columns["time_s"], dtype=np.float64), np.asarray(columns["sampled"]) != 0
+        return labelled(parts, time, sampled, attributes)
     variables = {}
     for name, variable in VARIABLES.items():
         unit = units[variable.kind]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
 from zwidth.bench import bench as _bench
@@ -52,7 +52,10 @@ def available_storage(*args: Any, **kwargs: Any) -> _storage.AvailableStorage:
         return _storage.available_storage(*args, progress=falling(progress), **kwargs)
 
 
-simulate = _with_bar(_simulate.simulate, "samples")
+if TYPE_CHECKING:  # a decorator keeps one of several signatures
+    from zwidth.loop.simulate import simulate as simulate
+else:
+    simulate = _with_bar(_simulate.simulate, "samples")
 simulate_batch = _with_bar(_batch.simulate_batch, "loops")
 compare = _with_bar(_bench.compare, "laws")
 passive_limit = _with_bar(_limit, "loops")

@@ -8,7 +8,8 @@ A reading arrives between two samples and is used at the next, so nᵢ = ⌈link
 follower counts K_l/K_f times: then the spring between the two gives back what it takes.
 
 With a drive that reads its own arm m times in T the part of xᵢ is computed with T/m in the place of T, m
-times as often; the part of xⱼ stays.
+times as often; the part of xⱼ stays.  Compensation of friction, φ of `compensation`, is taken from the force:
+computed once in T, from the move over the last T, and as late as fᵢ.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from ..document.fields import Number, Read, Record, Whole
 from ..document.number import common_scale
 from ..document.refusal import Invalid
 from ..document.unit import DAMPING, FORCE, LENGTH, SECONDS, STIFFNESS
+from .compensation import COMPENSATION
 
 MOST_AGE = 400
 """Samples that a reading may be old where it acts."""
@@ -37,6 +39,7 @@ SIDE = Record(
         "virtual_damping": Number(DAMPING),
         "local_damping": Number(DAMPING),
         "link_delay": Number(SECONDS, least=0),
+        "compensation": COMPENSATION,
     },
     named=True,
 )
@@ -54,7 +57,7 @@ class Side(NamedTuple):
     """One device: its friction and encoder, and what its force is made of.
 
     `own` and `other` in ascending powers of ζ, the other's as old as it is where it arrives, `age`; the force
-    comes `whole` + `part` samples later.  `weight` is how often its work counts.
+    comes `whole` + `part` samples later.  `weight` is how often its work counts, `law` its compensation.
     """
 
     damping: Fraction
@@ -66,6 +69,7 @@ class Side(NamedTuple):
     whole: int
     part: Fraction
     weight: Fraction
+    law: Read | None
 
 
 def sides_of(told: Read) -> tuple[Side, Side]:
@@ -93,6 +97,7 @@ def _side(told: Read, period: Fraction, often: int, weight: Fraction) -> Side:
         int(whole),
         told.delay / period - whole,
         weight,
+        told.compensation,
     )
     common_scale((*side.own, *side.other, side.damping, side.part, period, weight))
     return side

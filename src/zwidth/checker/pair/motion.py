@@ -1,4 +1,8 @@
-"""Motions of both hands re-run: the energy that they take out, in rational arithmetic."""
+"""Motions of both hands re-run: the energy that they take out, in rational arithmetic.
+
+With compensation of friction the tanh in it is known between two numbers: what counts is the one with which
+less comes out.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +15,7 @@ from ..document.number import MOST_BITS, common_scale
 from ..document.refusal import Invalid
 from ..document.unit import LENGTH
 from ..loop.motion import MOST_SAMPLES, REPEAT, TOLD, require_apart
+from .compensation import BITS, tanh_between
 from .coupling import PAIR, Side, sides_of
 
 PAIR_MOTION = document(
@@ -53,13 +58,16 @@ def pair_motion_energy(told: Read) -> Fraction:
         [*(v for path in (*paths, *turns) for v in path), *(side.resolution for side in sides)], MOST_BITS
     )
     taps = common_scale([c for side in sides for c in (*side.own, *side.other)])
+
+    def whole(values: Sequence[Fraction]) -> list[int]:
+        return [int(v * per_unit) for v in values]
+
     arms = [
-        _Arm(side, [int(v * per_unit) for v in path], [int(v * per_unit) for v in turn], per_unit, taps)
+        _Arm(side, whole(path), whole(turn), per_unit, taps, told.loop.sample_period)
         for side, path, turn in zip(sides, paths, turns, strict=True)
     ]
     _run(arms, told.repeats, often)
-    period: Fraction = told.loop.sample_period / often
-    return -sum((arm.lost(per_unit, taps, period) for arm in arms), Fraction(0))
+    return -sum((arm.lost(taps, often) for arm in arms), Fraction(0))
 
 
 def _turns(side: Side, path: list[Fraction], given: list[Fraction] | None) -> list[Fraction]:
@@ -73,16 +81,21 @@ def _turns(side: Side, path: list[Fraction], given: list[Fraction] | None) -> li
 class _Arm:
     """One side in whole numbers: what it read, the forces on their way, and the sums of its work."""
 
-    def __init__(self, side: Side, x: list[int], turns: list[int], per_unit: int, taps: int) -> None:
-        self.side, self.x, self.turns = side, x, turns
+    def __init__(
+        self, side: Side, x: list[int], turns: list[int], per_unit: int, taps: int, period: Fraction
+    ) -> None:
+        self.side, self.x, self.turns, self.per_unit, self.period = side, x, turns, per_unit, period
         self.count = int(side.resolution * per_unit)
         self.own, self.other = ([int(c * taps) for c in part] for part in (side.own, side.other))
         self.read = [0, 0]  # the newest first
         self.sent: list[int] = []  # of those, what the other side may still need; made by `_run`
         self.told = 0  # what the other's readings add to the force, until it hears again
         self.forces = [0] * (side.whole + 2)
+        self.moves = [0] * len(self.forces)  # by which its friction is compensated, as late as the forces
+        self.bounds: dict[int, tuple[int, int]] = {}
         self.ahead = 0
         self.work = self.path = self.early = self.late = 0
+        self.helped = self.pushed = 0  # what C and F of the compensation give, but for their size
         self.bits = max(v.bit_length() for v in x)
 
     def look(self, k: int) -> None:
@@ -103,6 +116,8 @@ class _Arm:
         """Compute the force and send it on its way."""
         mine = sum(c * v for c, v in zip(self.own, self.read, strict=True))
         self.forces = [mine + self.told, *self.forces[:-1]]
+        if self.side.law is not None:
+            self.moves = [self.sent[0] - self.sent[1], *self.moves[:-1]]
 
     def move(self, k: int) -> None:
         """Go on to sample k + 1 under the forces that act meanwhile."""
@@ -112,9 +127,30 @@ class _Arm:
             self.work += self.forces[d + 1] * early
             self.path += abs(early)
             self.early += early * early
+            self._help(self.moves[d + 1], early)
         self.work += self.forces[d] * late
         self.path += abs(late)
         self.late += late * late
+        self._help(self.moves[d], late)
+
+    def _help(self, move: int, way: int) -> None:
+        """What compensation gives on a way, tanh rounded to the side of less."""
+        if not move or not way:
+            return
+        self.helped += move * way
+        along = way if move > 0 else -way
+        if abs(move) not in self.bounds:
+            self.bounds[abs(move)] = self._tanh(abs(move))
+        low, high = self.bounds[abs(move)]
+        self.pushed += (low if along > 0 else high) * along
+
+    def _tanh(self, move: int) -> tuple[int, int]:
+        """Of the speed of a move over v_s."""
+        assert self.side.law is not None
+        speed = self.side.law.compensation_speed
+        return (
+            tanh_between(Fraction(move, self.per_unit) / (self.period * speed)) if speed else (1 << BITS,) * 2
+        )
 
     def advance_by(self, part: Read) -> int:
         """How far a round leads."""
@@ -122,12 +158,21 @@ class _Arm:
         last: int = self.x[part.last]
         return last - first
 
-    def lost(self, per_unit: int, taps: int, period: Fraction) -> Fraction:
+    @property
+    def sums(self) -> tuple[int, int, int, int, int, int]:
+        """All that is summed up."""
+        return self.work, self.path, self.early, self.late, self.helped, self.pushed
+
+    def lost(self, taps: int, often: int) -> Fraction:
         """What its hand gave, friction included, as often as it counts [J]."""
-        side, unit = self.side, Fraction(1, per_unit)
+        side, unit = self.side, Fraction(1, self.per_unit)
         squares = self.early / side.part + self.late / (1 - side.part) if side.part else Fraction(self.late)
-        work = unit**2 * (Fraction(self.work, taps) + side.damping / period * squares)
-        return side.weight * (work + side.coulomb_friction * unit * self.path)
+        work = unit**2 * (Fraction(self.work, taps) + side.damping * often / self.period * squares)
+        given = Fraction(0)
+        if side.law is not None:
+            dry = side.law.compensated_coulomb_friction * Fraction(self.pushed, 1 << BITS)
+            given = unit**2 * side.law.compensated_damping / self.period * self.helped + unit * dry
+        return side.weight * (work + side.coulomb_friction * unit * self.path - given)
 
 
 def _run(arms: Sequence[_Arm], repeats: Sequence[Read], often: int) -> None:
@@ -168,7 +213,7 @@ def _rounds(arms: Sequence[_Arm], part: Read, often: int) -> None:
     memory = max(often * len(arm.sent) + len(arm.forces) for arm in arms)
     advances = [arm.advance_by(part) for arm in arms]
     for done in range(1, part.times + 1):
-        before = [(arm.work, arm.path, arm.early, arm.late) for arm in arms]
+        before = [arm.sums for arm in arms]
         _forward(arms, part.first, part.last, often)
         for arm, advance in zip(arms, advances, strict=True):
             arm.ahead += advance
@@ -184,10 +229,10 @@ def _rounds(arms: Sequence[_Arm], part: Read, often: int) -> None:
 
 
 def _skip(
-    arms: Sequence[_Arm], advances: Sequence[int], before: Sequence[tuple[int, int, int, int]], left: int
+    arms: Sequence[_Arm], advances: Sequence[int], before: Sequence[tuple[int, ...]], left: int
 ) -> None:
-    """So many rounds more."""
-    for arm, advance, its, (work, path, early, late) in zip(
+    """So many rounds more; compensation, which knows moves alone, gives the same in each."""
+    for arm, advance, its, (work, path, early, late, helped, pushed) in zip(
         arms, advances, advances[::-1], before, strict=True
     ):
         push = sum(arm.own) * advance + sum(arm.other) * its
@@ -200,6 +245,8 @@ def _skip(
         arm.path += left * (arm.path - path)
         arm.early += left * (arm.early - early)
         arm.late += left * (arm.late - late)
+        arm.helped += left * (arm.helped - helped)
+        arm.pushed += left * (arm.pushed - pushed)
         arm.ahead += left * advance
         arm.read = [v + left * advance for v in arm.read]
         arm.sent = [v + left * advance for v in arm.sent]

@@ -15,11 +15,15 @@ With m readings of its own in a sample an arm loses the least, for given moves i
     Mᵢᵢ = m (β + γ) (t − g c)/(m (t − g c) + γ u (1 − c)),    β = b − K T/2m ≥ |γ|,  γ = B + D,
 
 t = γᵐ T_m(β/γ), u = γᵐ⁻¹ U_{m−1}(β/γ), g = (−γ)ᵐ; where β < |γ| it gains inside a sample, by itself.
+
+Compensation of friction under a line h + s v (`compensation`) takes h of Coulomb friction, s/2 of damping and
+C + s/2 of local damping.  Beside the square of a large round F is as nothing: what is negative with s = 0 is
+a violation.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -29,6 +33,7 @@ from ..document.number import about, common_scale
 from ..document.refusal import Invalid
 from ..exact.polynomial import bits, multiply, value
 from ..exact.positivity import POSITIVITY, require_nonnegative
+from .compensation import NO_LINE, TANGENTS, Line, line_of
 from .coupling import PAIR, Side, sides_of
 from .laurent import (
     Laurent,
@@ -43,7 +48,10 @@ from .laurent import (
 PAIR_PROOF = document(
     {
         "loop": PAIR,
-        "proof": Record({"leader": POSITIVITY, "follower": POSITIVITY, "both": POSITIVITY}, shown=False),
+        "proof": Record(
+            {"leader": POSITIVITY, "follower": POSITIVITY, "both": POSITIVITY, "tangents": TANGENTS},
+            shown=False,
+        ),
     }
 )
 PAIR_VIOLATION = document(
@@ -66,25 +74,43 @@ class Criterion(NamedTuple):
 def pair(told: Read) -> str:
     """Friction and encoders too."""
     sides = sides_of(told.loop)
-    found = criterion(told.loop, sides)
+    lines = _lines(told, sides)
+    found = criterion(told.loop, sides, lines)
     if found is None:
         raise Invalid("an arm gains by itself inside a sample")
     for name in Criterion._fields:
         require_nonnegative([Fraction(c) for c in getattr(found, name)], getattr(told.proof, name))
-    for side, error in zip(sides, _errors(sides), strict=True):
-        if side.coulomb_friction < error:
+    for side, line, error in zip(sides, lines, _errors(told.loop, sides, lines), strict=True):
+        if side.coulomb_friction < error + line.height:
+            less = f" and {about(line.height)} of compensation" if side.law is not None else ""
             raise Invalid(
                 f"Coulomb friction of {about(side.coulomb_friction)} is below the force error of both "
-                f"encoders, {about(error)}"
+                f"encoders, {about(error)}{less}"
             )
     counted = any(side.resolution for side in sides)
     more = ", and Coulomb friction covers the steps of both encoders" if counted else ""
     return f"the work of both hands is nowhere negative{more}"
 
 
+def _lines(told: Read, sides: tuple[Side, Side]) -> tuple[Line, Line]:
+    """The tangent of each compensation."""
+    given = told.proof.tangents
+    only_if(any(side.law is not None for side in sides), given, "proof.tangents")
+    leader, follower = sides
+    if given is None:
+        return NO_LINE, NO_LINE
+    return line_of(leader.law, given.leader), line_of(follower.law, given.follower)
+
+
 def pair_violation(told: Read) -> str:
     """A frequency at which some motion of both hands takes energy out, or without one a drive that does."""
-    found = criterion(told.loop, sides_of(told.loop))
+    sides = sides_of(told.loop)
+    lines = [line_of(side.law, Fraction(1)) for side in sides]
+    found = criterion(told.loop, sides, lines)
+    if found is None and any(_viscous(side) for side in sides):
+        raise Invalid(
+            "an arm gains by itself inside a sample, unless compensation of its viscous friction brakes"
+        )
     proof = only_if(found is not None, told.proof, "proof")
     if found is None:
         return "an arm gains by itself inside a sample"
@@ -95,18 +121,39 @@ def pair_violation(told: Read) -> str:
     return "at one frequency a motion of both hands takes energy out in every round"
 
 
-def _errors(sides: tuple[Side, Side]) -> Iterator[Fraction]:
+def _errors(told: Read, sides: Sequence[Side], lines: Sequence[Line]) -> Iterator[Fraction]:
     """The largest error of each force: half a count of each reading, all at their worst."""
-    for side, other in (sides, sides[::-1]):
+    period, often = told.sample_period, told.own_readings
+    spent = [_spent(side, line, period, often) for side, line in zip(sides, lines, strict=True)]
+    for side, other, line in zip(spent, spent[::-1], lines, strict=True):
         mine, its = (sum(map(abs, taps)) for taps in (side.own, side.other))
-        yield (mine * side.resolution + its * other.resolution) / 2
+        unsure = line.slope / 2 / period
+        if often > 1:
+            unsure += (_viscous(side) + line.slope / 2) / period
+        yield (mine * side.resolution + its * other.resolution) / 2 + unsure * side.resolution
 
 
-def criterion(told: Read, sides: tuple[Side, Side]) -> Criterion | None:
+def _viscous(side: Side) -> Fraction:
+    return Fraction(0) if side.law is None else Fraction(side.law.compensated_damping)
+
+
+def _spent(side: Side, line: Line, period: Fraction, often: int) -> Side:
+    """With s/2 less damping, and C + s/2 less local damping, both as quick as the rest."""
+    if side.law is None or often > 1:
+        return side
+    less = (_viscous(side) + line.slope / 2) / period
+    newest, last = side.own
+    return side._replace(damping=side.damping - line.slope / 2, own=[newest - less, last + less])
+
+
+def criterion(
+    told: Read, arms: Sequence[Side], lines: Sequence[Line] = (NO_LINE, NO_LINE)
+) -> Criterion | None:
     """The diagonal of the form, and its determinant; None where the drive of an arm alone lets it gain."""
-    period: Fraction = told.sample_period
+    period, often = told.sample_period, told.own_readings
+    sides = [_spent(side, line, period, often) for side, line in zip(arms, lines, strict=True)]
     for side in sides:
-        if side.part and not side.damping:
+        if side.part and side.damping <= 0:
             raise Invalid("without damping a force that changes inside a sample gives energy for free")
     rows = [_row(side, period) for side in sides]
     lost = [_inside(side, period) for side in sides]
@@ -122,8 +169,8 @@ def criterion(told: Read, sides: tuple[Side, Side]) -> Criterion | None:
         own[1 - i] = weighted((1, own[1 - i]), (-loss, times(_SQUARE, times(its, conjugate(its)))))
         mixed = times(conjugate(mine), its) if i == 0 else times(conjugate(its), mine)
         crossed = weighted((1, crossed), (-loss, times(_SQUARE, mixed)))
-    if told.own_readings > 1:
-        return _driven(told, sides, crossed)
+    if often > 1:
+        return _driven(told, sides, lines, crossed)
     forms = (*own, crossed)
     scale = common_scale([c for form in forms for c in form.values()], _MOST_BITS)
     leader, follower, cross = ({k: int(c * scale) for k, c in form.items()} for form in forms)
@@ -135,7 +182,7 @@ def criterion(told: Read, sides: tuple[Side, Side]) -> Criterion | None:
     return Criterion(*diagonal, both)
 
 
-def _driven(told: Read, sides: tuple[Side, Side], crossed: Laurent) -> Criterion | None:
+def _driven(told: Read, sides: Sequence[Side], lines: Sequence[Line], crossed: Laurent) -> Criterion | None:
     """The same with what each arm loses at least: tops over bottoms, both positive."""
     tops, bottoms = [], []
     for side, arm in zip(sides, (told.leader, told.follower), strict=True):
@@ -160,6 +207,9 @@ def _driven(told: Read, sides: tuple[Side, Side], crossed: Laurent) -> Criterion
         line, slope = often * t, -often * g
         tops.append([(beta + gamma) * line, (beta + gamma) * slope])
         bottoms.append([line + gamma * u, slope - gamma * u])
+    for place, (side, line) in enumerate(zip(sides, lines, strict=True)):
+        if side.law is not None:
+            tops[place] = _helped(tops[place], bottoms[place], side, line)
     scale = common_scale([*crossed.values(), *(c for line in (*tops, *bottoms) for c in line)], _MOST_BITS)
     (top, its_top), (bottom, its_bottom) = (
         [[int(c * scale) for c in line] for line in lines] for lines in (tops, bottoms)
@@ -172,6 +222,13 @@ def _driven(told: Read, sides: tuple[Side, Side], crossed: Laurent) -> Criterion
     width = max(len(product), len(lost))
     both = [a - b for a, b in zip(_padded(product, width), _padded(lost, width), strict=True)]
     return Criterion(first, second, both)
+
+
+def _helped(top: list[Fraction], bottom: list[Fraction], side: Side, line: Line) -> list[Fraction]:
+    """What is left of a top once compensation has taken s/2 + (C + s/2) c from top/bottom."""
+    still, slope = (side.weight * v for v in (line.slope / 2, _viscous(side) + line.slope / 2))
+    (a, b), (p, q) = top, bottom
+    return [a - still * p, b - still * q - slope * p, -slope * q]
 
 
 def _row(side: Side, period: Fraction) -> tuple[Laurent, Laurent]:

@@ -33,121 +33,30 @@ import numpy as np
 from flint import fmpz_poly
 from numpy.typing import NDArray
 
-from zwidth.pairs import Pair, Side
+from zwidth.pairs import Pair
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
+from zwidth.passivity.pairs.arm import Arm
+from zwidth.passivity.pairs.tangents import best_tangent
 
 Sums = dict[int, Fraction]
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Arm:
-    """One side in samples: `whole` + `part` of delay, `age` of the other's reading, and its weight.
+class PairCriterion:
+    """The form of a pair, exact.
 
-    `often` is how many readings of its own it takes in a sample period.
+    Attributes
+    ----------
+    pair
+        What it is about.
+    tangents
+        r of the lines that compensation of friction is taken for, of leader and follower; 1 is F whatever the
+        speed: that of motions so large that F is nothing beside their square.
     """
 
-    side: Side
-    period: Fraction
-    weight: Fraction
-    often: int = 1
-
-    @property
-    def whole(self) -> int:
-        """d."""
-        return int(self.side.delay // self.period)
-
-    @property
-    def part(self) -> Fraction:
-        """α."""
-        return self.side.delay / self.period - self.whole
-
-    @property
-    def age(self) -> int:
-        """n."""
-        return int(-(-self.side.link_delay // self.period))
-
-    @property
-    def mixed(self) -> list[tuple[int, Fraction]]:
-        """Powers of ζ at which its force acts within a sample, and in which part of it."""
-        late = [(self.whole + 1, 1 - self.part)]
-        return [*late, (self.whole + 2, self.part)] if self.part else late
-
-    @property
-    def own(self) -> tuple[Fraction, Fraction]:
-        """Taps of its own readings, the newest first."""
-        side = self.side
-        past = self.often * (side.virtual_damping + side.local_damping) / self.period
-        return side.stiffness + past, -past
-
-    @property
-    def inside(self) -> tuple[Fraction, Fraction]:
-        """β and γ of a drive: what a move between two of its own readings loses, and with the one before."""
-        side, step = self.side, self.period / self.often
-        gamma = side.virtual_damping + side.local_damping
-        return self.weight * (side.damping - side.stiffness * step / 2), self.weight * gamma
-
-    @property
-    def driven(self) -> tuple[fmpz_poly, fmpz_poly]:
-        """M_ii of a drive, top and bottom in c, both positive where β > |γ|.
-
-        From Σ_l 1/(y − cos φ_l) = m U_{m−1}(y)/(T_m(y) − cos θ), y = −β/γ.
-        """
-        beta, gamma = self.inside
-        if gamma == 0:
-            return fmpz_poly([beta.numerator]), fmpz_poly([beta.denominator])
-        scale = lcm(beta.denominator, gamma.denominator)
-        b, g, m = int(beta * scale), int(gamma * scale), self.often
-        t, u = _homogeneous(fmpz_poly.chebyshev_t(m), b, g), _homogeneous(fmpz_poly.chebyshev_u(m - 1), b, g)
-        at = (-g) ** m
-        return (
-            (b + g) * m * fmpz_poly([t, -at]),
-            scale * (m * fmpz_poly([t, -at]) + g * u * fmpz_poly([1, -1])),
-        )
-
-    def driven_at(self, theta: float) -> float:
-        """M_ii of a drive at a frequency θ, to rounding [N·s/m; N·m·s/rad]."""
-        beta, gamma = map(float, self.inside)
-        return 1 / float(np.sum(self.shares(theta) / (beta + gamma * np.cos(self.places(theta)))))
-
-    def places(self, theta: float) -> Floats:
-        """φ_l."""
-        return np.asarray((theta + 2 * np.pi * np.arange(self.often)) / self.often)
-
-    def shares(self, theta: float) -> Floats:
-        """(1 − cos θ)/(m² (1 − cos φ_l)), which add up to 1."""
-        if theta == 0:
-            return np.asarray([1.0] + [0.0] * (self.often - 1))
-        return np.asarray((np.sin(theta / 2) / (self.often * np.sin(self.places(theta) / 2))) ** 2)
-
-    @property
-    def slips(self) -> bool:
-        """True where it gains between two samples, by itself."""
-        beta, gamma = self.inside
-        return self.often > 1 and (beta < abs(gamma) or beta == -gamma)
-
-    @property
-    def other(self) -> tuple[Fraction, Fraction]:
-        """Taps of the readings that it received."""
-        past = self.side.virtual_damping / self.period
-        return -self.side.stiffness - past, past
-
-    @property
-    def paying(self) -> Fraction:
-        """b, which pays for moves inside a sample; a thousandth of KT of an arm that has none."""
-        return self.side.damping or self.side.stiffness * self.period / 1000
-
-    def force_error(self, other: Arm) -> Fraction:
-        """The largest error of its force by the steps of both encoders [N; N·m]."""
-        mine, its = (sum(map(abs, taps)) for taps in (self.own, self.other))
-        return (mine * self.side.resolution + its * other.side.resolution) / 2
-
-
-@dataclass(frozen=True)
-class PairCriterion:
-    """The form of a pair, exact."""
-
     pair: Pair
+    tangents: tuple[Fraction, Fraction] = (Fraction(1), Fraction(1))
 
     @cached_property
     def arms(self) -> tuple[Arm, Arm]:
@@ -155,7 +64,11 @@ class PairCriterion:
         leader, follower = self.pair.sides
         period = self.pair.sample_period
         often = self.pair.own_readings
-        return Arm(leader, period, Fraction(1), often), Arm(follower, period, self.pair.power_ratio, often)
+        first, second = self.tangents
+        return (
+            Arm(leader, period, Fraction(1), often, first),
+            Arm(follower, period, self.pair.power_ratio, often, second),
+        )
 
     @cached_property
     def forms(self) -> tuple[Sums, Sums, Sums]:
@@ -218,17 +131,14 @@ class PairCriterion:
 
     @property
     def missing_friction(self) -> tuple[Fraction, Fraction]:
-        """What each arm lacks of Coulomb friction to cover the steps of both encoders, > 0 where it does."""
+        """What each arm lacks of Coulomb friction for the steps of both encoders and its compensation."""
         leader, follower = self.arms
-        return (
-            leader.force_error(follower) - leader.side.coulomb_friction,
-            follower.force_error(leader) - follower.side.coulomb_friction,
-        )
+        return leader.missing_friction(follower), follower.missing_friction(leader)
 
     @property
     def undamped(self) -> bool:
         """True where a force changes inside a sample of an arm without damping: any size of that gains."""
-        return any(arm.part and not arm.side.damping for arm in self.arms)
+        return any(arm.part and arm.damping <= 0 for arm in self.arms)
 
     def at(self, theta: float) -> np.ndarray[tuple[int, int], np.dtype[np.complex128]]:
         """M at a frequency θ = ωT, to rounding [N·s/m; N·m·s/rad]."""
@@ -240,18 +150,25 @@ class PairCriterion:
         return np.array([[diagonal[0], off], [np.conj(off), diagonal[1]]])
 
 
-def _homogeneous(p: fmpz_poly, b: int, g: int) -> int:
-    """gⁿ p(b/g), n the degree."""
-    total, power = 0, 1
-    for c in reversed(p.coeffs()):
-        total, power = total * b + int(c) * power, power * g
-    return total
+def spending(pair: Pair) -> PairCriterion:
+    """The criterion with the lines that leave most damping, of those that Coulomb friction pays for."""
+    criterion = PairCriterion(pair)
+    if not any(pair.compensations):
+        return criterion
+    leader, follower = criterion.arms
+    return PairCriterion(pair, (_tangent(leader, follower), _tangent(follower, leader)))
+
+
+def _tangent(arm: Arm, other: Arm) -> Fraction:
+    law = arm.side.compensation
+    move = float(arm.side.resolution / arm.period / law.speed.fraction) if law.speed else 0.0
+    return best_tangent(law, move, lambda r: arm.at_tangent(r).missing_friction(other) <= 0)
 
 
 def _own(arm: Arm) -> Sums:
-    side, found = arm.side, {0: arm.weight * arm.side.damping}
-    stretch = arm.weight * side.stiffness * arm.period
-    rubbed = arm.weight * (side.virtual_damping + side.local_damping)
+    found = {0: arm.weight * arm.damping}
+    stretch = arm.weight * arm.side.stiffness * arm.period
+    rubbed = arm.weight * arm.of_own_speed
     for power, share in arm.mixed:
         parts = [(0, -stretch * share / 2), *((k, -stretch * share) for k in range(1, power))]
         _add(found, [*parts, (power, share * rubbed)])
@@ -297,6 +214,7 @@ def largest_spring(pair: Pair) -> Fraction | None:
         or leader.part
         or follower.part
         or pair.own_readings > 1
+        or any(pair.compensations)
     ):
         return None
     b, f = leader.side.damping, follower.weight * follower.side.damping

@@ -37,8 +37,23 @@ def pair_document(pair: Pair) -> dict[str, Any]:
     }
 
 
-def _side(side: Side, motion: str) -> dict[str, str]:
-    return {unit_key(name, motion): exact_text(value) for name, value in vars(side).items()}
+def _side(side: Side, motion: str) -> dict[str, Any]:
+    told: dict[str, Any] = {
+        unit_key(name, motion): exact_text(value)
+        for name, value in vars(side).items()
+        if name != "compensation"
+    }
+    law = side.compensation
+    if law:
+        numbers = {
+            "compensated_coulomb_friction": law.coulomb,
+            "compensated_damping": law.viscous,
+            "compensation_speed": law.speed,
+        }
+        told["compensation"] = {
+            unit_key(name, motion): exact_text(value.fraction) for name, value in numbers.items()
+        }
+    return told
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,15 +66,21 @@ class PairCertificate(Evidence):
         What it is about.
     signs
         Why M_ll, M_ff and det M are nowhere negative.
+    tangents
+        r of the line above the compensation of friction of each arm.
     """
 
     pair: Pair
     signs: tuple[Positivity, Positivity, Positivity]
+    tangents: tuple[Fraction, Fraction] = (Fraction(1), Fraction(1))
 
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data."""
         names = zip(("leader", "follower", "both"), self.signs, _WEIGHTED, strict=True)
-        proof = {name: _positivity(sign, more) for name, sign, more in names}
+        proof: dict[str, Any] = {name: _positivity(sign, more) for name, sign, more in names}
+        if any(self.pair.compensations):
+            arms = zip(("leader", "follower"), self.tangents, strict=True)
+            proof["tangents"] = {name: exact_text(r) for name, r in arms}
         return {"format": CERTIFICATE, "kind": "pair", "loop": pair_document(self.pair), "proof": proof}
 
     def describe(self) -> str:

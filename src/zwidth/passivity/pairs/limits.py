@@ -8,13 +8,13 @@ from zwidth.errors import InputError
 from zwidth.pairs import Pair
 from zwidth.passivity.linear.boundary import COARSE, COARSER, largest_holding
 from zwidth.passivity.linear.loop import HIGH_DEGREE
-from zwidth.passivity.pairs.criterion import PairCriterion, largest_spring
+from zwidth.passivity.pairs.criterion import PairCriterion, largest_spring, spending
 from zwidth.quantity.exact import Exact
 
 
 def is_passive(pair: Pair) -> bool:
     """True where the criterion holds and friction covers the steps of both encoders."""
-    criterion = PairCriterion(pair)
+    criterion = spending(pair)
     return max(criterion.missing_friction) <= 0 and criterion.holds
 
 

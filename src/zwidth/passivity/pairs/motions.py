@@ -22,7 +22,8 @@ from zwidth.device import Device
 from zwidth.pairs import Pair
 from zwidth.passivity.linear.positivity import prove_nonnegative
 from zwidth.passivity.linear.roots import roots_inside
-from zwidth.passivity.pairs.criterion import Arm, PairCriterion
+from zwidth.passivity.pairs.arm import Arm
+from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.evidence import PairWitness, energy_of
 from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.passivity.witness.sinusoid import simplest_between
@@ -140,11 +141,11 @@ def _enlarged(criterion: PairCriterion, path: Path, parts: tuple[Repeat, ...]) -
     ideal = _without_friction(pair)
     ratio = _units(pair)
     one = _motions(path, parts, ratio, Fraction(1))
-    one = _with_turns(pair, one)
-    times = _enough(lambda n: energy_of(ideal, *_repeated(one, n)), criterion, parts)
+    one = with_turns(pair, one)
+    times = often_enough(lambda n: energy_of(ideal, *repeated(one, n)), criterion, parts)
     if times is None:
         return None
-    long = _repeated(one, times)
+    long = repeated(one, times)
     gain = energy_of(ideal, *long)
     lost = _rubbed(pair, one, times)
     if gain is None or gain <= 0:
@@ -155,7 +156,7 @@ def _enlarged(criterion: PairCriterion, path: Path, parts: tuple[Repeat, ...]) -
         unit = Fraction(ceil(unit)) if unit > 1 else _simple(unit)
         if any(side.resolution for side in pair.sides):
             unit = Fraction(ceil(unit))  # whole counts of both
-        found = _repeated(_with_turns(pair, _motions(path, parts, ratio, unit)), times)
+        found = repeated(with_turns(pair, _motions(path, parts, ratio, unit)), times)
         energy = energy_of(pair, *found)
         if energy is not None and energy > stored_at_start(pair):
             return PairWitness(pair, *found, energy)
@@ -170,8 +171,14 @@ def stored_at_start(pair: Pair) -> Fraction:
 
 
 def _without_friction(pair: Pair) -> Pair:
-    """With ideal encoders too: the energy is then quadratic in size."""
-    return pair.replace(leader=_bare(pair.leader), follower=_bare(pair.follower))
+    """With ideal encoders too, and no compensation of Coulomb friction: the energy is quadratic in size."""
+    law, other = (law.replace(coulomb=0) for law in pair.compensations)
+    return pair.replace(
+        leader=_bare(pair.leader),
+        follower=_bare(pair.follower),
+        compensation=law,
+        follower_compensation=other,
+    )
 
 
 def _bare(device: Device) -> Device:
@@ -198,12 +205,12 @@ def _motions(
     ]
 
 
-def _repeated(motions: list[Motion], times: int) -> tuple[Motion, Motion]:
+def repeated(motions: list[Motion], times: int) -> tuple[Motion, Motion]:
     leader, follower = (motion.repeated(times) for motion in motions)
     return leader, follower
 
 
-def _enough(
+def often_enough(
     energy: Callable[[int], Fraction | None], criterion: PairCriterion, parts: tuple[Repeat, ...]
 ) -> int | None:
     """Rounds after which it gains: beyond what is remembered, energy is affine in them."""
@@ -221,12 +228,13 @@ def _enough(
 
 
 def _rubbed(pair: Pair, one: list[Motion], times: int) -> Fraction:
-    """What Coulomb friction takes from the motion at this size [J]."""
+    """No less than what Coulomb friction and its compensation take from the motion at this size [J]."""
     total = Fraction(0)
     for motion, arm in zip(one, PairCriterion(pair).arms, strict=True):
         x = motion.positions
         path = sum((abs(b - a) for a, b in zip(x, x[1:], strict=False)), Fraction(0))
-        total += arm.weight * arm.side.coulomb_friction * path * times  # no less than what is gone
+        dry = arm.side.coulomb_friction + arm.side.compensation.coulomb.fraction
+        total += arm.weight * dry * path * times  # no less than what is gone
     return total
 
 
@@ -238,7 +246,7 @@ def _simple(value: Fraction) -> Fraction:
     return Fraction(ceil(value * power)) / power
 
 
-def _with_turns(pair: Pair, motions: list[Motion]) -> list[Motion]:
+def with_turns(pair: Pair, motions: list[Motion]) -> list[Motion]:
     """The best instants inside samples, where a force changes there.
 
     y = x + α Δx − (T/2b) α (1 − α) (f before − f after), with the forces of a round when all before it were
@@ -372,11 +380,11 @@ def _held(pair: Pair, here: int, missing: Fraction, hold: int, phase: int) -> Pa
         for path, one in zip(paths, arms, strict=True)
     ]
     settled = 3 + wait // period
-    before, after = (energy_of(pair, *_repeated(motions, n)) for n in (settled, settled + 1))
+    before, after = (energy_of(pair, *repeated(motions, n)) for n in (settled, settled + 1))
     if before is None or after is None or after <= before:
         return None
     times = settled + 1 + max(0, ceil(2 * (stored_at_start(pair) - before) / (after - before)))
-    found = _repeated(motions, times)
+    found = repeated(motions, times)
     energy = energy_of(pair, *found)
     if energy is None or energy <= stored_at_start(pair):
         return None

@@ -14,10 +14,11 @@ from zwidth.passivity.advice import Advice
 from zwidth.passivity.linear.boundary import smallest_holding
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere
-from zwidth.passivity.pairs.criterion import PairCriterion
+from zwidth.passivity.pairs.criterion import PairCriterion, spending
 from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, PairWitness
 from zwidth.passivity.pairs.limits import grain_of, largest_stiffness
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
+from zwidth.passivity.pairs.slow import refute_compensation
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
 from zwidth.quantity.exact import ends
@@ -43,18 +44,22 @@ def check_pair(pair: Pair) -> PairVerdict:
     InputError
         If the sign of the criterion would take too long to decide.
     """
-    criterion = PairCriterion(pair)
-    signs = None if criterion.slips else criterion.signs
+    wide = PairCriterion(pair)
+    signs = None if wide.slips else wide.signs
     if signs is None or isinstance(signs, Fraction):
         violation = PairViolation(pair, signs)
         if violation.verify():
-            return PairVerdict(pair, criterion, violation=violation)
-        return PairVerdict(pair, criterion, motion=refute_criterion(criterion))
+            return PairVerdict(pair, wide, violation=violation)
+        return PairVerdict(pair, wide, motion=refute_criterion(wide))
+    criterion = spending(pair)
     if criterion.undamped:
         return PairVerdict(pair, criterion)
     if max(criterion.missing_friction) > 0:
-        return PairVerdict(pair, criterion, motion=refute_friction(criterion))
-    certificate = PairCertificate(pair, signs)
+        motion = refute_compensation(pair) or refute_friction(wide)
+        return PairVerdict(pair, criterion, motion=motion)
+    if isinstance(criterion.signs, Fraction):
+        return PairVerdict(pair, criterion, motion=refute_compensation(pair))
+    certificate = PairCertificate(pair, criterion.signs, criterion.tangents)
     return PairVerdict(pair, criterion, certificate=certificate if certificate.verify() else None)
 
 
@@ -82,7 +87,7 @@ class PairVerdict(PassivityAnswer):
     @cached_property
     def witness(self) -> PairWitness | None:
         """A motion of both hands that takes energy out; None where none that is short enough was found."""
-        return self.motion if self.violation is None else refute_criterion(self.criterion)
+        return self.motion if self.violation is None else refute_criterion(PairCriterion(self.pair))
 
     @property
     def outcome(self) -> Outcome:

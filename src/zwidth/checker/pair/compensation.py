@@ -1,0 +1,119 @@
+"""Compensation of friction: a force φ(v̂) in the direction of motion, v̂ an arm's move over a sample.
+
+    φ(v) = F tanh(v/v_s) + C v;    v_s = 0: F in the direction of v
+
+tanh is concave for v > 0, so each of its tangents lies above it: at tanh = r
+
+    F tanh(v/v_s) ≤ h + s v,    s = (F/v_s)(1 − r²),    h = F (r − (1 − r²) artanh r),
+
+and r = 1 is h = F, s = 0.  As 0 ≤ F tanh for v > 0, what is left of it beside s v/2 is at most h + s v/2: by
+Cauchy–Schwarz it takes no more than h of Coulomb friction and s/2 of damping.  The rest, (C + s/2) v̂, is a
+local damping of minus that (docs/theory/pairs.md).
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import NamedTuple
+
+from ..document.effort import spend
+from ..document.fields import Number, Read, Record
+from ..document.refusal import Invalid
+from ..document.unit import DAMPING, FORCE, SPEED
+
+COMPENSATION = Record(
+    {
+        "compensated_coulomb_friction": Number(FORCE, least=0),
+        "compensated_damping": Number(DAMPING, least=0),
+        "compensation_speed": Number(SPEED, least=0),
+    },
+    default=None,
+)
+TANGENTS = Record(
+    {name: Number(least=0, most=1, default=Fraction(1)) for name in ("leader", "follower")}, default=None
+)
+"""The r of each arm."""
+
+BITS = 128
+"""Of tanh in a motion that is run again."""
+
+_BITS = 192
+"""Of what comes before."""
+
+
+class Line(NamedTuple):
+    """What a tangent spends: h of Coulomb friction, and s."""
+
+    height: Fraction
+    slope: Fraction
+
+
+NO_LINE = Line(Fraction(0), Fraction(0))
+
+
+def line_of(law: Read | None, r: Fraction) -> Line:
+    """The tangent at r of F tanh(v/v_s), its height rounded up."""
+    if law is None:
+        return NO_LINE
+    most, speed = law.compensated_coulomb_friction, law.compensation_speed
+    if r == 1:
+        return Line(most, Fraction(0))
+    if not speed:
+        raise Invalid("compensation in the direction of motion at any speed has no tangent below 1")
+    rest = 1 - r**2
+    return Line(most * (r - rest * artanh_below(r)), most / speed * rest)
+
+
+def artanh_below(r: Fraction) -> Fraction:
+    """A number that is no more than artanh r and within 2^−150 of it in proportion, 0 ≤ r < 1.
+
+    2 artanh r = ln (1 + r)/(1 − r) = ln 2^k m, 1 ≤ m < 2: so artanh r = k artanh ⅓ + artanh (m − 1)/(m + 1).
+    """
+    y = (1 + r) / (1 - r)
+    spend(200, _BITS, y.numerator.bit_length())
+    k = y.numerator.bit_length() - y.denominator.bit_length()
+    if y < Fraction(2) ** k:
+        k -= 1
+    m = y / 2**k
+    rest = (m - 1) / (m + 1)
+    return Fraction(k * _series(Fraction(1, 3)) + _series(rest), 1 << _BITS)
+
+
+def _series(t: Fraction) -> int:
+    """t + t³/3 + t⁵/5 + …, every term rounded down, in units of 2^−bits; t ≤ ⅓."""
+    power = (t.numerator << _BITS) // t.denominator
+    square = power * power >> _BITS
+    total, n = 0, 1
+    while power:
+        total, power, n = total + power // n, power * square >> _BITS, n + 2
+    return total
+
+
+def tanh_between(x: Fraction) -> tuple[int, int]:
+    """Two numbers with tanh x between them, in units of 2^−`BITS`; x ≥ 0."""
+    one = 1 << BITS
+    if x > BITS // 2:  # 1 − tanh x < 2 e^{−2x} < 2^{−bits}
+        return one - 1, one
+    low, high = (_exponential(2 * x, up) for up in (False, True))
+    unit = 1 << _BITS
+    return ((low - unit) << BITS) // (low + unit), -(((unit - high) << BITS) // (high + unit))
+
+
+def _exponential(y: Fraction, up: bool) -> int:
+    """e^y in units of 2^−bits, every step rounded down, or up.
+
+    Of y halved until it is ½ or less, where each term is at most half of the one before; then squared.
+    """
+    spend(60, 2 * _BITS, y.numerator.bit_length())
+    more = 1 if up else 0
+    halvings = max(0, y.numerator.bit_length() - y.denominator.bit_length() + 2)
+    small = (y.numerator << _BITS) // (y.denominator << halvings) + more
+    total = term = 1 << _BITS
+    n = 1
+    while term > more:
+        term = term * small // (n << _BITS) + more
+        total, n = total + term, n + 1
+    total += 8 * more  # what is left is less than the last term; rounded up, terms end between 1 and 2
+    for _ in range(halvings):
+        total = (total * total >> _BITS) + more
+    return total

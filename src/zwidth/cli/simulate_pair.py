@@ -1,0 +1,71 @@
+"""`zwidth simulate` of two arms that follow each other."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from zwidth.cli.options import given, overrides
+from zwidth.errors import InputError
+from zwidth.passivity.document import unit_key
+from zwidth.specification.pairs import option_keys, pair_of
+from zwidth.specification.read import PAIR_TABLES
+from zwidth.specification.table import Table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> xr.Dataset:
+    """The trace of the pair, and of what holds it, that tables and command line describe.
+
+    Raises
+    ------
+    InputError
+        If anything cannot be used.
+    """
+    from zwidth.cli.compile_notice import warn_of_compiling
+    from zwidth.cli.simulation_tables import (
+        FOLLOWER,
+        build_follower,
+        build_touch,
+        follower_parameters,
+        operator_parameters,
+        simulation_parameters,
+    )
+    from zwidth.traces import simulate
+
+    for name in ("environment", "law"):
+        if name in tables or (name == "law" and arguments.law):
+            raise InputError(
+                f"two arms meet each other, not a virtual wall: leave out the {name}; a real wall at the "
+                "follower is --follower-operator wall"
+            )
+    coupling, words = option_keys(), overrides(arguments)
+    foreign = sorted(set(words) - set(coupling))
+    if foreign:
+        raise InputError(
+            f"--{foreign[0].replace('_', '-')} does not say of which arm: write it in [leader] or [follower]"
+        )
+    arms = {name: tables[name] for name in ("device", *PAIR_TABLES) if name in tables}
+    pair = pair_of(arms, words)
+    typed = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])
+    touch = build_touch(tables.get("operator"), tables.get("simulation"), typed, pair.motion)
+    of_follower = given(arguments, [p.key for p in follower_parameters()])
+    follower = build_follower(tables.get(FOLLOWER), of_follower, pair.motion)
+    if touch.duration is None:
+        raise InputError("no duration is given: set --duration, for example --duration '2 s'")
+    warn_of_compiling()
+    return simulate(pair, touch.operator, follower, touch.duration, **touch.options)
+
+
+def pair_measures(trace: xr.Dataset) -> dict[str, Any]:
+    """What a trace of a pair is measured by, a unit in every key."""
+    motion = str(trace.attrs["motion"])
+    found = trace.zwidth
+    return {
+        unit_key("stiffness", motion).replace("stiffness", "felt_stiffness"): found.felt_stiffness,
+        unit_key("position", motion).replace("position", "tracking_error"): found.tracking_error,
+        "energy": found.energy.to_dict(),
+    }

@@ -1,0 +1,1 @@
+"""Two arms and the link between them, closed in time."""

@@ -1,0 +1,248 @@
+"""From a pair and what is on both sides of it to the arrays that the kernel runs on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zwidth.device.amplifier import Amplifier
+from zwidth.device.device import Device
+from zwidth.environment import Wall
+from zwidth.environment.environment import certain
+from zwidth.environment.velocity import BackwardDifference
+from zwidth.errors import InputError
+from zwidth.loop.kernel import RECORDED
+from zwidth.loop.pair.kernel import Arm, Law
+from zwidth.loop.plant import FORCE, GOAL, POSITION, STATE_SIZE, Plant
+from zwidth.loop.setup import Frame, frame_of
+from zwidth.operator.operator import Operator, Signals
+from zwidth.pairs import Pair, Side
+from zwidth.quantity.exact import Exact, RealLike
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_NONE = np.empty(0)
+
+
+class Nobody(Operator):
+    """No hand: the arm moves as the actuator drives it."""
+
+    def signals(self, times: Array) -> Signals:
+        """Nothing."""
+        return Signals()
+
+    def describe(self, motion: str = "linear") -> str:
+        """In words."""
+        return "nobody"
+
+
+NOBODY = Nobody()
+
+Holder = Operator | Wall | None
+"""What is on one side: a hand, a real wall at x = 0, or nothing."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PairSetup:
+    """A pair ready to run: descriptions for people, arrays for the kernel; leader first."""
+
+    pair: Pair
+    holders: tuple[Holder, Holder]
+    frames: tuple[Frame, Frame]
+    arms: tuple[Arm, Arm]
+
+    @property
+    def often(self) -> int:
+        """Ticks in T."""
+        return self.pair.own_readings
+
+    @property
+    def ticks(self) -> int:
+        """Of the whole simulation."""
+        return self.frames[0].samples
+
+    @property
+    def points(self) -> int:
+        """Instants recorded in a tick."""
+        return self.frames[0].points
+
+    @property
+    def columns(self) -> int:
+        """Instants in the record."""
+        return self.ticks * self.points + 1
+
+    @property
+    def tick(self) -> float:
+        """How long one is [s]."""
+        return float(self.frames[0].period)
+
+
+def prepare_pair(
+    pair: Pair,
+    leader: Holder,
+    follower: Holder,
+    duration: RealLike,
+    *,
+    encoder_phase: tuple[float, float],
+    amplifier: Amplifier | None,
+    points_per_sample: int,
+) -> PairSetup:
+    """Check everything and lay it out; arguments as of `simulate_pair`.
+
+    Raises
+    ------
+    InputError
+        If anything cannot be simulated.
+    """
+    holders = (leader, follower)
+    for name, holder in zip(("leader", "follower"), holders, strict=True):
+        _check(name, holder)
+    if all(not isinstance(holder, Operator) for holder in holders):
+        raise InputError(
+            "no hand is on either arm, so nothing moves: give one as leader or follower, such as "
+            "zwidth.operators.Finger()"
+        )
+    rate = Exact(pair.own_readings / pair.sample_period)
+    devices = [device.replace(rate=rate) for device in (pair.leader, pair.follower)]
+    frames = [
+        frame_of(device, _hand(holder), duration, amplifier, None, points_per_sample)
+        for device, holder in zip(devices, holders, strict=True)
+    ]
+    starts = _starts(frames, holders)
+    arms = [
+        _arm(pair, here, device, frame, holder, starts, phase)
+        for here, (device, frame, holder, phase) in enumerate(
+            zip(devices, frames, holders, encoder_phase, strict=True)
+        )
+    ]
+    for arm, other in zip(arms, arms[::-1], strict=True):
+        _settle(arm, other)
+    return PairSetup(pair=pair, holders=holders, frames=(frames[0], frames[1]), arms=(arms[0], arms[1]))
+
+
+def _check(name: str, holder: object) -> None:
+    if isinstance(holder, Wall):
+        if holder.clamped or not isinstance(holder.velocity_filter, BackwardDifference):
+            raise InputError(
+                f"{name}: a real wall is a spring and a damper that act without computing; leave out clamped "
+                "and velocity_filter"
+            )
+        if certain(holder.damping, f"damping of the wall at the {name}") < 0:
+            raise InputError(f"{name}: a real wall has no damping below 0: it would give out energy itself")
+    elif not (holder is None or isinstance(holder, Operator)):
+        raise InputError(
+            f"{name} is a hand of zwidth.operators, a zwidth.Wall that stands there, or None for nobody; "
+            f"got {type(holder).__name__}"
+        )
+
+
+def _hand(holder: Holder) -> Operator:
+    return holder if isinstance(holder, Operator) else NOBODY
+
+
+def _starts(frames: list[Frame], holders: tuple[Holder, Holder]) -> list[float]:
+    """Where each begins: where its hand does; the other with it."""
+    given: list[float | None] = []
+    for frame, holder in zip(frames, holders, strict=True):
+        if frame.signals.position is not None:
+            given.append(float(frame.signals.position[0]))
+        else:
+            given.append(float(holder.initial_position) if isinstance(holder, Operator) else None)
+    there = next(start for start in given if start is not None)
+    return [there if start is None else start for start in given]
+
+
+def _arm(
+    pair: Pair, here: int, device: Device, frame: Frame, holder: Holder, starts: list[float], phase: float
+) -> Arm:
+    if not 0 <= phase < 1:
+        raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
+    state = np.zeros(STATE_SIZE)
+    state[POSITION] = starts[here]
+    free = frame.plant
+    wall = isinstance(holder, Wall)
+    inside = _inside(free, holder) if isinstance(holder, Wall) else free
+    samples, often = frame.samples, pair.own_readings
+    s = frame.signals
+    force, anchor, target, switch = (
+        _NONE if v is None else v for v in (s.force, s.anchor, s.position, s.switch_position)
+    )
+    return Arm(
+        plant=free,
+        inside=inside,
+        wall=int(wall),
+        law=_law(pair, here, frame, phase),
+        late=frame.late,
+        offset=frame.offset,
+        state=state,
+        readings=np.zeros(samples + 1),
+        sent=np.zeros(samples // often + 1),
+        told=np.zeros(1),
+        commands=np.zeros(samples + 1),
+        record=np.empty((RECORDED, samples * frame.points + 1)),
+        force=force,
+        anchor=anchor,
+        target=target,
+        switch=switch,
+    )
+
+
+def _inside(free: Plant, wall: Wall) -> Plant:
+    stiffness, damping = (
+        float(certain(value, f"{name} of the wall"))
+        for name, value in (("stiffness", wall.stiffness), ("damping", wall.damping))
+    )
+    return free._replace(stiffness=stiffness, hand_damping=damping)
+
+
+def _law(pair: Pair, here: int, frame: Frame, phase: float) -> Law:
+    side = pair.sides[here]
+    period = pair.sample_period
+    past = pair.own_readings * (side.virtual_damping + side.local_damping) / period
+    heard = side.virtual_damping / period
+    return Law(
+        own=float(side.stiffness + past),
+        own_before=-float(past),
+        heard=-float(side.stiffness + heard),
+        heard_before=float(heard),
+        age=_age(side, period),
+        echo=0.0,
+        echo_before=0.0,
+        echo_age=0,
+        coulomb=float(side.compensation.coulomb),
+        viscous=float(side.compensation.viscous),
+        speed=float(side.compensation.speed),
+        period=float(period),
+        resolution=frame.resolution,
+        phase=phase,
+        step=frame.actuation.step,
+        limit=frame.actuation.limit,
+    )
+
+
+def _age(side: Side, period: Fraction) -> int:
+    return ceil(side.link_delay / period)
+
+
+def _settle(arm: Arm, other: Arm) -> None:
+    """The force as it was before the start: both arms had always been where they are."""
+    law = arm.law
+    count, its = arm.law.resolution, other.law.resolution
+    mine, heard = (
+        step * np.floor(a.state[POSITION] / step + a.law.phase) if step else a.state[POSITION]
+        for a, step in ((arm, count), (other, its))
+    )
+    f = (law.own + law.own_before + law.echo + law.echo_before) * mine
+    f += (law.heard + law.heard_before) * heard
+    if law.step:
+        f = law.step * np.floor(f / law.step + 0.5)
+    if law.limit:
+        f = min(max(f, -law.limit), law.limit)
+    arm.state[FORCE] = arm.state[GOAL] = f

@@ -1,0 +1,70 @@
+"""Compensation of friction: a force in the direction of motion, computed once a sample.
+
+    φ(v) = F tanh(v/v_s) + C v,        v the arm's own move over the last sample, over T
+
+It makes an arm light to move and spends friction that a proof of passivity needs: F of the Coulomb
+friction, C of the viscous one.  As the controllers of low-cost arms have it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.parameter import Certain, Parametric, parameter
+
+_DRIVES = "it helps the motion; what brakes it is the friction of the device, or its local damping"
+
+
+@dataclass(frozen=True)
+class FrictionCompensation(Parametric):
+    """φ(v) = F tanh(v/v_s) + C v, a force that helps the motion, held for a sample.
+
+    Parameters
+    ----------
+    coulomb
+        F ≥ 0, the largest share of it that does not grow with speed [N; N·m].
+    viscous
+        C ≥ 0 [N·s/m; N·m·s/rad].
+    speed
+        v_s ≥ 0, at which tanh reaches three quarters of F [m/s; rad/s]; 0: F in the direction of the last
+        move, whatever the speed.
+
+    Raises
+    ------
+    InputError
+        If a number is below 0, or an interval.
+    """
+
+    coulomb: Certain = parameter("compensated_coulomb_friction", 0, kept=Exact, bound="≥ 0", why=_DRIVES)
+    viscous: Certain = parameter("compensated_damping", 0, kept=Exact, bound="≥ 0", why=_DRIVES)
+    speed: Certain = parameter(
+        "compensation_speed", 0, kept=Exact, bound="≥ 0", why="0 stands for the sign of the speed"
+    )
+
+    def __bool__(self) -> bool:
+        """False where it adds no force."""
+        return bool(self.coulomb or self.viscous)
+
+    def replace(self, **changes: RealLike) -> FrictionCompensation:
+        """The same law with some numbers changed."""
+        return replace(self, **changes)
+
+    def scaled(self, share: Fraction) -> FrictionCompensation:
+        """So many times the force at every speed."""
+        return self.replace(coulomb=share * self.coulomb.fraction, viscous=share * self.viscous.fraction)
+
+    def describe(self, motion: str = "linear") -> str:
+        """The law with its numbers, in a few words."""
+        parts = []
+        if self.coulomb:
+            over = (
+                f" tanh(v/({self.with_unit('speed', motion)}))"
+                if self.speed
+                else " in the direction of motion"
+            )
+            parts.append(self.with_unit("coulomb", motion) + over)
+        if self.viscous:
+            parts.append(f"{self.with_unit('viscous', motion)} of its own speed")
+        return f"compensation of friction, {' and '.join(parts) or 'none'}"

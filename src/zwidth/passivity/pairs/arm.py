@@ -1,0 +1,176 @@
+"""One arm of a pair in samples, and what moves within a sample lose.
+
+Compensation of friction under a line h + s v takes h of Coulomb friction, s/2 of damping and C + s/2 of local
+damping (`tangents`).  Of an arm whose drive reads more often it is computed once in T all the same: it takes
+w (s/2 + (C + s/2) cos θ) from what the moves of a whole sample lose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from math import lcm
+
+import numpy as np
+from flint import fmpz_poly
+from numpy.typing import NDArray
+
+from zwidth.pairs import Side
+from zwidth.passivity.pairs.tangents import Line, line_of
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Arm:
+    """One side in samples: `whole` + `part` of delay, `age` of the other's reading, and its weight.
+
+    `often` is how many readings of its own it takes in a sample period, `tangent` the r of its compensation.
+    """
+
+    side: Side
+    period: Fraction
+    weight: Fraction
+    often: int = 1
+    tangent: Fraction = Fraction(1)
+
+    @cached_property
+    def line(self) -> Line:
+        """Above what it compensates of Coulomb friction."""
+        return line_of(self.side.compensation, self.tangent)
+
+    def at_tangent(self, r: Fraction) -> Arm:
+        """With another line."""
+        return replace(self, tangent=r)
+
+    @property
+    def helped(self) -> tuple[Fraction, Fraction]:
+        """s/2, and C + s/2: what compensation takes of damping and of local damping."""
+        half = self.line.slope / 2
+        return half, self.side.compensation.viscous.fraction + half
+
+    @property
+    def damping(self) -> Fraction:
+        """b, less what compensation takes of it; all of b where its drive reads more often."""
+        return self.side.damping - self.helped[0] if self.often == 1 else self.side.damping
+
+    @property
+    def of_own_speed(self) -> Fraction:
+        """B + D, less what compensation takes, as `damping`."""
+        both = self.side.virtual_damping + self.side.local_damping
+        return both - self.helped[1] if self.often == 1 else both
+
+    @property
+    def whole(self) -> int:
+        """d."""
+        return int(self.side.delay // self.period)
+
+    @property
+    def part(self) -> Fraction:
+        """α."""
+        return self.side.delay / self.period - self.whole
+
+    @property
+    def age(self) -> int:
+        """n."""
+        return int(-(-self.side.link_delay // self.period))
+
+    @property
+    def mixed(self) -> list[tuple[int, Fraction]]:
+        """Powers of ζ at which its force acts within a sample, and in which part of it."""
+        late = [(self.whole + 1, 1 - self.part)]
+        return [*late, (self.whole + 2, self.part)] if self.part else late
+
+    @property
+    def own(self) -> tuple[Fraction, Fraction]:
+        """Taps of its own readings, the newest first."""
+        past = self.often * self.of_own_speed / self.period
+        return self.side.stiffness + past, -past
+
+    @property
+    def inside(self) -> tuple[Fraction, Fraction]:
+        """β and γ of a drive: what a move between two of its own readings loses, and with the one before."""
+        lost = self.damping - self.side.stiffness * self.period / self.often / 2
+        return self.weight * lost, self.weight * self.of_own_speed
+
+    @property
+    def driven(self) -> tuple[fmpz_poly, fmpz_poly]:
+        """M_ii of a drive, top and bottom in c, both positive where β > |γ| and nothing is compensated.
+
+        From Σ_l 1/(y − cos φ_l) = m U_{m−1}(y)/(T_m(y) − cos θ), y = −β/γ.
+        """
+        top, bottom = self._within
+        still, moving = (self.weight * v for v in self.helped)
+        if not moving:
+            return top, bottom
+        scale = lcm(still.denominator, moving.denominator)
+        taken = fmpz_poly([int(v * scale) for v in (still, moving)])
+        return scale * top - taken * bottom, scale * bottom
+
+    @property
+    def _within(self) -> tuple[fmpz_poly, fmpz_poly]:
+        beta, gamma = self.inside
+        if gamma == 0:
+            return fmpz_poly([beta.numerator]), fmpz_poly([beta.denominator])
+        scale = lcm(beta.denominator, gamma.denominator)
+        b, g, m = int(beta * scale), int(gamma * scale), self.often
+        t, u = _homogeneous(fmpz_poly.chebyshev_t(m), b, g), _homogeneous(fmpz_poly.chebyshev_u(m - 1), b, g)
+        at = (-g) ** m
+        return (
+            (b + g) * m * fmpz_poly([t, -at]),
+            scale * (m * fmpz_poly([t, -at]) + g * u * fmpz_poly([1, -1])),
+        )
+
+    def driven_at(self, theta: float) -> float:
+        """M_ii of a drive at a frequency θ, to rounding [N·s/m; N·m·s/rad]."""
+        beta, gamma = map(float, self.inside)
+        still, moving = (float(self.weight * v) for v in self.helped)
+        lost = 1 / float(np.sum(self.shares(theta) / (beta + gamma * np.cos(self.places(theta)))))
+        return lost - still - moving * float(np.cos(theta))
+
+    def places(self, theta: float) -> Floats:
+        """φ_l."""
+        return np.asarray((theta + 2 * np.pi * np.arange(self.often)) / self.often)
+
+    def shares(self, theta: float) -> Floats:
+        """(1 − cos θ)/(m² (1 − cos φ_l)), which add up to 1."""
+        if theta == 0:
+            return np.asarray([1.0] + [0.0] * (self.often - 1))
+        return np.asarray((np.sin(theta / 2) / (self.often * np.sin(self.places(theta) / 2))) ** 2)
+
+    @property
+    def slips(self) -> bool:
+        """True where it gains between two samples, by itself."""
+        beta, gamma = self.inside
+        return self.often > 1 and (beta < abs(gamma) or beta == -gamma)
+
+    @property
+    def other(self) -> tuple[Fraction, Fraction]:
+        """Taps of the readings that it received."""
+        past = self.side.virtual_damping / self.period
+        return -self.side.stiffness - past, past
+
+    @property
+    def paying(self) -> Fraction:
+        """b, which pays for moves inside a sample; a thousandth of KT of an arm that has none."""
+        return self.damping if self.damping > 0 else self.side.stiffness * self.period / 1000
+
+    def force_error(self, other: Arm) -> Fraction:
+        """The largest error of its force by the steps of both encoders [N; N·m]."""
+        mine, its = (abs(newest) + abs(last) for newest, last in (self.own, self.other))
+        still, moving = self.helped
+        unsure = still if self.often == 1 else still + moving
+        return (mine / 2 + unsure / self.period) * self.side.resolution + its * other.side.resolution / 2
+
+    def missing_friction(self, other: Arm) -> Fraction:
+        """What it lacks of Coulomb friction for the steps of both encoders and for its compensation."""
+        return self.force_error(other) + self.line.height - self.side.coulomb_friction
+
+
+def _homogeneous(p: fmpz_poly, b: int, g: int) -> int:
+    """gⁿ p(b/g), n the degree."""
+    total, power = 0, 1
+    for c in reversed(p.coeffs()):
+        total, power = total * b + int(c) * power, power * g
+    return total

@@ -1,0 +1,81 @@
+"""Lines above the compensation of Coulomb friction, and which of them Coulomb friction pays for.
+
+A tangent of F tanh(v/v_s) at tanh = r lies above it for every v > 0:
+
+    F tanh(v/v_s) ≤ h + s v,    s = (F/v_s)(1 − r²),    h = F (r − (1 − r²) artanh r)
+
+h is what it takes of Coulomb friction, s what it takes of damping.  The larger r, the more of the one and the
+less of the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from decimal import ROUND_CEILING, Context
+from fractions import Fraction
+from math import exp, tanh
+from typing import NamedTuple
+
+from zwidth.pairs import FrictionCompensation
+from zwidth.quantity.balls import ball, middle, precision
+
+_BITS = 200
+_ROUNDED_UP = Fraction(1, 2**120)
+"""More than what artanh in so many bits, and in the checker's, is off by, in proportion."""
+
+_DIGITS = 12
+"""Of 1 − r."""
+
+_FARTHEST = 30.0
+"""artanh r beyond which 1 − r² is as nothing."""
+
+
+class Line(NamedTuple):
+    """h [N; N·m] and s [N·s/m; N·m·s/rad]."""
+
+    height: Fraction
+    slope: Fraction
+
+
+def line_of(law: FrictionCompensation, r: Fraction) -> Line:
+    """The tangent at r, its height rounded up; at r = 1 what is never exceeded."""
+    most = law.coulomb.fraction
+    if r == 1 or not most:
+        return Line(most, Fraction(0))
+    rest = 1 - r**2
+    with precision(_BITS):
+        far = middle(ball(r).atanh()) * (1 - _ROUNDED_UP)
+    return Line(most * (r - rest * far), most / law.speed.fraction * rest)
+
+
+def best_tangent(law: FrictionCompensation, move: float, pays: Callable[[Fraction], bool]) -> Fraction:
+    """The largest r that friction pays for; 0 if there is none.
+
+    Parameters
+    ----------
+    law
+        Which compensation.
+    move
+        Of an encoder count in a sample, as a multiple of v_s.
+    pays
+        Whether Coulomb friction pays for the tangent at r, beside the steps of the encoders.
+    """
+    if not law.coulomb or not law.speed or pays(Fraction(1)):
+        return Fraction(1)
+    # encoders make a steep line cost friction too: what is missing is least at one of these, or between
+    low = next((x for x in (move, move / 2, 0.0) if x < _FARTHEST and pays(_at(x))), None)
+    if low is None:
+        return Fraction(0)
+    high = _FARTHEST
+    for _ in range(60):
+        x = (low + high) / 2
+        low, high = (x, high) if pays(_at(x)) else (low, x)
+    return _at(low)
+
+
+def _at(x: float) -> Fraction:
+    """tanh x, rounded down so that 1 − r has few digits."""
+    if x < 0.1:
+        return Fraction(round(tanh(x) * 10**_DIGITS), 10**_DIGITS)
+    rest = 2 / (exp(2 * x) + 1)
+    return 1 - Fraction(Context(prec=_DIGITS, rounding=ROUND_CEILING).create_decimal_from_float(rest))
