@@ -7,8 +7,9 @@ from fractions import Fraction
 from math import cos
 from random import Random
 
+from .judges.pair_arms import Arm, arms_of, friction_for
 from .judges.pair_motions import taken_out
-from .judges.pairs import Arm, arms_of, friction_for, least_at
+from .judges.pairs import least_at
 from .polynomials import (
     PERIODS,
     Document,

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import lcm
 from typing import Any
 
 import numpy as np
+from flint import arb, ctx, fmpq
 
 from ..opinion import Opinion, false
 from ..plain import entry, exact, exacts, quantity
 from .motions import compared, parts_of, unrolled
-from .pairs import Arm, arms_of
+from .pair_arms import Arm, arms_of
 
 Document = dict[str, Any]
 
 LONGEST = 4_000
 """Readings of a motion that are run."""
+
+ROUNDS = 12
 
 
 def _motion(document: Document, rng: np.random.Generator) -> Opinion:
@@ -81,6 +85,8 @@ def _of_all_readings(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) ->
         common = lcm(*(c.denominator for c in taps))
         whole = [int(c * common) for c in taps]
         total += arm.weight * _lost(arm, motions[i], (read[i], read[1 - i]), whole, common, scale)
+        if arm.dry or arm.viscous:
+            total -= arm.weight * _helped(arm, motions[i], read[i], scale)
     return -total
 
 
@@ -101,6 +107,57 @@ def _lost(arm: Arm, motion: Any, read: Any, taps: Sequence[int], common: int, sc
     squares = late / (1 - arm.part) + (early / arm.part if arm.part else 0)
     paid = arm.damping / arm.period * squares
     return (Fraction(work, common) + paid) / scale**2 + arm.friction * Fraction(path, scale)
+
+
+def _helped(arm: Arm, motion: Any, own: Any, scale: int) -> Fraction:
+    """What compensation gives: F tanh(v/v_s) + C v of the move over the last sample, as late as the force."""
+    x, y = motion
+    moves = [0] * (arm.whole + 1)
+    for k in range(len(x) - 1):
+        last = arm.often * (k // arm.often)
+        moves.append(own[last] - own[max(last - arm.often, 0)])
+    period = arm.often * arm.period
+    ways: Counter[int] = Counter()
+    for k in range(len(x) - 1):
+        first, then = (y[k] - x[k], x[k + 1] - y[k]) if arm.part else (0, x[k + 1] - x[k])
+        ways[moves[k]] += first
+        ways[moves[k + 1]] += then
+    total = Fraction(0)
+    for move, way in ways.items():
+        v = Fraction(move, scale) / period
+        total += (arm.dry * _tanh(v, arm.speed) + arm.viscous * v) * Fraction(way, scale)
+    return total
+
+
+def _tanh(v: Fraction, speed: Fraction) -> Fraction:
+    """tanh v/v_s to 300 bits; the sign of v where v_s is 0."""
+    if not speed or not v:
+        return Fraction((v > 0) - (v < 0))
+    with ctx.workprec(300):
+        x = v / speed
+        mantissa, exponent = arb(fmpq(x.numerator, x.denominator)).tanh().mid().man_exp()
+        return int(mantissa) * Fraction(2) ** int(exponent)
+
+
+def gaining_round(arms: tuple[Arm, Arm], rng: np.random.Generator) -> str:
+    """A round of both hands that takes something out each time, in words; of about the sizes of the laws."""
+    often = arms[0].often
+    sizes = [v for a in arms for v in (a.resolution, a.speed * a.often * a.period) if v] or [Fraction(1)]
+    for _ in range(ROUNDS):
+        size = often * int(rng.integers(1, 4))
+        unit = Fraction(rng.choice([float(v) for v in sizes]) * 10 ** rng.uniform(-3, 2))
+        paths = [
+            [Fraction(0), *(unit * int(v) for v in rng.integers(-3, 4, size - 1)), Fraction(0)] for _ in arms
+        ]
+        turns = [
+            [a + arm.part * (b - a) for a, b in zip(path, path[1:], strict=False)]
+            for arm, path in zip(arms, paths, strict=True)
+        ]
+        settled = 3 + max(a.whole + a.age for a in arms)
+        less, more = (taken_out(arms, paths, turns, [(0, size, n)]) for n in (settled, settled + 1))
+        if less is not None and more is not None and more > less:
+            return f"a round of {size} readings takes {float(more - less):.6g} J out again and again"
+    return ""
 
 
 JUDGES: dict[str, Callable[[Document, np.random.Generator], Opinion]] = {"pair motion": _motion}

@@ -9,15 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import partial
-from itertools import product
-from math import ceil
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..opinion import Opinion, agrees, cannot_say, false
-from ..plain import exact, quantity
+from ..plain import exact
+from .pair_arms import Arm, arms_of, friction_for
+from .pair_motions import gaining_round
 
 Document = dict[str, Any]
 Rng = np.random.Generator
@@ -31,64 +30,11 @@ MOST_MOVES, MOST_READINGS, SAMPLES = 240, 100, 30
 ANGLES = np.concatenate([np.geomspace(1e-4, 0.1, 8), np.linspace(0.1, np.pi, 60)])
 
 
-class Arm(NamedTuple):
-    """Of a document, as docs/json.md says; `period` from one reading of its own to the next."""
-
-    damping: Fraction
-    friction: Fraction
-    resolution: Fraction
-    stiffness: Fraction
-    virtual: Fraction
-    local: Fraction
-    whole: int
-    part: Fraction
-    age: int
-    weight: Fraction
-    often: int
-    period: Fraction
-
-    def force(self, own: Any, was: Any, its: Any, before: Any) -> Any:
-        """K (x − x') + B (v − v') + D v, of two readings of one's own and two of the other."""
-        k, b, d = self.stiffness, self.virtual / self.period, self.local / self.period
-        if isinstance(own, np.ndarray):
-            k, b, d = float(k), float(b), float(d)
-        return k * (own - its) + b * ((own - was) - (its - before) / self.often) + d * (own - was)
-
-
-def arms_of(loop: Document) -> tuple[Arm, Arm] | None:
-    """Leader and follower; None where the numbers are of no pair."""
-    period, often = quantity(loop, "sample_period"), int(exact(loop.get("own_readings", 1)))
-    springs = [quantity(loop[name], "stiffness") for name in ("leader", "follower")]
-    if period <= 0 or often < 1 or min(springs) <= 0:
-        return None
-    found = []
-    for name, stiffness in zip(("leader", "follower"), springs, strict=True):
-        told = partial(quantity, loop[name])
-        late, link = told("delay") / period, told("link_delay") / period
-        signs = (late, link, told("damping"), told("coulomb_friction"), told("resolution"))
-        if min(signs) < 0 or (late and often > 1):
-            return None
-        found.append(
-            Arm(
-                told("damping"),
-                told("coulomb_friction"),
-                told("resolution"),
-                stiffness,
-                told("virtual_damping"),
-                told("local_damping"),
-                int(late // 1),
-                late % 1,
-                ceil(link),
-                springs[0] / stiffness,
-                often,
-                period / often,
-            )
-        )
-    return found[0], found[1]
-
-
 def form(arms: Sequence[Arm], reading: Readings, moves: Array) -> Array:
-    """What both hands give, over readings 0 to n − 1: in the moves (n, 2 arms, early and late, size)."""
+    """What both hands give, over readings 0 to n − 1: in the moves (n, 2 arms, early and late, size).
+
+    Of compensation that in proportion to speed alone: beside a large motion the rest is as nothing.
+    """
     made, given = [], []
     for i, arm in enumerate(arms):
         for k in range(len(moves)):
@@ -106,6 +52,10 @@ def form(arms: Sequence[Arm], reading: Readings, moves: Array) -> Array:
                     reading(1 - i, sent),
                     reading(1 - i, sent - arm.often),
                 )
+                if arm.viscous:
+                    last = arm.often * (at // arm.often)
+                    moved = reading(i, last) - reading(i, last - arm.often)
+                    force = force - float(arm.viscous / (arm.often * arm.period)) * moved
                 paid = float(arm.damping / (share * arm.period))
                 made.append(move)
                 given.append(float(arm.weight) * (force + paid * move))
@@ -171,7 +121,10 @@ def _pair(document: Document, rng: Rng) -> Opinion:
     values = [("from rest", *least_from_rest(arms))]
     values += [(f"at {a:.6g} rad", *least_at(arms, a)) for a in _angles(arms, rng)]
     where, least, slack = min(values, key=lambda v: v[1] + v[2])
-    return false(f"{where} a motion wins {-least:.3g} of what it loses") if least < -slack else agrees()
+    if least < -slack:
+        return false(f"{where} a motion wins {-least:.3g} of what it loses")
+    found = gaining_round(arms, rng) if any(arm.dry or arm.viscous for arm in arms) else ""
+    return false(found) if found else agrees()
 
 
 def _angles(arms: Sequence[Arm], rng: Rng) -> Array:
@@ -179,14 +132,6 @@ def _angles(arms: Sequence[Arm], rng: Rng) -> Array:
     some = ANGLES if arms[0].often < 10 else ANGLES[::4]
     worst = some[int(np.argmin([least_at(arms, a)[0] for a in some]))]
     return np.concatenate([some, np.clip(worst * (1 + 0.05 * rng.standard_normal(6)), ANGLES[0], np.pi)])
-
-
-def friction_for(arm: Arm, other: Arm) -> Fraction:
-    """Each of the readings half a count off, to the side that is worst."""
-    return max(
-        abs(arm.force(*(s * r.resolution / 2 for s, r in zip(signs, (arm, arm, other, other), strict=True))))
-        for signs in product((-1, 1), repeat=4)
-    )
 
 
 def _violation(document: Document, rng: Rng) -> Opinion:
