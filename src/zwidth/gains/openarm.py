@@ -60,7 +60,8 @@ def read(tables: Sequence[GainTable]) -> ArmGains:
         notes += [
             "the leader's gains are those of Bilateral, K (q' − q) − Kd v, computed on the host: Kd is of "
             "its own speed; the follower's are taken as in openarm_teleop, v_des the leader's speed",
-            "both arms are taken as computed once in a sample period, the follower's drive too",
+            "both arms are taken as computed once in a sample period, the follower too, which in the fork "
+            "has a loop in its drive: with that it is another pair, which is not decided here",
         ]
     if not found:
         raise InputError(f"{tables[0].label}: neither {' nor '.join(_SIDES.values())} is there")
