@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar
 
+from zwidth.errors import InputError
 from zwidth.gains.arms import MOST_READINGS, ArmGains, Delay
 from zwidth.gains.best import best, passive_compensation, required_damping, stiffest
 from zwidth.gains.coupled import CoupledJoint
@@ -20,6 +21,7 @@ from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.showing import Headline, Lines, Part, Table
+from zwidth.specification.table import quoted, suggestion
 
 MOST_SAMPLES = 100
 """Samples that readings may be old around both arms; beyond, a search takes seconds for a joint."""
@@ -131,7 +133,7 @@ class JointVerdict:
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What the claim covers and takes for granted."""
-        ideal = "kd of an arm's own speed, in its drive, is a damper at once: the b of the proof holds it"
+        ideal = "kd of an arm's own speed, in its drive, is a damper at once: b holds it, the controller not"
         return (*self.verdict.small_print(), *([ideal] if self.model.is_ideal else []))
 
     def to_dict(self) -> dict[str, Any]:
@@ -210,6 +212,20 @@ class GainsVerdict(Documented):
             *self._steps(),
             *self._each(),
         )
+
+    def joint(self, name: str) -> JointVerdict:
+        """The verdict on one joint.
+
+        Raises
+        ------
+        InputError
+            If there is none of that name.
+        """
+        for joint in self.joints:
+            if joint.name == name:
+                return joint
+        names = [joint.name for joint in self.joints]
+        raise InputError(f"there is no joint {quoted(name)}; {suggestion(name, names)}")
 
     def _slips(self) -> Iterator[str]:
         slipping = [joint for joint in self.joints if joint.verdict.criterion.slips]
