@@ -36,8 +36,8 @@ _NOTES = (
     "Fo gives back what it takes, like a weight",
     "the speed in the law is the drive's estimate, of an unknown filter; here it is the difference of two "
     "positions",
-    "the threads of both arms are not in step, so that readings are 1 to 4.3 ms old, now more and now less: a "
-    "constant age is decided",
+    "the threads of both arms are not in step, so that readings are 1 to 4.3 ms old, now more and now less: "
+    "a constant age is decided",
 )
 
 
