@@ -42,7 +42,7 @@ class Arm(NamedTuple):
     speed: Fraction = Fraction(0)
 
     def force(self, own: Any, was: Any, its: Any, before: Any, back: Any, earlier: Any) -> Any:
-        """K (x − x') + B (v − v') + D v − r c': two readings of its own, two of the other, two that c' has."""
+        """K (x − x') + B (v − v') + D v − r c': two readings of its own, two of the other, two of c'."""
         period = self.period
         gains = (
             self.stiffness,
