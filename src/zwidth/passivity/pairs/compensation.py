@@ -35,7 +35,7 @@ def compensation_rows(criterion: PairCriterion, share: float | None) -> Iterator
         dry = shown(float(arm.line.height), pair.leader.unit("coulomb_friction"))
         wet = shown(float(law.viscous + arm.line.slope), pair.leader.unit("damping"))
         spent = f", takes {dry} of friction and up to {wet} of damping" if law else ""
-        yield f"compensated in the {name}", f"{law.describe(pair.motion)}{spent}"
+        yield f"compensated in the {name}", f"{law.force_in_words(pair.motion)}{spent}"
     most = (
         "none: without it the pair is not passive either"
         if share is None
