@@ -6,7 +6,7 @@ The polynomials of a proof are multiplied out from the definition, whether they 
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from fractions import Fraction
 from random import Random
 from typing import Any
@@ -14,73 +14,31 @@ from typing import Any
 import numpy as np
 from attack.referee import needed
 
+from .fresh_pairs import FRESH_PAIRS
 from .judges.arms import Chain
 from .judges.hands import held, radius
 from .judges.motions import board_run, energy, kept_forces, taken_out, touched_forces, unrolled
 from .plain import plain_loop, quantity
+from .polynomials import (
+    PERIODS,
+    Document,
+    Laurent,
+    Polynomial,
+    close,
+    in_cosine,
+    laurent_sum,
+    laurent_times,
+    over_one_less,
+    plus,
+    positivity,
+    reciprocal,
+    short,
+    symmetric_in_cosine,
+    texts,
+    times,
+)  # fmt: skip
 
-Document = dict[str, Any]
-Polynomial = list[Fraction]
 Modes = list[tuple[Fraction, Fraction]]
-
-PERIODS = ("0.001", "0.0005", "1/1024", "0.01")
-
-
-def short(rng: Random, low: float, high: float, digits: int = 3) -> Fraction:
-    """A number of few digits, even in its logarithm."""
-    value = low * (high / low) ** rng.random()
-    return Fraction(f"{value:.{digits}g}")
-
-
-def close(rng: Random, value: Fraction) -> Fraction:
-    """At a limit, or a little to either side of it."""
-    if rng.random() < 0.15:
-        return value
-    return value * (
-        1 + rng.choice((-1, 1)) * Fraction(rng.randint(1, 99), 10 ** rng.choice((2, 3, 5, 8, 11, 14)))
-    )
-
-
-def texts(values: Sequence[Fraction]) -> list[str]:
-    """As documents have them."""
-    return [str(v) for v in values]
-
-
-def times(a: Polynomial, b: Polynomial) -> Polynomial:
-    """A product."""
-    out = [Fraction(0)] * (len(a) + len(b) - 1)
-    for i, x in enumerate(a):
-        for j, y in enumerate(b):
-            out[i + j] += x * y
-    return out
-
-
-def plus(a: Polynomial, b: Polynomial, share: Fraction | int = 1) -> Polynomial:
-    """A sum."""
-    size = max(len(a), len(b))
-    return [(a[i] if i < len(a) else 0) + share * (b[i] if i < len(b) else 0) for i in range(size)]  # type: ignore[misc]
-
-
-def in_cosine(a: Polynomial, b: Polynomial) -> Polynomial:
-    """Re{a(ζ) b(1/ζ)} on the circle, in powers of c = cos θ."""
-    found: dict[int, Fraction] = {}
-    for i, x in enumerate(a):
-        for j, y in enumerate(b):
-            found[abs(i - j)] = found.get(abs(i - j), Fraction(0)) + x * y
-    total, before, now = [found.get(0, Fraction(0))], [Fraction(1)], [Fraction(0), Fraction(1)]
-    for k in range(1, max(found, default=0) + 1):
-        total = plus(total, now, found.get(k, Fraction(0)))
-        before, now = now, plus([Fraction(0), *(2 * c for c in now)], before, -1)
-    return total
-
-
-def over_one_less(q: Polynomial) -> Polynomial:
-    """q/(1 − c), of a q that is 0 at 1."""
-    out, rest = [], Fraction(0)
-    for c in q[:-1]:
-        rest += c
-        out.append(rest)
-    return out or [Fraction(0)]
 
 
 def criterion(loop: Document, damping: Fraction | None = None) -> Polynomial:
@@ -97,13 +55,6 @@ def criterion(loop: Document, damping: Fraction | None = None) -> Polynomial:
     if not part:
         return q
     return plus([b * c for c in q], in_cosine(above, above), -period * part * (1 - part) / 2)
-
-
-def positivity(q: Polynomial) -> Document:
-    """The factors of a sign, all in one."""
-    while len(q) > 1 and not q[-1]:
-        q = q[:-1]
-    return {"at_one": 0, "at_minus_one": 0, "square": ["1"], "factor": texts(q)}
 
 
 def loop_of(rng: Random, above: Polynomial, below: Polynomial, **given: Any) -> Document:
@@ -691,35 +642,8 @@ def _row_motion(rng: Random) -> Document:
     }
 
 
-def _minus_transposed(p: dict[int, Fraction]) -> dict[int, Fraction]:
-    return {-k: v for k, v in p.items()}
-
-
-def _laurent(a: Polynomial) -> dict[int, Fraction]:
+def _laurent(a: Polynomial) -> Laurent:
     return dict(enumerate(a))
-
-
-def _laurent_times(a: dict[int, Fraction], b: dict[int, Fraction]) -> dict[int, Fraction]:
-    out: dict[int, Fraction] = {}
-    for i, x in a.items():
-        for j, y in b.items():
-            out[i + j] = out.get(i + j, Fraction(0)) + x * y
-    return out
-
-
-def _laurent_sum(*terms: tuple[Fraction, dict[int, Fraction]]) -> dict[int, Fraction]:
-    out: dict[int, Fraction] = {}
-    for share, part in terms:
-        for k, v in part.items():
-            out[k] = out.get(k, Fraction(0)) + share * v
-    return out
-
-
-def _symmetric_in_cosine(p: dict[int, Fraction]) -> Polynomial:
-    """Σ p_k zᵏ with p_{−k} = p_k, in powers of c."""
-    size = max(map(abs, p), default=0)
-    half = [p.get(0, Fraction(0)), *(2 * p.get(k, Fraction(0)) for k in range(1, size + 1))]
-    return in_cosine(half, [Fraction(1)])
 
 
 def _matrix_port(rng: Random) -> Document:
@@ -739,21 +663,21 @@ def _matrix_port(rng: Random) -> Document:
     level = close(rng, Fraction(f"{least:.9g}"))
     half = Fraction(1, 2)
     d, n = _laurent(below[::-1]), [[_laurent(q[::-1]) for q in row] for row in rows]
-    size = _laurent_times(_minus_transposed(d), d)
+    size = laurent_times(reciprocal(d), d)
     p = [
         [
-            _laurent_sum(
-                (half, _laurent_times(_minus_transposed(d), n[i][j])),
-                (half, _laurent_times(_minus_transposed(n[j][i]), d)),
+            laurent_sum(
+                (half, laurent_times(reciprocal(d), n[i][j])),
+                (half, laurent_times(reciprocal(n[j][i]), d)),
                 (-level if i == j else Fraction(0), size),
             )
             for j in range(2)
         ]
         for i in range(2)
     ]
-    trace = _laurent_sum((Fraction(1), p[0][0]), (Fraction(1), p[1][1]))
-    determinant = _laurent_sum(
-        (Fraction(1), _laurent_times(p[0][0], p[1][1])), (Fraction(-1), _laurent_times(p[0][1], p[1][0]))
+    trace = laurent_sum((Fraction(1), p[0][0]), (Fraction(1), p[1][1]))
+    determinant = laurent_sum(
+        (Fraction(1), laurent_times(p[0][0], p[1][1])), (Fraction(-1), laurent_times(p[0][1], p[1][0]))
     )
     offset = short(rng, 0.1, 10)
     m = [
@@ -775,7 +699,7 @@ def _matrix_port(rng: Random) -> Document:
         "proof": {
             "offset": str(offset),
             "minors": [
-                {"power": 0, "positivity": positivity(_symmetric_in_cosine(e))} for e in (trace, determinant)
+                {"power": 0, "positivity": positivity(symmetric_in_cosine(e))} for e in (trace, determinant)
             ],
             "resolvent": {
                 "numerators": [[texts(times(below, q)) for q in row] for row in resolvent],
@@ -939,6 +863,7 @@ _FRESH: dict[str, Callable[[Random], Document]] = {
     "contact motion": _contact_motion,
     "positive real": _positive_real,
     "extraction": _extraction,
+    **FRESH_PAIRS,
 }
 
 KINDS = tuple(_FRESH)

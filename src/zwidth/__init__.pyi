@@ -22,6 +22,8 @@ from zwidth.environment import PulseTransferFunction as PulseTransferFunction
 from zwidth.environment import StandardLinearSolid as StandardLinearSolid
 from zwidth.environment import Wall as Wall
 from zwidth.errors import InputError as InputError
+from zwidth.gains import check_gains as check_gains
+from zwidth.gains import read_gains as read_gains
 from zwidth.identification import tissue as tissue
 from zwidth.identification.device.plan import plan_identification as plan
 from zwidth.identification.logs import Log as Log

@@ -55,9 +55,41 @@ def test_a_picture_of_either(stiffness, tmp_path):
     """The motion is shown where there is one; the pair stands where it is."""
     verdict = zw.check(PAIR.replace(stiffness=stiffness))
     figure = plots.plot_pair(verdict)
-    assert len(figure.axes) == (2 if verdict.passive else 3)
+    assert len(figure.axes) == (2 if verdict.passive else 4)
     (mark,) = (line for line in figure.axes[1].lines if line.get_gid() == "pair")
     assert mark.get_ydata()[0] == stiffness
     assert mark.get_xdata()[0] == pytest.approx(2)
     verdict.plot(tmp_path / "pair.png")
     assert (tmp_path / "pair.png").stat().st_size > 1000
+
+
+def test_the_energy_is_drawn_to_the_end_of_the_motion():
+    """From 0 at rest to what the motion takes out, at the instant when its last round ends."""
+    verdict = zw.check(PAIR.replace(stiffness=1000))
+    figure = plots.plot_pair(verdict)
+    (curve,) = (line for line in figure.axes[3].lines if line.get_gid() == "energy")
+    time, energy = curve.get_data()
+    assert (time[0], energy[0]) == (0, 0)
+    ends = time[-1] / verdict.witness.duration, energy[-1] / verdict.witness.energy
+    for end, label in zip(ends, (figure.axes[3].get_xlabel(), figure.axes[3].get_ylabel()), strict=True):
+        prefix = label.rpartition("[")[2][:-2]
+        assert end == pytest.approx({"": 1, "m": 1e3, "µ": 1e6}[prefix])
+
+
+@pytest.mark.parametrize(("damping", "shown"), [("0.9", "linear"), ("0.01", "log")])
+def test_far_from_what_is_needed_axes_are_logarithmic(damping, shown):
+    """So that what is there and what is needed are both seen, of damping and of stiffness."""
+    arm = ARM.replace(damping=damping)
+    verdict = zw.check(zw.Pair(arm, arm, stiffness=400, delay="2 ms"))
+    above, beside = plots.plot_pair(verdict).axes[:2]
+    assert (above.get_xscale(), above.get_yscale(), beside.get_yscale()) == (shown, shown, shown)
+    for axes, here in ((above, float(damping)), (beside, 400)):
+        assert axes.get_ylim()[0] < here < axes.get_ylim()[1]
+
+
+def test_where_friction_lacks_the_damping_that_is_enough_says_so():
+    """The pair stands inside of what is enough, and is active all the same."""
+    arm = ARM.replace(damping=2, coulomb_friction="0.004", resolution="1e-4")
+    verdict = zw.check(zw.Pair(arm, arm, stiffness=400))
+    assert verdict.outcome == "active"
+    assert plots.plot_pair(verdict).axes[0].get_title(loc="left") == "shaded: enough damping, not friction"

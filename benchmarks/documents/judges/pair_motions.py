@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import lcm
@@ -13,12 +14,14 @@ from flint import arb, ctx, fmpq
 from ..opinion import Opinion, false
 from ..plain import entry, exact, exacts, quantity
 from .motions import compared, parts_of, unrolled
-from .pairs import Arm, Law, arms_of
+from .pair_arms import Arm, arms_of
 
 Document = dict[str, Any]
 
-LONGEST = 60_000
+LONGEST = 4_000
 """Readings of a motion that are run."""
+
+ROUNDS = 12
 
 
 def _motion(document: Document, rng: np.random.Generator) -> Opinion:
@@ -42,28 +45,30 @@ def _motion(document: Document, rng: np.random.Generator) -> Opinion:
         return false("parts that do not follow one another, another period, or no start at rest at 0")
     given = [exacts(turn) if turn else path[:-1] for turn, path in zip(turns, paths, strict=True)]
     stored = arms[0].stiffness * sum(arm.resolution for arm in arms) ** 2 / 8
-    return compared(_taken(arms, paths, given, parts), exact(document["energy_J"]), stored)
+    return compared(taken_out(arms, paths, given, parts), exact(document["energy_J"]), stored)
 
 
-def _taken(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction | None:
+def taken_out(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction | None:
     """By all rounds; of very many by four smaller numbers of them, between which it is a quadratic."""
     size = len(paths[0]) + sum((last - first) * (times - 1) for first, last, times in parts)
     if size <= LONGEST:
-        return taken_out(arms, paths, turns, parts)
+        return _of_all_readings(arms, paths, turns, parts)
     rounds = {times for *_, times in parts if times > 1}
-    most = (LONGEST // 8 - len(paths[0])) // sum(last - first for first, last, times in parts if times > 1)
-    counts = [most - 3 * k for k in range(4)]
-    if len(rounds) > 1 or counts[-1] < 4:
+    most = (LONGEST // 4 - len(paths[0])) // sum(last - first for first, last, times in parts if times > 1)
+    if len(rounds) > 1 or most < 15:
         return None
-    fewer = [[(first, last, min(times, n)) for first, last, times in parts] for n in counts]
-    e0, e1, e2, e3 = (taken_out(arms, paths, turns, some) for some in fewer)
+    times = rounds.pop()
+    most -= (most - times) % 3
+    counts = [most - 3 * k for k in range(4)]
+    fewer = [[(first, last, min(own, n)) for first, last, own in parts] for n in counts]
+    e0, e1, e2, e3 = (_of_all_readings(arms, paths, turns, some) for some in fewer)
     if e0 - 2 * e1 + e2 != e1 - 2 * e2 + e3:
         return None  # what is remembered is older, or counts do not come again
-    n = Fraction(rounds.pop() - counts[0], 3)
+    n = Fraction(times - most, 3)
     return e0 + n * (e0 - e1) + n * (n + 1) / 2 * (e0 - 2 * e1 + e2)
 
 
-def taken_out(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction:
+def _of_all_readings(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fraction:
     """−Σ w (f Δx + f_c |Δx| + b Δx²/t) of a motion from rest, in fractions."""
     scale = lcm(*(v.denominator for some in (*paths, *turns) for v in some))
     scale = lcm(scale, *(arm.resolution.denominator for arm in arms))
@@ -80,7 +85,8 @@ def taken_out(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) -> Fracti
         common = lcm(*(c.denominator for c in taps))
         whole = [int(c * common) for c in taps]
         total += arm.weight * _lost(arm, motions[i], (read[i], read[1 - i]), whole, common, scale)
-        total -= arm.weight * _helped(arm, motions[i], read[i], scale)
+        if arm.dry or arm.viscous:
+            total -= arm.weight * _helped(arm, motions[i], read[i], scale)
     return -total
 
 
@@ -103,36 +109,55 @@ def _lost(arm: Arm, motion: Any, read: Any, taps: Sequence[int], common: int, sc
     return (Fraction(work, common) + paid) / scale**2 + arm.friction * Fraction(path, scale)
 
 
-def _helped(arm: Arm, motion: Any, own: Sequence[int], scale: int) -> Fraction:
-    """What compensation of friction gives, held for T from the newest move over T on."""
-    if arm.law is None:
-        return Fraction(0)
-    (x, y), known = motion, {0: Fraction(0)}
-    period = arm.period * arm.often
-    forces = [Fraction(0)] * (arm.whole + 1)
+def _helped(arm: Arm, motion: Any, own: Any, scale: int) -> Fraction:
+    """What compensation gives: F tanh(v/v_s) + C v of the move over the last sample, as late as the force."""
+    x, y = motion
+    moves = [0] * (arm.whole + 1)
     for k in range(len(x) - 1):
-        sent = arm.often * (k // arm.often)
-        move = own[sent] - own[max(sent - arm.often, 0)]
-        if move not in known:
-            known[move] = _compensation(arm.law, Fraction(move, scale) / period)
-        forces.append(known[move])
+        last = arm.often * (k // arm.often)
+        moves.append(own[last] - own[max(last - arm.often, 0)])
+    period = arm.often * arm.period
+    ways: Counter[int] = Counter()
+    for k in range(len(x) - 1):
+        first, then = (y[k] - x[k], x[k + 1] - y[k]) if arm.part else (0, x[k + 1] - x[k])
+        ways[moves[k]] += first
+        ways[moves[k + 1]] += then
     total = Fraction(0)
-    for k in range(len(x) - 1):
-        first = y[k] - x[k] if arm.part else 0
-        total += forces[k] * first + forces[k + 1] * (x[k + 1] - x[k] - first)
-    return total / scale
+    for move, way in ways.items():
+        v = Fraction(move, scale) / period
+        total += (arm.dry * _tanh(v, arm.speed) + arm.viscous * v) * Fraction(way, scale)
+    return total
 
 
-def _compensation(law: Law, v: Fraction) -> Fraction:
-    """F tanh(v/v_s) + C v, to far more digits than are compared."""
-    bent = Fraction(1 if v > 0 else -1)
-    if law.speed:
-        x = v / law.speed
-        before, ctx.prec = ctx.prec, 200
-        found = arb(fmpq(x.numerator, x.denominator)).tanh().mid().fmpq()
-        ctx.prec = before
-        bent = Fraction(int(found.p), int(found.q))
-    return law.coulomb * bent + law.viscous * v
+def _tanh(v: Fraction, speed: Fraction) -> Fraction:
+    """tanh v/v_s to 300 bits; the sign of v where v_s is 0."""
+    if not speed or not v:
+        return Fraction((v > 0) - (v < 0))
+    with ctx.workprec(300):
+        x = v / speed
+        mantissa, exponent = arb(fmpq(x.numerator, x.denominator)).tanh().mid().man_exp()
+        return int(mantissa) * Fraction(2) ** int(exponent)
+
+
+def gaining_round(arms: tuple[Arm, Arm], rng: np.random.Generator) -> str:
+    """A round of both hands that takes something out each time, in words; of about the sizes of the laws."""
+    often = arms[0].often
+    sizes = [v for a in arms for v in (a.resolution, a.speed * a.often * a.period) if v] or [Fraction(1)]
+    for _ in range(ROUNDS):
+        size = often * int(rng.integers(1, 4))
+        unit = Fraction(rng.choice([float(v) for v in sizes]) * 10 ** rng.uniform(-3, 2))
+        paths = [
+            [Fraction(0), *(unit * int(v) for v in rng.integers(-3, 4, size - 1)), Fraction(0)] for _ in arms
+        ]
+        turns = [
+            [a + arm.part * (b - a) for a, b in zip(path, path[1:], strict=False)]
+            for arm, path in zip(arms, paths, strict=True)
+        ]
+        settled = 3 + max(a.whole + a.age for a in arms)
+        less, more = (taken_out(arms, paths, turns, [(0, size, n)]) for n in (settled, settled + 1))
+        if less is not None and more is not None and more > less:
+            return f"a round of {size} readings takes {float(more - less):.6g} J out again and again"
+    return ""
 
 
 JUDGES: dict[str, Callable[[Document, np.random.Generator], Opinion]] = {"pair motion": _motion}

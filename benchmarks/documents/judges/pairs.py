@@ -2,23 +2,21 @@
 
 It is made from the definitions, twice: of all motions of some samples from rest, and of those in which each
 sample is the one before times e^{jθ}.  What a move inside a sample wins or loses is in both, as it is, and
-nothing is minimised by hand.  What compensates friction is a line h + s v above it: its linear part is in the
-form, the rest is taken from the damping.
+nothing is minimised by hand.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import partial
-from itertools import product
-from math import atanh, ceil
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..opinion import Opinion, agrees, cannot_say, false
-from ..plain import exact, quantity
+from ..plain import exact
+from .pair_arms import Arm, arms_of, friction_for
+from .pair_motions import gaining_round
 
 Document = dict[str, Any]
 Rng = np.random.Generator
@@ -32,101 +30,11 @@ MOST_MOVES, MOST_READINGS, SAMPLES = 240, 100, 30
 ANGLES = np.concatenate([np.geomspace(1e-4, 0.1, 8), np.linspace(0.1, np.pi, 60)])
 
 
-class Law(NamedTuple):
-    """F tanh(v/v_s) + C v."""
-
-    coulomb: Fraction
-    viscous: Fraction
-    speed: Fraction
-
-
-class Arm(NamedTuple):
-    """Of a document, as docs/json.md says; `period` from one reading of its own to the next.
-
-    Of a drive's compensation `still` and `moving` are what it takes of a move in T and with the one before;
-    `unsure` is what it may be off by the steps of the encoder, beside the rest [N; N·m].
-    """
-
-    damping: Fraction
-    friction: Fraction
-    resolution: Fraction
-    stiffness: Fraction
-    virtual: Fraction
-    local: Fraction
-    whole: int
-    part: Fraction
-    age: int
-    weight: Fraction
-    often: int
-    period: Fraction
-    law: Law | None = None
-    still: Fraction = Fraction(0)
-    moving: Fraction = Fraction(0)
-    unsure: Fraction = Fraction(0)
-
-    def force(self, own: Any, was: Any, its: Any, before: Any) -> Any:
-        """K (x − x') + B (v − v') + D v, of two readings of one's own and two of the other."""
-        k, b, d = self.stiffness, self.virtual / self.period, self.local / self.period
-        if isinstance(own, np.ndarray):
-            k, b, d = float(k), float(b), float(d)
-        return k * (own - its) + b * ((own - was) - (its - before) / self.often) + d * (own - was)
-
-
-def arms_of(loop: Document) -> tuple[Arm, Arm] | None:
-    """Leader and follower; None where the numbers are of no pair."""
-    period, often = quantity(loop, "sample_period"), int(exact(loop.get("own_readings", 1)))
-    springs = [quantity(loop[name], "stiffness") for name in ("leader", "follower")]
-    if period <= 0 or often < 1 or min(springs) <= 0:
-        return None
-    found = []
-    for name, stiffness in zip(("leader", "follower"), springs, strict=True):
-        told = partial(quantity, loop[name])
-        late, link = told("delay") / period, told("link_delay") / period
-        signs = (late, link, told("damping"), told("coulomb_friction"), told("resolution"))
-        if min(signs) < 0 or (late and often > 1):
-            return None
-        found.append(
-            Arm(
-                told("damping"),
-                told("coulomb_friction"),
-                told("resolution"),
-                stiffness,
-                told("virtual_damping"),
-                told("local_damping"),
-                int(late // 1),
-                late % 1,
-                ceil(link),
-                springs[0] / stiffness,
-                often,
-                period / often,
-                _law(loop[name].get("compensation")),
-            )
-        )
-    return found[0], found[1]
-
-
-def _law(told: Document | None) -> Law | None:
-    names = ("compensated_coulomb_friction", "compensated_damping", "compensation_speed")
-    return None if told is None else Law(*(quantity(told, name) for name in names))
-
-
-def spent(arm: Arm, r: Fraction) -> Arm:
-    """What its compensation leaves of it, under the tangent at r; 1 is F itself."""
-    if arm.law is None:
-        return arm
-    most, viscous, speed = arm.law
-    slope = most * (1 - r**2) / speed if r < 1 else Fraction(0)
-    height = most * (r - (1 - r**2) * Fraction(atanh(r)) - Fraction(SLACK)) if r < 1 else most
-    half, rest = slope / 2, viscous + slope / 2
-    a_count = arm.resolution / (arm.period * arm.often)
-    less = arm._replace(friction=arm.friction - height)
-    if arm.often > 1:
-        return less._replace(still=half, moving=rest, unsure=(half + rest) * a_count)
-    return less._replace(damping=arm.damping - half, local=arm.local - rest, unsure=half * a_count)
-
-
 def form(arms: Sequence[Arm], reading: Readings, moves: Array) -> Array:
-    """What both hands give, over readings 0 to n − 1: in the moves (n, 2 arms, early and late, size)."""
+    """What both hands give, over readings 0 to n − 1: in the moves (n, 2 arms, early and late, size).
+
+    Of compensation that in proportion to speed alone: beside a large motion the rest is as nothing.
+    """
     made, given = [], []
     for i, arm in enumerate(arms):
         for k in range(len(moves)):
@@ -144,16 +52,13 @@ def form(arms: Sequence[Arm], reading: Readings, moves: Array) -> Array:
                     reading(1 - i, sent),
                     reading(1 - i, sent - arm.often),
                 )
+                if arm.viscous:
+                    last = arm.often * (at // arm.often)
+                    moved = reading(i, last) - reading(i, last - arm.often)
+                    force = force - float(arm.viscous / (arm.often * arm.period)) * moved
                 paid = float(arm.damping / (share * arm.period))
                 made.append(move)
                 given.append(float(arm.weight) * (force + paid * move))
-        if arm.moving:
-            for k in range(0, len(moves), arm.often):
-                move = moves[k : k + arm.often, i].sum(axis=(0, 1))
-                before = reading(i, k) - reading(i, k - arm.often)
-                took = float(arm.still) * move + float(arm.moving) * before
-                made.append(move)
-                given.append(-float(arm.weight / (arm.period * arm.often)) * took)
     return np.asarray(np.array(made).conj().T @ np.array(given))
 
 
@@ -205,15 +110,10 @@ def _pair(document: Document, rng: Rng) -> Opinion:
     arms = arms_of(document["loop"])
     if arms is None:
         return false("there is no pair with such numbers")
-    tangents = document["proof"].get("tangents", {})
-    if any(arm.law and not arm.law.speed and exact(tangents.get(name, 1)) < 1 for arm, name in _named(arms)):
-        return false("the sign of the speed is under no line but F")
-    first, second = (spent(arm, exact(tangents.get(name, 1))) for arm, name in _named(arms))
-    arms = first, second
-    if not all(arm.damping > 0 for arm in arms):
+    if not all(arm.damping for arm in arms):
         return false("nothing pays for the hold of an arm without damping")
     for arm, other in (arms, arms[::-1]):
-        error = _error(arm, other)
+        error = friction_for(arm, other)
         if arm.friction < error:
             return false(f"readings at their worst change a force by {float(error):.9g}")
     if arms[0].often > MOST_READINGS:
@@ -221,7 +121,10 @@ def _pair(document: Document, rng: Rng) -> Opinion:
     values = [("from rest", *least_from_rest(arms))]
     values += [(f"at {a:.6g} rad", *least_at(arms, a)) for a in _angles(arms, rng)]
     where, least, slack = min(values, key=lambda v: v[1] + v[2])
-    return false(f"{where} a motion wins {-least:.3g} of what it loses") if least < -slack else agrees()
+    if least < -slack:
+        return false(f"{where} a motion wins {-least:.3g} of what it loses")
+    found = gaining_round(arms, rng) if any(arm.dry or arm.viscous for arm in arms) else ""
+    return false(found) if found else agrees()
 
 
 def _angles(arms: Sequence[Arm], rng: Rng) -> Array:
@@ -229,18 +132,6 @@ def _angles(arms: Sequence[Arm], rng: Rng) -> Array:
     some = ANGLES if arms[0].often < 10 else ANGLES[::4]
     worst = some[int(np.argmin([least_at(arms, a)[0] for a in some]))]
     return np.concatenate([some, np.clip(worst * (1 + 0.05 * rng.standard_normal(6)), ANGLES[0], np.pi)])
-
-
-def _error(arm: Arm, other: Arm) -> Fraction:
-    """Each of the readings half a count off, to the side that is worst."""
-    return arm.unsure + max(
-        abs(arm.force(*(s * r.resolution / 2 for s, r in zip(signs, (arm, arm, other, other), strict=True))))
-        for signs in product((-1, 1), repeat=4)
-    )
-
-
-def _named(arms: Sequence[Arm]) -> Iterator[tuple[Arm, str]]:
-    return zip(arms, ("leader", "follower"), strict=True)
 
 
 def _violation(document: Document, rng: Rng) -> Opinion:
@@ -252,14 +143,6 @@ def _violation(document: Document, rng: Rng) -> Opinion:
         return false("without damping a force that changes inside a sample is not covered")
     if arms[0].often > MOST_READINGS:
         return cannot_say("so many readings make too large a form")
-    if (
-        any(arm.law for arm in arms)
-        and "proof" not in document
-        and any(arm.law.viscous for arm in arms if arm.law)
-    ):
-        return cannot_say("compensation of viscous friction may brake between two readings")
-    first, second = (spent(arm, Fraction(1)) for arm in arms)
-    arms = first, second
     bare = not all(arm.damping for arm in arms)
     arms = arms[0]._replace(damping=_some(arms[0])), arms[1]._replace(damping=_some(arms[1]))
     if "proof" in document:

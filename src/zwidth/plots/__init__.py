@@ -13,7 +13,8 @@ from zwidth.plots.criterion import criterion, draw_criterion
 from zwidth.plots.cycle import cycle, draw_cycle
 from zwidth.plots.indices import draw_index, indices
 from zwidth.plots.limit import limit_figure
-from zwidth.plots.pair import draw_pair_damping, draw_pair_link, draw_pair_motion, plot_pair
+from zwidth.plots.pair import draw_pair_damping, draw_pair_link, plot_pair
+from zwidth.plots.pair_motion import draw_pair_energy, draw_pair_motion
 from zwidth.plots.plane import draw_plane, plane
 from zwidth.plots.report import check_figure
 from zwidth.plots.storage import draw_storage, storage
@@ -35,6 +36,7 @@ __all__ = [
     "draw_friction",
     "draw_index",
     "draw_pair_damping",
+    "draw_pair_energy",
     "draw_pair_link",
     "draw_pair_motion",
     "draw_plane",

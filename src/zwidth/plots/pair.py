@@ -1,4 +1,7 @@
-"""A pair of arms: which dampings are enough, and how much stiffness the delay of a link leaves."""
+"""A pair of arms: which dampings are enough, and how much stiffness the delay of a link leaves.
+
+Where what is needed and what is there are far apart, an axis is logarithmic.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,8 @@ from zwidth.passivity.linear.boundary import COARSER, smallest_holding
 from zwidth.passivity.pairs import PairCriterion, PairVerdict
 from zwidth.passivity.pairs.advice import MOST_SAMPLES
 from zwidth.passivity.pairs.limits import largest_stiffness, samples_around
-from zwidth.plots.style import BLUE, GREEN, GREY, LOOK, OUTCOME, RED, new_figure, scale
+from zwidth.plots.pair_motion import draw_pair_energy, draw_pair_motion
+from zwidth.plots.style import GREEN, LOOK, OUTCOME, new_figure, scale
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.text import quantity_unit
 
@@ -26,10 +30,13 @@ Array = NDArray[np.float64]
 _DAMPINGS, _AGES, _MOST, _FEW = 40, 8, 24, 6
 """Points of the boundary; samples of link delay shown at least, and steps at most; a few of either."""
 
+_FAR = 30
+"""Apart by more than this an axis is logarithmic."""
+
 
 @rc_context(LOOK)
 def plot_pair(verdict: PairVerdict) -> Figure:
-    """The plane of both dampings, the largest stiffness against the delay of the link, and the motion.
+    """The plane of both dampings, the largest stiffness against the link's delay, the motion and its energy.
 
     Parameters
     ----------
@@ -37,12 +44,13 @@ def plot_pair(verdict: PairVerdict) -> Figure:
         What `zwidth.check` returned of a `zwidth.Pair`.
     """
     moved = verdict.witness is not None
-    figure = new_figure(7.2, 5.4 if moved else 3.7)
-    grid = figure.add_gridspec(2 if moved else 1, 2, height_ratios=[2.2, 1] if moved else [1])
+    figure = new_figure(7.2, 6.8 if moved else 3.7)
+    grid = figure.add_gridspec(3 if moved else 1, 2, height_ratios=[2.2, 1, 1] if moved else [1])
     draw_pair_damping(figure.add_subplot(grid[0, 0]), verdict)
     draw_pair_link(figure.add_subplot(grid[0, 1]), verdict)
     if moved:
         draw_pair_motion(figure.add_subplot(grid[1, :]), verdict)
+        draw_pair_energy(figure.add_subplot(grid[2, :]), verdict)
     figure.suptitle(
         fill(f"{verdict.outcome}: {verdict.claim}", 92),
         x=0.01, ha="left", fontsize=10, color=OUTCOME[verdict.outcome], parse_math=False,
@@ -63,14 +71,21 @@ def draw_pair_damping(axes: Axes, verdict: PairVerdict) -> None:
     leader, follower = damping_boundary(verdict.pair)
     here = [float(side.damping) for side in verdict.pair.sides]
     unit = quantity_unit("damping", verdict.pair.motion)
-    top = float(leader.max())
     shown = np.isfinite(follower)
+    top, low = float(leader.max()), 0.0
+    if min(here) > 0 and min(here) < top / _FAR:
+        low = min(here) / 3
+        axes.set(xscale="log", yscale="log")
     axes.fill_between(leader[shown], follower[shown], 1e3 * top, color=GREEN, alpha=0.16, lw=0)
-    axes.plot(leader[shown], follower[shown], color=GREEN, gid="boundary")
-    axes.set(xlim=(0, top), ylim=(0, top))
+    edge = leader[shown][:1], np.full(int(shown.any()), 1e3 * top)  # left of it none is enough
+    axes.plot(
+        np.append(edge[0], leader[shown]), np.append(edge[1], follower[shown]), color=GREEN, gid="boundary"
+    )
+    axes.set(xlim=(low, top), ylim=(low, top))
     axes.set_xlabel(f"damping of the leader [{unit}]")
     axes.set_ylabel(f"damping of the follower [{unit}]")
-    axes.set_title("shaded: enough damping")
+    inside = verdict.criterion.holds and not verdict.passive
+    axes.set_title("shaded: enough damping, not friction" if inside else "shaded: enough damping")
     _mark(axes, verdict, here[0], here[1])
 
 
@@ -85,11 +100,13 @@ def damping_boundary(pair: Pair) -> tuple[Array, Array]:
         return PairCriterion(pair.replace(**arms)).holds
 
     ratio = 1 / pair.power_ratio
-    guess = float(pair.stiffness * pair.sample_period)
+    guess = float(pair.felt_stiffness * pair.sample_period)
     equal = smallest_holding(lambda b: holds(b, b * ratio), guess, COARSER) or guess
     found = []
     top = 1.25 * max(3 * equal, *(float(side.damping) for side in pair.sides))
-    steps = np.geomspace(0.1 * equal, top, _number(pair, _DAMPINGS))
+    # to the left of the first no follower that is drawn is enough
+    first = smallest_holding(lambda b: holds(b, Exact(top).fraction), equal, COARSER) or 0.1 * equal
+    steps = np.geomspace(min(first, top / 2), top, _number(pair, _DAMPINGS))
     for step in steps:
         least = smallest_holding(partial(holds, Exact(float(step)).fraction), equal, COARSER)
         found.append(np.inf if least is None else least)
@@ -110,15 +127,19 @@ def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
     delays, stiffness = link_limits(pair)
     seconds, unit = scale([float(delays[-1])], "s")
     ends = seconds * delays
-    axes.stairs(stiffness[1:], ends, baseline=0, color=GREEN, fill=True, alpha=0.16, lw=0)
+    top, low = 1.3 * max(float(pair.felt_stiffness), float(stiffness.max())), 0.0
+    if 0 < stiffness[stiffness > 0].min(initial=top) < top / _FAR:
+        low = float(stiffness[stiffness > 0].min()) / 3
+        axes.set_yscale("log")
+    axes.stairs(stiffness[1:], ends, baseline=low, color=GREEN, fill=True, alpha=0.16, lw=0)
     axes.stairs(stiffness[1:], ends, baseline=None, color=GREEN, lw=1.6, gid="stairs")
     axes.plot([0], stiffness[:1], ".", color=GREEN, clip_on=False)
-    axes.set(xlim=(0, ends[-1]), ylim=(0, 1.3 * max(float(pair.stiffness), float(stiffness.max()))))
+    axes.set(xlim=(0, ends[-1]), ylim=(low, top))
     which = "each way" if pair.there == pair.back else "mean of there and back"
     axes.set_xlabel(f"link delay, {which} [{unit}]")
     axes.set_ylabel(f"stiffness [{quantity_unit('stiffness', pair.motion)}]")
     axes.set_title("shaded: passive" if stiffness.any() else "none is passive")
-    _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, float(pair.stiffness))
+    _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, float(pair.felt_stiffness))
 
 
 def link_limits(pair: Pair) -> tuple[Array, Array]:
@@ -149,37 +170,6 @@ def link_limits(pair: Pair) -> tuple[Array, Array]:
 def _number(pair: Pair, usual: int) -> int:
     """Fewer points where readings are so old that each of them takes a second."""
     return usual if samples_around(pair) <= MOST_SAMPLES else _FEW
-
-
-def draw_pair_motion(axes: Axes, verdict: PairVerdict) -> None:
-    """Positions of both hands in the motion that takes energy out, each repeated part once.
-
-    Parameters
-    ----------
-    axes
-        Where to draw.
-    verdict
-        What `zwidth.check` returned of a `zwidth.Pair` that is active.
-    """
-    found = verdict.witness
-    assert found is not None
-    pair = verdict.pair
-    step = float(pair.sample_period) / pair.own_readings
-    time, unit = scale([step * len(found.positions[0])], "s")
-    length, far = scale(
-        [float(np.ptp(path)) for path in found.positions], quantity_unit("position", pair.motion)
-    )
-    for path, name, colour, line in zip(
-        found.positions, ("leader", "follower"), (BLUE, RED), ("-", "--"), strict=True
-    ):
-        axes.plot(time * step * np.arange(len(path)), length * path, line, color=colour, label=name, gid=name)
-    rounds = [
-        f"samples {p.first} to {p.last}: {p.times:.3g} times" for p in found.leader.repeats if p.times > 1
-    ]
-    axes.set_title("; ".join([f"takes {found.energy:.3g} J out", *rounds]), color=GREY)
-    axes.set_xlabel(f"time [{unit}]")
-    axes.set_ylabel(f"position [{far}]")
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
 def _mark(axes: Axes, verdict: PairVerdict, x: float, y: float) -> None:

@@ -98,6 +98,16 @@ DRIVEN_DAMPED = put(
     ),
     {"loop.own_readings": 2},
 )
+# the same follower beside a leader of springs alone: (b − 1)(17 − c) − 4 (5 − c) = 8/3 (1 + c) at b = 7/3
+ONE_DAMPED = put(
+    proved(
+        loop(arm("7/3", 4), arm(4, 4, local_damping_N_s_per_m=1)),
+        signs(at_one=2, at_minus_one=1),
+        signs(at_one=1),
+        signs(at_one=1, factor=[17, -1]),
+    ),
+    {"loop.own_readings": 2},
+)
 SLIPPING = put(loop(arm(2, 4, local_damping_N_s_per_m=1)), {"own_readings": 2})
 ENCODERS = put(
     SPRING,
@@ -105,6 +115,15 @@ ENCODERS = put(
         f"loop.{side}.{key}": value
         for side in ("leader", "follower")
         for key, value in (("resolution_m", 1), ("coulomb_friction_N", 4), ("damping_N_s_per_m", 4))
+    },
+)
+# the follower's force is half as large, and so is its error
+UNEQUAL_ENCODERS = put(
+    UNEQUAL,
+    {
+        f"loop.{side}.{key}": value
+        for side, friction in (("leader", 4), ("follower", 2))
+        for key, value in (("resolution_m", 1), ("coulomb_friction_N", friction))
     },
 )
 ACTIVE = loop(arm("1/2", 4))
@@ -115,11 +134,21 @@ ON = moved(loop(arm(1, 4)), [0, 1, 2], [0, 0, 0])
 # own taps 4 + 2 and −2, twice in a sample
 TWICE = moved({**loop(arm("1/2", 4, local_damping_N_s_per_m=1)), "own_readings": 2}, [0, 1, 0], [0, 0, 0])
 PARTLY = moved(loop(arm("1/8", 4, delay_s="1/2"), arm(1, 4)), [0, 1, 0, 0], [0, 0, 0, 0])
+WANDERING = [0, 0, 1, -1, 1, 2, 0], [0, 3, -1, 2, 0, -1, 0]
 TURNED = {"leader_switch_positions_m": [1, "1/2", 0]}
 # half a count of the leader's spring holds 1/2 J; the force is −4 N just below the edge, and 0 above it
 FINE = arm(0, 4)
+COARSE = moved(loop({**FINE, "resolution_m": 2}, FINE), [0, "-1/4", 0], [0, 0, 0])
 COUNTED = moved(loop({**FINE, "resolution_m": 1}, FINE), [0, "-1/8", 0], [0, 0, 0])
 BOTH_COUNTED = moved(loop({**FINE, "resolution_m": "1/2"}), [0, "-1/4", 0], [0, 0, 0])
+# the leader is sent the follower's force, a sample late: b − 1 − 2c, b − 1 and (1 + ζ)(1 + ζ̄) = 2 + 2c
+SENT = proved(
+    loop(arm(5, 0, reflection=1, link_delay_s=1), arm(3, 2)),
+    signs(at_one=3),
+    signs(at_one=1, factor=[2, -1]),
+    signs(at_one=1),
+)
+ITS_OWN = moved(loop(arm("1/2", 0, reflection=1, link_delay_s=1), arm(3, 2)), [0, 1, 1, 0], [0, 0, 0, 0])
 FACTORS, NEGATIVE = "do not multiply", "is not negative at this frequency"
 
 DRAWN = json.loads(Path(__file__).with_name("pairs.json").read_text(encoding="utf-8"))
@@ -161,6 +190,15 @@ CASES = [
         put(UNEQUAL, {"loop.follower.damping_N_s_per_m": 2 - TINY}),
         FACTORS,
     ),
+    *edge("a force that is sent", SENT, put(SENT, {"loop.leader.damping_N_s_per_m": 5 - TINY}), FACTORS),
+    accepted("a leader without a spring has no force to send", put(SENT, {"loop.follower.reflection": 3})),
+    refused("a force sent with its sign turned", put(SENT, {"loop.leader.reflection": -1}), "≥ 0"),
+    *edge(
+        "one's own force, sent back",
+        told(ITS_OWN, 1),
+        told(put(ITS_OWN, {"loop.leader.reflection": 1 - TINY}), 1),
+        "energy",
+    ),
     *edge("a link", LATE, put(LATE, {"loop.follower.link_delay_s": 1 + TINY}), FACTORS),
     accepted(
         "a link of less than a sample is one of a sample",
@@ -191,9 +229,16 @@ CASES = [
         put(DRIVEN_DAMPED, {"loop.follower.local_damping_N_s_per_m": 1 - TINY}),
         FACTORS,
     ),
+    *edge(
+        "a damper inside one drive",
+        ONE_DAMPED,
+        put(ONE_DAMPED, {"loop.leader.damping_N_s_per_m": Fraction(7, 3) - TINY}),
+        FACTORS,
+    ),
     accepted("one reading of its own", put(SPRING, {"loop.own_readings": 1})),
     refused("no reading", put(SPRING, {"loop.own_readings": 0}), "must be ≥ 1"),
     refused("a late drive", put(DRIVEN, {"loop.follower.delay_s": 1}), "without delay"),
+    refused("a late drive of the leader", put(DRIVEN, {"loop.leader.delay_s": 1}), "without delay"),
     refused(
         "drives that gain",
         {**DRIVEN_DAMPED, "loop": put(SLIPPING, {"leader.damping_N_s_per_m": "7/4"})},
@@ -217,6 +262,12 @@ CASES = [
         "proof is of no use",
     ),
     refused("at no frequency", violated(ACTIVE), "proof is missing"),
+    *edge(
+        "encoders of unequal springs",
+        UNEQUAL_ENCODERS,
+        put(UNEQUAL_ENCODERS, {"loop.follower.coulomb_friction_N": 2 - TINY}),
+        "below the force error",
+    ),
     refused(
         "encoders, the leader's friction",
         put(ENCODERS, {"loop.leader.coulomb_friction_N": 4 - TINY}),
@@ -229,7 +280,10 @@ CASES = [
     ),
     refused("a diagonal that is negative", put(SPRING, {"proof.leader.factor": [-1]}), "not multiply"),
     refused("a proof of less", without(SPRING, "proof.both"), "proof.both is missing"),
-    refused("a spring on one side", put(SPRING, {"loop.leader.stiffness_N_per_m": 0}), "must be > 0"),
+    refused(
+        "a spring on one side", put(SPRING, {"loop.leader.stiffness_N_per_m": 0}), "no spring to the other"
+    ),
+    refused("a spring that pushes", put(SPRING, {"loop.leader.stiffness_N_per_m": -1}), "must be ≥ 0"),
     refused(
         "a force that changes inside a sample, undamped",
         put(SPRING, {"loop.leader.delay_s": "1/2", "loop.leader.damping_N_s_per_m": 0}),
@@ -246,6 +300,7 @@ CASES = [
         shows="active",
         encoder="ideal",
     ),
+    accepted("violated next to rest", violated(ACTIVE, 1 - TINY)),
     accepted("no damping at all", violated(loop(arm(0, 4)), 0)),
     accepted("as old as may be", violated(loop(arm(0, 4, link_delay_s=400, delay_s=400)), 0)),
     accepted(
@@ -266,6 +321,20 @@ CASES = [
     refused(
         "to and fro, rubbed", put(told(TO_AND_FRO, 0), {"loop.leader.coulomb_friction_N": "3/2"}), "0 J", 0
     ),
+    accepted(
+        "thirds of one's own readings",
+        told(put(TO_AND_FRO, {"loop.leader.local_damping_N_s_per_m": "1/3"}), "10/3"),
+        energy="10/3",
+    ),
+    *(
+        refused(
+            f"rounds of which a late {side} remembers more than the other",
+            put(moved(loop(arm(1, 4)), *WANDERING), {f"loop.{side}.delay_s": 6, "repeats": again(3, 5, 9)}),
+            f"extracts {energy} J",
+            energy,
+        )
+        for side, energy in (("follower", -2922), ("leader", -2950))
+    ),
     accepted("between two samples", told(TWICE, 4), energy=4),
     refused(
         "a part of a sample again", put(told(TWICE, 4), {"repeats": again(0, 1, 2)}), "that both arms send"
@@ -283,6 +352,11 @@ CASES = [
     accepted("inside a sample", told(put(PARTLY, TURNED), "13/8"), energy="13/8"),
     refused("inside a sample, untold", PARTLY, "switch positions is missing"),
     refused("too few instants", put(PARTLY, {"leader_switch_positions_m": [1]}), "one switch position"),
+    refused(
+        "too many instants",
+        put(PARTLY, {"leader_switch_positions_m": [1, "1/2", 0, 0]}),
+        "one switch position",
+    ),
     refused("instants of no use", put(TO_AND_FRO, {"follower_switch_positions_m": [0, 0]}), "of no use"),
     refused(
         "one longer than the other", put(TO_AND_FRO, {"follower_positions_m": [0, 0]}), "start at rest at 0"
@@ -304,6 +378,21 @@ CASES = [
         BOTH_COUNTED,
         "no more than the 0.5 J stored",
     ),
+    *edge(
+        "over an edge of a coarse encoder",
+        told(put(COARSE, {"leader_positions_m": [0, -Fraction(1, 4) - TINY, 0]}), 2 + 8 * TINY),
+        COARSE,
+        "no more than the 2 J stored",
+    ),
+    refused(
+        "up by half a count in each round",
+        put(
+            COUNTED,
+            {"leader_positions_m": [0, "1/2"], "follower_positions_m": [0, 0], "repeats": again(0, 1, 8)},
+        ),
+        "extracts -24",
+        -24,
+    ),
     refused(
         "on by half a count in each round",
         put(
@@ -318,5 +407,10 @@ CASES = [
         "the leader apart at first", put(TO_AND_FRO, {"leader_positions_m": [1, 1, 0]}), "start at rest at 0"
     ),
     refused("apart at first", put(TO_AND_FRO, {"follower_positions_m": [1, 1, 1]}), "start at rest at 0"),
+    refused(
+        "the follower apart at first",
+        put(TO_AND_FRO, {"follower_positions_m": [1, 1, 0]}),
+        "start at rest at 0",
+    ),
     refused("rounds beyond the end", put(TO_AND_FRO, {"repeats": again(1, 3, 2)}), "must lie in the motion"),
 ]

@@ -78,6 +78,16 @@ class Arm:
         return int(-(-self.side.link_delay // self.period))
 
     @property
+    def echo_age(self) -> int:
+        """Samples after which its own reading comes back to it in the other's force."""
+        return self.age + int(-(-self.side.return_delay // self.period))
+
+    @property
+    def oldest(self) -> int:
+        """Of the readings that it uses, in samples."""
+        return self.echo_age if any(self.echo) else self.age
+
+    @property
     def mixed(self) -> list[tuple[int, Fraction]]:
         """Powers of ζ at which its force acts within a sample, and in which part of it."""
         late = [(self.whole + 1, 1 - self.part)]
@@ -149,17 +159,38 @@ class Arm:
     @property
     def other(self) -> tuple[Fraction, Fraction]:
         """Taps of the readings that it received."""
-        past = self.side.virtual_damping / self.period
-        return -self.side.stiffness - past, past
+        past = (self.side.virtual_damping + self.side.echo_damping) / self.period
+        return -self.side.felt_stiffness - past, past
+
+    @property
+    def echo(self) -> tuple[Fraction, Fraction]:
+        """Taps of its own readings that come back in the other's force."""
+        past = self.side.echo_damping / self.period
+        return self.side.echo_stiffness + past, -past
+
+    @property
+    def own_row(self) -> dict[int, Fraction]:
+        """Taps of all its own readings, by their age in samples, where its drive reads no more often."""
+        row: dict[int, Fraction] = {}
+        for age, taps in ((0, self.own), (self.echo_age, self.echo)):
+            for k, tap in enumerate(taps):
+                row[age + k] = row.get(age + k, Fraction(0)) + tap
+        return {age: tap for age, tap in row.items() if tap}
+
+    @property
+    def other_row(self) -> dict[int, Fraction]:
+        """The same of the readings that it received."""
+        return {self.age + k: tap for k, tap in enumerate(self.other) if tap}
 
     @property
     def paying(self) -> Fraction:
         """b, which pays for moves inside a sample; a thousandth of KT of an arm that has none."""
-        return self.damping if self.damping > 0 else self.side.stiffness * self.period / 1000
+        return self.damping if self.damping > 0 else self.side.felt_stiffness * self.period / 1000
 
     def force_error(self, other: Arm) -> Fraction:
         """The largest error of its force by the steps of both encoders [N; N·m]."""
-        mine, its = (abs(newest) + abs(last) for newest, last in (self.own, self.other))
+        taps = self.own_row.values() if self.often == 1 else (*self.own, *self.echo)
+        mine, its = (sum(map(abs, row), Fraction(0)) for row in (taps, self.other))
         still, moving = self.helped
         unsure = still if self.often == 1 else still + moving
         return (mine / 2 + unsure / self.period) * self.side.resolution + its * other.side.resolution / 2

@@ -27,6 +27,19 @@ _WEIGHTED = (1, 1, 2)
 """How often 2 − 2c is a factor of what the checker looks at."""
 
 
+_TOLD = (
+    "damping",
+    "coulomb_friction",
+    "resolution",
+    "delay",
+    "stiffness",
+    "virtual_damping",
+    "local_damping",
+    "link_delay",
+)
+"""What a document says of a side."""
+
+
 def pair_document(pair: Pair) -> dict[str, Any]:
     """The loop that a proof or a motion speaks of."""
     sides = zip(("leader", "follower"), pair.sides, strict=True)
@@ -38,11 +51,9 @@ def pair_document(pair: Pair) -> dict[str, Any]:
 
 
 def _side(side: Side, motion: str) -> dict[str, Any]:
-    told: dict[str, Any] = {
-        unit_key(name, motion): exact_text(value)
-        for name, value in vars(side).items()
-        if name != "compensation"
-    }
+    told: dict[str, Any] = {unit_key(name, motion): exact_text(getattr(side, name)) for name in _TOLD}
+    if side.reflection:
+        told["reflection"] = exact_text(side.reflection)
     law = side.compensation
     if law:
         numbers = {

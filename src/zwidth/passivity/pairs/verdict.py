@@ -191,7 +191,8 @@ class PairVerdict(PassivityAnswer):
             def holds(b: Fraction, name: str = name, device: Device = device) -> bool:
                 return spending(self.pair.replace(**{name: device.replace(damping=b)})).holds
 
-            guess = max(float(device.exact("damping")), float(self.pair.stiffness * self.pair.sample_period))
+            stretch = self.pair.felt_stiffness * self.pair.sample_period
+            guess = max(float(device.exact("damping")), float(stretch))
             found.append(smallest_holding(holds, guess, grain_of(self.pair)))
         return found[0], found[1]
 
@@ -230,7 +231,7 @@ class PairVerdict(PassivityAnswer):
     def margin(self) -> float | None:
         """How much stiffer the coupling may be [N/m; N·m/rad]; below 0 where it must be softer."""
         largest = self.largest_stiffness
-        return None if largest is None else largest - float(self.pair.stiffness)
+        return None if largest is None else largest - float(self.pair.felt_stiffness)
 
     @property
     def limit(self) -> str:
