@@ -73,6 +73,23 @@ def test_the_follower_may_have_gains_of_its_own(files, capsys):
     assert told["power_ratio"] == 0.5
 
 
+def test_friction_is_compensated_on_both_sides_unless_told(files, capsys):
+    """Each number of a law is an option; the report says what it takes, and how much of it is passive."""
+    argv = ["--stiffness", "40", "--compensation-coulomb", "60 mN", "--compensation-viscous", "0.01"]
+    argv += ["--compensation-speed", "0.02 m/s", "--follower-compensation-coulomb", "0"]
+    told = answer(capsys, files["leader"], files["follower"], *argv)
+    law = zw.FrictionCompensation(coulomb="0.06", viscous="0.01", speed="0.02")
+    pair = zw.Pair(
+        LEADER, FOLLOWER, stiffness=40, compensation=law, follower_compensation=law.replace(coulomb=0)
+    )
+    assert told == json.loads(zw.check(pair).to_json())
+    assert told["largest_compensation"] > 0
+    main(["pair", files["leader"], files["follower"], *argv])
+    said = capsys.readouterr().out
+    for part in ("compensated in the leader", "largest compensation", "mean speed of each arm"):
+        assert part in said
+
+
 def test_one_device_is_both_arms(files, capsys):
     """And the report says so; without delay K T/2 is the sum of both dampings in series, b/2."""
     assert main(["pair", files["leader"], "--stiffness", "200"]) == 0
@@ -175,7 +192,9 @@ def test_every_key_of_the_json_is_on_its_page(files, capsys):
             return set(value).union(*map(keys, value.values()))
         return set().union(*map(keys, value)) if isinstance(value, list) else set()
 
-    found = keys(answer(capsys, files["pair"])) | keys(answer(capsys, files["pair"], "--stiffness", "400"))
+    law = ["--compensation-coulomb", "0.01", "--compensation-speed", "0.1"]
+    found = keys(answer(capsys, files["pair"], *law))
+    found |= keys(answer(capsys, files["pair"], "--stiffness", "400"))
     assert {"leader_positions_m", "largest_stiffness_at", "cosine", "both"} <= found
     assert not [key for key in sorted(found) if f"`{key}`" not in page]
 
@@ -194,6 +213,7 @@ def test_every_key_of_the_json_is_on_its_page(files, capsys):
         (["leader", "--stiffness", "9", "--link-delay", "-1 ms"], ("link_delay must be ≥ 0", "is sent")),
         (["leader", "--stiffness", "9", "--link-delay", "0.49"], ("490 samples", "at most 400")),
         (["leader", "--stiffness", "9", "--damping", "1"], ("no option --damping",)),
+        (["leader", "--stiffness", "9", "--compensation-coulomb", "-1"], ("compensation_coulomb must",)),
         (["leader", "--stiffness", "9", "--plot", "a.txt"], (".png",)),
         (["leader", "--stiffness", "9", "-o", "no/such/a.json"], ("no directory",)),
         (["no-such-arm", "--stiffness", "9"], ("neither a file nor a device",)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import partial
 from itertools import product
-from math import ceil
+from math import atanh, ceil
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,10 +15,23 @@ from ..plain import exact, quantity
 Document = dict[str, Any]
 
 
+SLACK = 1e-9
+"""Of what viscous friction takes from a move, and of friction that is compensated, beside rounding."""
+
+
+class Law(NamedTuple):
+    """F tanh(v/v_s) + C v."""
+
+    coulomb: Fraction
+    viscous: Fraction
+    speed: Fraction
+
+
 class Arm(NamedTuple):
     """Of a document, as docs/json.md says; `period` from one reading of its own to the next.
 
-    `dry`, `viscous` and `speed` are F, C and v_s of what compensates its friction.
+    Of a drive's compensation `still` and `moving` are what it takes of a move in T and with the one before;
+    `unsure` is what it may be off by the steps of the encoder, beside the rest [N; N·m].
     """
 
     damping: Fraction
@@ -33,9 +46,10 @@ class Arm(NamedTuple):
     weight: Fraction
     often: int
     period: Fraction
-    dry: Fraction = Fraction(0)
-    viscous: Fraction = Fraction(0)
-    speed: Fraction = Fraction(0)
+    law: Law | None = None
+    still: Fraction = Fraction(0)
+    moving: Fraction = Fraction(0)
+    unsure: Fraction = Fraction(0)
 
     def force(self, own: Any, was: Any, its: Any, before: Any) -> Any:
         """K (x − x') + B (v − v') + D v, of two readings of one's own and two of the other."""
@@ -72,22 +86,35 @@ def arms_of(loop: Document) -> tuple[Arm, Arm] | None:
                 springs[0] / stiffness,
                 often,
                 period / often,
-                *_compensated(loop[name].get("compensation")),
+                _law(loop[name].get("compensation")),
             )
         )
     return found[0], found[1]
 
 
-def _compensated(law: Document | None) -> tuple[Fraction, Fraction, Fraction]:
+def _law(told: Document | None) -> Law | None:
     names = ("compensated_coulomb_friction", "compensated_damping", "compensation_speed")
-    first, second, third = (Fraction(0) if law is None else quantity(law, name) for name in names)
-    return first, second, third
+    return None if told is None else Law(*(quantity(told, name) for name in names))
+
+
+def spent(arm: Arm, r: Fraction) -> Arm:
+    """What its compensation leaves of it, under the tangent at r; 1 is F itself."""
+    if arm.law is None:
+        return arm
+    most, viscous, speed = arm.law
+    slope = most * (1 - r**2) / speed if r < 1 else Fraction(0)
+    height = most * (r - (1 - r**2) * Fraction(atanh(r)) - Fraction(SLACK)) if r < 1 else most
+    half, rest = slope / 2, viscous + slope / 2
+    a_count = arm.resolution / (arm.period * arm.often)
+    less = arm._replace(friction=arm.friction - height)
+    if arm.often > 1:
+        return less._replace(still=half, moving=rest, unsure=(half + rest) * a_count)
+    return less._replace(damping=arm.damping - half, local=arm.local - rest, unsure=half * a_count)
 
 
 def friction_for(arm: Arm, other: Arm) -> Fraction:
-    """Each of the readings half a count off, to the side that is worst; less what compensation asks for."""
-    own = arm if arm.often > 1 else arm._replace(local=arm.local - arm.viscous)
-    return max(
-        abs(own.force(*(s * r.resolution / 2 for s, r in zip(signs, (arm, arm, other, other), strict=True))))
+    """Each of the readings half a count off, to the side that is worst."""
+    return arm.unsure + max(
+        abs(arm.force(*(s * r.resolution / 2 for s, r in zip(signs, (arm, arm, other, other), strict=True))))
         for signs in product((-1, 1), repeat=4)
     )

@@ -67,4 +67,4 @@ class FrictionCompensation(Parametric):
             parts.append(self.with_unit("coulomb", motion) + over)
         if self.viscous:
             parts.append(f"{self.with_unit('viscous', motion)} of its own speed")
-        return f"compensation of friction, {' and '.join(parts) or 'none'}"
+        return " and ".join(parts) or "nothing"

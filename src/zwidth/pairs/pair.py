@@ -323,10 +323,10 @@ class Pair(Parametric):
         if self.drive_rate is not None:
             parts.append(f"each arm's own part in its drive at {shown(self.drive_rate, 'Hz')}")
         law, other = self.compensations
-        if law:
-            parts.append(law.describe(self.motion))
+        if law or other:
+            parts.append(f"compensation of friction by {law.describe(self.motion)}")
         if other != law:
-            parts.append(f"on the follower's side {other.describe(self.motion)}")
+            parts.append(f"on the follower's side by {other.describe(self.motion)}")
         there, back = (shown(value, "s") for value in self.delay)
         parts.append(
             f"link delay {there} there, {back} back" if there != back else f"link delay {there} each way"

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any, Literal
 
 from zwidth.device import Device
@@ -15,7 +16,7 @@ from zwidth.errors import InputError
 from zwidth.pairs import Pair
 from zwidth.passivity.advice import Advice, Knob, outward, turn
 from zwidth.passivity.linear.boundary import Holds
-from zwidth.passivity.pairs.limits import grain_of, is_passive, largest_stiffness, samples_around
+from zwidth.passivity.pairs.limits import grain_of, is_passive, largest_stiffness, samples_around, with_share
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import in_words, unit_text
@@ -61,7 +62,21 @@ def advise(pair: Pair, passive: bool) -> tuple[Advice, ...]:
     if not passive:
         found += _both_arms(pair, grain)
         found += [turn(knob, pair.motion, kind, grain) for knob in _more_local_damping(pair)]
+    if any(pair.compensations):
+        found.append(_share(pair, kind, grain))
     return tuple(found)
+
+
+def _share(pair: Pair, kind: Literal["change", "slack"], grain: int) -> Advice:
+    """How much of the compensation of friction, on both sides in proportion."""
+    knob = Knob("compensation", 1.0, _holds(partial(with_share, pair)), False, "compensation of friction")
+    advice = turn(knob, pair.motion, kind, grain)
+    if not isinstance(advice.to, float):
+        return advice
+    part = f"{100 * outward(advice.to, knob):.6g} % of what it is"
+    if kind == "change":
+        return replace(advice, text=f"lower the compensation of friction to {part}")
+    return replace(advice, text=f"compensation of friction may go up to {part}")
 
 
 def stiffness_elsewhere(pair: Pair) -> tuple[StiffnessAt, ...]:

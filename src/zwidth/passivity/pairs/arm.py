@@ -7,6 +7,7 @@ w (s/2 + (C + s/2) cos θ) from what the moves of a whole sample lose.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -166,6 +167,22 @@ class Arm:
     def missing_friction(self, other: Arm) -> Fraction:
         """What it lacks of Coulomb friction for the steps of both encoders and for its compensation."""
         return self.force_error(other) + self.line.height - self.side.coulomb_friction
+
+    def roughly_missing(self, other: Arm) -> Callable[[float, float], float]:
+        """The same to rounding, as it depends on the height and the slope of the line."""
+        side, period, each = self.side, float(self.period), self.often == 1
+        stiffness, count = float(side.stiffness), float(side.resolution)
+        viscous = float(side.compensation.viscous)
+        speed_gain = float(side.virtual_damping + side.local_damping) * self.often
+        fixed = sum(abs(float(c)) for c in self.other) * float(other.side.resolution) / 2
+        fixed -= float(side.coulomb_friction)
+
+        def missing(height: float, slope: float) -> float:
+            past = (speed_gain - (viscous + slope / 2 if each else 0.0)) / period
+            unsure = (slope / 2 if each else viscous + slope) / period
+            return fixed + height + ((abs(stiffness + past) + abs(past)) / 2 + unsure) * count
+
+        return missing
 
 
 def _homogeneous(p: fmpz_poly, b: int, g: int) -> int:

@@ -162,7 +162,12 @@ def spending(pair: Pair) -> PairCriterion:
 def _tangent(arm: Arm, other: Arm) -> Fraction:
     law = arm.side.compensation
     move = float(arm.side.resolution / arm.period / law.speed.fraction) if law.speed else 0.0
-    return best_tangent(law, move, lambda r: arm.at_tangent(r).missing_friction(other) <= 0)
+    return best_tangent(
+        law,
+        move,
+        arm.roughly_missing(other),
+        lambda r: arm.at_tangent(r).missing_friction(other) <= 0,
+    )
 
 
 def _own(arm: Arm) -> Sums:

@@ -89,9 +89,12 @@ def _worst_speeds(criterion: PairCriterion) -> tuple[float, float] | None:
 
 
 def _speed_of(arm: Arm, damping: float) -> float:
-    """The speed about which compensation of Coulomb friction bends; 0 without one [m/s; rad/s]."""
+    """About which compensation of Coulomb friction bends or has paid off; 0 without any [m/s; rad/s]."""
     law = arm.side.compensation
-    return float(law.speed) if law.speed else float(law.coulomb) / (abs(damping) or 1.0)
+    if law.speed or not law.coulomb:
+        return float(law.speed) if law.coulomb else 0.0
+    more = float(law.coulomb.fraction - arm.side.coulomb_friction)
+    return (more if more > 0 else float(law.coulomb)) / (2 * abs(damping) or 1.0)
 
 
 def _gain(arms: tuple[Arm, Arm], form: Floats, first: Floats, second: Floats) -> Floats:

@@ -10,10 +10,10 @@ less of the other.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from decimal import ROUND_CEILING, Context
 from fractions import Fraction
-from math import exp, tanh
+from math import cosh, exp, tanh
 from typing import NamedTuple
 
 from zwidth.pairs import FrictionCompensation
@@ -48,7 +48,12 @@ def line_of(law: FrictionCompensation, r: Fraction) -> Line:
     return Line(most * (r - rest * far), most / law.speed.fraction * rest)
 
 
-def best_tangent(law: FrictionCompensation, move: float, pays: Callable[[Fraction], bool]) -> Fraction:
+def best_tangent(
+    law: FrictionCompensation,
+    move: float,
+    missing: Callable[[float, float], float],
+    pays: Callable[[Fraction], bool],
+) -> Fraction:
     """The largest r that friction pays for; 0 if there is none.
 
     Parameters
@@ -57,20 +62,36 @@ def best_tangent(law: FrictionCompensation, move: float, pays: Callable[[Fractio
         Which compensation.
     move
         Of an encoder count in a sample, as a multiple of v_s.
+    missing
+        What Coulomb friction lacks for a line of height h and slope s, beside the steps of the encoders, to
+        rounding [N; N·m].
     pays
-        Whether Coulomb friction pays for the tangent at r, beside the steps of the encoders.
+        Whether, exactly, it lacks nothing for the tangent at r.
     """
     if not law.coulomb or not law.speed or pays(Fraction(1)):
         return Fraction(1)
+    most, speed = float(law.coulomb), float(law.speed)
+
+    def lacks(x: float) -> bool:
+        rest = 1 / cosh(x) ** 2
+        return missing(most * (tanh(x) - rest * x), most / speed * rest) > 0
+
     # encoders make a steep line cost friction too: what is missing is least at one of these, or between
-    low = next((x for x in (move, move / 2, 0.0) if x < _FARTHEST and pays(_at(x))), None)
+    low = next((x for x in (move, move / 2, 0.0) if x < _FARTHEST and not lacks(x)), None)
     if low is None:
         return Fraction(0)
     high = _FARTHEST
     for _ in range(60):
         x = (low + high) / 2
-        low, high = (x, high) if pays(_at(x)) else (low, x)
-    return _at(low)
+        low, high = (low, x) if lacks(x) else (x, high)
+    return next((r for r in map(_at, _just_below(low)) if pays(r)), Fraction(0))
+
+
+def _just_below(x: float) -> Iterator[float]:
+    """The same, and a little less, for what rounding hides."""
+    yield x
+    for power in range(12):
+        yield x * (1 - 10.0 ** (power - 13))
 
 
 def _at(x: float) -> Fraction:

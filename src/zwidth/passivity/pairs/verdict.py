@@ -14,9 +14,17 @@ from zwidth.passivity.advice import Advice
 from zwidth.passivity.linear.boundary import smallest_holding
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere
+from zwidth.passivity.pairs.compensation import assumed_of_forces, compensation_numbers, compensation_rows
 from zwidth.passivity.pairs.criterion import PairCriterion, spending
 from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, PairWitness
-from zwidth.passivity.pairs.limits import grain_of, largest_stiffness
+from zwidth.passivity.pairs.limits import (
+    grain_of,
+    is_passive,
+    largest_compensation,
+    largest_stiffness,
+    required_friction,
+    with_share,
+)
 from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.pairs.slow import refute_compensation
 from zwidth.passivity.result import PassivityAnswer
@@ -51,13 +59,13 @@ def check_pair(pair: Pair) -> PairVerdict:
         if violation.verify():
             return PairVerdict(pair, wide, violation=violation)
         return PairVerdict(pair, wide, motion=refute_criterion(wide))
+    if wide.undamped:
+        return PairVerdict(pair, wide)
     criterion = spending(pair)
-    if criterion.undamped:
-        return PairVerdict(pair, criterion)
     if max(criterion.missing_friction) > 0:
         motion = refute_compensation(pair) or refute_friction(wide)
         return PairVerdict(pair, criterion, motion=motion)
-    if isinstance(criterion.signs, Fraction):
+    if criterion.undamped or isinstance(criterion.signs, Fraction):
         return PairVerdict(pair, criterion, motion=refute_compensation(pair))
     certificate = PairCertificate(pair, criterion.signs, criterion.tangents)
     return PairVerdict(pair, criterion, certificate=certificate if certificate.verify() else None)
@@ -149,10 +157,7 @@ class PairVerdict(PassivityAnswer):
             f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the "
             f"leader {ages[1]} samples old; none is lost, none comes later"
         )
-        yield (
-            "forces are given as computed: no limit, no steps of the converter, no compensation of friction "
-            "or gravity"
-        )
+        yield from assumed_of_forces(pair)
         if self.scope.encoder == "counted":
             yield "encoder counts of each arm's own size, their phase unknown"
         else:
@@ -184,17 +189,27 @@ class PairVerdict(PassivityAnswer):
             device: Device = getattr(self.pair, name)
 
             def holds(b: Fraction, name: str = name, device: Device = device) -> bool:
-                return PairCriterion(self.pair.replace(**{name: device.replace(damping=b)})).holds
+                return spending(self.pair.replace(**{name: device.replace(damping=b)})).holds
 
             guess = max(float(device.exact("damping")), float(self.pair.stiffness * self.pair.sample_period))
             found.append(smallest_holding(holds, guess, grain_of(self.pair)))
         return found[0], found[1]
 
     @cached_property
-    def required_friction(self) -> tuple[float, float]:
-        """The least f_c of leader and follower for the steps of both encoders [N; N·m]."""
-        leader, follower = self.criterion.arms
-        return float(leader.force_error(follower)), float(follower.force_error(leader))
+    def required_friction(self) -> tuple[float | None, float | None]:
+        """The least f_c of leader and follower [N; N·m], each with the other's as it is.
+
+        For the steps of both encoders and the compensation of friction; None where none is enough.
+        """
+        return required_friction(self.pair, "leader"), required_friction(self.pair, "follower")
+
+    @cached_property
+    def largest_compensation(self) -> float | None:
+        """How much of the compensation of friction is passive, as a multiple of F and C on both sides.
+
+        None where nothing is compensated, or where the pair is not passive without.
+        """
+        return largest_compensation(self.pair)
 
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
@@ -206,6 +221,11 @@ class PairVerdict(PassivityAnswer):
         """How stiff the coupling could be at half the link delay, and at twice the rate."""
         return stiffness_elsewhere(self.pair)
 
+    @cached_property
+    def _spoiled(self) -> bool:
+        """Whether without compensation of friction it would be passive, and is not proved so with it."""
+        return any(self.pair.compensations) and is_passive(with_share(self.pair, Fraction(0)))
+
     @property
     def margin(self) -> float | None:
         """How much stiffer the coupling may be [N/m; N·m/rad]; below 0 where it must be softer."""
@@ -215,6 +235,10 @@ class PairVerdict(PassivityAnswer):
     @property
     def limit(self) -> str:
         """What binds."""
+        if self.outcome == "passive":
+            return "nothing is violated"
+        if self._spoiled:
+            return "compensation of friction: it gives more than friction is proved to take"
         if self.criterion.slips:
             return "damping of an arm: its own drive feeds more energy than it takes"
         if not self.criterion.holds:
@@ -241,10 +265,15 @@ class PairVerdict(PassivityAnswer):
             device: Device = getattr(pair, name)
             enough = "none is enough" if damping is None else f"{shown(damping, unit['damping'])} needed"
             yield f"damping of the {name}", f"{shown(device.damping, unit['damping'])}, {enough}"
-            if friction:
-                needed = shown(friction, unit["coulomb_friction"])
+            if friction != 0:
+                enough = (
+                    "none is enough"
+                    if friction is None
+                    else f"{shown(friction, unit['coulomb_friction'])} needed"
+                )
                 has = shown(device.coulomb_friction, unit["coulomb_friction"])
-                yield f"friction of the {name}", f"{has}, {needed} needed"
+                yield f"friction of the {name}", f"{has}, {enough}"
+        yield from compensation_rows(self.criterion, self.largest_compensation)
         evidence = self.witness if self.outcome == "active" else None
         if self.violation is not None:
             yield "violated", self.violation.describe()
@@ -267,6 +296,7 @@ class PairVerdict(PassivityAnswer):
         key = pair.leader.key
         needs = zip(("leader", "follower"), self.required_damping, self.required_friction, strict=True)
         return {
+            **compensation_numbers(self.criterion, self.largest_compensation),
             "limit": self.limit,
             "power_ratio": float(pair.power_ratio),
             f"largest_{key('stiffness')}": self.largest_stiffness,

@@ -1,0 +1,245 @@
+"""Compensation of friction in two arms: the line above tanh, both sides of the limit, and what it needs."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import atanh, tanh
+
+import numpy as np
+import pytest
+from strategies import seeds
+
+import zwidth as zw
+from zwidth.passivity.pairs.criterion import PairCriterion, spending
+from zwidth.passivity.pairs.evidence import energy_of
+from zwidth.passivity.pairs.tangents import line_of
+from zwidth.passivity.witness.motion import Motion
+
+BILLIONTH = Fraction(1, 10**9)
+ARM = zw.Device(damping=1, coulomb_friction="0.1", resolution=0, delay=0, rate="1 kHz")
+LAW = zw.FrictionCompensation(coulomb="0.3", viscous="0.06", speed="0.35")
+PAIR = zw.Pair(ARM, ARM, stiffness=100, delay="2 ms", compensation=LAW)
+
+
+def with_share(pair: zw.Pair, share: Fraction) -> zw.Pair:
+    """So many times the compensation of both sides."""
+    law, other = pair.compensations
+    return pair.replace(compensation=law.scaled(share), follower_compensation=other.scaled(share))
+
+
+def largest_share(pair: zw.Pair) -> Fraction:
+    """The most that is proved, to a part in 10¹²."""
+    low, high = Fraction(0), Fraction(1)
+    while zw.check(with_share(pair, high)).passive:
+        low, high = high, 2 * high
+    for _ in range(45):
+        middle = (low + high) / 2
+        low, high = (middle, high) if zw.check(with_share(pair, middle)).passive else (low, middle)
+    return low
+
+
+@seeds(30)
+def test_a_line_is_above_and_touches(seed):
+    """F tanh(v/v_s) ≤ h + s v, and at v = v_s artanh r they are one."""
+    random = np.random.default_rng(seed)
+    law = zw.FrictionCompensation(
+        coulomb=f"{random.uniform(0.1, 9):.3f}", speed=f"{random.uniform(0.01, 9):.3f}"
+    )
+    r = 1 - Fraction(random.random()).limit_denominator(10**6) / 10 ** int(random.integers(0, 6))
+    height, slope = map(float, line_of(law, r))
+    most, speed = float(law.coulomb), float(law.speed)
+    for v in [0, *np.exp(random.uniform(-9, 4, 50)) * speed]:
+        assert most * tanh(v / speed) <= height + slope * v + 1e-12 * most
+    touched = speed * atanh(float(r))
+    assert most * tanh(touched / speed) == pytest.approx(height + slope * touched, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"drive_rate": "20 kHz"},
+        {"leader": ARM.replace(delay="2 ms"), "follower": ARM.replace(delay="2 ms")},
+        {"compensation": LAW.replace(viscous=0)},
+        {"leader": ARM.replace(coulomb_friction=0), "follower": ARM.replace(coulomb_friction=0)},
+        {"leader": ARM.replace(coulomb_friction=3), "follower": ARM.replace(coulomb_friction=3)},
+        {"compensation": zw.FrictionCompensation(coulomb="0.3")},
+        {"follower_stiffness": 100, "local_damping": "-0.1", "delay": ("1 ms", "5 ms")},
+    ],
+    ids=["springs", "drives", "delays", "tanh alone", "no friction", "all of it", "sign", "D"],
+)
+def test_both_sides_of_the_largest_share(changes):
+    """Equal arms: a part in 10⁹ below the checker accepts the certificate, above a motion gains."""
+    pair = PAIR.replace(**changes)
+    share = largest_share(pair)
+    assert zw.check(pair).largest_compensation == pytest.approx(float(share), rel=1e-6)
+    below = zw.check(with_share(pair, share * (1 - BILLIONTH)))
+    assert below.certificate.verify()
+    above = zw.check(with_share(pair, share * (1 + BILLIONTH)))
+    assert above.outcome == "active"
+    assert above.witness.verify()
+    assert above.witness.energy > 0
+
+
+def test_a_delay_within_a_sample_leaves_a_gap():
+    """What a hand wins there is reckoned with less damping than it has: a part in 10³ above it is active."""
+    late = ARM.replace(delay="1.3 ms")
+    pair = PAIR.replace(leader=late, follower=late)
+    share = largest_share(pair)
+    assert zw.check(with_share(pair, share)).passive
+    above = zw.check(with_share(pair, share * Fraction("1.001")))
+    assert above.outcome == "active"
+    assert above.witness.verify()
+
+
+def test_what_it_costs_has_closed_forms():
+    """Springs, equal arms: C + s ≤ b − K T (n + 1), s = F/v_s without friction, 0 with enough of it."""
+    left = 1 - 100 * 0.001 * 3
+    without = PAIR.replace(leader=ARM.replace(coulomb_friction=0), follower=ARM.replace(coulomb_friction=0))
+    assert float(largest_share(without)) == pytest.approx(left / (0.06 + 0.3 / 0.35), rel=1e-9)
+    enough = PAIR.replace(leader=ARM.replace(coulomb_friction=9), follower=ARM.replace(coulomb_friction=9))
+    assert float(largest_share(enough)) == pytest.approx(left / 0.06, rel=1e-9)
+    dry = PAIR.replace(compensation=zw.FrictionCompensation(coulomb="0.1"))
+    assert float(largest_share(dry)) == 1
+
+
+def test_the_limit_is_where_constant_speeds_gain():
+    """Springs, equal arms: the most over v of φ(v) − f_c over v is what damping is left."""
+    v = np.linspace(1e-4, 2, 200_000)
+    left = 1 - 100 * 0.001 * 3
+    share = float(largest_share(PAIR))
+    most = ((share * (0.3 * np.tanh(v / 0.35) + 0.06 * v) - 0.1) / v).max()
+    assert most == pytest.approx(left, rel=1e-8)
+
+
+def test_each_side_has_its_own():
+    """None on the follower: it needs what it needed before."""
+    one = PAIR.replace(follower_compensation=zw.FrictionCompensation())
+    bare = PAIR.replace(compensation=None)
+    assert PAIR.compensations == (LAW, LAW)
+    assert one.compensations == (LAW, zw.FrictionCompensation())
+    assert bare.compensations == (zw.FrictionCompensation(),) * 2
+    assert zw.check(one).largest_compensation > zw.check(PAIR).largest_compensation
+    assert zw.check(one).required_friction[1] == 0
+    assert zw.check(bare).largest_compensation is None
+
+
+def test_needs_are_limits():
+    """At the required damping and friction it is passive, a part in 10⁵ below them it is not."""
+    pair = with_share(PAIR, Fraction("1.7")).replace(follower_compensation=LAW)
+    verdict = zw.check(pair)
+    assert verdict.outcome == "active"
+    assert "compensation of friction" in verdict.limit
+    for key, needed in (
+        ("damping", verdict.required_damping),
+        ("coulomb_friction", verdict.required_friction),
+    ):
+        for size, passive in ((1.00001, True), (0.99999, False)):
+            leader = ARM.replace(**{key: needed[0] * size})
+            assert zw.check(pair.replace(leader=leader)).passive is passive
+    assert verdict.largest_stiffness is None or verdict.largest_stiffness < 100
+    advice = {advice.parameter: advice for advice in verdict.advice}["compensation"]
+    assert zw.check(with_share(pair, Fraction(repr(advice.to)))).passive
+    assert "% of what it is" in advice.text
+
+
+def test_a_round_that_is_large_enough_knows_nothing_of_tanh():
+    """With C too large there is a frequency, and a motion, however much F brakes."""
+    pair = PAIR.replace(compensation=LAW.replace(viscous="0.8"))
+    bare = PAIR.replace(compensation=None, local_damping="-0.8")
+    assert PairCriterion(pair).polynomials == PairCriterion(bare).polynomials
+    verdict = zw.check(pair)
+    assert verdict.violation.verify()
+    assert verdict.witness.verify()
+
+
+def test_encoders_are_paid_first():
+    """F ≤ f_c − e costs no damping; of C half a count each way is in e."""
+    arm = ARM.replace(resolution="1e-4", coulomb_friction="0.5")
+    pair = zw.Pair(arm, arm, stiffness=100, delay="2 ms", drive_rate="20 kHz")
+    left = Fraction(1, 2) - 100 * Fraction("1e-4")
+    law = zw.FrictionCompensation(coulomb=left, speed="0.01")
+    assert spending(pair.replace(compensation=law)).tangents == (1, 1)
+    assert zw.check(pair.replace(compensation=law)).passive
+    more = spending(pair.replace(compensation=law.replace(viscous="0.1")))
+    assert more.missing_friction == (0, 0) or max(more.tangents) < 1
+    wide = PairCriterion(pair.replace(compensation=law.replace(viscous="0.1")))
+    assert float(wide.missing_friction[0]) == pytest.approx(0.1 * 1e-4 / 0.001)
+
+
+@pytest.mark.parametrize("drives", [False, True])
+@seeds(15)
+def test_no_motion_gains_where_none_is_said_to(drives, seed):
+    """Hands at any speed, at random, in rounds and straight on, near the limit of any two arms."""
+    random = np.random.default_rng(seed)
+
+    def number(low: float, high: float) -> str:
+        return f"{np.exp(random.uniform(np.log(low), np.log(high))):.3g}"
+
+    pair = zw.Pair(
+        ARM.replace(damping=number(0.5, 2), coulomb_friction=number(0.01, 1)),
+        ARM.replace(damping=number(0.5, 2), coulomb_friction=number(0.01, 1)),
+        stiffness=100,
+        damping=random.choice(["0", "0.1"]),
+        delay="1 ms",
+        drive_rate="4 kHz" if drives else None,
+        compensation=zw.FrictionCompensation(
+            coulomb=number(0.01, 2), viscous=number(0.01, 0.2), speed=number(0.01, 3)
+        ),
+    )
+    share = zw.check(pair).largest_compensation
+    tight = with_share(pair, Fraction(repr(share)) * Fraction("0.999"))
+    assert zw.check(tight).passive
+    often, grid = pair.own_readings, Fraction(1, 10**9)
+    for trial in range(8):
+        k = np.arange(12 * often)
+        turns = random.uniform(0, 0.5 / often)
+        paths = []
+        for _ in (0, 1):
+            size = float(number(1e-6, 1))
+            x = [
+                np.cumsum(random.normal(size=len(k))),
+                np.sin(2 * np.pi * turns * k + random.uniform(0, 6)),
+                np.minimum(k, len(k) - k) * random.choice([-1, 1]),
+            ][trial % 3]
+            paths.append(Motion(tuple(round(Fraction(float(v)) / grid) * grid for v in size * (x - x[0]))))
+        assert energy_of(tight, *paths) <= 0
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"coulomb": -1}, "coulomb must be ≥ 0"),
+        ({"viscous": "-1 N*s/m"}, "helps the motion"),
+        ({"speed": -1}, "sign of the speed"),
+        ({"coulomb": "3 s"}, "coulomb"),
+        ({"coulomb": (1, 2)}, "coulomb"),
+    ],
+)
+def test_numbers_of_a_law_have_bounds(given, message):
+    """What was given, the bound, and why."""
+    with pytest.raises(zw.InputError, match=message):
+        zw.FrictionCompensation(**given)
+
+
+def test_a_pair_takes_laws_alone():
+    """Not a number in the place of one."""
+    with pytest.raises(
+        zw.InputError, match="follower_compensation is a FrictionCompensation or None, got int"
+    ):
+        PAIR.replace(follower_compensation=3)
+
+
+def test_it_is_told():
+    """In the description of the pair, in what is taken for granted, and in the numbers."""
+    verdict = zw.check(PAIR)
+    assert "compensation of friction by 0.3 N tanh(v/(0.35 m/s)) and 0.06 N·s/m" in PAIR.describe()
+    assert "mean speed of each arm since its last sample" in " ".join(verdict.assumptions)
+    numbers = verdict.to_dict()
+    assert numbers["largest_compensation"] == verdict.largest_compensation
+    taken = numbers["compensation_takes"]["leader"]
+    assert taken["coulomb_friction_N"] == pytest.approx(0.1)
+    assert 0.06 < taken["damping_N_s_per_m"] < 0.06 + 0.3 / 0.35
+    assert dict(verdict.rows())["largest compensation"].startswith(
+        f"{100 * verdict.largest_compensation:.4g} %"
+    )
