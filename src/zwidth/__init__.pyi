@@ -29,7 +29,6 @@ from zwidth.identification.device.plan import plan_identification as plan
 from zwidth.identification.logs import Log as Log
 from zwidth.identification.logs import read_log as read_log
 from zwidth.maps import z_width as z_width
-from zwidth.pairs import FrictionCompensation as FrictionCompensation
 from zwidth.pairs import Pair as Pair
 from zwidth.passivity import coupling as coupling
 from zwidth.passivity import formulas as formulas
@@ -42,6 +41,7 @@ from zwidth.passivity.witness.witness import Witness as Witness
 from zwidth.passivity.workspace import workspace as workspace
 from zwidth.quantity import Exact as Exact
 from zwidth.quantity import Interval as Interval
+from zwidth.rendering import FrictionCompensation as FrictionCompensation
 from zwidth.rendering import VirtualCoupling as VirtualCoupling
 from zwidth.rendering import render as render
 from zwidth.specification.load import load as load

@@ -34,6 +34,8 @@ _NOTES = (
     "friction is compensated by Fc tanh(0.1 k v) + Fv v: the factor 0.1 is in the code, although the comment "
     "in the file says tanh(k v); taken as computed once in a sample period, from the move before; the offset "
     "Fo gives back what it takes, like a weight",
+    "of the gripper the code takes the speed in the compensation from beyond the end of its list "
+    "(bilateral_step): what is added there is not known, and it is decided as the file means it",
     "the speed in the law is the drive's estimate, of an unknown filter; here it is the difference of two "
     "positions",
     "the threads of both arms are not in step, so that readings are 1 to 4.3 ms old, now more and now less: "

@@ -240,8 +240,13 @@ class GainsVerdict(Documented):
     def _unsearched(self) -> Iterator[str]:
         if not all(joint.is_searched for joint in self.joints):
             yield (
+<<<<<<< HEAD
                 f"gains that would be passive are looked for where readings are at most {MOST_SAMPLES} "
                 f"samples old around both arms, and a drive has at most {MOST_READINGS} in a sample"
+=======
+                f"passive gains are looked for where readings are at most {MOST_SAMPLES} samples "
+                f"old around both arms, and a drive has at most {MOST_READINGS} in a sample"
+>>>>>>> main
             )
 
     def _steps(self) -> Iterator[str]:

@@ -28,7 +28,6 @@ from typing import Any
 
 from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.pairs.compensation import FrictionCompensation
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import (
     Certain,
@@ -39,6 +38,7 @@ from zwidth.quantity.parameter import (
     read_number,
 )
 from zwidth.quantity.text import shown
+from zwidth.rendering.force.friction_compensation import FrictionCompensation
 
 LONGEST = 400
 """Samples that a reading may be old where it acts."""
@@ -396,9 +396,9 @@ class Pair(Parametric):
             parts.append(f"each arm's own part in its drive at {shown(self.drive_rate, 'Hz')}")
         law, other = self.compensations
         if law or other:
-            parts.append(f"compensation of friction by {law.describe(self.motion)}")
+            parts.append(f"compensation of friction by {law.force_in_words(self.motion)}")
         if other != law:
-            parts.append(f"on the follower's side by {other.describe(self.motion)}")
+            parts.append(f"on the follower's side by {other.force_in_words(self.motion)}")
         there, back = (shown(value, "s") for value in self.delay)
         parts.append(
             f"link delay {there} there, {back} back" if there != back else f"link delay {there} each way"

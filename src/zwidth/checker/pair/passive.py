@@ -99,7 +99,10 @@ def _lines(told: Read, sides: tuple[Side, Side]) -> tuple[Line, Line]:
     leader, follower = sides
     if given is None:
         return NO_LINE, NO_LINE
-    return line_of(leader.law, given.leader), line_of(follower.law, given.follower)
+    return (
+        line_of(leader.law, given.leader, given.speed),
+        line_of(follower.law, given.follower, given.speed),
+    )
 
 
 def pair_violation(told: Read) -> str:
@@ -107,7 +110,7 @@ def pair_violation(told: Read) -> str:
     sides = sides_of(told.loop)
     lines = [line_of(side.law, Fraction(1)) for side in sides]
     found = criterion(told.loop, sides, lines)
-    if found is None and any(_viscous(side) for side in sides):
+    if found is None and any(line.moving for line in lines):
         raise Invalid(
             "an arm gains by itself inside a sample, unless compensation of its viscous friction brakes"
         )
@@ -128,23 +131,17 @@ def _errors(told: Read, sides: Sequence[Side], lines: Sequence[Line]) -> Iterato
     for side, other, line in zip(spent, spent[::-1], lines, strict=True):
         taps = readings(side)[0].values() if often == 1 else (*side.own, *side.echo)
         mine, its = sum(map(abs, taps)), sum(map(abs, side.other))
-        unsure = line.slope / 2 / period
-        if often > 1:
-            unsure += (_viscous(side) + line.slope / 2) / period
+        unsure = (line.still if often == 1 else line.still + line.moving) / period
         yield (mine * side.resolution + its * other.resolution) / 2 + unsure * side.resolution
 
 
-def _viscous(side: Side) -> Fraction:
-    return Fraction(0) if side.law is None else Fraction(side.law.compensated_damping)
-
-
 def _spent(side: Side, line: Line, period: Fraction, often: int) -> Side:
-    """With s/2 less damping, and C + s/2 less local damping, both as quick as the rest."""
+    """With less damping and local damping, which are both as quick as the rest; a drive's are quicker."""
     if side.law is None or often > 1:
         return side
-    less = (_viscous(side) + line.slope / 2) / period
+    less = line.moving / period
     newest, last = side.own
-    return side._replace(damping=side.damping - line.slope / 2, own=[newest - less, last + less])
+    return side._replace(damping=side.damping - line.still, own=[newest - less, last + less])
 
 
 def criterion(
@@ -244,10 +241,10 @@ def _with_back(top: list[int], bottom: list[int], back: dict[int, int], scale: i
 
 
 def _helped(top: list[Fraction], bottom: list[Fraction], side: Side, line: Line) -> list[Fraction]:
-    """What is left of a top once compensation has taken s/2 + (C + s/2) c from top/bottom."""
-    still, slope = (side.weight * v for v in (line.slope / 2, _viscous(side) + line.slope / 2))
+    """What is left of a top once compensation, computed once in T, has taken its part of top/bottom."""
+    still, moving = side.weight * line.still, side.weight * line.moving
     (a, b), (p, q) = top, bottom
-    return [a - still * p, b - still * q - slope * p, -slope * q]
+    return [a - still * p, b - still * q - moving * p, -moving * q]
 
 
 def _row(side: Side, period: Fraction) -> tuple[Laurent, Laurent]:

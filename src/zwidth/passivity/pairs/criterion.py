@@ -24,7 +24,7 @@ which with springs alone is β.  The cross term stays.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt, lcm
@@ -53,10 +53,13 @@ class PairCriterion:
     tangents
         r of the lines that compensation of friction is taken for, of leader and follower; 1 is F whatever the
         speed: that of motions so large that F is nothing beside their square.
+    any_mean
+        True where compensation may take any mean of past moves for the speed, and not the last alone.
     """
 
     pair: Pair
     tangents: tuple[Fraction, Fraction] = (Fraction(1), Fraction(1))
+    any_mean: bool = False
 
     @cached_property
     def arms(self) -> tuple[Arm, Arm]:
@@ -66,8 +69,8 @@ class PairCriterion:
         often = self.pair.own_readings
         first, second = self.tangents
         return (
-            Arm(leader, period, Fraction(1), often, first),
-            Arm(follower, period, self.pair.power_ratio, often, second),
+            Arm(leader, period, Fraction(1), often, first, self.any_mean),
+            Arm(follower, period, self.pair.power_ratio, often, second, self.any_mean),
         )
 
     @cached_property
@@ -141,6 +144,11 @@ class PairCriterion:
         return leader.missing_friction(follower), follower.missing_friction(leader)
 
     @property
+    def proves(self) -> bool:
+        """True where friction covers the steps of both encoders too, and what is compensated."""
+        return max(self.missing_friction) <= 0 and self.holds
+
+    @property
     def undamped(self) -> bool:
         """True where a force changes inside a sample of an arm without damping: any size of that gains."""
         return any(arm.part and arm.damping <= 0 for arm in self.arms)
@@ -158,13 +166,13 @@ class PairCriterion:
         return np.array([[diagonal[0], off], [np.conj(off), diagonal[1]]])
 
 
-def spending(pair: Pair) -> PairCriterion:
+def spending(pair: Pair, any_mean: bool = False) -> PairCriterion:
     """The criterion with the lines that leave most damping, of those that Coulomb friction pays for."""
-    criterion = PairCriterion(pair)
+    criterion = PairCriterion(pair, any_mean=any_mean)
     if not any(pair.compensations):
         return criterion
     leader, follower = criterion.arms
-    return PairCriterion(pair, (_tangent(leader, follower), _tangent(follower, leader)))
+    return replace(criterion, tangents=(_tangent(leader, follower), _tangent(follower, leader)))
 
 
 def _tangent(arm: Arm, other: Arm) -> Fraction:

@@ -79,11 +79,14 @@ class PairCertificate(Evidence):
         Why M_ll, M_ff and det M are nowhere negative.
     tangents
         r of the line above the compensation of friction of each arm.
+    any_mean
+        True where that may take any mean of past moves for the speed.
     """
 
     pair: Pair
     signs: tuple[Positivity, Positivity, Positivity]
     tangents: tuple[Fraction, Fraction] = (Fraction(1), Fraction(1))
+    any_mean: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data."""
@@ -92,6 +95,8 @@ class PairCertificate(Evidence):
         if any(self.pair.compensations):
             arms = zip(("leader", "follower"), self.tangents, strict=True)
             proof["tangents"] = {name: exact_text(r) for name, r in arms}
+            if self.any_mean:
+                proof["tangents"]["speed"] = "any mean"
         return {"format": CERTIFICATE, "kind": "pair", "loop": pair_document(self.pair), "proof": proof}
 
     def describe(self) -> str:

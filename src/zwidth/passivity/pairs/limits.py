@@ -15,8 +15,7 @@ from zwidth.quantity.exact import Exact
 
 def is_passive(pair: Pair) -> bool:
     """True where the criterion holds and friction covers the steps of both encoders."""
-    criterion = spending(pair)
-    return max(criterion.missing_friction) <= 0 and criterion.holds
+    return spending(pair).proves
 
 
 def grain_of(pair: Pair) -> int:
