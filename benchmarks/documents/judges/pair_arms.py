@@ -30,8 +30,9 @@ class Arm(NamedTuple):
     """Of a document, as docs/json.md says; `period` from one reading of its own to the next.
 
     `sent` and `sent_damping` are K and B of the other, as often as its coupling force is added; `back` is how
-    old one's own readings are in that.  Of a drive's compensation `still` and `moving` are what it takes of a move in T and with the one before;
-    `unsure` is what it may be off by the steps of the encoder, beside the rest [N; N·m].
+    old one's own readings are in that.  Of a drive's compensation `still` and `moving` are what it takes of a
+    move in T and with the one before; `unsure` is what it may be off by the steps of the encoder, beside the
+    rest [N; N·m].
     """
 
     damping: Fraction
