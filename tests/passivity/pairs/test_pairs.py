@@ -77,8 +77,8 @@ def age_of(pair: zw.Pair, i: int) -> int:
 def form_of_work(pair: zw.Pair, samples: int, younger: np.random.Generator | None = None) -> np.ndarray:
     """What two hands give over so many samples, as a matrix in the moves of each part of each reading.
 
-    From the definitions alone: readings, taps, held forces, viscous friction.  With `younger` each reading that
-    is received is as old as said or less, at random.
+    From the definitions alone: readings, taps, held forces, viscous friction.  With `younger` each reading
+    that is received is as old as said or less, at random.
     """
     often = pair.own_readings
     step, moves = float(pair.sample_period) / often, samples * often
