@@ -105,6 +105,28 @@ def test_what_is_saved_is_verified(files, options, tmp_path, capsys):
     assert main([*argv, "-o", str(path)]) == 2
 
 
+def test_one_joint_has_the_report_of_its_pair(files, tmp_path, capsys):
+    """The same numbers, the notes on the gains, a file that is verified, a picture."""
+    argv = ["gains", files["leader"], "--plant", files["plant"], *LINK, "--joint", "J2"]
+    saved, drawn = tmp_path / "pair.json", tmp_path / "pair.png"
+    assert main([*argv, "-o", str(saved), "--plot", str(drawn)]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    for part in ("PASSIVE No motion of two hands", "stiffness may go up to", "of the gains", "FREQUENCY"):
+        assert part in said
+    assert drawn.exists()
+    assert main(["verify", str(saved)]) == 0
+    capsys.readouterr()
+    assert main([*argv, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    pair = zw.read_gains(files["leader"]).pairs(files["plant"], None, ("0.002", "0.003"), 10_000)["J2"]
+    assert told.pop("notes")
+    assert told == json.loads(zw.check(pair).to_json())
+    assert main([*argv[:-1], "J9"]) == 2
+    assert 'there is no joint "J9"' in capsys.readouterr().err
+    assert main(["gains", files["leader"], "--plot", str(tmp_path / "b.png")]) == 2
+    assert "--joint" in capsys.readouterr().err
+
+
 def test_a_document_without_proofs_is_no_evidence(tmp_path, capsys):
     """Nothing is said to be valid of nothing."""
     for number, joints in enumerate(([], 3, [{"outcome": "undecided"}])):
@@ -121,6 +143,7 @@ def test_a_document_without_proofs_is_no_evidence(tmp_path, capsys):
         (["--drive-rate", "500 Hz"], "whole times"),
         (["--link-delay-back", "1 ms"], "give --link-delay"),
         (["--link-delay", "-1 ms"], "≥ 0"),
+        (["--link-delay", "2"], 'write "2 ms"'),
         (["--rate", "fast"], "rate"),
         (["--bilateral-kp", "0.1"], "belongs to gains of i2rt"),
         (["--both"], "leave it out"),

@@ -58,6 +58,15 @@ def test_the_gains_for_drives_that_take_differences_are_what_comes_out(names):
     assert f"J1 {told['J1']}, J2 {told['J2']}, J6 {told['J6']}, J7 and the gripper {told['J7']}." in PAGE
 
 
+def test_with_the_other_plant_the_answers_are_others(names):
+    """What the page says of `damiao-mujoco`."""
+    found = zw.check_gains(names["gains"], plant="damiao-mujoco")
+    passive = [joint.name for joint in found.joints if joint.outcome == "passive"]
+    assert passive == ["J5", "J6", "J7", "gripper"]
+    undecided = [joint.name for joint in found.joints if joint.with_ideal_drive == "undecided"]
+    assert undecided == ["J3", "J4"]
+
+
 def test_its_plant_is_read(names, tmp_path):
     """The TOML of the page, for eight joints."""
     (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)

@@ -139,6 +139,7 @@ def test_an_ideal_drive_is_a_damper(tmp_path, stiffness, damping, b):
     as_option = zw.check_gains(gains, plant=arm(b), delay="3 ms").joints[0]
     assert as_option.with_ideal_drive == joint.outcome
     assert joint.with_ideal_drive is None
+    assert "b holds it" in joint.to_dict()["assumptions"][-1]
 
 
 def test_compensation_and_not_kd_decides_with_an_ideal_drive(tmp_path):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
-from math import ceil
+from math import atanh, ceil
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,12 +14,25 @@ from ..plain import exact, quantity
 Document = dict[str, Any]
 
 
+SLACK = 1e-9
+"""Of what viscous friction takes from a move, and of friction that is compensated, beside rounding."""
+
+
+class Law(NamedTuple):
+    """F tanh(v/v_s) + C v."""
+
+    coulomb: Fraction
+    viscous: Fraction
+    speed: Fraction
+
+
 class Arm(NamedTuple):
     """Of a document, as docs/json.md says; `period` from one reading of its own to the next.
 
     `sent` and `sent_damping` are K and B of the other, as often as its coupling force is added; `back` is how
-    old one's own readings are in that.  `dry`, `viscous` and `speed` are F, C and v_s of what compensates its
-    friction.
+    old one's own readings are in that.  Of a drive's compensation `still` and `moving` are what it takes of a
+    move in T and with the one before; `unsure` is what it may be off by the steps of the encoder, beside the
+    rest [N; N·m].
     """
 
     damping: Fraction
@@ -37,20 +50,15 @@ class Arm(NamedTuple):
     sent: Fraction
     sent_damping: Fraction
     back: int
-    dry: Fraction = Fraction(0)
-    viscous: Fraction = Fraction(0)
-    speed: Fraction = Fraction(0)
+    law: Law | None = None
+    still: Fraction = Fraction(0)
+    moving: Fraction = Fraction(0)
+    unsure: Fraction = Fraction(0)
 
     def force(self, own: Any, was: Any, its: Any, before: Any, back: Any, earlier: Any) -> Any:
-        """K (x − x') + B (v − v') + D v − r c': two readings of its own, two of the other, two that c' has."""
-        period = self.period
-        gains = (
-            self.stiffness,
-            self.virtual / period,
-            self.local / period,
-            self.sent,
-            self.sent_damping / period,
-        )
+        """K (x − x') + B (v − v') + D v − r c': two readings of its own, two of the other, two of c'."""
+        slopes = [v / self.period for v in (self.virtual, self.local, self.sent_damping)]
+        gains = (self.stiffness, slopes[0], slopes[1], self.sent, slopes[2])
         k, b, d, r, rb = map(float, gains) if isinstance(own, np.ndarray) else gains
         felt = k * (own - its) + b * ((own - was) - (its - before) / self.often) + d * (own - was)
         return felt - r * (its - back) - rb * ((its - before) - (back - earlier)) / self.often
@@ -100,25 +108,37 @@ def arms_of(loop: Document) -> tuple[Arm, Arm] | None:
                 shares[i] * own[1 - i],
                 shares[i] * other("virtual_damping"),
                 sum(links),
-                *_compensated(loop[name].get("compensation")),
+                _law(loop[name].get("compensation")),
             )
         )
     return found[0], found[1]
 
 
-def _compensated(law: Document | None) -> tuple[Fraction, Fraction, Fraction]:
+def _law(told: Document | None) -> Law | None:
     names = ("compensated_coulomb_friction", "compensated_damping", "compensation_speed")
-    first, second, third = (Fraction(0) if law is None else quantity(law, name) for name in names)
-    return first, second, third
+    return None if told is None else Law(*(quantity(told, name) for name in names))
+
+
+def spent(arm: Arm, r: Fraction) -> Arm:
+    """What its compensation leaves of it, under the tangent at r; 1 is F itself."""
+    if arm.law is None:
+        return arm
+    most, viscous, speed = arm.law
+    slope = most * (1 - r**2) / speed if r < 1 else Fraction(0)
+    height = most * (r - (1 - r**2) * Fraction(atanh(r)) - Fraction(SLACK)) if r < 1 else most
+    half, rest = slope / 2, viscous + slope / 2
+    a_count = arm.resolution / (arm.period * arm.often)
+    less = arm._replace(friction=arm.friction - height)
+    if arm.often > 1:
+        return less._replace(still=half, moving=rest, unsure=(half + rest) * a_count)
+    return less._replace(damping=arm.damping - half, local=arm.local - rest, unsure=half * a_count)
 
 
 def friction_for(arm: Arm, other: Arm) -> Fraction:
-    """Each of the readings half a count off, to the side that is worst; less what compensation asks for."""
-    own = arm if arm.often > 1 else arm._replace(local=arm.local - arm.viscous)
+    """Each of the readings half a count off, to the side that is worst."""
     taps: dict[tuple[bool, int], Fraction] = {}
-    for n, at in enumerate(own.readings(0)):
-        if own.often > 1 and n > 3:
-            at = (at[0], at[1] - 1)  # what comes back is of whole samples: taken for another reading
-        taps[at] = taps.get(at, Fraction(0)) + own.force(*(Fraction(j == n) for j in range(6)))
-    mine, its = (sum(abs(c) for at, c in taps.items() if at[0] is whose) for whose in (True, False))
-    return (mine * arm.resolution + its * other.resolution) / 2
+    for n, (mine, k) in enumerate(arm.readings(0)):
+        at = mine, k - (n > 3 and arm.often > 1)  # what comes back to a drive counts as another reading
+        taps[at] = taps.get(at, Fraction(0)) + arm.force(*(Fraction(j == n) for j in range(6)))
+    own, its = (sum(abs(c) for at, c in taps.items() if at[0] is whose) for whose in (True, False))
+    return arm.unsure + (own * arm.resolution + its * other.resolution) / 2

@@ -14,7 +14,7 @@ from flint import arb, ctx, fmpq
 from ..opinion import Opinion, false
 from ..plain import entry, exact, exacts, quantity
 from .motions import compared, parts_of, unrolled
-from .pair_arms import Arm, arms_of
+from .pair_arms import Arm, Law, arms_of
 
 Document = dict[str, Any]
 
@@ -85,8 +85,8 @@ def _of_all_readings(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) ->
         common = lcm(*(c.denominator for c in taps))
         whole = [int(c * common) for c in taps]
         total += arm.weight * _lost(arm, motions[i], (read[i], read[1 - i]), whole, common, scale)
-        if arm.dry or arm.viscous:
-            total -= arm.weight * _helped(arm, motions[i], read[i], scale)
+        if arm.law is not None:
+            total -= arm.weight * _helped(arm, arm.law, motions[i], read[i], scale)
     return -total
 
 
@@ -108,7 +108,7 @@ def _lost(arm: Arm, motion: Any, read: Any, taps: Sequence[int], common: int, sc
     return (Fraction(work, common) + paid) / scale**2 + arm.friction * Fraction(path, scale)
 
 
-def _helped(arm: Arm, motion: Any, own: Any, scale: int) -> Fraction:
+def _helped(arm: Arm, law: Law, motion: Any, own: Sequence[int], scale: int) -> Fraction:
     """What compensation gives: F tanh(v/v_s) + C v of the move over the last sample, as late as the force."""
     x, y = motion
     moves = [0] * (arm.whole + 1)
@@ -124,7 +124,7 @@ def _helped(arm: Arm, motion: Any, own: Any, scale: int) -> Fraction:
     total = Fraction(0)
     for move, way in ways.items():
         v = Fraction(move, scale) / period
-        total += (arm.dry * _tanh(v, arm.speed) + arm.viscous * v) * Fraction(way, scale)
+        total += (law.coulomb * _tanh(v, law.speed) + law.viscous * v) * Fraction(way, scale)
     return total
 
 
@@ -141,7 +141,8 @@ def _tanh(v: Fraction, speed: Fraction) -> Fraction:
 def gaining_round(arms: tuple[Arm, Arm], rng: np.random.Generator) -> str:
     """A round of both hands that takes something out each time, in words; of about the sizes of the laws."""
     often = arms[0].often
-    sizes = [v for a in arms for v in (a.resolution, a.speed * a.often * a.period) if v] or [Fraction(1)]
+    sizes = [a.resolution for a in arms] + [a.law.speed * a.often * a.period for a in arms if a.law]
+    sizes = [v for v in sizes if v] or [Fraction(1)]
     for _ in range(ROUNDS):
         size = often * int(rng.integers(1, 4))
         unit = Fraction(rng.choice([float(v) for v in sizes]) * 10 ** rng.uniform(-3, 2))

@@ -2,12 +2,13 @@
 
 It is made from the definitions, twice: of all motions of some samples from rest, and of those in which each
 sample is the one before times e^{jθ}.  What a move inside a sample wins or loses is in both, as it is, and
-nothing is minimised by hand.
+nothing is minimised by hand.  What compensates friction is a line h + s v above it: its linear part is in the
+form, the rest is taken from the damping; and some rounds are tried against the law itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -15,7 +16,7 @@ import numpy as np
 
 from ..opinion import Opinion, agrees, cannot_say, false
 from ..plain import exact
-from .pair_arms import Arm, arms_of, friction_for
+from .pair_arms import SLACK, Arm, arms_of, friction_for, spent
 from .pair_motions import gaining_round
 
 Document = dict[str, Any]
@@ -23,18 +24,12 @@ Rng = np.random.Generator
 Array = np.ndarray
 Readings = Callable[[int, int], Array]
 
-SLACK = 1e-9
-"""Of what viscous friction takes from a move, beside rounding."""
-
 MOST_MOVES, MOST_READINGS, SAMPLES = 240, 100, 30
 ANGLES = np.concatenate([np.geomspace(1e-4, 0.1, 8), np.linspace(0.1, np.pi, 60)])
 
 
 def form(arms: Sequence[Arm], reading: Readings, moves: Array) -> Array:
-    """What both hands give, over readings 0 to n − 1: in the moves (n, 2 arms, early and late, size).
-
-    Of compensation that in proportion to speed alone: beside a large motion the rest is as nothing.
-    """
+    """What both hands give, over readings 0 to n − 1: in the moves (n, 2 arms, early and late, size)."""
     made, given = [], []
     for i, arm in enumerate(arms):
         for k in range(len(moves)):
@@ -45,15 +40,18 @@ def form(arms: Sequence[Arm], reading: Readings, moves: Array) -> Array:
                 if not share:
                     continue
                 at = k - late
-                seen = [reading(i if mine else 1 - i, at_) for mine, at_ in arm.readings(at)]
+                seen = [reading(i if mine else 1 - i, k_) for mine, k_ in arm.readings(at)]
                 force = arm.force(*seen)
-                if arm.viscous:
-                    last = arm.often * (at // arm.often)
-                    moved = reading(i, last) - reading(i, last - arm.often)
-                    force = force - float(arm.viscous / (arm.often * arm.period)) * moved
                 paid = float(arm.damping / (share * arm.period))
                 made.append(move)
                 given.append(float(arm.weight) * (force + paid * move))
+        if arm.moving:
+            for k in range(0, len(moves), arm.often):
+                move = moves[k : k + arm.often, i].sum(axis=(0, 1))
+                before = reading(i, k) - reading(i, k - arm.often)
+                took = float(arm.still) * move + float(arm.moving) * before
+                made.append(move)
+                given.append(-float(arm.weight / (arm.period * arm.often)) * took)
     return np.asarray(np.array(made).conj().T @ np.array(given))
 
 
@@ -105,7 +103,12 @@ def _pair(document: Document, rng: Rng) -> Opinion:
     arms = arms_of(document["loop"])
     if arms is None:
         return false("there is no pair with such numbers")
-    if not all(arm.damping for arm in arms):
+    whole, tangents = arms, document["proof"].get("tangents", {})
+    if any(arm.law and not arm.law.speed and exact(tangents.get(name, 1)) < 1 for arm, name in _named(arms)):
+        return false("the sign of the speed is under no line but F")
+    first, second = (spent(arm, exact(tangents.get(name, 1))) for arm, name in _named(arms))
+    arms = first, second
+    if not all(arm.damping > 0 for arm in arms):
         return false("nothing pays for the hold of an arm without damping")
     for arm, other in (arms, arms[::-1]):
         error = friction_for(arm, other)
@@ -118,7 +121,7 @@ def _pair(document: Document, rng: Rng) -> Opinion:
     where, least, slack = min(values, key=lambda v: v[1] + v[2])
     if least < -slack:
         return false(f"{where} a motion wins {-least:.3g} of what it loses")
-    found = gaining_round(arms, rng) if any(arm.dry or arm.viscous for arm in arms) else ""
+    found = gaining_round(whole, rng) if any(arm.law for arm in whole) else ""
     return false(found) if found else agrees()
 
 
@@ -127,6 +130,10 @@ def _angles(arms: Sequence[Arm], rng: Rng) -> Array:
     some = ANGLES if arms[0].often < 10 else ANGLES[::4]
     worst = some[int(np.argmin([least_at(arms, a)[0] for a in some]))]
     return np.concatenate([some, np.clip(worst * (1 + 0.05 * rng.standard_normal(6)), ANGLES[0], np.pi)])
+
+
+def _named(arms: Sequence[Arm]) -> Iterator[tuple[Arm, str]]:
+    return zip(arms, ("leader", "follower"), strict=True)
 
 
 def _violation(document: Document, rng: Rng) -> Opinion:
@@ -138,6 +145,10 @@ def _violation(document: Document, rng: Rng) -> Opinion:
         return false("without damping a force that changes inside a sample is not covered")
     if arms[0].often > MOST_READINGS:
         return cannot_say("so many readings make too large a form")
+    if "proof" not in document and any(arm.law.viscous for arm in arms if arm.law):
+        return cannot_say("compensation of viscous friction may brake between two readings")
+    first, second = (spent(arm, Fraction(1)) for arm in arms)
+    arms = first, second
     bare = not all(arm.damping for arm in arms)
     arms = arms[0]._replace(damping=_some(arms[0])), arms[1]._replace(damping=_some(arms[1]))
     if "proof" in document:

@@ -10,9 +10,11 @@ from zwidth.cli.decision import exit_status
 from zwidth.cli.options import Once
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.errors import InputError
+from zwidth.quantity.units import parse_number
+from zwidth.specification.read import question_time
 
 if TYPE_CHECKING:
-    from zwidth.gains import ArmGains
+    from zwidth.gains import ArmGains, GainsVerdict
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -34,6 +36,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         action=Once,
         help="save verdicts and proofs as JSON, for zwidth verify",
+    )
+    output.add_argument(
+        "--joint", metavar="NAME", action=Once, help="the whole report on one joint, as zwidth pair gives it"
+    )
+    output.add_argument(
+        "--plot", metavar="FILE", action=Once, help="with --joint: save its plots, .png, .svg or .pdf"
     )
     output.add_argument("--force", action="store_true", help="replace files that exist")
     arms = parser.add_argument_group(
@@ -79,7 +87,9 @@ def run(arguments: argparse.Namespace) -> int:
     """`zwidth gains`: the status says the outcome; 3 where no law of both arms is known."""
     from zwidth.gains import check_gains, read_gains
 
-    _, save = targets(None, arguments.save, arguments.force)
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    if plot is not None and arguments.joint is None:
+        raise InputError("--plot draws one joint: give --joint too, such as --joint J1")
     gains = read_gains(
         *arguments.files,
         family=arguments.family,
@@ -98,6 +108,8 @@ def run(arguments: argparse.Namespace) -> int:
         ideal_drive=arguments.ideal_drive,
         compensated=not arguments.no_compensation,
     )
+    if arguments.joint is not None:
+        return _of_one(verdict, arguments.joint, arguments.json, plot, save)
     if save is not None:
         with writing(save):
             verdict.save(save)
@@ -109,6 +121,26 @@ def run(arguments: argparse.Namespace) -> int:
         print_gains(verdict)
         say_written(save)
     return exit_status(verdict.outcome)
+
+
+def _of_one(verdict: GainsVerdict, name: str, as_json: bool, plot: Path | None, save: Path | None) -> int:
+    """One joint, with the notes on the gains."""
+    from zwidth.passivity.document import save_json, to_json
+
+    pair, notes = verdict.joint(name).verdict, {"notes": list(verdict.notes)}
+    if save is not None:
+        with writing(save):
+            save_json(save, {**pair.saved(), **notes})
+    if plot is not None:
+        pair.plot(plot)
+    if as_json:
+        print_json(to_json({**pair.to_dict(), **notes}))
+    else:
+        from zwidth.cli.gains_report import print_joint
+
+        print_joint(pair, verdict.notes)
+        say_written(save, plot)
+    return exit_status(pair.outcome)
 
 
 def _told(gains: ArmGains, as_json: bool, save: Path | None) -> int:
@@ -130,4 +162,7 @@ def _delay(arguments: argparse.Namespace) -> tuple[str, str] | None:
     there, back = arguments.link_delay, arguments.link_delay_back
     if there is None and back is not None:
         raise InputError("--link-delay-back is of one way alone; give --link-delay, of the other, too")
+    for option, value in (("--link-delay", there), ("--link-delay-back", back)):
+        if value is not None:
+            question_time(value, parse_number(value, "s", option), option)
     return None if there is None else (there, there if back is None else back)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from rich.table import Table as Lines
 from rich.text import Text
 
 from zwidth.cli.page import headline, items, page, section
+from zwidth.cli.pair_report import print_pair
 from zwidth.gains import ArmGains, GainsVerdict
 from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.pairs import PairVerdict
 from zwidth.showing import Table
 
 
@@ -21,6 +25,14 @@ def print_gains(verdict: GainsVerdict) -> None:
             out, "what is passive, each proved: with the kd of the file, and with the best", [_set(better)]
         )
         section(out, "assumes", items(verdict.notes, "dim"))
+
+
+def print_joint(verdict: PairVerdict, notes: Iterable[str]) -> None:
+    """Print the verdict on one joint, and what its gains are."""
+    print_pair(verdict)
+    said = set(verdict.small_print())
+    with page() as out:
+        section(out, "\nof the gains", items((note for note in notes if note not in said), "dim"))
 
 
 def print_follower(gains: ArmGains) -> None:

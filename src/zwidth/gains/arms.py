@@ -130,8 +130,7 @@ class ArmGains(Shown):
         joints = []
         for joint, *rows in zip(self.joints, arms.leader, arms.follower, strict=True):
             leader, follower = (
-                Device(**row, rate=often, delay=0, motion="rotary", name=f"{joint.name} of the {side}")
-                for side, row in zip(("leader", "follower"), rows, strict=True)
+                Device(**row, rate=often, delay=0, motion="rotary", name=joint.name) for row in rows
             )
             joints.append(
                 coupled(

@@ -25,6 +25,7 @@ NAME = "i2rt"
 _NOTES = (
     "kd is of the follower's own speed: v_des is 0 (i2rt-robotics/i2rt, minimum_gello); the leader has no "
     "damping of its own",
+    "the loop runs freely, 4 to 7 ms a time, and so does the age of readings: constant ones are decided",
     "grav_comp_kd, of an arm that floats by itself, plays no part between the arms",
 )
 

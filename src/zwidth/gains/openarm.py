@@ -32,9 +32,14 @@ _NOTES = (
     "Kd is of the speed of one arm against the other: v_des is the partner's speed on both sides "
     "(enactic/openarm_teleop, bilateral_step); it damps nothing when both arms move together",
     "friction is compensated by Fc tanh(0.1 k v) + Fv v: the factor 0.1 is in the code, although the comment "
-    "in the file says tanh(k v); the offset Fo gives back what it takes, like a weight",
+    "in the file says tanh(k v); taken as computed once in a sample period, from the move before; the offset "
+    "Fo gives back what it takes, like a weight",
+    "of the gripper the code takes the speed in the compensation from beyond the end of its list "
+    "(bilateral_step): what is added there is not known, and it is decided as the file means it",
     "the speed in the law is the drive's estimate, of an unknown filter; here it is the difference of two "
     "positions",
+    "the threads of both arms are not in step, so that readings are 1 to 4.3 ms old, now more and now less: "
+    "a constant age is decided",
 )
 
 
@@ -59,7 +64,8 @@ def read(tables: Sequence[GainTable]) -> ArmGains:
         notes += [
             "the leader's gains are those of Bilateral, K (q' − q) − Kd v, computed on the host: Kd is of "
             "its own speed; the follower's are taken as in openarm_teleop, v_des the leader's speed",
-            "both arms are taken as computed once in a sample period, the follower's drive too",
+            "both arms are taken as computed once in a sample period, the follower too, which in the fork "
+            "has a loop in its drive: with that it is another pair, which is not decided here",
         ]
     if not found:
         raise InputError(f"{tables[0].label}: neither {' nor '.join(_SIDES.values())} is there")

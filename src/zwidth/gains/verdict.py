@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar
 
+from zwidth.errors import InputError
 from zwidth.gains.arms import MOST_READINGS, ArmGains, Delay
 from zwidth.gains.best import best, passive_compensation, required_damping, stiffest
 from zwidth.gains.coupled import CoupledJoint
@@ -20,6 +21,7 @@ from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.text import shown
 from zwidth.showing import Headline, Lines, Part, Table
+from zwidth.specification.table import quoted, suggestion
 
 MOST_SAMPLES = 100
 """Samples that readings may be old around both arms; beyond, a search takes seconds for a joint."""
@@ -128,6 +130,12 @@ class JointVerdict:
             return f"at {verdict.violation.frequency:.3g} Hz"
         return "" if verdict.passive else "Coulomb friction"
 
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted."""
+        ideal = "kd of an arm's own speed, in its drive, is a damper at once: b holds it, the controller not"
+        return (*self.verdict.small_print(), *([ideal] if self.model.is_ideal else []))
+
     def to_dict(self) -> dict[str, Any]:
         """As plain data, units in the keys; every gain that is told was proved."""
         return {
@@ -137,7 +145,7 @@ class JointVerdict:
             "limit": self.limit,
             "with_ideal_drive": self.with_ideal_drive,
             "damping_N_m_s_per_rad": [float(b) for b in self.model.damping],
-            "assumptions": list(self.verdict.small_print()),
+            "assumptions": list(self.assumptions),
             "is_searched": self.is_searched,
             "stiffest": _gains(self.stiffest),
             "best": _gains(self.best),
@@ -205,6 +213,20 @@ class GainsVerdict(Documented):
             *self._each(),
         )
 
+    def joint(self, name: str) -> JointVerdict:
+        """The verdict on one joint.
+
+        Raises
+        ------
+        InputError
+            If there is none of that name.
+        """
+        for joint in self.joints:
+            if joint.name == name:
+                return joint
+        names = [joint.name for joint in self.joints]
+        raise InputError(f"there is no joint {quoted(name)}; {suggestion(name, names)}")
+
     def _slips(self) -> Iterator[str]:
         slipping = [joint for joint in self.joints if joint.verdict.criterion.slips]
         if slipping:
@@ -218,8 +240,8 @@ class GainsVerdict(Documented):
     def _unsearched(self) -> Iterator[str]:
         if not all(joint.is_searched for joint in self.joints):
             yield (
-                f"gains that would be passive are looked for where readings are at most {MOST_SAMPLES} samples"
-                f" old around both arms, and a drive has at most {MOST_READINGS} in a sample"
+                f"passive gains are looked for where readings are at most {MOST_SAMPLES} samples "
+                f"old around both arms, and a drive has at most {MOST_READINGS} in a sample"
             )
 
     def _steps(self) -> Iterator[str]:
@@ -236,8 +258,8 @@ class GainsVerdict(Documented):
 
     def _each(self) -> Iterator[str]:
         """What every joint's verdict takes for granted."""
-        shared = [set(joint.verdict.small_print()) for joint in self.joints]
-        yield from (text for text in self.joints[0].verdict.small_print() if all(text in s for s in shared))
+        shared = [set(joint.assumptions) for joint in self.joints]
+        yield from (text for text in self.joints[0].assumptions if all(text in s for s in shared))
 
     def tables(self) -> tuple[Table, Table]:
         """The verdict on each joint, and the gains that would be passive."""

@@ -87,6 +87,10 @@ LOCAL = proved(
     signs(at_one=2, factor=[8, 6, 1]),
     signs(at_one=1, factor=[3, 1]),
 )
+# d = 3 on either side: M_ii = 14 − m, M_lf = m = 8c³ + 4c² − 4c − 1; det M = 28 (7 − m)
+LATER = proved(
+    loop(arm(14, 2, delay_s=3)), signs(at_one=3, factor=[2, 3, 2]), signs(at_one=1, factor=[15, 4, -4, -8])
+)
 # m = 2 readings of its own: β = b − K/4; with K = 4 and β = 2 as K/2: b = 3
 DRIVEN = put(proved(loop(arm(3, 4)), NOWHERE), {"loop.own_readings": 2})
 # γ = D = 1, β = 3: t = 17, u = 6, g = 1; M_ii = (17 − c)/(5 − c), beside K/2 = 2: (7 + c)(27 − 3c)
@@ -108,6 +112,20 @@ ONE_DAMPED = put(
     ),
     {"loop.own_readings": 2},
 )
+# γ = −1, β = 3: M_ii = (17 − c)/(7 + c), beside 2: (17 − c)² − 4 (7 + c)² = 3 (1 − c)(31 + c)
+DRIVEN_ON = put(
+    proved(
+        loop(arm(4, 4, local_damping_N_s_per_m=-1)),
+        signs(at_one=3, factor=[31, 1]),
+        signs(at_one=1, factor=[17, -1]),
+    ),
+    {"loop.own_readings": 2},
+)
+# β = 1 beside K/2 (1 + 2c), K = 1/3: 1 − (1 + 2c)²/36
+DRIVEN_LINK = put(
+    proved(loop(arm("13/12", "1/3", link_delay_s=1)), signs(at_one=2, factor=[35, -4, -4])),
+    {"loop.own_readings": 2},
+)
 SLIPPING = put(loop(arm(2, 4, local_damping_N_s_per_m=1)), {"own_readings": 2})
 ENCODERS = put(
     SPRING,
@@ -124,6 +142,14 @@ UNEQUAL_ENCODERS = put(
         f"loop.{side}.{key}": value
         for side, friction in (("leader", 4), ("follower", 2))
         for key, value in (("resolution_m", 1), ("coulomb_friction_N", friction))
+    },
+)
+ONE_ENCODER = put(
+    SPRING,
+    {
+        "loop.leader.resolution_m": 1,
+        "loop.leader.coulomb_friction_N": 2,
+        "loop.follower.coulomb_friction_N": 2,
     },
 )
 ACTIVE = loop(arm("1/2", 4))
@@ -200,6 +226,7 @@ CASES = [
         "energy",
     ),
     *edge("a link", LATE, put(LATE, {"loop.follower.link_delay_s": 1 + TINY}), FACTORS),
+    *edge("late forces", LATER, put(LATER, {"loop.follower.damping_N_s_per_m": 14 - TINY}), FACTORS),
     accepted(
         "a link of less than a sample is one of a sample",
         put(LATE, {"loop.leader.link_delay_s": "1/9", "loop.follower.link_delay_s": "8/9"}),
@@ -235,6 +262,13 @@ CASES = [
         put(ONE_DAMPED, {"loop.leader.damping_N_s_per_m": Fraction(7, 3) - TINY}),
         FACTORS,
     ),
+    *edge(
+        "dampers that drive on inside drives",
+        DRIVEN_ON,
+        put(DRIVEN_ON, {"loop.leader.local_damping_N_s_per_m": -1 - TINY}),
+        FACTORS,
+    ),
+    accepted("drives over a link", DRIVEN_LINK),
     accepted("one reading of its own", put(SPRING, {"loop.own_readings": 1})),
     refused("no reading", put(SPRING, {"loop.own_readings": 0}), "must be ≥ 1"),
     refused("a late drive", put(DRIVEN, {"loop.follower.delay_s": 1}), "without delay"),
@@ -267,6 +301,14 @@ CASES = [
         UNEQUAL_ENCODERS,
         put(UNEQUAL_ENCODERS, {"loop.follower.coulomb_friction_N": 2 - TINY}),
         "below the force error",
+    ),
+    *edge(
+        "one encoder",
+        ONE_ENCODER,
+        put(ONE_ENCODER, {"loop.follower.coulomb_friction_N": 2 - TINY}),
+        "below the force error",
+        "covers the steps of both",
+        encoder="counted",
     ),
     refused(
         "encoders, the leader's friction",
@@ -325,6 +367,26 @@ CASES = [
         "thirds of one's own readings",
         told(put(TO_AND_FRO, {"loop.leader.local_damping_N_s_per_m": "1/3"}), "10/3"),
         energy="10/3",
+    ),
+    accepted(
+        "thirds of the other's readings",
+        told(
+            put(
+                moved(ACTIVE, [0, 1, 0], [0, -1, 0]),
+                {
+                    f"loop.{side}.{key}_N_s_per_m": value
+                    for side in ("leader", "follower")
+                    for key, value in (("virtual_damping", "1/3"), ("local_damping", "-1/3"))
+                },
+            ),
+            "44/3",
+        ),
+        energy="44/3",
+    ),
+    accepted(
+        "rounds longer than what is remembered",
+        told(put(moved(LINKED, *WANDERING), {"repeats": again(0, 6, 9)}), 462),
+        energy=462,
     ),
     *(
         refused(
