@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from zwidth.pairs import Pair
 from zwidth.passivity.linear.boundary import COARSER, smallest_holding
-from zwidth.passivity.pairs import PairCriterion, PairVerdict
+from zwidth.passivity.pairs import PairVerdict
 from zwidth.passivity.pairs.advice import MOST_SAMPLES
+from zwidth.passivity.pairs.criterion import spending
 from zwidth.passivity.pairs.limits import largest_stiffness, samples_around
 from zwidth.plots.pair_motion import draw_pair_energy, draw_pair_motion
 from zwidth.plots.style import GREEN, LOOK, OUTCOME, new_figure, scale
@@ -97,7 +98,7 @@ def damping_boundary(pair: Pair) -> tuple[Array, Array]:
             "leader": pair.leader.replace(damping=leader),
             "follower": pair.follower.replace(damping=follower),
         }
-        return PairCriterion(pair.replace(**arms)).holds
+        return spending(pair.replace(**arms)).holds
 
     ratio = 1 / pair.power_ratio
     guess = float(pair.felt_stiffness * pair.sample_period)

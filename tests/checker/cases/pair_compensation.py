@@ -135,15 +135,17 @@ def tanh_is_enclosed() -> str:
     """Between both numbers, which lie closely."""
     between, bits = _module().tanh_between, _module().BITS
     random = Random(1)
-    for x in [0, *(Fraction(random.random()) * 10 ** random.randint(-9, 2) for _ in range(60)), 64, 65]:
+    for x in [0, *(Fraction(random.random()) * 10 ** random.randint(-9, 2) for _ in range(60)), 63, 64, 65]:
         low, high = between(Fraction(x))
         with localcontext() as context:
             context.prec = 120
             far = (2 * Decimal(Fraction(x).numerator) / Decimal(Fraction(x).denominator)).exp()
             true = (far - 1) / (far + 1) * 2**bits
-        if not low <= true <= high or high - low > 8:
+        if not low <= true <= high or high - low > 3:
             return f"tanh {x}: {low - true} … {high - true}"
-    return ""
+    if between(Fraction(0)) != (0, 2):
+        return "tanh 0"
+    return "" if between(Fraction(10**40)) == (2**bits - 1, 2**bits) else "tanh far out"
 
 
 def artanh_is_from_below() -> str:

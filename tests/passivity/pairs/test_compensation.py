@@ -174,6 +174,49 @@ def test_any_mean_of_past_moves_is_covered_by_the_wider_proof(seed):
         assert (gap >= -1e-9).all()
 
 
+def taken_with(pair: zw.Pair, x: np.ndarray, weights: np.ndarray) -> float:
+    """Energy out of a motion of both hands from rest, the speed a mean of past moves, by the definitions."""
+    period, total = float(pair.sample_period), 0.0
+    age = int(pair.there.fraction / pair.sample_period)
+    late = np.concatenate((np.zeros((2, age)), x[:, : x.shape[1] - age]), axis=1)
+    for i, side in enumerate(pair.sides):
+        law, moves = side.compensation, np.diff(x[i], prepend=x[i, 0])
+        v = np.convolve(moves, weights)[: len(moves)] / period
+        force = float(side.stiffness) * (x[i] - late[1 - i])
+        force -= float(law.coulomb) * np.tanh(v / float(law.speed)) + float(law.viscous) * v
+        moved = np.diff(x[i])
+        total -= (force[:-1] * moved + float(side.damping) / period * moved**2).sum()
+        total -= float(side.coulomb_friction) * np.abs(moved).sum()
+    return total
+
+
+@pytest.mark.parametrize("age", [0, 1, 2, 5])
+@seeds(10)
+def test_late_and_filtered_speeds_gain_nothing_where_the_proof_covers_them(age, seed):
+    """Rounds in which it comes a whole turn late drive most; with a little more straight ways gain."""
+    random = np.random.default_rng(seed)
+    law = zw.FrictionCompensation(coulomb="0.3", viscous="0.2", speed="0.35")
+    pair = PAIR.replace(stiffness=1, compensation=law)
+    low, high = 0.0, 8.0
+    for _ in range(40):
+        share = (low + high) / 2
+        within = spending(with_share(pair, Fraction(share)), any_mean=True).proves
+        low, high = (share, high) if within else (low, share)
+    tight = with_share(pair, Fraction(low))
+    assert zw.check(tight).certificate.any_mean
+    weights = np.eye(6)[age] if random.random() < 0.5 else np.full(age + 1, 1 / (age + 1))
+    turn = np.arange(12 * (age + 1) * 20) / (age + 1)
+    for size in 10 ** random.uniform(-6, 0, 8):
+        wave = np.sin(2 * np.pi * turn) + 0.1 * random.normal(size=(2, len(turn)))
+        ramp = np.minimum(np.arange(len(turn)), len(turn) - 1 - np.arange(len(turn))) * np.ones((2, 1))
+        for x in (wave, ramp):
+            x = size * (x - x[:, :1]) * random.choice([-1, 1], size=(2, 1))
+            assert taken_with(tight, x, weights) <= 1e-9 * size**2
+    more, there = with_share(pair, Fraction(low) * Fraction("1.1")), np.arange(400)
+    way = np.minimum(there, 399 - there) * np.array([[1.0], [-1.0]]) * float(pair.sample_period)
+    assert max(taken_with(more, v * way, weights) for v in np.geomspace(0.01, 3, 40)) > 0
+
+
 def test_encoders_are_paid_first():
     """F ≤ f_c − e costs no damping; of C half a count each way is in e."""
     arm = ARM.replace(resolution="1e-4", coulomb_friction="0.5")

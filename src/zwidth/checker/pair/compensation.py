@@ -101,29 +101,28 @@ def _series(t: Fraction) -> int:
 
 def tanh_between(x: Fraction) -> tuple[int, int]:
     """Two numbers with tanh x between them, in units of 2^−`BITS`; x ≥ 0."""
-    one = 1 << BITS
+    one, unit = 1 << BITS, 1 << _BITS
     if x > BITS // 2:  # 1 − tanh x < 2 e^{−2x} < 2^{−bits}
         return one - 1, one
-    low, high = (_exponential(2 * x, up) for up in (False, True))
-    unit = 1 << _BITS
-    return ((low - unit) << BITS) // (low + unit), -(((unit - high) << BITS) // (high + unit))
+    far = _exponential(2 * x)
+    found = ((far - unit) << BITS) // (far + unit)
+    return max(0, found - 1), found + 2
 
 
-def _exponential(y: Fraction, up: bool) -> int:
-    """e^y in units of 2^−bits, every step rounded down, or up.
+def _exponential(y: Fraction) -> int:
+    """e^y in units of 2^−192, y ≤ 128, by less than 2^−170 of it too small: every step is rounded down.
 
-    Of y halved until it is ½ or less, where each term is at most half of the one before; then squared.
+    Of y halved until it is ½ or less, where some 50 terms each lose a unit; then squared at most 9 times,
+    each of which doubles what is lost in proportion.
     """
     spend(60, 2 * _BITS, y.numerator.bit_length())
-    more = 1 if up else 0
     halvings = max(0, y.numerator.bit_length() - y.denominator.bit_length() + 2)
-    small = (y.numerator << _BITS) // (y.denominator << halvings) + more
+    small = (y.numerator << _BITS) // (y.denominator << halvings)
     total = term = 1 << _BITS
     n = 1
-    while term > more:
-        term = term * small // (n << _BITS) + more
+    while term:
+        term = term * small // (n << _BITS)
         total, n = total + term, n + 1
-    total += 8 * more  # what is left is less than the last term; rounded up, terms end between 1 and 2
     for _ in range(halvings):
-        total = (total * total >> _BITS) + more
+        total = total * total >> _BITS
     return total

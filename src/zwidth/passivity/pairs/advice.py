@@ -99,7 +99,8 @@ def _stiffness_at(
 ) -> StiffnessAt:
     largest, unit = largest_stiffness(pair), pair.leader.unit("stiffness")
     if largest is None:
-        return StiffnessAt(parameter, times, None, unit, f"{where} no stiffness is passive")
+        proved = "proved" if any(pair.compensations) else "passive"
+        return StiffnessAt(parameter, times, None, unit, f"{where} no stiffness is {proved}")
     safe = outward(largest, next(_of_the_coupling(pair)))
     text = f"{where} a stiffness of up to {safe:.6g} {unit_text(unit)} is passive"
     return StiffnessAt(parameter, times, largest, unit, text)

@@ -262,10 +262,10 @@ class PairVerdict(PassivityAnswer):
         unit = {name: pair.leader.unit(name) for name in ("stiffness", "damping", "coulomb_friction")}
         yield "coupling", pair.describe()
         yield "limit", self.limit
-        largest = self.largest_stiffness
+        largest, proved = self.largest_stiffness, "proved" if any(pair.compensations) else "passive"
         yield (
             "largest stiffness",
-            "none is passive"
+            f"none is {proved}"
             if largest is None
             else f"{shown(largest, unit['stiffness'])} with all else as it is",
         )
