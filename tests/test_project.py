@@ -126,6 +126,7 @@ def test_what_is_shipped_beside_the_code() -> None:
     """Type checkers find the marker; the catalogue its data; other checkers the schemas."""
     assert (SOURCE / "py.typed").exists()
     assert (SOURCE / "device" / "catalogue.toml").exists()
+    assert (SOURCE / "gains" / "families.toml").exists()
     assert (SOURCE / "checker" / "schemas" / "spring.json").exists()
 
 
@@ -329,6 +330,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
         "check",
         "limit",
         "pair",
+        "gains",
         "map",
         "simulate",
         "compare",

@@ -14,6 +14,7 @@ from zwidth.cli.options import (
     device_parameters,
     environment_parameters,
 )
+from zwidth.gains import published
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.kind import Kind
 from zwidth.rendering import ESTIMATORS, LAWS
@@ -156,6 +157,19 @@ def _device(name: str) -> str:
     return f"## `{name}`: {entry.title}\n\n{note}{markdown(('value', '', 'unit', 'source'), rows)}"
 
 
+def plants() -> str:
+    """Published damping and friction of arms whose gain files are read."""
+    rows = []
+    for name, plant in published.plants().items():
+        numbers = [(f"joint {n + 1}", *values) for n, values in enumerate(plant.joints)]
+        numbers += [(motor, *values) for motor, values in plant.motors.items()]
+        for place, damping, friction in numbers:
+            rows.append((f"`{name}`", place, f"{float(damping):.4g}", f"{float(friction):.4g}"))
+    sources = "\n".join(f"- `{name}`: {plant.source}" for name, plant in published.plants().items())
+    table = markdown(("plant", "of", "damping [N·m·s/rad]", "Coulomb friction [N·m]"), rows)
+    return f"{table}\n{sources}\n"
+
+
 def _options(parameters: Iterable[Parameter]) -> str:
     rows = [(f"`{p.option}`", f"`{p.key}`", _pretty(p.help)) for p in parameters]
     return markdown(("option", "key in a file", "meaning"), rows)
@@ -187,6 +201,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "law_types": law_types,
     "lines_to_trust": lines_to_trust,
     "operator_options": operator_options,
+    "plants": plants,
     "follower_options": follower_options,
     "simulation_options": simulation_options,
     "environment_types": environment_types,

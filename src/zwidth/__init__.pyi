@@ -22,12 +22,13 @@ from zwidth.environment import PulseTransferFunction as PulseTransferFunction
 from zwidth.environment import StandardLinearSolid as StandardLinearSolid
 from zwidth.environment import Wall as Wall
 from zwidth.errors import InputError as InputError
+from zwidth.gains import check_gains as check_gains
+from zwidth.gains import read_gains as read_gains
 from zwidth.identification import tissue as tissue
 from zwidth.identification.device.plan import plan_identification as plan
 from zwidth.identification.logs import Log as Log
 from zwidth.identification.logs import read_log as read_log
 from zwidth.maps import z_width as z_width
-from zwidth.pairs import FrictionCompensation as FrictionCompensation
 from zwidth.pairs import Pair as Pair
 from zwidth.passivity import coupling as coupling
 from zwidth.passivity import formulas as formulas
@@ -40,6 +41,7 @@ from zwidth.passivity.witness.witness import Witness as Witness
 from zwidth.passivity.workspace import workspace as workspace
 from zwidth.quantity import Exact as Exact
 from zwidth.quantity import Interval as Interval
+from zwidth.rendering import FrictionCompensation as FrictionCompensation
 from zwidth.rendering import VirtualCoupling as VirtualCoupling
 from zwidth.rendering import render as render
 from zwidth.specification.load import load as load

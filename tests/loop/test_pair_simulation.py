@@ -33,7 +33,7 @@ def replayed(pair: zw.Pair) -> tuple[float, float]:
     verdict = zw.check(pair)
     assert verdict.outcome == "active"
     hands = [WitnessMotion(motion) for motion in (verdict.witness.leader, verdict.witness.follower)]
-    tick = float(pair.sample_period) / pair.own_readings
+    tick = pair.sample_period / pair.own_readings
     trace = zw.simulate(pair, *hands, (hands[0].intervals + 1) * tick)
     assert trace.zwidth.energy.closes
     return verdict.witness.energy, got_out(trace)
@@ -47,6 +47,8 @@ def replayed(pair: zw.Pair) -> tuple[float, float]:
         {"stiffness": 240, "damping": "0.3", "delay": ("0.4 ms", "3 ms")},
         {"stiffness": 240, "follower_stiffness": 300, "local_damping": "0.1", "follower_damping": "-0.02"},
         {"stiffness": 20, "local_damping": "-0.3", "drive_rate": "4 kHz"},
+        {"stiffness": 0, "follower_stiffness": 300, "reflection": 1, "damping": "0.1"},
+        {"stiffness": 100, "reflection": 1, "follower_reflection": "0.5", "drive_rate": "3 kHz"},
         {"compensation": zw.FrictionCompensation(coulomb="0.012")},
         {"compensation": zw.FrictionCompensation(coulomb="0.05", speed="0.2"), "delay": "2 ms"},
         {"compensation": zw.FrictionCompensation(viscous="0.2"), "drive_rate": "2 kHz"},

@@ -27,6 +27,7 @@ ROW = (
     rendering.Dither(kind="random"),
     rendering.RateTerm("0.002"),
     rendering.WindowedController(window=4),
+    rendering.FrictionCompensation(coulomb="0.2", viscous="0.3", speed="0.05"),
 )
 LAW = zw.render(zw.Wall(800), *ROW)
 HAND = zw.operators.Dowel()

@@ -53,6 +53,7 @@ CHOSEN = {
     "braking-pulse": {"velocity": rendering.Kalman(3000)},
     "event-transient": {"kind": "acceleration", "record": ["100", THIRD]},
     "dither": {"amplitude": "0.01", "kind": "random", "seed": 7},
+    "friction-compensation": {"coulomb": "0.3", "viscous": THIRD, "speed": "0.1"},
     "saturation": {"limit": "1e-30"},
     "slew-limit": {"rate": THIRD},
 }

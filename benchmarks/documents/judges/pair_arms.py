@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
-from itertools import product
 from math import atanh, ceil
 from typing import Any, NamedTuple
 
@@ -30,8 +29,10 @@ class Law(NamedTuple):
 class Arm(NamedTuple):
     """Of a document, as docs/json.md says; `period` from one reading of its own to the next.
 
-    Of a drive's compensation `still` and `moving` are what it takes of a move in T and with the one before;
-    `unsure` is what it may be off by the steps of the encoder, beside the rest [N; N·m].
+    `sent` and `sent_damping` are K and B of the other, as often as its coupling force is added; `back` is how
+    old one's own readings are in that.  Of a drive's compensation `still` and `moving` are what it takes of a
+    move in T and with the one before; `unsure` is what it may be off by the steps of the encoder, beside the
+    rest [N; N·m].
     """
 
     damping: Fraction
@@ -46,28 +47,46 @@ class Arm(NamedTuple):
     weight: Fraction
     often: int
     period: Fraction
+    sent: Fraction
+    sent_damping: Fraction
+    back: int
     law: Law | None = None
     still: Fraction = Fraction(0)
     moving: Fraction = Fraction(0)
     unsure: Fraction = Fraction(0)
 
-    def force(self, own: Any, was: Any, its: Any, before: Any) -> Any:
-        """K (x − x') + B (v − v') + D v, of two readings of one's own and two of the other."""
-        k, b, d = self.stiffness, self.virtual / self.period, self.local / self.period
-        if isinstance(own, np.ndarray):
-            k, b, d = float(k), float(b), float(d)
-        return k * (own - its) + b * ((own - was) - (its - before) / self.often) + d * (own - was)
+    def force(self, own: Any, was: Any, its: Any, before: Any, back: Any, earlier: Any) -> Any:
+        """K (x − x') + B (v − v') + D v − r c': two readings of its own, two of the other, two of c'."""
+        slopes = [v / self.period for v in (self.virtual, self.local, self.sent_damping)]
+        gains = (self.stiffness, slopes[0], slopes[1], self.sent, slopes[2])
+        k, b, d, r, rb = map(float, gains) if isinstance(own, np.ndarray) else gains
+        felt = k * (own - its) + b * ((own - was) - (its - before) / self.often) + d * (own - was)
+        return felt - r * (its - back) - rb * ((its - before) - (back - earlier)) / self.often
+
+    def readings(self, at: int) -> tuple[tuple[bool, int], ...]:
+        """Which `force` takes at one of its own: whether it is its own, and which."""
+        heard, back = (self.often * (at // self.often - age) for age in (self.age, self.back))
+        mine, its, old = (
+            ((True, at), (True, at - 1)),
+            ((False, heard), (False, heard - self.often)),
+            ((True, back), (True, back - self.often)),
+        )
+        return *mine, *its, *old
 
 
 def arms_of(loop: Document) -> tuple[Arm, Arm] | None:
     """Leader and follower; None where the numbers are of no pair."""
     period, often = quantity(loop, "sample_period"), int(exact(loop.get("own_readings", 1)))
-    springs = [quantity(loop[name], "stiffness") for name in ("leader", "follower")]
-    if period <= 0 or often < 1 or min(springs) <= 0:
+    names = ("leader", "follower")
+    shares = [exact(loop[name].get("reflection", 0)) for name in names]
+    own = [quantity(loop[name], "stiffness") for name in names]
+    springs = [k + share * other for k, share, other in zip(own, shares, own[::-1], strict=True)]
+    if period <= 0 or often < 1 or min(*own, *shares) < 0 or min(springs) <= 0:
         return None
+    links = [ceil(quantity(loop[name], "link_delay") / period) for name in names]
     found = []
-    for name, stiffness in zip(("leader", "follower"), springs, strict=True):
-        told = partial(quantity, loop[name])
+    for i, name in enumerate(names):
+        told, other = partial(quantity, loop[name]), partial(quantity, loop[names[1 - i]])
         late, link = told("delay") / period, told("link_delay") / period
         signs = (late, link, told("damping"), told("coulomb_friction"), told("resolution"))
         if min(signs) < 0 or (late and often > 1):
@@ -77,15 +96,18 @@ def arms_of(loop: Document) -> tuple[Arm, Arm] | None:
                 told("damping"),
                 told("coulomb_friction"),
                 told("resolution"),
-                stiffness,
+                own[i],
                 told("virtual_damping"),
                 told("local_damping"),
                 int(late // 1),
                 late % 1,
                 ceil(link),
-                springs[0] / stiffness,
+                springs[0] / springs[i],
                 often,
                 period / often,
+                shares[i] * own[1 - i],
+                shares[i] * other("virtual_damping"),
+                sum(links),
                 _law(loop[name].get("compensation")),
             )
         )
@@ -114,7 +136,9 @@ def spent(arm: Arm, r: Fraction) -> Arm:
 
 def friction_for(arm: Arm, other: Arm) -> Fraction:
     """Each of the readings half a count off, to the side that is worst."""
-    return arm.unsure + max(
-        abs(arm.force(*(s * r.resolution / 2 for s, r in zip(signs, (arm, arm, other, other), strict=True))))
-        for signs in product((-1, 1), repeat=4)
-    )
+    taps: dict[tuple[bool, int], Fraction] = {}
+    for n, (mine, k) in enumerate(arm.readings(0)):
+        at = mine, k - (n > 3 and arm.often > 1)  # what comes back to a drive counts as another reading
+        taps[at] = taps.get(at, Fraction(0)) + arm.force(*(Fraction(j == n) for j in range(6)))
+    own, its = (sum(abs(c) for at, c in taps.items() if at[0] is whose) for whose in (True, False))
+    return arm.unsure + (own * arm.resolution + its * other.resolution) / 2

@@ -44,7 +44,7 @@ def _motion(document: Document, rng: np.random.Generator) -> Opinion:
     ):
         return false("parts that do not follow one another, another period, or no start at rest at 0")
     given = [exacts(turn) if turn else path[:-1] for turn, path in zip(turns, paths, strict=True)]
-    stored = arms[0].stiffness * sum(arm.resolution for arm in arms) ** 2 / 8
+    stored = (arms[0].stiffness + arms[0].sent) * sum(arm.resolution for arm in arms) ** 2 / 8
     return compared(taken_out(arms, paths, given, parts), exact(document["energy_J"]), stored)
 
 
@@ -81,7 +81,7 @@ def _of_all_readings(arms: Sequence[Arm], paths: Any, turns: Any, parts: Any) ->
         read.append([step * (v // step) if step else v for v in motion])
     total = Fraction(0)
     for i, arm in enumerate(arms):
-        taps = [arm.force(*(Fraction(j == n) for n in range(4))) for j in range(4)]
+        taps = [arm.force(*(Fraction(j == n) for n in range(6))) for j in range(6)]
         common = lcm(*(c.denominator for c in taps))
         whole = [int(c * common) for c in taps]
         total += arm.weight * _lost(arm, motions[i], (read[i], read[1 - i]), whole, common, scale)
@@ -95,8 +95,7 @@ def _lost(arm: Arm, motion: Any, read: Any, taps: Sequence[int], common: int, sc
     (x, y), (own, its) = motion, read
     forces = [0] * (arm.whole + 1)
     for k in range(len(x) - 1):
-        sent = arm.often * (k // arm.often - arm.age)
-        seen = (own[k], own[max(k - 1, 0)], its[max(sent, 0)], its[max(sent - arm.often, 0)])
+        seen = [(own if mine else its)[max(at, 0)] for mine, at in arm.readings(k)]
         forces.append(sum(c * v for c, v in zip(taps, seen, strict=True)))
     work = path = early = late = 0
     for k in range(len(x) - 1):
@@ -154,7 +153,7 @@ def gaining_round(arms: tuple[Arm, Arm], rng: np.random.Generator) -> str:
             [a + arm.part * (b - a) for a, b in zip(path, path[1:], strict=False)]
             for arm, path in zip(arms, paths, strict=True)
         ]
-        settled = 3 + max(a.whole + a.age for a in arms)
+        settled = 3 + max(a.whole + max(a.age, a.back) for a in arms)
         less, more = (taken_out(arms, paths, turns, [(0, size, n)]) for n in (settled, settled + 1))
         if less is not None and more is not None and more > less:
             return f"a round of {size} readings takes {float(more - less):.6g} J out again and again"

@@ -40,13 +40,8 @@ def form(arms: Sequence[Arm], reading: Readings, moves: Array) -> Array:
                 if not share:
                     continue
                 at = k - late
-                sent = arm.often * (at // arm.often - arm.age)
-                force = arm.force(
-                    reading(i, at),
-                    reading(i, at - 1),
-                    reading(1 - i, sent),
-                    reading(1 - i, sent - arm.often),
-                )
+                seen = [reading(i if mine else 1 - i, k_) for mine, k_ in arm.readings(at)]
+                force = arm.force(*seen)
                 paid = float(arm.damping / (share * arm.period))
                 made.append(move)
                 given.append(float(arm.weight) * (force + paid * move))
@@ -175,7 +170,7 @@ def _violation(document: Document, rng: Rng) -> Opinion:
 
 def _some(arm: Arm) -> Fraction:
     """Its damping, or a hair: what gains with that gains without it."""
-    return arm.damping or arm.stiffness * arm.period / 10**6
+    return arm.damping or (arm.stiffness + arm.sent) * arm.period / 10**6
 
 
 JUDGES: dict[str, Callable[[Document, Rng], Opinion]] = {

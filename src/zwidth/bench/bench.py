@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from math import isfinite
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from zwidth.bench.adversary import FASTEST, Attack, attack
 from zwidth.bench.advice import advice
 from zwidth.bench.laws import standard_laws, wall_to_render
 from zwidth.bench.motions import found_motions
+from zwidth.bench.pairs import PairComparison, compare_pairs
 from zwidth.bench.perceived import SOURCE, WEBER, noticeable_differences
 from zwidth.bench.standing import Standing, standing
 from zwidth.bench.table import legend, table
@@ -26,6 +27,7 @@ from zwidth.environment.wall import Wall
 from zwidth.errors import InputError
 from zwidth.loop.setup import empty_record, prepare
 from zwidth.loop.simulate import run_setup, simulate
+from zwidth.pairs import Pair
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import unit_suffix
@@ -151,15 +153,30 @@ def _finite(number: float) -> float | None:
     return number if isfinite(number) else None
 
 
+@overload
 def compare(
     device: Device,
     environment: Wall | Any,
+    laws: Mapping[str, Environment] | None = ...,
+    *,
+    fastest: RealLike = ...,
+    progress: Callable[[int, int], None] | None = ...,
+) -> LawComparison: ...
+@overload
+def compare(
+    device: Mapping[str, Pair], *, progress: Callable[[int, int], None] | None = ...
+) -> PairComparison: ...
+def compare(
+    device: Device | Mapping[str, Pair],
+    environment: Wall | Any = None,
     laws: Mapping[str, Environment] | None = None,
     *,
     fastest: RealLike = FASTEST,
     progress: Callable[[int, int], None] | None = None,
-) -> LawComparison:
+) -> LawComparison | PairComparison:
     """Put laws on the bench: three touches, a stroke in free air, and a hand that tries to take energy out.
+
+    Pairs of arms, by name, are compared by `compare_pairs`: ``compare({"positions": pair, …})``.
 
     Parameters
     ----------
@@ -181,6 +198,10 @@ def compare(
         If the device is rotary or has no mass, the environment is no wall with a stiffness, or the speed is
         not > 0.
     """
+    if isinstance(device, Mapping):
+        if environment is not None or laws is not None:
+            raise InputError("pairs are compared as they are: leave out the environment and the laws")
+        return compare_pairs(device, progress=progress)
     wall = wall_to_render(as_environment(environment))
     if device.motion != "linear":
         raise InputError(

@@ -24,7 +24,7 @@ from zwidth.device.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.passivity.bounding import check_bounding, is_bounded
 from zwidth.passivity.check import check_by_closed_forms
-from zwidth.passivity.other_laws import covering_wall
+from zwidth.passivity.covering import covering
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.passivity.witness.witness import Witness
@@ -116,13 +116,17 @@ def _by_check(device: Device, law: Environment) -> Standing | list[str]:
 
 def _by_a_covering_wall(device: Device, law: Environment) -> Standing | list[str]:
     """A spring with laws that add no more than α |Δx|/T, by the proof of a wall with damping α."""
-    covering = covering_wall(device, law)
-    if covering is None:
+    half = min(half_a_step(device), device.exact("coulomb_friction"))
+    covered = covering(_without(device, half), law)  # what is left beside the converter's steps
+    if covered is None:
         return []
-    verdict, why_not = _with_the_actuator(device, covering)
-    added = f"What the laws add is never more than that of {covering.damping} N·s/m"
+    less, wall = _without(covered[0], -half), covered[1]
+    verdict, why_not = _with_the_actuator(less, wall)
+    dry = device.exact("coulomb_friction") - less.exact("coulomb_friction")
+    more = f" and {float(dry):.6g} N of Coulomb friction" if dry else ""
+    added = f"What the laws add is never more than that of {wall.damping} N·s/m{more}"
     if verdict is None:
-        promised = check_by_closed_forms(device, covering).outcome == "passive"
+        promised = check_by_closed_forms(less, wall).outcome == "passive"
         return [f"{added}, which is covered for an ideal actuator. {why_not}"] if promised else []
     return Standing(
         status="passive",

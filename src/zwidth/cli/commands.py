@@ -71,6 +71,19 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth pair leader.toml follower.toml --stiffness 100 --link-delay '2 ms'\n"
             "  zwidth pair my-pair.toml --link-delay '5 ms' -o pair.json",
         ),
+        "gains": Command(
+            "are two arms passive with the gains of these files?",
+            "Read the gain files of two arms (OpenArm, i2rt YAM, LeRobot, Piper), joint by joint: which are\n"
+            "passive, how stiff each may be, and which gains would be passive.",
+            "What no gain file says, such as friction of the joints, rate and delay of the link, is\n"
+            "published or assumed where it is not given, and the report says which.\n\n"
+            "exit status: 0 every joint passive, 1 one is active, 2 bad input, 3 one is undecided, or the\n"
+            "leader feels nothing and there is no law of both arms\n\n"
+            "examples:\n"
+            "  zwidth gains leader.yaml follower.yaml --plant my-arm.toml --link-delay '2 ms'\n"
+            "  zwidth gains yam.yml --bilateral-kp 0.1 --ideal-drive\n"
+            "  zwidth gains so101.json --supply-voltage '7.4 V' --both",
+        ),
         "map": Command(
             "which walls can this device render?",
             "Map the Z-width: over stiffness and virtual damping, which walls are passive with every hand,\n"

@@ -14,6 +14,7 @@ from zwidth.cli.output import print_json
 from zwidth.cli.page import below, grid, headline, page
 from zwidth.errors import InputError
 from zwidth.passivity.certificate import evidence, read_document, verify_document
+from zwidth.passivity.result import EVIDENCE
 from zwidth.quantity.text import shown
 from zwidth.specification.table import plain
 
@@ -25,6 +26,9 @@ _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 
 _OF_TWO_ARMS = ("pair", "pair violation")
 """Proofs about arms that follow each other."""
+
+_OF_JOINTS = "zwidth gains 1"
+"""A document that holds one of two arms for each joint."""
 
 _OF_A_PORT = "zwidth indices 1"
 """A document about a port by itself."""
@@ -84,6 +88,8 @@ def verifications(document: object) -> list[Part]:
         If the document contains no evidence.
     """
     told = document if isinstance(document, Mapping) else {}
+    if told.get("format") == _OF_JOINTS:
+        return [part for joint in _joints(told) for part in verifications(joint)]
     found = [_with_law(Part(part, verify_document(part))) for part in evidence(document)]
     outcome = told.get("outcome")
     if outcome not in ("passive", "passive in contact", "active"):
@@ -93,6 +99,21 @@ def verifications(document: object) -> list[Part]:
     if outcome != "active" and bounded and told.get("format") != _OF_BOUNDED_HANDS:
         return [_refused(part, outcome, "covers hands within bounds only") for part in found]
     return [_refused(part, outcome, _misfit(part, outcome, told)) for part in found]
+
+
+def _joints(told: Mapping[str, Any]) -> Sequence[object]:
+    """Those of which something is proved."""
+    joints = told.get("joints")
+    if not isinstance(joints, Sequence) or isinstance(joints, str):
+        raise InputError("no evidence found: the document has no joints")
+    found = [
+        joint
+        for joint in joints
+        if not isinstance(joint, Mapping) or joint.get("outcome") != "undecided" or set(EVIDENCE) & set(joint)
+    ]
+    if not found:
+        raise InputError("no evidence found: nothing was proved of any joint")
+    return found
 
 
 def _with_law(part: Part) -> Part:

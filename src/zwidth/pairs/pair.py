@@ -8,6 +8,13 @@ Each side computes, once a sample, from its own reading and from the last one re
 with v the backward difference of x, and holds it.  A reading that is sent at kT arrives a link delay
 later and is used at the next sample: n = ⌈delay/T⌉.
 
+Instead of the other's position, or beside it, a side may be sent the other's coupling force
+c_f = K_f (x_f − x_l') + B_f (v_f − v_l') and render it, r_l times, as it arrives:
+
+    f_l(k) = c_l(k) − r_l c_f(k − n_l) + D_l v_l(k)
+
+With K_l = 0 and r_l = 1 that is position–force coupling, of computed forces; with both it has four channels.
+
 Most arms close their own part of this inside the motor drive, at 10 to 40 kHz, and send each other only
 references, at 50 to 1000 Hz.  With a `drive_rate` x_l and v_l of the leader's own are read at that rate,
 the terms of the other stay what they are for T; and so on the follower's side.
@@ -21,7 +28,6 @@ from typing import Any
 
 from zwidth.device import Device
 from zwidth.errors import InputError
-from zwidth.pairs.compensation import FrictionCompensation
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.quantity.parameter import (
     Certain,
@@ -32,6 +38,7 @@ from zwidth.quantity.parameter import (
     read_number,
 )
 from zwidth.quantity.text import shown
+from zwidth.rendering.force.friction_compensation import FrictionCompensation
 
 LONGEST = 400
 """Samples that a reading may be old where it acts."""
@@ -40,6 +47,7 @@ MOST_READINGS = 1000
 """Of an arm's own in a sample period."""
 
 _EARLY = "a reading cannot arrive before it is sent"
+_ATTRACTS = "the other's force felt with its sign turned round pushes the arms apart"
 _CERTAIN = ("damping", "coulomb_friction", "resolution", "sample_period", "delay")
 
 
@@ -55,10 +63,15 @@ class Side:
         From reading to force [s].
     stiffness, virtual_damping, local_damping
         K, B and D of its controller [N/m, N·s/m; N·m/rad, N·m·s/rad].
+    reflection
+        r: how many times it adds the coupling force of the other.
     link_delay
         Of what it receives [s].
     compensation
         Of its friction, by its own controller.
+    echo_stiffness, echo_damping, return_delay
+        r times K and B of the other, and the delay of what the other receives: its own motion comes back to
+        it with these [N/m, N·s/m, s; N·m/rad, N·m·s/rad, s].
     """
 
     damping: Fraction
@@ -68,8 +81,17 @@ class Side:
     stiffness: Fraction
     virtual_damping: Fraction
     local_damping: Fraction
+    reflection: Fraction
     link_delay: Fraction
     compensation: FrictionCompensation
+    echo_stiffness: Fraction
+    echo_damping: Fraction
+    return_delay: Fraction
+
+    @property
+    def felt_stiffness(self) -> Fraction:
+        """Of the spring to the other arm in all, at rest [N/m; N·m/rad]."""
+        return self.stiffness + self.echo_stiffness
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -84,7 +106,7 @@ class Pair(Parametric):
         The two devices: b, f_c, Δ, T and delay of each, as seen by one hand on each of them.  Both read at
         the same instants and at one rate.
     stiffness
-        K > 0 on both sides, or on the leader's [N/m; N·m/rad].
+        K ≥ 0 on both sides, or on the leader's; 0 where it is felt by `reflection` alone [N/m; N·m/rad].
     damping
         B of the speed of one arm against the other, any sign [N·s/m; N·m·s/rad].
     local_damping
@@ -92,6 +114,9 @@ class Pair(Parametric):
     follower_stiffness, follower_damping, follower_local_damping
         The same on the follower's side, where they differ.  With another stiffness the energy of the
         follower's hand is counted K_l/K_f times, see `power_ratio`.
+    reflection, follower_reflection
+        r ≥ 0 of each side: how many times it adds the coupling force of the other, as it is received.  The
+        follower's is 0 unless it is given.
     delay
         Of the link [s]: a number for each way, or (there, back): from leader to follower, and from follower
         to leader.
@@ -114,8 +139,8 @@ class Pair(Parametric):
     stiffness: Certain = parameter(
         "stiffness",
         kept=Exact,
-        bound="> 0",
-        why="without a spring on both sides the arms do not follow",
+        bound="≥ 0",
+        why="a spring below 0 pushes the arms apart and gives out energy without end",
         meaning="spring between the arms",
     )
     damping: Certain = parameter(
@@ -126,8 +151,8 @@ class Pair(Parametric):
         "stiffness",
         None,
         kept=Exact,
-        bound="> 0",
-        why="a follower that is not felt, or a leader that feels nothing, lets one hand work for the other",
+        bound="≥ 0",
+        why="a spring below 0 pushes the arms apart and gives out energy without end",
         meaning="stiffness on the follower's side, where it is another",
     )
     follower_damping: CertainOrNone = parameter(
@@ -158,6 +183,15 @@ class Pair(Parametric):
         why="leave it out where there is no loop inside the drive",
         meaning="of the loop inside each drive, a whole number of times the device's",
     )
+    reflection: Certain = parameter("reflection", 0, kept=Exact, bound="≥ 0", why=_ATTRACTS)
+    follower_reflection: Certain = parameter(
+        "reflection",
+        0,
+        kept=Exact,
+        bound="≥ 0",
+        why=_ATTRACTS,
+        meaning="how many times the follower adds the leader's coupling force, as it is received",
+    )
     compensation: FrictionCompensation | None = None
     follower_compensation: FrictionCompensation | None = None
 
@@ -172,6 +206,8 @@ class Pair(Parametric):
         follower_stiffness: RealLike | None = None,
         follower_damping: RealLike | None = None,
         follower_local_damping: RealLike | None = None,
+        reflection: RealLike = 0,
+        follower_reflection: RealLike = 0,
         delay: RealLike | tuple[RealLike, RealLike] = 0,
         drive_rate: RealLike | None = None,
         compensation: FrictionCompensation | None = None,
@@ -197,6 +233,8 @@ class Pair(Parametric):
             "follower_stiffness": follower_stiffness,
             "follower_damping": follower_damping,
             "follower_local_damping": follower_local_damping,
+            "reflection": reflection,
+            "follower_reflection": follower_reflection,
             "there": there,
             "back": back,
             "drive_rate": drive_rate,
@@ -210,6 +248,7 @@ class Pair(Parametric):
                     device.exact(key)
                 except InputError as error:
                     raise InputError(f"{name}: {error}") from None
+        self._check_springs()
         self._check_clocks()
 
     def _number(self, name: str, value: Any) -> Exact | None:
@@ -218,6 +257,14 @@ class Pair(Parametric):
         own = parameters_of(Pair)[name]
         said = {"there": "delay there", "back": "delay back"}.get(name, name)
         return Exact(read_number(value, own.quantity, said, bound=own.bound, why=own.why, motion=self.motion))
+
+    def _check_springs(self) -> None:
+        for name, side in zip(("leader", "follower"), self.sides, strict=True):
+            if not side.felt_stiffness:
+                raise InputError(
+                    f"the {name} feels no spring: with a stiffness of 0 it needs a reflection > 0 of the "
+                    "other's force, or the arms do not follow"
+                )
 
     def _check_clocks(self) -> None:
         periods = [device.exact("sample_period") for device in (self.leader, self.follower)]
@@ -274,8 +321,11 @@ class Pair(Parametric):
 
     @property
     def power_ratio(self) -> Fraction:
-        """K_l/K_f: how often the work of the follower's hand counts.  1 where both springs are the same."""
-        return self.sides[0].stiffness / self.sides[1].stiffness
+        """K_l/K_f, reflections added: how often the work of the follower's hand counts.
+
+        1 where both springs are the same.
+        """
+        return self.sides[0].felt_stiffness / self.sides[1].felt_stiffness
 
     @property
     def sides(self) -> tuple[Side, Side]:
@@ -284,13 +334,28 @@ class Pair(Parametric):
         own = (self.follower_stiffness, self.follower_damping, self.follower_local_damping)
         its = [mine if value is None else value.fraction for mine, value in zip(gains, own, strict=True)]
         law, other = self.compensations
-        return _side(self.leader, gains, self.back, law), _side(self.follower, its, self.there, other)
+        links = (self.back.fraction, self.there.fraction)
+        reflections = (self.reflection.fraction, self.follower_reflection.fraction)
+        return (
+            _side(self.leader, (gains, its), reflections[0], links, law),
+            _side(self.follower, (its, gains), reflections[1], links[::-1], other),
+        )
 
     @property
     def compensations(self) -> tuple[FrictionCompensation, FrictionCompensation]:
         """Of leader and follower; of zeros where there is none."""
         law = self.compensation or FrictionCompensation()
         return law, law if self.follower_compensation is None else self.follower_compensation
+
+    @property
+    def felt_stiffness(self) -> Fraction:
+        """Of the spring between the arms in all, as the leader feels it at rest [N/m; N·m/rad]."""
+        return self.sides[0].felt_stiffness
+
+    def stiffened(self, felt: Fraction) -> Pair:
+        """With a spring that the leader feels with this stiffness, both sides in proportion."""
+        leader, follower = (side.stiffness * felt / self.felt_stiffness for side in self.sides)
+        return self.replace(stiffness=Exact(leader), follower_stiffness=Exact(follower))
 
     def replace(self, **changes: Any) -> Pair:
         """The same pair with some arguments changed."""
@@ -303,6 +368,8 @@ class Pair(Parametric):
             "follower_stiffness": self.follower_stiffness,
             "follower_damping": self.follower_damping,
             "follower_local_damping": self.follower_local_damping,
+            "reflection": self.reflection,
+            "follower_reflection": self.follower_reflection,
             "delay": self.delay,
             "drive_rate": self.drive_rate,
             "compensation": self.compensation,
@@ -316,17 +383,22 @@ class Pair(Parametric):
         parts = [f"K = {shown(self.stiffness, unit('stiffness'))}"]
         if self.follower_stiffness is not None:
             parts.append(f"{shown(self.follower_stiffness, unit('stiffness'))} on the follower's side")
-        if self.damping:
-            parts.append(f"B = {shown(self.damping, unit('virtual_damping'))}")
-        if self.local_damping:
-            parts.append(f"D = {shown(self.local_damping, unit('virtual_damping'))}")
+        for symbol, name in (("B", "damping"), ("D", "local_damping")):
+            gain, its = getattr(self, name), getattr(self, f"follower_{name}")
+            if gain or its:
+                parts.append(f"{symbol} = {shown(gain, unit('virtual_damping'))}")
+            if its is not None:
+                parts.append(f"{shown(its, unit('virtual_damping'))} on the follower's side")
+        for name, share in (("leader", self.reflection), ("follower", self.follower_reflection)):
+            if share:
+                parts.append(f"{float(share):g} times the other's coupling force felt by the {name}")
         if self.drive_rate is not None:
             parts.append(f"each arm's own part in its drive at {shown(self.drive_rate, 'Hz')}")
         law, other = self.compensations
         if law or other:
-            parts.append(f"compensation of friction by {law.describe(self.motion)}")
+            parts.append(f"compensation of friction by {law.force_in_words(self.motion)}")
         if other != law:
-            parts.append(f"on the follower's side by {other.describe(self.motion)}")
+            parts.append(f"on the follower's side by {other.force_in_words(self.motion)}")
         there, back = (shown(value, "s") for value in self.delay)
         parts.append(
             f"link delay {there} there, {back} back" if there != back else f"link delay {there} each way"
@@ -337,8 +409,14 @@ class Pair(Parametric):
         return f"<Pair {self.leader.name} and {self.follower.name}: {self.describe()}>"
 
 
-def _side(device: Device, gains: list[Fraction], link: Exact, law: FrictionCompensation) -> Side:
-    stiffness, virtual, local = gains
+def _side(
+    device: Device,
+    gains: tuple[list[Fraction], list[Fraction]],
+    reflection: Fraction,
+    links: tuple[Fraction, Fraction],
+    law: FrictionCompensation,
+) -> Side:
+    (stiffness, virtual, local), (its_stiffness, its_virtual, _) = gains
     return Side(
         damping=device.exact("damping"),
         coulomb_friction=device.exact("coulomb_friction"),
@@ -347,6 +425,10 @@ def _side(device: Device, gains: list[Fraction], link: Exact, law: FrictionCompe
         stiffness=stiffness,
         virtual_damping=virtual,
         local_damping=local,
-        link_delay=link.fraction,
+        reflection=reflection,
+        link_delay=links[0],
         compensation=law,
+        echo_stiffness=reflection * its_stiffness,
+        echo_damping=reflection * its_virtual,
+        return_delay=links[1],
     )

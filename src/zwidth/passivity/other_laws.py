@@ -12,14 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from fractions import Fraction
 
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
-from zwidth.environment.wall import Wall, wall_of
 from zwidth.errors import InputError
 from zwidth.passivity import gap
 from zwidth.passivity.certificate import Certificate
+from zwidth.passivity.covering import covering
 from zwidth.passivity.found import Need
 from zwidth.passivity.scope import Scope, scope_of
 from zwidth.passivity.verdict import Verdict
@@ -117,28 +116,14 @@ def _row(
         bounding = check_bounding(device, law)
         if bounding.certificate is not None:
             return _proved(verdict, bounding.certificate, bounding.scope)
-    covering = covering_wall(device, law)
-    if covering is not None:
-        proved = closed(device, covering)
+    covered = covering(device, law)
+    if covered is not None:
+        proved = closed(*covered)
         if proved.outcome == "passive" and proved.certificate is not None:
             scope = proved.scope.replace(also=(), law=("covered by a wall",))
             return _proved(verdict, proved.certificate, scope, proved.at_limit)
     on_paper = _on_paper(verdict)
     return _by_values(verdict, progress) if on_paper is None else on_paper
-
-
-def covering_wall(device: Device, law: Environment) -> Wall | None:
-    """A wall whose proof, for |f − K u| ≤ B |v|, is one of a wall with laws that add no more than that."""
-    chain, wall, total = laws_of(law), wall_of(law.met), Fraction(0)
-    if not chain or wall is None or wall.damping or wall.clamped:
-        return None
-    for n, link in enumerate(chain):
-        alone = n == 0 and isinstance(wall.stiffness, Exact)
-        bound = link.most_damping(device, wall.stiffness if alone else None)  # type: ignore[arg-type]
-        if bound is None:
-            return None
-        total += bound
-    return wall.replace(damping=total)
 
 
 def _on_paper(verdict: Verdict) -> Verdict | None:

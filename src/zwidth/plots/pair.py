@@ -100,7 +100,7 @@ def damping_boundary(pair: Pair) -> tuple[Array, Array]:
         return PairCriterion(pair.replace(**arms)).holds
 
     ratio = 1 / pair.power_ratio
-    guess = float(pair.stiffness * pair.sample_period)
+    guess = float(pair.felt_stiffness * pair.sample_period)
     equal = smallest_holding(lambda b: holds(b, b * ratio), guess, COARSER) or guess
     found = []
     top = 1.25 * max(3 * equal, *(float(side.damping) for side in pair.sides))
@@ -127,7 +127,7 @@ def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
     delays, stiffness = link_limits(pair)
     seconds, unit = scale([float(delays[-1])], "s")
     ends = seconds * delays
-    top, low = 1.3 * max(float(pair.stiffness), float(stiffness.max())), 0.0
+    top, low = 1.3 * max(float(pair.felt_stiffness), float(stiffness.max())), 0.0
     if 0 < stiffness[stiffness > 0].min(initial=top) < top / _FAR:
         low = float(stiffness[stiffness > 0].min()) / 3
         axes.set_yscale("log")
@@ -139,7 +139,7 @@ def draw_pair_link(axes: Axes, verdict: PairVerdict) -> None:
     axes.set_xlabel(f"link delay, {which} [{unit}]")
     axes.set_ylabel(f"stiffness [{quantity_unit('stiffness', pair.motion)}]")
     axes.set_title("shaded: passive" if stiffness.any() else "none is passive")
-    _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, float(pair.stiffness))
+    _mark(axes, verdict, seconds * float(pair.there + pair.back) / 2, float(pair.felt_stiffness))
 
 
 def link_limits(pair: Pair) -> tuple[Array, Array]:

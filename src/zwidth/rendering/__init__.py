@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from zwidth.rendering.force.damper import Damper as Damper
     from zwidth.rendering.force.dither import Dither as Dither
     from zwidth.rendering.force.event_transient import EventTransient as EventTransient
+    from zwidth.rendering.force.friction_compensation import FrictionCompensation as FrictionCompensation
     from zwidth.rendering.force.hysteresis import Hysteresis as Hysteresis
     from zwidth.rendering.force.rate_term import RateTerm as RateTerm
     from zwidth.rendering.force.saturation import Saturation as Saturation
@@ -124,6 +125,11 @@ LAWS: Mapping[str, Kind] = MappingProxyType(
             "rendering.force.dither",
             "Dither",
             "a small force that carries the command over the converter's steps",
+        ),
+        "friction-compensation": Kind(
+            "rendering.force.friction_compensation",
+            "FrictionCompensation",
+            "a force in the direction of motion that makes the device light to move",
         ),
         "saturation": Kind("rendering.force.saturation", "Saturation", "a force no larger than a limit"),
     }

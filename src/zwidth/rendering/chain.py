@@ -21,9 +21,11 @@ from zwidth.rendering.energy import (
 )
 from zwidth.rendering.force import (
     braking_pulse,
+    compensation_step,
     damper,
     dither,
     event_transient,
+    friction_compensation,
     hysteresis,
     rate_term,
     saturation,
@@ -77,6 +79,8 @@ def after(law: Array, at: int, count: int, memory: Array, slot: int, reading: fl
             force = slew_limit.step(law, at + 3, memory, slot, reading, force, applied)
         elif code == dither.DITHER:
             force = dither.step(law, at + 3, memory, slot, reading, force, applied)
+        elif code == friction_compensation.FRICTION_COMPENSATION:
+            force = compensation_step.step(law, at + 3, memory, slot, reading, force, applied)
         elif code == saturation.SATURATION:
             force = saturation.step(law, at + 3, memory, slot, reading, force, applied)
         elif code == force_bounding.FORCE_BOUNDING:

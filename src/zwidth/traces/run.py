@@ -53,10 +53,11 @@ def available_storage(*args: Any, **kwargs: Any) -> _storage.AvailableStorage:
 
 
 if TYPE_CHECKING:  # a decorator keeps one of several signatures
+    from zwidth.bench.bench import compare as compare
     from zwidth.loop.simulate import simulate as simulate
 else:
+    compare = _with_bar(_bench.compare, "laws")
     simulate = _with_bar(_simulate.simulate, "samples")
 simulate_batch = _with_bar(_batch.simulate_batch, "loops")
-compare = _with_bar(_bench.compare, "laws")
 passive_limit = _with_bar(_limit, "loops")
 identify = _with_bar(_recording.identify, "samples")

@@ -167,6 +167,14 @@ FINE = arm(0, 4)
 COARSE = moved(loop({**FINE, "resolution_m": 2}, FINE), [0, "-1/4", 0], [0, 0, 0])
 COUNTED = moved(loop({**FINE, "resolution_m": 1}, FINE), [0, "-1/8", 0], [0, 0, 0])
 BOTH_COUNTED = moved(loop({**FINE, "resolution_m": "1/2"}), [0, "-1/4", 0], [0, 0, 0])
+# the leader is sent the follower's force, a sample late: b − 1 − 2c, b − 1 and (1 + ζ)(1 + ζ̄) = 2 + 2c
+SENT = proved(
+    loop(arm(5, 0, reflection=1, link_delay_s=1), arm(3, 2)),
+    signs(at_one=3),
+    signs(at_one=1, factor=[2, -1]),
+    signs(at_one=1),
+)
+ITS_OWN = moved(loop(arm("1/2", 0, reflection=1, link_delay_s=1), arm(3, 2)), [0, 1, 1, 0], [0, 0, 0, 0])
 FACTORS, NEGATIVE = "do not multiply", "is not negative at this frequency"
 
 DRAWN = json.loads(Path(__file__).with_name("pairs.json").read_text(encoding="utf-8"))
@@ -207,6 +215,15 @@ CASES = [
         UNEQUAL,
         put(UNEQUAL, {"loop.follower.damping_N_s_per_m": 2 - TINY}),
         FACTORS,
+    ),
+    *edge("a force that is sent", SENT, put(SENT, {"loop.leader.damping_N_s_per_m": 5 - TINY}), FACTORS),
+    accepted("a leader without a spring has no force to send", put(SENT, {"loop.follower.reflection": 3})),
+    refused("a force sent with its sign turned", put(SENT, {"loop.leader.reflection": -1}), "≥ 0"),
+    *edge(
+        "one's own force, sent back",
+        told(ITS_OWN, 1),
+        told(put(ITS_OWN, {"loop.leader.reflection": 1 - TINY}), 1),
+        "energy",
     ),
     *edge("a link", LATE, put(LATE, {"loop.follower.link_delay_s": 1 + TINY}), FACTORS),
     *edge("late forces", LATER, put(LATER, {"loop.follower.damping_N_s_per_m": 14 - TINY}), FACTORS),
@@ -305,7 +322,10 @@ CASES = [
     ),
     refused("a diagonal that is negative", put(SPRING, {"proof.leader.factor": [-1]}), "not multiply"),
     refused("a proof of less", without(SPRING, "proof.both"), "proof.both is missing"),
-    refused("a spring on one side", put(SPRING, {"loop.leader.stiffness_N_per_m": 0}), "must be > 0"),
+    refused(
+        "a spring on one side", put(SPRING, {"loop.leader.stiffness_N_per_m": 0}), "no spring to the other"
+    ),
+    refused("a spring that pushes", put(SPRING, {"loop.leader.stiffness_N_per_m": -1}), "must be ≥ 0"),
     refused(
         "a force that changes inside a sample, undamped",
         put(SPRING, {"loop.leader.delay_s": "1/2", "loop.leader.damping_N_s_per_m": 0}),

@@ -93,6 +93,11 @@ STEEP_DRIVEN = put(
     {"loop.own_readings": 2},
 )
 COUNTED = {"resolution_m": 1}
+# of any mean it takes C + s of damping alone
+WET_MEAN = proved(helped(5, law(0, 1, 0)), *LEVEL, speed="any mean")
+STEEP_MEAN = proved(helped(5, law(2, 0, 2)), *LEVEL, leader=0, follower=0, speed="any mean")
+DRIVEN_MEAN = put(proved(helped(4, law(0, 1, 0)), *LEVEL, speed="any mean"), {"loop.own_readings": 2})
+WET_MEAN_COUNTED = put(WET_MEAN, {"loop": helped(5, law(0, 1, 0), **COUNTED, coulomb_friction_N=5)})
 # half a count of each reading: own taps K − C and C, or K − 1/2 and 1/2 and as much again for what is no line
 WET_COUNTED = proved(helped(5, law(0, 1, 0), **COUNTED, coulomb_friction_N=4), *VISCOUS)
 STEEP_COUNTED = put(STEEP, {"loop": helped(5, law(2, 0, 2), **COUNTED, coulomb_friction_N="9/2")})
@@ -216,6 +221,7 @@ CASES = [
             ("C, drives and encoders", DRIVEN_COUNTED),
             ("at rest, drives and encoders", STEEP_DRIVEN_COUNTED),
             ("at rest and encoders, every other second", STEEP_SLOW),
+            ("C of any mean and encoders", WET_MEAN_COUNTED),
         )
         for case in edge(
             name,
@@ -232,6 +238,22 @@ CASES = [
             encoder="counted",
         )
     ),
+    *edge(
+        "C of any mean", WET_MEAN, put(WET_MEAN, {"loop.leader.compensation": law(0, 1 + TINY, 0)}), FACTORS
+    ),
+    *edge(
+        "at rest, of any mean",
+        STEEP_MEAN,
+        put(STEEP_MEAN, {"loop.follower.compensation": law(2 + TINY, 0, 2)}),
+        FACTORS,
+    ),
+    *edge(
+        "C of any mean beside a drive",
+        DRIVEN_MEAN,
+        put(DRIVEN_MEAN, {"loop.leader.compensation": law(0, 1 + TINY, 0)}),
+        FACTORS,
+    ),
+    refused("another mean", put(WET_MEAN, {"proof.tangents.speed": "some mean"}), "last move or any mean"),
     refused(
         "all damping taken from a force that changes inside a sample",
         proved(LATE, *LEVEL, leader=0, follower=0),

@@ -153,6 +153,27 @@ def test_a_round_that_is_large_enough_knows_nothing_of_tanh():
     assert verdict.witness.verify()
 
 
+@seeds(20)
+def test_any_mean_of_past_moves_is_covered_by_the_wider_proof(seed):
+    """It takes C + s of damping and none of local damping: never less than the proof of the last move."""
+    random = np.random.default_rng(seed)
+    pair = PAIR.replace(
+        damping=f"{random.choice([0, 0.2, 0.3]):.1f}",
+        drive_rate=random.choice([None, 5000]),
+        compensation=LAW.scaled(Fraction(int(random.integers(1, 14)), 10)),
+    )
+    wider, narrower = spending(pair, any_mean=True), spending(pair)
+    verdict = zw.check(pair)
+    assert verdict.passive is narrower.proves
+    assert narrower.proves or not wider.proves
+    if verdict.passive:
+        assert verdict.certificate.any_mean is wider.proves
+        assert verdict.certificate.verify()
+    for theta in random.uniform(0, np.pi, 5):
+        gap = np.diag(narrower.at(theta) - wider.at(theta)).real
+        assert (gap >= -1e-9).all()
+
+
 def test_encoders_are_paid_first():
     """F ≤ f_c − e costs no damping; of C half a count each way is in e."""
     arm = ARM.replace(resolution="1e-4", coulomb_friction="0.5")
@@ -234,7 +255,9 @@ def test_it_is_told():
     """In the description of the pair, in what is taken for granted, and in the numbers."""
     verdict = zw.check(PAIR)
     assert "compensation of friction by 0.3 N tanh(v/(0.35 m/s)) and 0.06 N·s/m" in PAIR.describe()
-    assert "mean speed of each arm since its last sample" in " ".join(verdict.assumptions)
+    assert "any mean of each arm's moves over past samples" in " ".join(verdict.assumptions)
+    taken = zw.check(with_share(PAIR, Fraction(2)))
+    assert "mean speed of each arm since its last sample" in " ".join(taken.assumptions)
     numbers = verdict.to_dict()
     assert numbers["largest_compensation"] == verdict.largest_compensation
     taken = numbers["compensation_takes"]["leader"]

@@ -21,8 +21,10 @@ BILLIONTH = Fraction(1, 10**9)
 PADDLE = zw.Device(damping="0.5", coulomb_friction="0.1", resolution=0, delay=0, rate="1 kHz")
 
 
-def random_pair(seed: int, parts: bool = True, counted: bool = False, drives: bool = False) -> zw.Pair:
-    """Any two arms of 1 kHz, K = 1 N/m."""
+def random_pair(
+    seed: int, parts: bool = True, counted: bool = False, drives: bool = False, reflected: bool = False
+) -> zw.Pair:
+    """Any two arms of 1 kHz, K = 1 N/m; with forces that are sent, if so wanted."""
     random = np.random.default_rng(seed)
 
     def arm() -> zw.Device:
@@ -36,7 +38,7 @@ def random_pair(seed: int, parts: bool = True, counted: bool = False, drives: bo
             delay=f"{delay / 1000:.5f}",
         )
 
-    return zw.Pair(
+    pair = zw.Pair(
         arm(),
         arm(),
         stiffness=1,
@@ -46,11 +48,18 @@ def random_pair(seed: int, parts: bool = True, counted: bool = False, drives: bo
         delay=tuple(f"{random.uniform(0, 0.003):.4f}" for _ in (0, 1)),
         drive_rate=1000 * int(random.integers(2, 6)) if drives else None,
     )
+    if not reflected:
+        return pair
+    return pair.replace(
+        stiffness=f"{random.choice([0, 0, 0.5]):.1f}",
+        reflection=f"{random.choice([1, 0.4]):.1f}",
+        follower_reflection=f"{random.choice([0, 0, 0.3]):.1f}",
+    )
 
 
 def stiffer(pair: zw.Pair, stiffness: Fraction) -> zw.Pair:
     """Both springs in proportion."""
-    return pair.replace(stiffness=stiffness, follower_stiffness=stiffness / pair.power_ratio)
+    return pair.stiffened(stiffness)
 
 
 def limit_of(pair: zw.Pair) -> Fraction | None:
@@ -58,6 +67,11 @@ def limit_of(pair: zw.Pair) -> Fraction | None:
     found = largest_holding(lambda k: not k or PairCriterion(stiffer(pair, k)).holds, 1.0)
     exact = Fraction(repr(found)) if found else None
     return exact if exact and PairCriterion(stiffer(pair, exact / 2)).holds else None
+
+
+def age_of(pair: zw.Pair, i: int) -> int:
+    """Of what arm i receives, in samples."""
+    return int(np.ceil(float(pair.sides[i].link_delay / pair.sample_period) - 1e-12))
 
 
 def form_of_work(pair: zw.Pair, samples: int) -> np.ndarray:
@@ -74,20 +88,26 @@ def form_of_work(pair: zw.Pair, samples: int) -> np.ndarray:
     def reading(i: int, k: int) -> np.ndarray:
         return x[max(k, 0), i]
 
+    def coupling(i: int, k: int, finer: int) -> np.ndarray:
+        """Of arm i at reading k, its own speed over so many readings."""
+        side = pair.sides[i]
+        K, B = float(side.stiffness), float(side.virtual_damping)
+        sent = often * (k // often - age_of(pair, i))
+        own, was = reading(i, k), reading(i, k - finer)
+        other, old = reading(1 - i, sent), reading(1 - i, sent - often)
+        return K * (own - other) + B * ((own - was) / finer - (other - old) / often) / step
+
     total = np.zeros((size, size))
     for i, side in enumerate(pair.sides):
         weight = 1.0 if i == 0 else float(pair.power_ratio)
-        K, B, D = (float(v) for v in (side.stiffness, side.virtual_damping, side.local_damping))
-        age = int(np.ceil(float(side.link_delay / pair.sample_period) - 1e-12))
+        D, share = float(side.local_damping), float(side.reflection)
         whole = int(side.delay // pair.sample_period)
         part = float(side.delay / pair.sample_period - whole)
         forces = [np.zeros(size)] * (whole + 1)
         for k in range(moves):
-            own, was = reading(i, k), reading(i, k - 1)
-            sent = often * (k // often - age)
-            other, old = reading(1 - i, sent), reading(1 - i, sent - often)
-            mine = K * own + (B + D) * (own - was) / step
-            forces.append(mine - K * other - B * (other - old) / (often * step))
+            sent = often * (k // often - age_of(pair, i))
+            local = D * (reading(i, k) - reading(i, k - 1)) / step
+            forces.append(coupling(i, k, 1) + local - share * coupling(1 - i, sent, often))
         for k in range(moves):
             for n, length in enumerate((part, 1 - part)):
                 move = unit[k, i, n]
@@ -96,11 +116,12 @@ def form_of_work(pair: zw.Pair, samples: int) -> np.ndarray:
     return (total + total.T) / 2
 
 
+@pytest.mark.parametrize("reflected", [False, True])
 @pytest.mark.parametrize("drives", [False, True])
 @pytest.mark.parametrize("seed", range(12))
-def test_short_motions_against_the_limit(seed, drives):
+def test_short_motions_against_the_limit(seed, drives, reflected):
     """The form of them all, made from the definitions, is nowhere negative just below, and is well above."""
-    pair = random_pair(seed, drives=drives)
+    pair = random_pair(seed, drives=drives, reflected=reflected)
     limit = limit_of(pair)
     if limit is None:
         return
@@ -142,20 +163,26 @@ def taken(pair: zw.Pair, paths: list[list[Fraction]], turns: list[list[Fraction]
     for side, path in zip(pair.sides, paths, strict=True):
         count = side.resolution
         read.append([float(count * (x // count) if count else x) for x in path])
+
+    def coupling(i: int, k: int, finer: int) -> float:
+        side = pair.sides[i]
+        K, B = float(side.stiffness), float(side.virtual_damping)
+        sent = often * (k // often - age_of(pair, i))
+        own, was = (read[i][max(at, 0)] for at in (k, k - finer))
+        other, old = (read[1 - i][max(at, 0)] for at in (sent, sent - often))
+        return K * (own - other) + B * ((own - was) / finer - (other - old) / often) / step
+
     for i, side in enumerate(pair.sides):
         weight = 1.0 if i == 0 else float(pair.power_ratio)
-        K, B, D = (float(v) for v in (side.stiffness, side.virtual_damping, side.local_damping))
-        age = int(np.ceil(float(side.link_delay / pair.sample_period) - 1e-12))
+        D, share = float(side.local_damping), float(side.reflection)
         whole = int(side.delay // pair.sample_period)
         part = float(side.delay / pair.sample_period - whole)
-        own, its = read[i], read[1 - i]
+        own = read[i]
         forces = [0.0] * (whole + 1)
         for k in range(len(own) - 1):
-            sent = often * (k // often - age)
-            other, old = (its[max(at, 0)] for at in (sent, sent - often))
-            was = own[max(k - 1, 0)]
-            forces.append(K * (own[k] - other) + B * ((own[k] - was) / step - (other - old) / (often * step)))
-            forces[-1] += D * (own[k] - was) / step
+            sent = often * (k // often - age_of(pair, i))
+            local = D * (own[k] - own[max(k - 1, 0)]) / step
+            forces.append(coupling(i, k, 1) + local - share * coupling(1 - i, sent, often))
         for k in range(len(own) - 1):
             x, y, z = (
                 float(v) for v in (paths[i][k], turns[i][k] if turns[i] else paths[i][k], paths[i][k + 1])
@@ -166,11 +193,15 @@ def taken(pair: zw.Pair, paths: list[list[Fraction]], turns: list[list[Fraction]
     return total
 
 
+@pytest.mark.parametrize("reflected", [False, True])
 @pytest.mark.parametrize("drives", [False, True])
 @seeds(15)
-def test_energy_of_any_motion_by_the_definitions(drives, seed):
+def test_energy_of_any_motion_by_the_definitions(drives, reflected, seed):
     """Encoders, friction, delays, parts that lead on many times: the sums are those of all rounds."""
-    pair, random = random_pair(seed, drives=drives, counted=True), np.random.default_rng(seed)
+    pair, random = (
+        random_pair(seed, drives=drives, reflected=reflected, counted=True),
+        np.random.default_rng(seed),
+    )
     often, motions = pair.own_readings, []
     arms = PairCriterion(pair).arms
     for arm in arms:
@@ -188,11 +219,12 @@ def test_energy_of_any_motion_by_the_definitions(drives, seed):
     assert float(energy) == pytest.approx(by_definition, rel=1e-9)
 
 
+@pytest.mark.parametrize("reflected", [False, True])
 @pytest.mark.parametrize("drives", [False, True])
 @seeds(20)
-def test_prover_and_checker_have_one_criterion(drives, seed):
+def test_prover_and_checker_have_one_criterion(drives, reflected, seed):
     """Made by other steps: the checker's is that of the prover times 2 − 2c, and its square."""
-    pair = random_pair(seed, drives=drives)
+    pair = random_pair(seed, drives=drives, reflected=reflected)
     told = PAIR_PROOF.fields["loop"].read(pair_document(pair), "", "linear")
     factor = fmpz_poly([2, -2])
     theirs = criterion(told, sides_of(told))
@@ -206,11 +238,12 @@ def test_prover_and_checker_have_one_criterion(drives, seed):
         assert a[a.degree()] * b[b.degree()] > 0
 
 
+@pytest.mark.parametrize("reflected", [False, True])
 @pytest.mark.parametrize("drives", [False, True])
 @seeds(8)
-def test_both_sides_of_the_limit(drives, seed):
+def test_both_sides_of_the_limit(drives, reflected, seed):
     """At K (1 − 1e-9) the checker accepts the certificate; at K (1 + 1e-9) a motion of both hands gains."""
-    pair = random_pair(seed, drives=drives)
+    pair = random_pair(seed, drives=drives, reflected=reflected)
     limit = limit_of(pair)
     if limit is not None:
         below = zw.check(stiffer(pair, limit * (1 - BILLIONTH)))
@@ -254,6 +287,34 @@ def test_springs_have_a_closed_form():
     for seed in range(40):
         pair = random_pair(seed, parts=False).replace(damping=0, local_damping=0)
         assert float(largest_spring(pair)) == pytest.approx(float(limit_of(pair)), rel=1e-14)
+
+
+@pytest.mark.parametrize("ages", [(0, 0), (1, 0), (2, 3)])
+@pytest.mark.parametrize("shares", [(1, 0), ("0.5", 0), (1, "0.5")])
+def test_springs_whose_force_is_sent(ages, shares):
+    """(b_l − κ Σ (2 lag + 1) K)(w b_f − …) ≥ (N S κ)²: what comes back is as old as there and back."""
+    ratio, n = Fraction(shares[0]), sum(ages) + 1
+    back = Fraction(shares[1])
+    pair = zw.Pair(
+        PADDLE,
+        PADDLE.replace(damping="0.8"),
+        stiffness=0,
+        follower_stiffness=1,
+        reflection=ratio,
+        follower_reflection=back,
+        delay=tuple(Fraction(age, 1000) for age in ages),
+    )
+    found = limit_of(pair)
+    weight = pair.power_ratio
+    assert weight == ratio, "the leader's spring is that which is sent to it"
+    kappa = found / 2000 / ratio  # K_f T/2
+    leader = Fraction(1, 2) - kappa * ratio * (2 * n - 1)
+    follower = weight * (Fraction(4, 5) - kappa)
+    assert float(leader * follower) == pytest.approx(float(n * ratio * kappa) ** 2, rel=1e-9)
+    if ages == (0, 0):  # without any delay it is the same as positions sent
+        assert found == pytest.approx(
+            limit_of(pair.replace(stiffness=ratio, reflection=0, follower_reflection=0))
+        )
 
 
 def test_equal_arms_need_the_delay_and_a_sample():
@@ -390,9 +451,11 @@ def test_a_verdict_tells_what_is_needed():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"stiffness": 0}, "stiffness must be > 0"),
+        ({"stiffness": 0}, "the leader feels no spring"),
         ({"stiffness": "3 N*m/rad"}, "stiffness"),
-        ({"follower_stiffness": -1}, "follower_stiffness must be > 0"),
+        ({"follower_stiffness": -1}, "follower_stiffness must be ≥ 0"),
+        ({"follower_stiffness": 0}, "the follower feels no spring"),
+        ({"reflection": -1}, "reflection must be ≥ 0"),
         ({"delay": (-1, 0)}, "delay there must be ≥ 0"),
         ({"delay": 1}, "at most 400"),
         ({"delay": "soon"}, "delay there"),

@@ -9,6 +9,9 @@ tanh is concave for v > 0, so each of its tangents lies above it: at tanh = r
 and r = 1 is h = F, s = 0.  As 0 ≤ F tanh for v > 0, what is left of it beside s v/2 is at most h + s v/2: by
 Cauchy–Schwarz it takes no more than h of Coulomb friction and s/2 of damping.  The rest, (C + s/2) v̂, is a
 local damping of minus that (docs/theory/pairs.md).
+
+All of h + (C + s) |v̂| takes no more than h and C + s, if v̂ is any mean of past moves with fixed weights whose
+sizes add up to 1 at most: then it is in the mean of squares no more than the speed.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ..document.effort import spend
-from ..document.fields import Number, Read, Record
+from ..document.fields import Choice, Number, Read, Record
 from ..document.refusal import Invalid
 from ..document.unit import DAMPING, FORCE, SPEED
 
@@ -30,9 +33,13 @@ COMPENSATION = Record(
     default=None,
 )
 TANGENTS = Record(
-    {name: Number(least=0, most=1, default=Fraction(1)) for name in ("leader", "follower")}, default=None
+    {
+        **{name: Number(least=0, most=1, default=Fraction(1)) for name in ("leader", "follower")},
+        "speed": Choice("last move", "any mean", default="last move"),
+    },
+    default=None,
 )
-"""The r of each arm."""
+"""The r of each arm, and what v̂ is."""
 
 BITS = 128
 """Of tanh in a motion that is run again."""
@@ -42,26 +49,29 @@ _BITS = 192
 
 
 class Line(NamedTuple):
-    """What a tangent spends: h of Coulomb friction, and s."""
+    """What a tangent takes: h of Coulomb friction, of damping, and of local damping."""
 
     height: Fraction
-    slope: Fraction
+    still: Fraction
+    moving: Fraction
 
 
-NO_LINE = Line(Fraction(0), Fraction(0))
+NO_LINE = Line(Fraction(0), Fraction(0), Fraction(0))
 
 
-def line_of(law: Read | None, r: Fraction) -> Line:
-    """The tangent at r of F tanh(v/v_s), its height rounded up."""
+def line_of(law: Read | None, r: Fraction, speed: str = "last move") -> Line:
+    """The tangent at r of F tanh(v/v_s), its height rounded up, and C."""
     if law is None:
         return NO_LINE
-    most, speed = law.compensated_coulomb_friction, law.compensation_speed
-    if r == 1:
-        return Line(most, Fraction(0))
-    if not speed:
-        raise Invalid("compensation in the direction of motion at any speed has no tangent below 1")
-    rest = 1 - r**2
-    return Line(most * (r - rest * artanh_below(r)), most / speed * rest)
+    most, height, slope = law.compensated_coulomb_friction, law.compensated_coulomb_friction, Fraction(0)
+    if r < 1:
+        if not law.compensation_speed:
+            raise Invalid("compensation in the direction of motion at any speed has no tangent below 1")
+        rest = 1 - r**2
+        height, slope = most * (r - rest * artanh_below(r)), most / law.compensation_speed * rest
+    if speed == "any mean":
+        return Line(height, law.compensated_damping + slope, Fraction(0))
+    return Line(height, slope / 2, law.compensated_damping + slope / 2)
 
 
 def artanh_below(r: Fraction) -> Fraction:

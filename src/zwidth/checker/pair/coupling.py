@@ -35,9 +35,10 @@ SIDE = Record(
         "coulomb_friction": Number(FORCE, least=0),
         "resolution": Number(LENGTH, least=0),
         "delay": Number(SECONDS, least=0),
-        "stiffness": Number(STIFFNESS, above=0),
+        "stiffness": Number(STIFFNESS, least=0),
         "virtual_damping": Number(DAMPING),
         "local_damping": Number(DAMPING),
+        "reflection": Number(least=0, default=Fraction(0)),
         "link_delay": Number(SECONDS, least=0),
         "compensation": COMPENSATION,
     },
@@ -56,7 +57,8 @@ PAIR = Record(
 class Side(NamedTuple):
     """One device: its friction and encoder, and what its force is made of.
 
-    `own` and `other` in ascending powers of ζ, the other's as old as it is where it arrives, `age`; the force
+    `own` and `other` in ascending powers of ζ, the other's as old as it is where it arrives, `age`; `echo` is
+    what of its own comes back with the other's force, older still, `echo_age`; the force
     comes `whole` + `part` samples later.  `weight` is how often its work counts, `law` its compensation.
     """
 
@@ -66,6 +68,8 @@ class Side(NamedTuple):
     own: list[Fraction]
     other: list[Fraction]
     age: int
+    echo: list[Fraction]
+    echo_age: int
     whole: int
     part: Fraction
     weight: Fraction
@@ -74,30 +78,43 @@ class Side(NamedTuple):
 
 def sides_of(told: Read) -> tuple[Side, Side]:
     """Leader and follower."""
-    ratio = told.leader.stiffness / told.follower.stiffness
+    leader, follower = (
+        side.stiffness + side.reflection * other.stiffness
+        for side, other in ((told.leader, told.follower), (told.follower, told.leader))
+    )
+    if not (leader and follower):
+        raise Invalid("there is no spring to the other arm on one side")
+    ratio = leader / follower
     period, often = told.sample_period, told.own_readings
     if often > 1 and (told.leader.delay or told.follower.delay):
         raise Invalid("the force of a drive that reads its arm more often must come without delay")
-    return _side(told.leader, period, often, Fraction(1)), _side(told.follower, period, often, ratio)
+    return (
+        _side(told.leader, told.follower, period, often, Fraction(1)),
+        _side(told.follower, told.leader, period, often, ratio),
+    )
 
 
-def _side(told: Read, period: Fraction, often: int, weight: Fraction) -> Side:
+def _side(told: Read, other: Read, period: Fraction, often: int, weight: Fraction) -> Side:
     whole, age = told.delay // period, -(-told.link_delay // period)
     if whole > MOST_AGE or age > MOST_AGE:
         raise Invalid(f"a reading is more than {MOST_AGE} samples old where it acts")
     shared = told.virtual_damping / period
     mine = often * (shared + told.local_damping / period)
+    back = told.reflection * other.virtual_damping / period
+    spring = told.reflection * other.stiffness
     side = Side(
         told.damping,
         told.coulomb_friction,
         told.resolution,
         [told.stiffness + mine, -mine],
-        [-told.stiffness - shared, shared],
+        [-told.stiffness - spring - shared - back, shared + back],
         int(age),
+        [spring + back, -back],
+        int(age - (-other.link_delay // period)),
         int(whole),
         told.delay / period - whole,
         weight,
         told.compensation,
     )
-    common_scale((*side.own, *side.other, side.damping, side.part, period, weight))
+    common_scale((*side.own, *side.other, *side.echo, side.damping, side.part, period, weight))
     return side

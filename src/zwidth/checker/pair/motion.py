@@ -35,7 +35,8 @@ def pair_stored_at_start(told: Read) -> Fraction:
     """K_l (Δ_l + Δ_f)²/8: what the spring between two readings may hold where both arms are at 0."""
     leader, follower = told.loop.leader, told.loop.follower
     steps: Fraction = leader.resolution + follower.resolution
-    return Fraction(leader.stiffness * steps**2 / 8)
+    felt: Fraction = leader.stiffness + leader.reflection * follower.stiffness
+    return felt * steps**2 / 8
 
 
 def pair_motion_energy(told: Read) -> Fraction:
@@ -57,7 +58,7 @@ def pair_motion_energy(told: Read) -> Fraction:
     per_unit = common_scale(
         [*(v for path in (*paths, *turns) for v in path), *(side.resolution for side in sides)], MOST_BITS
     )
-    taps = common_scale([c for side in sides for c in (*side.own, *side.other)])
+    taps = common_scale([c for side in sides for c in (*side.own, *side.other, *side.echo)])
 
     def whole(values: Sequence[Fraction]) -> list[int]:
         return [int(v * per_unit) for v in values]
@@ -86,7 +87,8 @@ class _Arm:
     ) -> None:
         self.side, self.x, self.turns, self.per_unit, self.period = side, x, turns, per_unit, period
         self.count = int(side.resolution * per_unit)
-        self.own, self.other = ([int(c * taps) for c in part] for part in (side.own, side.other))
+        parts = (side.own, side.other, side.echo)
+        self.own, self.other, self.echo = ([int(c * taps) for c in part] for part in parts)
         self.read = [0, 0]  # the newest first
         self.sent: list[int] = []  # of those, what the other side may still need; made by `_run`
         self.told = 0  # what the other's readings add to the force, until it hears again
@@ -110,7 +112,9 @@ class _Arm:
     def hear(self, partner: _Arm) -> None:
         """Take what has arrived of the other."""
         heard = partner.sent[self.side.age : self.side.age + 2]
-        self.told = sum(c * v for c, v in zip(self.other, heard, strict=True))
+        back = self.sent[self.side.echo_age : self.side.echo_age + 2]
+        parts = (*self.other, *self.echo), (*heard, *back)
+        self.told = sum(c * v for c, v in zip(*parts, strict=True))
 
     def push(self) -> None:
         """Compute the force and send it on its way."""
@@ -178,7 +182,7 @@ class _Arm:
 def _run(arms: Sequence[_Arm], repeats: Sequence[Read], often: int) -> None:
     """Sample by sample, and repeated parts in closed form once nothing older is remembered."""
     for arm in arms:
-        arm.sent = [0] * (max(arm.side.age for arm in arms) + 2)
+        arm.sent = [0] * (max(arm.side.echo_age for arm in arms) + 2)
     before = 0
     for part in repeats:
         _forward(arms, before, part.first, often)
@@ -235,7 +239,8 @@ def _skip(
     for arm, advance, its, (work, path, early, late, helped, pushed) in zip(
         arms, advances, advances[::-1], before, strict=True
     ):
-        push = sum(arm.own) * advance + sum(arm.other) * its
+        told = sum(arm.other) * its + sum(arm.echo) * advance
+        push = sum(arm.own) * advance + told
         spend(
             12 + len(arm.sent) + len(arm.forces),
             left.bit_length() + advance.bit_length(),
@@ -250,5 +255,5 @@ def _skip(
         arm.ahead += left * advance
         arm.read = [v + left * advance for v in arm.read]
         arm.sent = [v + left * advance for v in arm.sent]
-        arm.told += left * sum(arm.other) * its
+        arm.told += left * told
         arm.forces = [f + left * push for f in arm.forces]

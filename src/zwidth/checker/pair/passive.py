@@ -99,7 +99,10 @@ def _lines(told: Read, sides: tuple[Side, Side]) -> tuple[Line, Line]:
     leader, follower = sides
     if given is None:
         return NO_LINE, NO_LINE
-    return line_of(leader.law, given.leader), line_of(follower.law, given.follower)
+    return (
+        line_of(leader.law, given.leader, given.speed),
+        line_of(follower.law, given.follower, given.speed),
+    )
 
 
 def pair_violation(told: Read) -> str:
@@ -107,7 +110,7 @@ def pair_violation(told: Read) -> str:
     sides = sides_of(told.loop)
     lines = [line_of(side.law, Fraction(1)) for side in sides]
     found = criterion(told.loop, sides, lines)
-    if found is None and any(_viscous(side) for side in sides):
+    if found is None and any(line.moving for line in lines):
         raise Invalid(
             "an arm gains by itself inside a sample, unless compensation of its viscous friction brakes"
         )
@@ -126,24 +129,19 @@ def _errors(told: Read, sides: Sequence[Side], lines: Sequence[Line]) -> Iterato
     period, often = told.sample_period, told.own_readings
     spent = [_spent(side, line, period, often) for side, line in zip(sides, lines, strict=True)]
     for side, other, line in zip(spent, spent[::-1], lines, strict=True):
-        mine, its = (sum(map(abs, taps)) for taps in (side.own, side.other))
-        unsure = line.slope / 2 / period
-        if often > 1:
-            unsure += (_viscous(side) + line.slope / 2) / period
+        taps = readings(side)[0].values() if often == 1 else (*side.own, *side.echo)
+        mine, its = sum(map(abs, taps)), sum(map(abs, side.other))
+        unsure = (line.still if often == 1 else line.still + line.moving) / period
         yield (mine * side.resolution + its * other.resolution) / 2 + unsure * side.resolution
 
 
-def _viscous(side: Side) -> Fraction:
-    return Fraction(0) if side.law is None else Fraction(side.law.compensated_damping)
-
-
 def _spent(side: Side, line: Line, period: Fraction, often: int) -> Side:
-    """With s/2 less damping, and C + s/2 less local damping, both as quick as the rest."""
+    """With less damping and local damping, which are both as quick as the rest; a drive's are quicker."""
     if side.law is None or often > 1:
         return side
-    less = (_viscous(side) + line.slope / 2) / period
+    less = line.moving / period
     newest, last = side.own
-    return side._replace(damping=side.damping - line.slope / 2, own=[newest - less, last + less])
+    return side._replace(damping=side.damping - line.still, own=[newest - less, last + less])
 
 
 def criterion(
@@ -210,31 +208,49 @@ def _driven(told: Read, sides: Sequence[Side], lines: Sequence[Line], crossed: L
     for place, (side, line) in enumerate(zip(sides, lines, strict=True)):
         if side.law is not None:
             tops[place] = _helped(tops[place], bottoms[place], side, line)
-    scale = common_scale([*crossed.values(), *(c for line in (*tops, *bottoms) for c in line)], _MOST_BITS)
+    backs = [_back(side, told.sample_period) for side in sides]
+    coefficients = [*crossed.values(), *(c for back in backs for c in back.values())]
+    scale = common_scale([*coefficients, *(c for line in (*tops, *bottoms) for c in line)], _MOST_BITS)
     (top, its_top), (bottom, its_bottom) = (
         [[int(c * scale) for c in line] for line in lines] for lines in (tops, bottoms)
     )
     square = square_in_cosine({k: int(c * scale) for k, c in crossed.items()})
-    first, second = (multiply(line, [2, -2]) for line in (top, its_top))
+    first, second = (
+        _with_back(multiply(line, [2, -2]), under, {k: int(c * scale) for k, c in back.items()}, scale)
+        for line, under, back in zip((top, its_top), (bottom, its_bottom), backs, strict=True)
+    )
     spend(9 * len(square), bits(square) + 2 * bits(bottom), bits(bottom))
-    product = [scale**2 * c for c in multiply(first, second)]
+    product = multiply(first, second)
     lost = multiply(square, multiply(bottom, its_bottom))
     width = max(len(product), len(lost))
     both = [a - b for a, b in zip(_padded(product, width), _padded(lost, width), strict=True)]
     return Criterion(first, second, both)
 
 
+def _back(side: Side, period: Fraction) -> Laurent:
+    """What the readings that come back add to the form, once a sample, times |1 − ζ|²."""
+    echo = from_ascending(side.echo, side.echo_age + 1)
+    return weighted((side.weight * period, times(echo, conjugate(_STEP))))
+
+
+def _with_back(top: list[int], bottom: list[int], back: dict[int, int], scale: int) -> list[int]:
+    spend(len(back) * len(bottom), scale.bit_length(), bits(bottom))
+    found, more = [scale * c for c in top], multiply(in_cosine(back), bottom)
+    width = max(len(found), len(more))
+    return [a + b for a, b in zip(_padded(found, width), _padded(more, width), strict=True)]
+
+
 def _helped(top: list[Fraction], bottom: list[Fraction], side: Side, line: Line) -> list[Fraction]:
-    """What is left of a top once compensation has taken s/2 + (C + s/2) c from top/bottom."""
-    still, slope = (side.weight * v for v in (line.slope / 2, _viscous(side) + line.slope / 2))
+    """What is left of a top once compensation, computed once in T, has taken its part of top/bottom."""
+    still, moving = side.weight * line.still, side.weight * line.moving
     (a, b), (p, q) = top, bottom
-    return [a - still * p, b - still * q - slope * p, -slope * q]
+    return [a - still * p, b - still * q - moving * p, -moving * q]
 
 
 def _row(side: Side, period: Fraction) -> tuple[Laurent, Laurent]:
     """gᵢᵢ and gᵢⱼ."""
     mixed = from_ascending([1 - side.part, side.part], side.whole + 1)
-    own, other = from_ascending(side.own), from_ascending(side.other, side.age)
+    own, other = readings(side)
     rubbed = weighted((side.weight * side.damping, _STEP))
     gain = side.weight * period
     return weighted((1, rubbed), (gain, times(mixed, own))), weighted((gain, times(mixed, other)))
@@ -245,7 +261,13 @@ def _inside(side: Side, period: Fraction) -> tuple[Fraction, Laurent, Laurent]:
     if not side.part:
         return Fraction(0), {}, {}
     loss = side.weight * period**2 * side.part * (1 - side.part) / (4 * side.damping)
-    return loss, from_ascending(side.own), from_ascending(side.other, side.age)
+    return loss, *readings(side)
+
+
+def readings(side: Side) -> tuple[Laurent, Laurent]:
+    """The row of all its own readings, and of the other's."""
+    own, echo = from_ascending(side.own), from_ascending(side.echo, side.echo_age)
+    return weighted((1, own), (1, echo)), from_ascending(side.other, side.age)
 
 
 def _padded(a: list[int], width: int) -> list[int]:

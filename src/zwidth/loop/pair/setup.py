@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from math import ceil
 from typing import TYPE_CHECKING
 
@@ -20,7 +19,7 @@ from zwidth.loop.pair.kernel import Arm, Law
 from zwidth.loop.plant import FORCE, GOAL, POSITION, STATE_SIZE, Plant
 from zwidth.loop.setup import Frame, frame_of
 from zwidth.operator.operator import Operator, Signals
-from zwidth.pairs import Pair, Side
+from zwidth.pairs import Pair
 from zwidth.quantity.exact import Exact, RealLike
 
 if TYPE_CHECKING:
@@ -206,16 +205,17 @@ def _law(pair: Pair, here: int, frame: Frame, phase: float) -> Law:
     side = pair.sides[here]
     period = pair.sample_period
     past = pair.own_readings * (side.virtual_damping + side.local_damping) / period
-    heard = side.virtual_damping / period
+    back = side.echo_damping / period
+    heard = side.virtual_damping / period + back
     return Law(
         own=float(side.stiffness + past),
         own_before=-float(past),
-        heard=-float(side.stiffness + heard),
+        heard=-float(side.felt_stiffness + heard),
         heard_before=float(heard),
-        age=_age(side, period),
-        echo=0.0,
-        echo_before=0.0,
-        echo_age=0,
+        age=ceil(side.link_delay / period),
+        echo=float(side.echo_stiffness + back),
+        echo_before=-float(back),
+        echo_age=ceil(side.link_delay / period) + ceil(side.return_delay / period),
         coulomb=float(side.compensation.coulomb),
         viscous=float(side.compensation.viscous),
         speed=float(side.compensation.speed),
@@ -225,10 +225,6 @@ def _law(pair: Pair, here: int, frame: Frame, phase: float) -> Law:
         step=frame.actuation.step,
         limit=frame.actuation.limit,
     )
-
-
-def _age(side: Side, period: Fraction) -> int:
-    return ceil(side.link_delay / period)
 
 
 def _settle(arm: Arm, other: Arm) -> None:

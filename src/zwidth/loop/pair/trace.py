@@ -148,4 +148,4 @@ def stored_at_start(setup: PairSetup) -> float:
     """
     leader, follower = (float(arm.record[POSITION, 0]) for arm in setup.arms)
     steps = sum(arm.law.resolution for arm in setup.arms)
-    return 0.5 * float(setup.pair.sides[0].stiffness) * (abs(leader - follower) + steps / 2) ** 2
+    return 0.5 * float(setup.pair.felt_stiffness) * (abs(leader - follower) + steps / 2) ** 2

@@ -124,12 +124,8 @@ def _at_rate(pair: Pair, rate: Fraction) -> Pair:
 
 
 def _of_the_coupling(pair: Pair) -> Iterator[Knob]:
-    ratio = 1 / pair.power_ratio
 
-    def stiffness(k: Fraction) -> Pair:
-        return pair.replace(stiffness=Exact(k), follower_stiffness=Exact(k * ratio))
-
-    yield Knob("stiffness", float(pair.stiffness), _holds(stiffness), False, "stiffness")
+    yield Knob("stiffness", float(pair.felt_stiffness), _holds(pair.stiffened), False, "stiffness")
     for key, quantity in (("damping", "virtual_damping"), ("local_damping", "local_damping")):
         gain: Exact = getattr(pair, key)
         if gain and getattr(pair, f"follower_{key}") is None:

@@ -27,7 +27,8 @@ Floats = NDArray[np.float64]
 class Arm:
     """One side in samples: `whole` + `part` of delay, `age` of the other's reading, and its weight.
 
-    `often` is how many readings of its own it takes in a sample period, `tangent` the r of its compensation.
+    `often` is how many readings of its own it takes in a sample period, `tangent` the r of its compensation,
+    `any_mean` true where that may take any mean of past moves for the speed.
     """
 
     side: Side
@@ -35,6 +36,7 @@ class Arm:
     weight: Fraction
     often: int = 1
     tangent: Fraction = Fraction(1)
+    any_mean: bool = False
 
     @cached_property
     def line(self) -> Line:
@@ -47,9 +49,11 @@ class Arm:
 
     @property
     def helped(self) -> tuple[Fraction, Fraction]:
-        """s/2, and C + s/2: what compensation takes of damping and of local damping."""
-        half = self.line.slope / 2
-        return half, self.side.compensation.viscous.fraction + half
+        """s/2 and C + s/2, what compensation takes of damping and local damping; C + s and 0 of any mean."""
+        slope, viscous = self.line.slope, self.side.compensation.viscous.fraction
+        if self.any_mean:
+            return viscous + slope, Fraction(0)
+        return slope / 2, viscous + slope / 2
 
     @property
     def damping(self) -> Fraction:
@@ -78,6 +82,16 @@ class Arm:
         return int(-(-self.side.link_delay // self.period))
 
     @property
+    def echo_age(self) -> int:
+        """Samples after which its own reading comes back to it in the other's force."""
+        return self.age + int(-(-self.side.return_delay // self.period))
+
+    @property
+    def oldest(self) -> int:
+        """Of the readings that it uses, in samples."""
+        return self.echo_age if any(self.echo) else self.age
+
+    @property
     def mixed(self) -> list[tuple[int, Fraction]]:
         """Powers of ζ at which its force acts within a sample, and in which part of it."""
         late = [(self.whole + 1, 1 - self.part)]
@@ -103,7 +117,7 @@ class Arm:
         """
         top, bottom = self._within
         still, moving = (self.weight * v for v in self.helped)
-        if not moving:
+        if not (still or moving):
             return top, bottom
         scale = lcm(still.denominator, moving.denominator)
         taken = fmpz_poly([int(v * scale) for v in (still, moving)])
@@ -149,17 +163,38 @@ class Arm:
     @property
     def other(self) -> tuple[Fraction, Fraction]:
         """Taps of the readings that it received."""
-        past = self.side.virtual_damping / self.period
-        return -self.side.stiffness - past, past
+        past = (self.side.virtual_damping + self.side.echo_damping) / self.period
+        return -self.side.felt_stiffness - past, past
+
+    @property
+    def echo(self) -> tuple[Fraction, Fraction]:
+        """Taps of its own readings that come back in the other's force."""
+        past = self.side.echo_damping / self.period
+        return self.side.echo_stiffness + past, -past
+
+    @property
+    def own_row(self) -> dict[int, Fraction]:
+        """Taps of all its own readings, by their age in samples, where its drive reads no more often."""
+        row: dict[int, Fraction] = {}
+        for age, taps in ((0, self.own), (self.echo_age, self.echo)):
+            for k, tap in enumerate(taps):
+                row[age + k] = row.get(age + k, Fraction(0)) + tap
+        return {age: tap for age, tap in row.items() if tap}
+
+    @property
+    def other_row(self) -> dict[int, Fraction]:
+        """The same of the readings that it received."""
+        return {self.age + k: tap for k, tap in enumerate(self.other) if tap}
 
     @property
     def paying(self) -> Fraction:
         """b, which pays for moves inside a sample; a thousandth of KT of an arm that has none."""
-        return self.damping if self.damping > 0 else self.side.stiffness * self.period / 1000
+        return self.damping if self.damping > 0 else self.side.felt_stiffness * self.period / 1000
 
     def force_error(self, other: Arm) -> Fraction:
         """The largest error of its force by the steps of both encoders [N; N·m]."""
-        mine, its = (abs(newest) + abs(last) for newest, last in (self.own, self.other))
+        taps = self.own_row.values() if self.often == 1 else (*self.own, *self.echo)
+        mine, its = (sum(map(abs, row), Fraction(0)) for row in (taps, self.other))
         still, moving = self.helped
         unsure = still if self.often == 1 else still + moving
         return (mine / 2 + unsure / self.period) * self.side.resolution + its * other.side.resolution / 2
@@ -170,17 +205,19 @@ class Arm:
 
     def roughly_missing(self, other: Arm) -> Callable[[float, float], float]:
         """The same to rounding, as it depends on the height and the slope of the line."""
-        side, period, each = self.side, float(self.period), self.often == 1
-        stiffness, count = float(side.stiffness), float(side.resolution)
-        viscous = float(side.compensation.viscous)
-        speed_gain = float(side.virtual_damping + side.local_damping) * self.often
-        fixed = sum(abs(float(c)) for c in self.other) * float(other.side.resolution) / 2
-        fixed -= float(side.coulomb_friction)
+        flat, period, count = self.at_tangent(Fraction(1)), float(self.period), float(self.side.resolution)
+        still = float(flat.helped[0])
+        together = self.often == 1 and not self.any_mean
+        row = {age: float(tap) for age, tap in flat.own_row.items()} if together else {}
+        rest = flat.missing_friction(other) - flat.line.height
+        fixed = float(rest) - (sum(map(abs, row.values())) / 2 + still / period) * count * together
 
         def missing(height: float, slope: float) -> float:
-            past = (speed_gain - (viscous + slope / 2 if each else 0.0)) / period
-            unsure = (slope / 2 if each else viscous + slope) / period
-            return fixed + height + ((abs(stiffness + past) + abs(past)) / 2 + unsure) * count
+            if not together:
+                return fixed + height + slope / period * count
+            past = slope / 2 / period
+            taps = row | {0: row.get(0, 0.0) - past, 1: row.get(1, 0.0) + past}
+            return fixed + height + (sum(map(abs, taps.values())) / 2 + (still + slope / 2) / period) * count
 
         return missing
 

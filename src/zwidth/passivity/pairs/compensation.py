@@ -5,24 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from zwidth.pairs import Pair
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.quantity.text import shown
 
 _ARMS = ("leader", "follower")
 
 
-def assumed_of_forces(pair: Pair) -> Iterator[str]:
+def assumed_of_forces(criterion: PairCriterion) -> Iterator[str]:
     """What is taken for granted of the forces, compensation of friction among them."""
     computed = "forces are given as computed: no limit, no steps of the converter, "
-    if not any(pair.compensations):
+    if not any(criterion.pair.compensations):
         yield f"{computed}no compensation of friction or gravity"
         return
     yield f"{computed}no compensation of gravity; a constant force gives back what it takes"
-    yield (
-        "compensation of friction is of the mean speed of each arm since its last sample, and held for a "
-        "sample; an estimate of another kind is not covered"
-    )
+    held = "compensation of friction is computed once a sample and held, from"
+    if criterion.any_mean:
+        yield (
+            f"{held} any mean of each arm's moves over past samples, of fixed weights: a window, a filter or "
+            "a delay; a speed that a drive measures within a part of a sample is not covered"
+        )
+    else:
+        yield f"{held} the mean speed of each arm since its last sample; no other estimate is covered"
 
 
 def compensation_rows(criterion: PairCriterion, share: float | None) -> Iterator[tuple[str, str]]:
@@ -35,7 +38,7 @@ def compensation_rows(criterion: PairCriterion, share: float | None) -> Iterator
         dry = shown(float(arm.line.height), pair.leader.unit("coulomb_friction"))
         wet = shown(float(law.viscous + arm.line.slope), pair.leader.unit("damping"))
         spent = f", takes {dry} of friction and up to {wet} of damping" if law else ""
-        yield f"compensated in the {name}", f"{law.describe(pair.motion)}{spent}"
+        yield f"compensated in the {name}", f"{law.force_in_words(pair.motion)}{spent}"
     most = (
         "none: without it the pair is not passive either"
         if share is None

@@ -24,7 +24,7 @@ which with springs alone is β.  The cross term stays.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt, lcm
@@ -53,10 +53,13 @@ class PairCriterion:
     tangents
         r of the lines that compensation of friction is taken for, of leader and follower; 1 is F whatever the
         speed: that of motions so large that F is nothing beside their square.
+    any_mean
+        True where compensation may take any mean of past moves for the speed, and not the last alone.
     """
 
     pair: Pair
     tangents: tuple[Fraction, Fraction] = (Fraction(1), Fraction(1))
+    any_mean: bool = False
 
     @cached_property
     def arms(self) -> tuple[Arm, Arm]:
@@ -66,8 +69,8 @@ class PairCriterion:
         often = self.pair.own_readings
         first, second = self.tangents
         return (
-            Arm(leader, period, Fraction(1), often, first),
-            Arm(follower, period, self.pair.power_ratio, often, second),
+            Arm(leader, period, Fraction(1), often, first, self.any_mean),
+            Arm(follower, period, self.pair.power_ratio, often, second, self.any_mean),
         )
 
     @cached_property
@@ -80,19 +83,22 @@ class PairCriterion:
             if not arm.part:
                 continue
             loss = arm.weight * arm.period**2 * arm.part * (1 - arm.part) / (4 * arm.paying)
-            (a, b), (c, d) = arm.own, arm.other
-            for k, (x, y) in ((here, (a, b)), (1 - here, (c, d))):
-                _add(own[k], ((0, -loss * (x * x + y * y)), (1, -2 * loss * x * y)))
+            mine, its = arm.own_row, arm.other_row
+            for k, row in ((here, mine), (1 - here, its)):
+                _add(own[k], ((abs(i - j), -loss * x * y) for i, x in row.items() for j, y in row.items()))
             sign = 1 if here else -1  # of the power of z that a reading of age n has beside one's own
-            for k, value in ((0, a * c + b * d), (1, a * d), (-1, b * c)):
-                _add(crossed, ((sign * (arm.age + k), -loss * value),))
+            _add(
+                crossed,
+                ((sign * (j - i), -loss * x * y) for i, x in mine.items() for j, y in its.items()),
+            )
         return own[0], own[1], crossed
 
     @cached_property
     def polynomials(self) -> tuple[fmpz_poly, fmpz_poly, fmpz_poly]:
         """M_ll, M_ff and det M in c, times positive numbers."""
         leader, follower, crossed = self.forms
-        scale = lcm(*(v.denominator for form in self.forms for v in form.values()))
+        echoes = [_echoed({}, arm) for arm in self.arms]
+        scale = lcm(*(v.denominator for form in (*self.forms, *echoes) for v in form.values()))
         lags: dict[int, int] = {}
         whole = {k: int(v * scale) for k, v in crossed.items()}
         for i, x in whole.items():
@@ -100,7 +106,9 @@ class PairCriterion:
                 lags[abs(i - j)] = lags.get(abs(i - j), 0) + x * y
         square = _polynomial(lags.items())
         if self.pair.own_readings > 1:
-            (top, bottom), (its_top, its_bottom) = (arm.driven for arm in self.arms)
+            (top, bottom), (its_top, its_bottom) = (
+                _with_echo(*arm.driven, echo, scale) for arm, echo in zip(self.arms, echoes, strict=True)
+            )
             return top, its_top, scale**2 * top * its_top - square * bottom * its_bottom
         first, second = (
             _polynomial((k, int(v * scale)) for k, v in form.items()) for form in (leader, follower)
@@ -136,6 +144,11 @@ class PairCriterion:
         return leader.missing_friction(follower), follower.missing_friction(leader)
 
     @property
+    def proves(self) -> bool:
+        """True where friction covers the steps of both encoders too, and what is compensated."""
+        return max(self.missing_friction) <= 0 and self.holds
+
+    @property
     def undamped(self) -> bool:
         """True where a force changes inside a sample of an arm without damping: any size of that gains."""
         return any(arm.part and arm.damping <= 0 for arm in self.arms)
@@ -145,18 +158,21 @@ class PairCriterion:
         leader, follower, crossed = self.forms
         diagonal = [sum(float(v) * np.cos(k * theta) for k, v in form.items()) for form in (leader, follower)]
         if self.pair.own_readings > 1:
-            diagonal = [arm.driven_at(theta) for arm in self.arms]
+            diagonal = [
+                arm.driven_at(theta) + sum(float(v) * np.cos(k * theta) for k, v in _echoed({}, arm).items())
+                for arm in self.arms
+            ]
         off = sum(float(v) * np.exp(1j * k * theta) for k, v in crossed.items())
         return np.array([[diagonal[0], off], [np.conj(off), diagonal[1]]])
 
 
-def spending(pair: Pair) -> PairCriterion:
+def spending(pair: Pair, any_mean: bool = False) -> PairCriterion:
     """The criterion with the lines that leave most damping, of those that Coulomb friction pays for."""
-    criterion = PairCriterion(pair)
+    criterion = PairCriterion(pair, any_mean=any_mean)
     if not any(pair.compensations):
         return criterion
     leader, follower = criterion.arms
-    return PairCriterion(pair, (_tangent(leader, follower), _tangent(follower, leader)))
+    return replace(criterion, tangents=(_tangent(leader, follower), _tangent(follower, leader)))
 
 
 def _tangent(arm: Arm, other: Arm) -> Fraction:
@@ -172,30 +188,56 @@ def _tangent(arm: Arm, other: Arm) -> Fraction:
 
 def _own(arm: Arm) -> Sums:
     found = {0: arm.weight * arm.damping}
-    stretch = arm.weight * arm.side.stiffness * arm.period
-    rubbed = arm.weight * arm.of_own_speed
-    for power, share in arm.mixed:
+    _add_coupling(found, arm, 0, arm.side.stiffness, arm.of_own_speed)
+    return _echoed(found, arm)
+
+
+def _echoed(found: Sums, arm: Arm) -> Sums:
+    """With what of its own motion comes back in the other's force."""
+    side = arm.side
+    if side.echo_stiffness or side.echo_damping:
+        _add_coupling(found, arm, arm.echo_age, side.echo_stiffness, side.echo_damping)
+    return found
+
+
+def _add_coupling(found: Sums, arm: Arm, age: int, stiffness: Fraction, damping: Fraction) -> None:
+    """Spring and damper of its own readings of an age."""
+    stretch, rubbed = arm.weight * stiffness * arm.period, arm.weight * damping
+    for late, share in arm.mixed:
+        power = late + age
         parts = [(0, -stretch * share / 2), *((k, -stretch * share) for k in range(1, power))]
         _add(found, [*parts, (power, share * rubbed)])
-    return found
 
 
 def _crossed(leader: Arm, follower: Arm) -> Sums:
     found: Sums = {}
-    stretch = leader.side.stiffness * leader.period
+    stretch = leader.side.felt_stiffness * leader.period
     mine = [(power + leader.age, share) for power, share in leader.mixed]
     its = [(power + follower.age, share) for power, share in follower.mixed]
     for p, share in mine:
         for q, part in its:
             _add(found, ((k, stretch * share * part / 2) for k in range(1 - p, q)))
-        _add(found, ((-p, -share * leader.side.virtual_damping / 2),))
-    _add(found, ((q, -part * follower.weight * follower.side.virtual_damping / 2) for q, part in its))
+        _add(found, ((-p, -share * _rubbed(leader) / 2),))
+    _add(found, ((q, -part * follower.weight * _rubbed(follower) / 2) for q, part in its))
     return found
+
+
+def _rubbed(arm: Arm) -> Fraction:
+    """B of the other's readings."""
+    return arm.side.virtual_damping + arm.side.echo_damping
 
 
 def _add(form: Sums, parts: Iterable[tuple[int, Fraction]]) -> None:
     for k, value in parts:
         form[k] = form.get(k, Fraction(0)) + value
+
+
+def _with_echo(top: fmpz_poly, bottom: fmpz_poly, echo: Sums, scale: int) -> tuple[fmpz_poly, fmpz_poly]:
+    """Of a drive, with what comes back once a sample."""
+    if not echo:
+        return top, bottom
+    back = _polynomial((k, int(v * scale)) for k, v in echo.items())
+    return scale * top + back * bottom, scale * bottom
 
 
 def _polynomial(sums: Iterable[tuple[int, int]]) -> fmpz_poly:
@@ -220,6 +262,7 @@ def largest_spring(pair: Pair) -> Fraction | None:
         or follower.part
         or pair.own_readings > 1
         or any(pair.compensations)
+        or any(side.reflection for side in sides)
     ):
         return None
     b, f = leader.side.damping, follower.weight * follower.side.damping

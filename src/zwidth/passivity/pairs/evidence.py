@@ -27,6 +27,19 @@ _WEIGHTED = (1, 1, 2)
 """How often 2 − 2c is a factor of what the checker looks at."""
 
 
+_TOLD = (
+    "damping",
+    "coulomb_friction",
+    "resolution",
+    "delay",
+    "stiffness",
+    "virtual_damping",
+    "local_damping",
+    "link_delay",
+)
+"""What a document says of a side."""
+
+
 def pair_document(pair: Pair) -> dict[str, Any]:
     """The loop that a proof or a motion speaks of."""
     sides = zip(("leader", "follower"), pair.sides, strict=True)
@@ -38,11 +51,9 @@ def pair_document(pair: Pair) -> dict[str, Any]:
 
 
 def _side(side: Side, motion: str) -> dict[str, Any]:
-    told: dict[str, Any] = {
-        unit_key(name, motion): exact_text(value)
-        for name, value in vars(side).items()
-        if name != "compensation"
-    }
+    told: dict[str, Any] = {unit_key(name, motion): exact_text(getattr(side, name)) for name in _TOLD}
+    if side.reflection:
+        told["reflection"] = exact_text(side.reflection)
     law = side.compensation
     if law:
         numbers = {
@@ -68,11 +79,14 @@ class PairCertificate(Evidence):
         Why M_ll, M_ff and det M are nowhere negative.
     tangents
         r of the line above the compensation of friction of each arm.
+    any_mean
+        True where that may take any mean of past moves for the speed.
     """
 
     pair: Pair
     signs: tuple[Positivity, Positivity, Positivity]
     tangents: tuple[Fraction, Fraction] = (Fraction(1), Fraction(1))
+    any_mean: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data."""
@@ -81,6 +95,8 @@ class PairCertificate(Evidence):
         if any(self.pair.compensations):
             arms = zip(("leader", "follower"), self.tangents, strict=True)
             proof["tangents"] = {name: exact_text(r) for name, r in arms}
+            if self.any_mean:
+                proof["tangents"]["speed"] = "any mean"
         return {"format": CERTIFICATE, "kind": "pair", "loop": pair_document(self.pair), "proof": proof}
 
     def describe(self) -> str:

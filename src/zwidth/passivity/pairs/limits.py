@@ -15,8 +15,7 @@ from zwidth.quantity.exact import Exact
 
 def is_passive(pair: Pair) -> bool:
     """True where the criterion holds and friction covers the steps of both encoders."""
-    criterion = spending(pair)
-    return max(criterion.missing_friction) <= 0 and criterion.holds
+    return spending(pair).proves
 
 
 def grain_of(pair: Pair) -> int:
@@ -30,19 +29,21 @@ def samples_around(pair: Pair) -> int:
 
 
 def largest_stiffness(pair: Pair) -> float | None:
-    """The largest K, both sides in proportion and all else as it is, that is passive; None if none is."""
-    ratio = 1 / pair.power_ratio
+    """The largest K, both sides in proportion and all else as it is, that is passive; None if none is.
+
+    As the leader feels it, what is reflected to it added.
+    """
 
     def holds(k: Fraction) -> bool:
         if k <= 0:
             return False
         try:
-            return is_passive(pair.replace(stiffness=Exact(k), follower_stiffness=Exact(k * ratio)))
+            return is_passive(pair.stiffened(k))
         except InputError:
             return False
 
     closed = largest_spring(pair)
-    guess = float(closed) if closed else float(pair.stiffness)
+    guess = float(closed) if closed else float(pair.felt_stiffness)
     if not (holds(Exact(guess / 10**6).fraction) or is_passive(pair)):
         return None
     found = largest_holding(lambda k: not k or holds(k), guess, grain_of(pair))

@@ -167,7 +167,7 @@ def _enlarged(criterion: PairCriterion, path: Path, parts: tuple[Repeat, ...]) -
 def stored_at_start(pair: Pair) -> Fraction:
     """K_l (Δ_l + Δ_f)²/8, what the spring between two readings may hold where both arms are at 0 [J]."""
     leader, follower = pair.sides
-    return leader.stiffness * (leader.resolution + follower.resolution) ** 2 / 8
+    return pair.felt_stiffness * (leader.resolution + follower.resolution) ** 2 / 8
 
 
 def _without_friction(pair: Pair) -> Pair:
@@ -215,7 +215,7 @@ def often_enough(
 ) -> int | None:
     """Rounds after which it gains: beyond what is remembered, energy is affine in them."""
     arms = criterion.arms
-    memory = (max(arm.age for arm in arms) + max(arm.whole for arm in arms) + 6) * arms[0].often
+    memory = (max(arm.oldest for arm in arms) + max(arm.whole for arm in arms) + 6) * arms[0].often
     first = 2 + ceil(memory / min(part.last - part.first for part in parts))
     one = energy(1)
     if one is not None and one > 0:
@@ -256,7 +256,7 @@ def with_turns(pair: Pair, motions: list[Motion]) -> list[Motion]:
     if not any(arm.part for arm in arms):
         return motions
     length = motions[0].samples
-    memory = max(arm.age + arm.whole for arm in arms) + 4
+    memory = max(arm.oldest + arm.whole for arm in arms) + 4
     times = 2 + ceil(memory / max(1, min(part.last - part.first for part in motions[0].repeats)))
     listed = [motion.repeated(times).listed().positions for motion in motions]
     forces = _forces(arms, listed)
@@ -293,14 +293,17 @@ def _places(motion: Motion, times: int) -> list[int]:
 
 def _forces(arms: tuple[Arm, Arm], paths: list[tuple[Fraction, ...]]) -> list[list[Fraction]]:
     """Forces computed at each sample, with enough of rest before."""
-    rest = max(arm.age + arm.whole for arm in arms) + 4
+    rest = max(arm.oldest + arm.whole for arm in arms) + 4
     x = [[Fraction(0)] * rest + list(path) for path in paths]
     found = []
     for arm, own, its in zip(arms, x, x[::-1], strict=True):
-        (a, b), (c, d), n = arm.own, arm.other, arm.age
+        mine, heard = arm.own_row, arm.other_row
         found.append(
             [
-                a * own[k] + b * own[k - 1] + c * its[k - n] + d * its[k - n - 1] if k > n else Fraction(0)
+                sum((c * own[k - n] for n, c in mine.items()), Fraction(0))
+                + sum((c * its[k - n] for n, c in heard.items()), Fraction(0))
+                if k > arm.oldest
+                else Fraction(0)
                 for k in range(len(own))
             ]
         )
@@ -339,8 +342,9 @@ def _over_an_edge(pair: Pair, here: int, missing: Fraction) -> PairWitness | Non
 def _holds(arm: Arm) -> set[int]:
     """Readings for which the hand may stay on either side of the edge."""
     if arm.often == 1:
-        return {arm.whole + 1, arm.whole + 2, arm.whole + arm.age + 2}
-    return {arm.often, 2 * arm.often, (arm.age + 2) * arm.often, *([1] if arm.often == 2 else [])}
+        return {arm.whole + 1, arm.whole + 2, arm.whole + arm.age + 2, arm.whole + arm.oldest + 2}
+    ages = {n * arm.often for n in (1, 2, arm.age + 2, arm.oldest + 2)}
+    return ages | {1} if arm.often == 2 else ages
 
 
 def _won(arm: Arm, other: Arm, hold: int, phase: int) -> Fraction:
@@ -348,12 +352,12 @@ def _won(arm: Arm, other: Arm, hold: int, phase: int) -> Fraction:
     own, its = arm.side.resolution, other.side.resolution
 
     def force(k: int) -> Fraction:
-        mine = [-own * (((k - i) // hold) % 2) for i in (0, 1)]
+        back = [arm.often * (k // arm.often - arm.echo_age - i) for i in (0, 1)]
+        mine = [-own * ((at // hold) % 2) for at in (k, k - 1, *back)]
         heard = [arm.often * (k // arm.often - arm.age - i) for i in (0, 1)]
         theirs = [-its * (((sample + phase) // hold) % 2) for sample in heard]
-        return sum(
-            (c * v for c, v in zip((*arm.own, *arm.other), (*mine, *theirs), strict=True)), Fraction(0)
-        )
+        taps = (*arm.own, *arm.echo, *arm.other)
+        return sum((c * v for c, v in zip(taps, (*mine, *theirs), strict=True)), Fraction(0))
 
     # it goes out after the samples 0 … hold − 1, and in after as many below the edge
     return (force(hold - 1 - arm.whole) - force(2 * hold - 1 - arm.whole)) / 2
@@ -364,7 +368,7 @@ def _held(pair: Pair, here: int, missing: Fraction, hold: int, phase: int) -> Pa
     arms = PairCriterion(pair).arms
     arm, other = arms[here], arms[1 - here]
     period = 2 * hold
-    wait = -(-(arm.whole + arm.often * (arm.age + 4)) // period) * period
+    wait = -(-(arm.whole + arm.often * (arm.oldest + 4)) // period) * period
     small = _step(arm, missing)
     rate = max(Fraction(1), *(one.weight for one in arms), *(1 / one.weight for one in arms))
     against = other.force_error(arm) + other.side.coulomb_friction

@@ -67,7 +67,11 @@ def check_pair(pair: Pair) -> PairVerdict:
         return PairVerdict(pair, criterion, motion=motion)
     if criterion.undamped or isinstance(criterion.signs, Fraction):
         return PairVerdict(pair, criterion, motion=refute_compensation(pair))
-    certificate = PairCertificate(pair, criterion.signs, criterion.tangents)
+    wider = spending(pair, any_mean=True)
+    if any(pair.compensations) and wider.proves:
+        criterion = wider
+    assert not isinstance(criterion.signs, Fraction)
+    certificate = PairCertificate(pair, criterion.signs, criterion.tangents, criterion.any_mean)
     return PairVerdict(pair, criterion, certificate=certificate if certificate.verify() else None)
 
 
@@ -157,7 +161,7 @@ class PairVerdict(PassivityAnswer):
             f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the "
             f"leader {ages[1]} samples old; none is lost, none comes later"
         )
-        yield from assumed_of_forces(pair)
+        yield from assumed_of_forces(self.criterion)
         if self.scope.encoder == "counted":
             yield "encoder counts of each arm's own size, their phase unknown"
         else:
@@ -191,7 +195,8 @@ class PairVerdict(PassivityAnswer):
             def holds(b: Fraction, name: str = name, device: Device = device) -> bool:
                 return spending(self.pair.replace(**{name: device.replace(damping=b)})).holds
 
-            guess = max(float(device.exact("damping")), float(self.pair.stiffness * self.pair.sample_period))
+            stretch = self.pair.felt_stiffness * self.pair.sample_period
+            guess = max(float(device.exact("damping")), float(stretch))
             found.append(smallest_holding(holds, guess, grain_of(self.pair)))
         return found[0], found[1]
 
@@ -230,7 +235,7 @@ class PairVerdict(PassivityAnswer):
     def margin(self) -> float | None:
         """How much stiffer the coupling may be [N/m; N·m/rad]; below 0 where it must be softer."""
         largest = self.largest_stiffness
-        return None if largest is None else largest - float(self.pair.stiffness)
+        return None if largest is None else largest - float(self.pair.felt_stiffness)
 
     @property
     def limit(self) -> str:

@@ -1,0 +1,67 @@
+"""
+Two arms that follow each other: how stiff, over what link?
+===========================================================
+
+A leader and a follower, each a joint of a low-cost arm, joined by a spring over a link of 2 ms
+each way.  The verdict says how stiff the coupling may be; a hand on the leader, with nobody and
+then with a real wall at the follower, shows what becomes of it.
+"""
+
+import matplotlib.pyplot as plt
+
+import zwidth as zw
+from zwidth import plots
+
+plt.rcParams.update(plots.LOOK)
+joint = zw.Device(
+    name="joint",
+    motion="rotary",
+    mass=0.02,
+    damping="0.4 N*m*s/rad",
+    coulomb_friction="0.05 N*m",
+    resolution="40 urad",
+    rate="1 kHz",
+    delay=0,
+)
+pair = zw.Pair(joint, joint, stiffness="100 N*m/rad", delay="2 ms")
+verdict = zw.check(pair)
+print(verdict)
+
+# %%
+# Which dampings are enough, and how much stiffness the delay of the link leaves.
+
+verdict.plot()
+
+# %%
+# Twice as stiff as is passive, the arms shake by themselves: a push that never grows
+# puts in next to nothing, and what comes out of the coupling goes into motion and heat.
+
+push = zw.operators.ConstantForce(force=0.5)
+loose = zw.simulate(pair.replace(stiffness="270 N*m/rad"), push, None, 0.4)
+loose.zwidth.plot()
+
+# %%
+# The passive one against a wall that stands there really: the leader feels the spring between the
+# arms and the wall behind it, one after the other.
+
+pressed = zw.simulate(pair, push, zw.Wall(2000, 2), 1.0)
+print(f"felt: {pressed.zwidth.felt_stiffness:.3g} N·m/rad")
+pressed.zwidth.plot()
+
+# %%
+# Other ways to join them, side by side: the follower's force sent in the place of its position, both,
+# each arm's own part in its drive at 20 kHz, friction compensated.
+
+zw.compare(
+    {
+        "position–position": pair,
+        "position–force": pair.replace(stiffness=0, follower_stiffness=100, reflection=1),
+        "four channels": pair.replace(
+            stiffness=50, follower_stiffness=50, reflection=1, follower_reflection=1
+        ),
+        "in the drives": pair.replace(drive_rate="20 kHz"),
+        "friction compensated": pair.replace(
+            compensation=zw.FrictionCompensation(coulomb="0.04 N*m", viscous="0.1 N*m*s/rad")
+        ),
+    }
+)

@@ -1,0 +1,168 @@
+"""The command `gains`: gain files of two arms, joint by joint."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from zwidth.cli.decision import exit_status
+from zwidth.cli.options import Once
+from zwidth.cli.output import print_json, say_written, targets, writing
+from zwidth.errors import InputError
+from zwidth.quantity.units import parse_number
+from zwidth.specification.read import question_time
+
+if TYPE_CHECKING:
+    from zwidth.gains import ArmGains, GainsVerdict
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth gains`."""
+    parser.usage = (
+        "%(prog)s FILE [FILE] [--link-delay TIME] [--rate RATE] [--plant FILE] [--OPTION VALUE ...]"
+    )
+    parser.add_argument(
+        "files",
+        metavar="FILE",
+        nargs="+",
+        help="gain file of both arms, or of leader and follower: YAML, JSON or TOML",
+    )
+    output = parser.add_argument_group("output")
+    output.add_argument("--json", action="store_true", help="print the verdicts as JSON, units in the keys")
+    output.add_argument(
+        "-o",
+        "--save",
+        metavar="FILE",
+        action=Once,
+        help="save verdicts and proofs as JSON, for zwidth verify",
+    )
+    output.add_argument(
+        "--joint", metavar="NAME", action=Once, help="the whole report on one joint, as zwidth pair gives it"
+    )
+    output.add_argument(
+        "--plot", metavar="FILE", action=Once, help="with --joint: save its plots, .png, .svg or .pdf"
+    )
+    output.add_argument("--force", action="store_true", help="replace files that exist")
+    arms = parser.add_argument_group(
+        "arms", "what no gain file says; said in the report where it is not given"
+    )
+    for option, symbol, meaning in (
+        (
+            "--plant",
+            "FILE",
+            "TOML with damping, coulomb_friction and resolution of the joints, or a published name",
+        ),
+        ("--rate", "1/T", "of the references on the bus [Hz]"),
+        ("--link-delay", "τ_link", "from one arm's reading to the other's controller, or each way [s]"),
+        ("--link-delay-back", "τ_link", "from follower to leader, where it is another [s]"),
+        ("--drive-rate", "RATE", "of the loop in each drive [Hz]; 0: there is none"),
+    ):
+        arms.add_argument(option, metavar=symbol, action=Once, help=meaning)
+    arms.add_argument(
+        "--ideal-drive",
+        action="store_true",
+        help="what a drive does with its own speed is a damper, at once and without steps",
+    )
+    law = parser.add_argument_group("law")
+    for option, symbol, meaning in (
+        (
+            "--family",
+            "NAME",
+            "openarm, i2rt, lerobot-damiao, lerobot-feetech or piper (default: by the keys)",
+        ),
+        ("--bilateral-kp", "β", "of i2rt: the leader's kp in multiples of the file's (default: 0.2)"),
+        ("--supply-voltage", "U", "of servos whose stiffness goes with it [V]"),
+    ):
+        law.add_argument(option, metavar=symbol, action=Once, help=meaning)
+    law.add_argument(
+        "--both",
+        action="store_true",
+        help="take the follower's gains on both sides of an arm whose leader is limp",
+    )
+    law.add_argument("--no-compensation", action="store_true", help="leave out the compensation of friction")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth gains`: the status says the outcome; 3 where no law of both arms is known."""
+    from zwidth.gains import check_gains, read_gains
+
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    if plot is not None and arguments.joint is None:
+        raise InputError("--plot draws one joint: give --joint too, such as --joint J1")
+    gains = read_gains(
+        *arguments.files,
+        family=arguments.family,
+        bilateral_kp=arguments.bilateral_kp,
+        supply_voltage=arguments.supply_voltage,
+        both=arguments.both,
+    )
+    if not gains.is_pair:
+        return _told(gains, arguments.json, save)
+    verdict = check_gains(
+        gains,
+        plant=arguments.plant,
+        rate=arguments.rate,
+        delay=_delay(arguments),
+        drive_rate=arguments.drive_rate,
+        ideal_drive=arguments.ideal_drive,
+        compensated=not arguments.no_compensation,
+    )
+    if arguments.joint is not None:
+        return _of_one(verdict, arguments.joint, arguments.json, plot, save)
+    if save is not None:
+        with writing(save):
+            verdict.save(save)
+    if arguments.json:
+        print_json(verdict.to_json())
+    else:
+        from zwidth.cli.gains_report import print_gains
+
+        print_gains(verdict)
+        say_written(save)
+    return exit_status(verdict.outcome)
+
+
+def _of_one(verdict: GainsVerdict, name: str, as_json: bool, plot: Path | None, save: Path | None) -> int:
+    """One joint, with the notes on the gains."""
+    from zwidth.passivity.document import save_json, to_json
+
+    pair, notes = verdict.joint(name).verdict, {"notes": list(verdict.notes)}
+    if save is not None:
+        with writing(save):
+            save_json(save, {**pair.saved(), **notes})
+    if plot is not None:
+        pair.plot(plot)
+    if as_json:
+        print_json(to_json({**pair.to_dict(), **notes}))
+    else:
+        from zwidth.cli.gains_report import print_joint
+
+        print_joint(pair, verdict.notes)
+        say_written(save, plot)
+    return exit_status(pair.outcome)
+
+
+def _told(gains: ArmGains, as_json: bool, save: Path | None) -> int:
+    """Gains of a follower alone: what they are, and no verdict."""
+    if save is not None:
+        raise InputError("there is no law of both arms, so there is no verdict to save; --both makes one")
+    if as_json:
+        from zwidth.passivity.document import to_json
+
+        print_json(to_json(gains.to_dict()))
+    else:
+        from zwidth.cli.gains_report import print_follower
+
+        print_follower(gains)
+    return exit_status("undecided")
+
+
+def _delay(arguments: argparse.Namespace) -> tuple[str, str] | None:
+    there, back = arguments.link_delay, arguments.link_delay_back
+    if there is None and back is not None:
+        raise InputError("--link-delay-back is of one way alone; give --link-delay, of the other, too")
+    for option, value in (("--link-delay", there), ("--link-delay-back", back)):
+        if value is not None:
+            question_time(value, parse_number(value, "s", option), option)
+    return None if there is None else (there, there if back is None else back)

@@ -1,0 +1,61 @@
+"""The gains of two arms as a report in the terminal, joint by joint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rich.table import Table as Lines
+from rich.text import Text
+
+from zwidth.cli.page import headline, items, page, section
+from zwidth.cli.pair_report import print_pair
+from zwidth.gains import ArmGains, GainsVerdict
+from zwidth.passivity.outcome import TOLD
+from zwidth.passivity.pairs import PairVerdict
+from zwidth.showing import Table
+
+
+def print_gains(verdict: GainsVerdict) -> None:
+    """Print the verdicts on standard output."""
+    decided, better = verdict.tables()
+    with page() as out:
+        out.print(headline(verdict.outcome, TOLD[verdict.outcome].terminal, verdict.claim))
+        section(out, f"{verdict.gains.published.title}: {decided.caption}", [_set(decided)])
+        section(
+            out, "what is passive, each proved: with the kd of the file, and with the best", [_set(better)]
+        )
+        section(out, "assumes", items(verdict.notes, "dim"))
+
+
+def print_joint(verdict: PairVerdict, notes: Iterable[str]) -> None:
+    """Print the verdict on one joint, and what its gains are."""
+    print_pair(verdict)
+    said = set(verdict.small_print())
+    with page() as out:
+        section(out, "\nof the gains", items((note for note in notes if note not in said), "dim"))
+
+
+def print_follower(gains: ArmGains) -> None:
+    """Print the gains of arms without a law of both."""
+    parts = list(gains.report())
+    with page() as out:
+        claim = "The leader feels nothing: these gains make no pair."
+        out.print(headline("undecided", TOLD["undecided"].terminal, claim))
+        section(out, str(parts[0]), [_set(part) for part in parts if isinstance(part, Table)])
+        section(out, "what they are", items(gains.notes, "dim"))
+
+
+def _set(table: Table) -> Lines:
+    """Columns, those of numbers set right."""
+    lines = Lines.grid(padding=(0, 2))
+    for place in range(len(table.rows[0])):
+        lines.add_column(justify="left" if place < (table.lefts or 0) else "right", no_wrap=True)
+    for head in table.heads:
+        lines.add_row(*(Text(cell, "dim") for cell in head))
+    for cells in table.rows:
+        lines.add_row(*(Text(cell, _style(cell)) for cell in cells))
+    return lines
+
+
+def _style(cell: str) -> str:
+    return TOLD[cell].terminal if cell in TOLD else ""
