@@ -46,7 +46,7 @@ loose = zw.simulate(pair.replace(stiffness="270 N*m/rad"), push, None, 0.4)
 
 def show(trace):
     """Positions of both arms, and the energy."""
-    figure, axes = plt.subplots(2, 1, sharex=True, figsize=(8, 4.8), layout="constrained")
+    _, axes = plt.subplots(2, 1, sharex=True, figsize=(8, 4.8), layout="constrained")
     draw_both(axes[0], trace, "position", "position")
     draw_pair_energies(axes[1], trace)
     plt.show()

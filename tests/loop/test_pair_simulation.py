@@ -49,6 +49,8 @@ def replayed(pair: zw.Pair) -> tuple[float, float]:
         {"stiffness": 20, "local_damping": "-0.3", "drive_rate": "4 kHz"},
         {"stiffness": 0, "follower_stiffness": 300, "reflection": 1, "damping": "0.1"},
         {"stiffness": 100, "reflection": 1, "follower_reflection": "0.5", "drive_rate": "3 kHz"},
+        {"leader": ARM.replace(rate="4 kHz"), "stiffness": 150, "damping": "0.05", "delay": ("1 ms", 0)},
+        {"follower": ARM.replace(rate="500 Hz"), "stiffness": 100, "local_damping": "0.05"},
         {"compensation": zw.FrictionCompensation(coulomb="0.012")},
         {"compensation": zw.FrictionCompensation(coulomb="0.05", speed="0.2"), "delay": "2 ms"},
         {"compensation": zw.FrictionCompensation(viscous="0.2"), "drive_rate": "2 kHz"},

@@ -66,7 +66,7 @@ def test_one_device_is_both_arms_and_may_turn(tmp_path: Path) -> None:
         (ARMS.partition("[follower]")[0] + COUPLING, r"there is no \[follower\]"),
         ("[follower]" + ARMS.partition("[follower]")[2] + COUPLING, r"there is no \[leader\]"),
         (COUPLING, r"\[coupling\]: there is no arm"),
-        (ARMS.replace("1000", "500") + COUPLING, "500 Hz and 1000 Hz"),
+        (ARMS.replace("1000", "600") + COUPLING, "1000 Hz and 600 Hz"),
         (ARMS.replace("damping = 0.2", "damping = [0.1, 0.2]") + COUPLING, "leader: damping has no single"),
         (ARMS.replace("damping = 0.2", "dumping = 0.2") + COUPLING, r"\[leader\]: a device has no"),
         ("[leeder]\ndamping = 1\n" + COUPLING, 'did you mean "leader"'),

@@ -27,7 +27,9 @@ class Law(NamedTuple):
 
 
 class Arm(NamedTuple):
-    """Of a document, as docs/json.md says; `period` from one reading of its own to the next.
+    """Of a document, as docs/json.md says; `period` from one reading to the next of the quicker arm.
+
+    It reads itself `every` so many of them.
 
     `sent` and `sent_damping` are K and B of the other, as often as its coupling force is added; `back` is how
     old one's own readings are in that.  Of a drive's compensation `still` and `moving` are what it takes of a
@@ -47,6 +49,7 @@ class Arm(NamedTuple):
     weight: Fraction
     often: int
     period: Fraction
+    every: int
     sent: Fraction
     sent_damping: Fraction
     back: int
@@ -60,14 +63,16 @@ class Arm(NamedTuple):
         slopes = [v / self.period for v in (self.virtual, self.local, self.sent_damping)]
         gains = (self.stiffness, slopes[0], slopes[1], self.sent, slopes[2])
         k, b, d, r, rb = map(float, gains) if isinstance(own, np.ndarray) else gains
-        felt = k * (own - its) + b * ((own - was) - (its - before) / self.often) + d * (own - was)
+        speed = (own - was) / self.every
+        felt = k * (own - its) + b * (speed - (its - before) / self.often) + d * speed
         return felt - r * (its - back) - rb * ((its - before) - (back - earlier)) / self.often
 
     def readings(self, at: int) -> tuple[tuple[bool, int], ...]:
         """Which `force` takes at one of its own: whether it is its own, and which."""
+        at = self.every * (at // self.every)
         heard, back = (self.often * (at // self.often - age) for age in (self.age, self.back))
         mine, its, old = (
-            ((True, at), (True, at - 1)),
+            ((True, at), (True, at - self.every)),
             ((False, heard), (False, heard - self.often)),
             ((True, back), (True, back - self.often)),
         )
@@ -91,6 +96,9 @@ def arms_of(loop: Document) -> tuple[Arm, Arm] | None:
         signs = (late, link, told("damping"), told("coulomb_friction"), told("resolution"))
         if min(signs) < 0 or (late and often > 1):
             return None
+        times = int(exact(loop[name].get("own_readings", often)))
+        if times < 1 or often % times:
+            return None
         found.append(
             Arm(
                 told("damping"),
@@ -105,6 +113,7 @@ def arms_of(loop: Document) -> tuple[Arm, Arm] | None:
                 springs[0] / springs[i],
                 often,
                 period / often,
+                often // times,
                 shares[i] * own[1 - i],
                 shares[i] * other("virtual_damping"),
                 sum(links),
@@ -129,7 +138,7 @@ def spent(arm: Arm, r: Fraction) -> Arm:
     half, rest = slope / 2, viscous + slope / 2
     a_count = arm.resolution / (arm.period * arm.often)
     less = arm._replace(friction=arm.friction - height)
-    if arm.often > 1:
+    if arm.often > arm.every:
         return less._replace(still=half, moving=rest, unsure=(half + rest) * a_count)
     return less._replace(damping=arm.damping - half, local=arm.local - rest, unsure=half * a_count)
 
@@ -138,7 +147,10 @@ def friction_for(arm: Arm, other: Arm) -> Fraction:
     """Each of the readings half a count off, to the side that is worst."""
     taps: dict[tuple[bool, int], Fraction] = {}
     for n, (mine, k) in enumerate(arm.readings(0)):
-        at = mine, k - (n > 3 and arm.often > 1)  # what comes back to a drive counts as another reading
+        at = (
+            mine,
+            k - (n > 3 and arm.often > arm.every),
+        )  # what comes back to a drive counts as another reading
         taps[at] = taps.get(at, Fraction(0)) + arm.force(*(Fraction(j == n) for j in range(6)))
     own, its = (sum(abs(c) for at, c in taps.items() if at[0] is whose) for whose in (True, False))
     return arm.unsure + (own * arm.resolution + its * other.resolution) / 2

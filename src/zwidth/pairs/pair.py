@@ -103,8 +103,9 @@ class Pair(Parametric):
     Parameters
     ----------
     leader, follower
-        The two devices: b, f_c, Δ, T and delay of each, as seen by one hand on each of them.  Both read at
-        the same instants and at one rate.
+        The two devices: b, f_c, Δ, T and delay of each, as seen by one hand on each of them.  Both send what
+        they read at the same instants, at the slower rate of the two; an arm that reads a whole number of
+        times as often computes its own part at its own rate.
     stiffness
         K ≥ 0 on both sides, or on the leader's; 0 where it is felt by `reflection` alone [N/m; N·m/rad].
     damping
@@ -267,20 +268,30 @@ class Pair(Parametric):
                 )
 
     def _check_clocks(self) -> None:
-        periods = [device.exact("sample_period") for device in (self.leader, self.follower)]
-        if periods[0] != periods[1]:
-            rates = " and ".join(f"{float(1 / period):g} Hz" for period in periods)
+        quick, slow = sorted(device.exact("sample_period") for device in (self.leader, self.follower))
+        if slow % quick:
+            rates = " and ".join(f"{float(1 / period):g} Hz" for period in (quick, slow))
             raise InputError(
-                f"both arms are read at the same instants, got {rates}: give both the slower rate, which "
-                "needs more damping, or the rate of the bus that reads both"
+                f"one arm reads a whole number of times as often as the other, got {rates}: give both the "
+                "slower rate, or the rate of the bus that reads both"
             )
         if self.drive_rate is not None:
             self._check_drives(self.drive_rate)
+        elif slow // quick > MOST_READINGS:
+            raise InputError(
+                f"one arm reads at most {MOST_READINGS} times as often as the other, got {slow // quick}"
+            )
+        if self.own_readings > 1 and any(side.delay for side in self.sides):
+            raise InputError(
+                "an arm that reads more often than it sends is without delay, and so is the other: that of a "
+                "drive is not decided here; leave out the delay of both devices, and give that of the bus as "
+                "delay of the link"
+            )
         for name, side in zip(("leader", "follower"), self.sides, strict=True):
             for what, time in (("delay", side.delay), ("link delay", side.link_delay)):
-                if time > LONGEST * periods[0]:
+                if time > LONGEST * slow:
                     raise InputError(
-                        f"the {what} of the {name} is {float(time / periods[0]):.0f} samples, at most "
+                        f"the {what} of the {name} is {float(time / slow):.0f} samples, at most "
                         f"{LONGEST} are decided; so old a reading leaves next to nothing that is passive: "
                         "lower the rate"
                     )
@@ -293,16 +304,22 @@ class Pair(Parametric):
                 f"{float(1 / self.sample_period):g} Hz of the references, got {float(rate):g} Hz: the loop "
                 "of the drive and the bus are taken in step"
             )
-        if any(side.delay for side in self.sides):
-            raise InputError(
-                "with a drive_rate the devices are without delay: the drive's own is not decided here; leave "
-                "out the delay of both, and give that of the bus as delay of the link"
-            )
+
+    @property
+    def readings(self) -> tuple[int, int]:
+        """Readings of its own that leader and follower take in T."""
+        if self.drive_rate is not None:
+            both = int(self.drive_rate.fraction * self.sample_period)
+            return both, both
+        leader, follower = (
+            int(self.sample_period / device.exact("sample_period")) for device in (self.leader, self.follower)
+        )
+        return leader, follower
 
     @property
     def own_readings(self) -> int:
-        """Readings of its own that each arm takes in a sample period."""
-        return 1 if self.drive_rate is None else int(self.drive_rate.fraction * self.sample_period)
+        """Readings in T of the arm that reads more often."""
+        return max(self.readings)
 
     @property
     def motion(self) -> str:
@@ -311,8 +328,8 @@ class Pair(Parametric):
 
     @property
     def sample_period(self) -> Fraction:
-        """T [s]."""
-        return self.leader.exact("sample_period")
+        """T, from one reading that is sent to the next [s]."""
+        return max(device.exact("sample_period") for device in (self.leader, self.follower))
 
     @property
     def delay(self) -> tuple[Exact, Exact]:

@@ -126,6 +126,10 @@ DRIVEN_LINK = put(
     proved(loop(arm("13/12", "1/3", link_delay_s=1)), signs(at_one=2, factor=[35, -4, -4])),
     {"loop.own_readings": 2},
 )
+# the leader reads itself twice in a sample, the follower once: (3 − 1)(4 − 2) = 2²
+UNEQUAL_RATES = put(
+    proved(loop(arm(3, 4), arm(4, 4)), NOWHERE), {"loop.own_readings": 2, "loop.follower.own_readings": 1}
+)
 SLIPPING = put(loop(arm(2, 4, local_damping_N_s_per_m=1)), {"own_readings": 2})
 ENCODERS = put(
     SPRING,
@@ -216,6 +220,14 @@ CASES = [
         put(UNEQUAL, {"loop.follower.damping_N_s_per_m": 2 - TINY}),
         FACTORS,
     ),
+    *edge(
+        "rates that are not equal",
+        UNEQUAL_RATES,
+        put(UNEQUAL_RATES, {"loop.follower.damping_N_s_per_m": 4 - TINY}),
+        FACTORS,
+    ),
+    refused("the quicker arm as slow", put(UNEQUAL_RATES, {"loop.leader.own_readings": 1}), FACTORS),
+    refused("more often than the loop", put(UNEQUAL_RATES, {"loop.leader.own_readings": 4}), "whole number"),
     *edge("a force that is sent", SENT, put(SENT, {"loop.leader.damping_N_s_per_m": 5 - TINY}), FACTORS),
     accepted("a leader without a spring has no force to send", put(SENT, {"loop.follower.reflection": 3})),
     refused("a force sent with its sign turned", put(SENT, {"loop.leader.reflection": -1}), "≥ 0"),

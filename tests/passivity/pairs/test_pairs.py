@@ -22,7 +22,7 @@ PADDLE = zw.Device(damping="0.5", coulomb_friction="0.1", resolution=0, delay=0,
 
 
 def random_pair(
-    seed: int, parts: bool = True, counted: bool = False, drives: bool = False, reflected: bool = False
+    seed: int, parts: bool = True, counted: bool = False, drives: bool | str = False, reflected: bool = False
 ) -> zw.Pair:
     """Any two arms of 1 kHz, K = 1 N/m; with forces that are sent, if so wanted."""
     random = np.random.default_rng(seed)
@@ -46,8 +46,11 @@ def random_pair(
         local_damping=f"{random.choice([0, 0, 0.05]):.3f}",
         follower_stiffness=f"{random.choice([1, 1, 0.5, 1.6]):.2f}",
         delay=tuple(f"{random.uniform(0, 0.003):.4f}" for _ in (0, 1)),
-        drive_rate=1000 * int(random.integers(2, 6)) if drives else None,
+        drive_rate=1000 * int(random.integers(2, 6)) if drives is True else None,
     )
+    if drives == "unequal":
+        quick = {str(random.choice(["leader", "follower"])): int(random.integers(2, 6))}
+        pair = pair.replace(**{n: getattr(pair, n).replace(rate=1000 * m) for n, m in quick.items()})
     if not reflected:
         return pair
     return pair.replace(
@@ -89,8 +92,10 @@ def form_of_work(pair: zw.Pair, samples: int, younger: np.random.Generator | Non
     def reading(i: int, k: int) -> np.ndarray:
         return x[max(k, 0), i]
 
+    every = [often // own for own in pair.readings]
+
     def coupling(i: int, k: int, finer: int) -> np.ndarray:
-        """Of arm i at reading k, its own speed over so many readings."""
+        """Of arm i at tick k, its own speed over so many ticks."""
         side = pair.sides[i]
         K, B = float(side.stiffness), float(side.virtual_damping)
         sent = often * (k // often - age(i, k // often))
@@ -113,8 +118,9 @@ def form_of_work(pair: zw.Pair, samples: int, younger: np.random.Generator | Non
         forces = [np.zeros(size)] * (whole + 1)
         for k in range(moves):
             sent = often * (k // often - age(i, k // often))
-            local = D * (reading(i, k) - reading(i, k - 1)) / step
-            forces.append(coupling(i, k, 1) + local - share * coupling(1 - i, sent, often))
+            at = every[i] * (k // every[i])
+            local = D * (reading(i, at) - reading(i, at - every[i])) / (every[i] * step)
+            forces.append(coupling(i, at, every[i]) + local - share * coupling(1 - i, sent, often))
         for k in range(moves):
             for n, length in enumerate((part, 1 - part)):
                 move = unit[k, i, n]
@@ -124,7 +130,7 @@ def form_of_work(pair: zw.Pair, samples: int, younger: np.random.Generator | Non
 
 
 @pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True])
+@pytest.mark.parametrize("drives", [False, True, "unequal"])
 @pytest.mark.parametrize("seed", range(12))
 def test_short_motions_against_the_limit(seed, drives, reflected):
     """The form of them all, made from the definitions, is nowhere negative just below, and is well above."""
@@ -139,7 +145,7 @@ def test_short_motions_against_the_limit(seed, drives, reflected):
 
 
 @pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True])
+@pytest.mark.parametrize("drives", [False, True, "unequal"])
 @seeds(3)
 def test_younger_readings_change_nothing_for_springs_alone(seed, drives, reflected):
     """Ages at random from sample to sample, up to that of the pair: no motion gains just below its limit."""
@@ -202,6 +208,8 @@ def taken(pair: zw.Pair, paths: list[list[Fraction]], turns: list[list[Fraction]
         count = side.resolution
         read.append([float(count * (x // count) if count else x) for x in path])
 
+    every = [often // own for own in pair.readings]
+
     def coupling(i: int, k: int, finer: int) -> float:
         side = pair.sides[i]
         K, B = float(side.stiffness), float(side.virtual_damping)
@@ -219,8 +227,9 @@ def taken(pair: zw.Pair, paths: list[list[Fraction]], turns: list[list[Fraction]
         forces = [0.0] * (whole + 1)
         for k in range(len(own) - 1):
             sent = often * (k // often - age_of(pair, i))
-            local = D * (own[k] - own[max(k - 1, 0)]) / step
-            forces.append(coupling(i, k, 1) + local - share * coupling(1 - i, sent, often))
+            at = every[i] * (k // every[i])
+            local = D * (own[at] - own[max(at - every[i], 0)]) / (every[i] * step)
+            forces.append(coupling(i, at, every[i]) + local - share * coupling(1 - i, sent, often))
         for k in range(len(own) - 1):
             x, y, z = (
                 float(v) for v in (paths[i][k], turns[i][k] if turns[i] else paths[i][k], paths[i][k + 1])
@@ -232,7 +241,7 @@ def taken(pair: zw.Pair, paths: list[list[Fraction]], turns: list[list[Fraction]
 
 
 @pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True])
+@pytest.mark.parametrize("drives", [False, True, "unequal"])
 @seeds(15)
 def test_energy_of_any_motion_by_the_definitions(drives, reflected, seed):
     """Encoders, friction, delays, parts that lead on many times: the sums are those of all rounds."""
@@ -258,7 +267,7 @@ def test_energy_of_any_motion_by_the_definitions(drives, reflected, seed):
 
 
 @pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True])
+@pytest.mark.parametrize("drives", [False, True, "unequal"])
 @seeds(20)
 def test_prover_and_checker_have_one_criterion(drives, reflected, seed):
     """Made by other steps: the checker's is that of the prover times 2 − 2c, and its square."""
@@ -277,7 +286,7 @@ def test_prover_and_checker_have_one_criterion(drives, reflected, seed):
 
 
 @pytest.mark.parametrize("reflected", [False, True])
-@pytest.mark.parametrize("drives", [False, True])
+@pytest.mark.parametrize("drives", [False, True, "unequal"])
 @seeds(8)
 def test_both_sides_of_the_limit(drives, reflected, seed):
     """At K (1 − 1e-9) the checker accepts the certificate; at K (1 + 1e-9) a motion of both hands gains."""
@@ -500,7 +509,7 @@ def test_a_verdict_tells_what_is_needed():
         ({"drive_rate": 1500}, "whole times the 1000 Hz"),
         ({"drive_rate": "20 kHz", "leader": PADDLE.replace(delay="1 ms")}, "without delay"),
         ({"leader": 3}, "leader is a Device, got int"),
-        ({"follower": PADDLE.replace(rate="500 Hz")}, "1000 Hz and 500 Hz"),
+        ({"follower": PADDLE.replace(rate="600 Hz")}, "1000 Hz and 600 Hz"),
         ({"follower": PADDLE.replace(motion="rotary")}, "linear leader and a rotary follower"),
         ({"follower": PADDLE.replace(damping=(0.1, 0.2))}, "follower: damping has no single value"),
     ],

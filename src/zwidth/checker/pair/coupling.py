@@ -40,6 +40,7 @@ SIDE = Record(
         "local_damping": Number(DAMPING),
         "reflection": Number(least=0, default=Fraction(0)),
         "link_delay": Number(SECONDS, least=0),
+        "own_readings": Whole(least=1, most=MOST_READINGS, default=None),
         "compensation": COMPENSATION,
     },
     named=True,
@@ -59,7 +60,8 @@ class Side(NamedTuple):
 
     `own` and `other` in ascending powers of ζ, the other's as old as it is where it arrives, `age`; `echo` is
     what of its own comes back with the other's force, older still, `echo_age`; the force
-    comes `whole` + `part` samples later.  `weight` is how often its work counts, `law` its compensation.
+    comes `whole` + `part` samples later.  `weight` is how often its work counts, `law` its compensation,
+    `often` how many readings of its own it takes in a sample.
     """
 
     damping: Fraction
@@ -74,6 +76,7 @@ class Side(NamedTuple):
     part: Fraction
     weight: Fraction
     law: Read | None
+    often: int
 
 
 def sides_of(told: Read) -> tuple[Side, Side]:
@@ -85,13 +88,21 @@ def sides_of(told: Read) -> tuple[Side, Side]:
     if not (leader and follower):
         raise Invalid("there is no spring to the other arm on one side")
     ratio = leader / follower
-    period, often = told.sample_period, told.own_readings
-    if often > 1 and (told.leader.delay or told.follower.delay):
+    period, most = told.sample_period, told.own_readings
+    if most > 1 and (told.leader.delay or told.follower.delay):
         raise Invalid("the force of a drive that reads its arm more often must come without delay")
     return (
-        _side(told.leader, told.follower, period, often, Fraction(1)),
-        _side(told.follower, told.leader, period, often, ratio),
+        _side(told.leader, told.follower, period, _often(told.leader, most), Fraction(1)),
+        _side(told.follower, told.leader, period, _often(told.follower, most), ratio),
     )
+
+
+def _often(told: Read, most: int) -> int:
+    """Readings of its own in a sample: as many as the loop says, or a part of them."""
+    often: int = told.own_readings or most
+    if most % often:
+        raise Invalid("an arm reads itself a whole number of times less often than the loop says")
+    return often
 
 
 def _side(told: Read, other: Read, period: Fraction, often: int, weight: Fraction) -> Side:
@@ -115,6 +126,7 @@ def _side(told: Read, other: Read, period: Fraction, often: int, weight: Fractio
         told.delay / period - whole,
         weight,
         told.compensation,
+        often,
     )
     common_scale((*side.own, *side.other, *side.echo, side.damping, side.part, period, weight))
     return side

@@ -193,15 +193,17 @@ def _run(arms: Sequence[_Arm], repeats: Sequence[Read], often: int) -> None:
 
 def _forward(arms: Sequence[_Arm], start: int, stop: int, often: int) -> None:
     for k in range(start, stop):
-        for arm in arms:
+        reading = [arm for arm in arms if k % (often // arm.side.often) == 0]
+        for arm in reading:
             arm.look(k)
         if k % often == 0:
             for arm in arms:
                 arm.send()
             for arm, partner in zip(arms, arms[::-1], strict=True):
                 arm.hear(partner)
-        for arm in arms:
+        for arm in reading:
             arm.push()
+        for arm in arms:
             arm.move(k)
             force = arm.forces[0].bit_length()
             spend(24 + len(arm.sent) + len(arm.forces), force, arm.bits)

@@ -134,18 +134,18 @@ def pair_violation(told: Read) -> str:
 
 def _errors(told: Read, sides: Sequence[Side], lines: Sequence[Line]) -> Iterator[Fraction]:
     """The largest error of each force: half a count of each reading, all at their worst."""
-    period, often = told.sample_period, told.own_readings
-    spent = [_spent(side, line, period, often) for side, line in zip(sides, lines, strict=True)]
+    period = told.sample_period
+    spent = [_spent(side, line, period) for side, line in zip(sides, lines, strict=True)]
     for side, other, line in zip(spent, spent[::-1], lines, strict=True):
-        taps = readings(side)[0].values() if often == 1 else (*side.own, *side.echo)
+        taps = readings(side)[0].values() if side.often == 1 else (*side.own, *side.echo)
         mine, its = sum(map(abs, taps)), sum(map(abs, side.other))
-        unsure = (line.still if often == 1 else line.still + line.moving) / period
+        unsure = (line.still if side.often == 1 else line.still + line.moving) / period
         yield (mine * side.resolution + its * other.resolution) / 2 + unsure * side.resolution
 
 
-def _spent(side: Side, line: Line, period: Fraction, often: int) -> Side:
+def _spent(side: Side, line: Line, period: Fraction) -> Side:
     """With less damping and local damping, which are both as quick as the rest; a drive's are quicker."""
-    if side.law is None or often > 1:
+    if side.law is None or side.often > 1:
         return side
     less = line.moving / period
     newest, last = side.own
@@ -156,8 +156,8 @@ def criterion(
     told: Read, arms: Sequence[Side], lines: Sequence[Line] = (NO_LINE, NO_LINE)
 ) -> Criterion | None:
     """The diagonal of the form, and its determinant; None where the drive of an arm alone lets it gain."""
-    period, often = told.sample_period, told.own_readings
-    sides = [_spent(side, line, period, often) for side, line in zip(arms, lines, strict=True)]
+    period = told.sample_period
+    sides = [_spent(side, line, period) for side, line in zip(arms, lines, strict=True)]
     for side in sides:
         if side.part and side.damping <= 0:
             raise Invalid("without damping a force that changes inside a sample gives energy for free")
@@ -175,7 +175,7 @@ def criterion(
         own[1 - i] = weighted((1, own[1 - i]), (-loss, times(_SQUARE, times(its, conjugate(its)))))
         mixed = times(conjugate(mine), its) if i == 0 else times(conjugate(its), mine)
         crossed = weighted((1, crossed), (-loss, times(_SQUARE, mixed)))
-    if often > 1:
+    if told.own_readings > 1:
         return _driven(told, sides, lines, crossed)
     forms = (*own, crossed)
     scale = common_scale([c for form in forms for c in form.values()], _MOST_BITS)
@@ -192,9 +192,13 @@ def _driven(told: Read, sides: Sequence[Side], lines: Sequence[Line], crossed: L
     """The same with what each arm loses at least: tops over bottoms, both positive."""
     tops, bottoms = [], []
     for side, arm in zip(sides, (told.leader, told.follower), strict=True):
-        often, period = told.own_readings, told.sample_period
-        beta = side.weight * (arm.damping - arm.stiffness * period / (2 * often))
-        gamma = side.weight * (arm.virtual_damping + arm.local_damping)
+        often, period = side.often, told.sample_period
+        beta = side.weight * (side.damping - arm.stiffness * period / (2 * often))
+        gamma = -side.weight * side.own[1] * period / often
+        if often == 1:
+            tops.append([beta, gamma])
+            bottoms.append([Fraction(1), Fraction(0)])
+            continue
         if beta < abs(gamma):
             return None
         if beta == -gamma:
@@ -210,11 +214,11 @@ def _driven(told: Read, sides: Sequence[Side], lines: Sequence[Line], crossed: L
             t, t_next = t_next, 2 * beta * t_next - gamma**2 * t
             u, u_next = u_next, 2 * beta * u_next - gamma**2 * u
         g = (-gamma) ** often
-        line, slope = often * t, -often * g
-        tops.append([(beta + gamma) * line, (beta + gamma) * slope])
-        bottoms.append([line + gamma * u, slope - gamma * u])
+        level, slope = often * t, -often * g
+        tops.append([(beta + gamma) * level, (beta + gamma) * slope])
+        bottoms.append([level + gamma * u, slope - gamma * u])
     for place, (side, line) in enumerate(zip(sides, lines, strict=True)):
-        if side.law is not None:
+        if side.law is not None and side.often > 1:
             tops[place] = _helped(tops[place], bottoms[place], side, line)
     backs = [_back(side, told.sample_period) for side in sides]
     coefficients = [*crossed.values(), *(c for back in backs for c in back.values())]

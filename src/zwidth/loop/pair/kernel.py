@@ -30,11 +30,13 @@ from zwidth.loop.plant import POSITION, SATURATED, Plant
 class Law(NamedTuple):
     """What one side computes: taps of readings, the newest first, and what compensates friction.
 
-    `own` at each tick; `heard` of the other and `echo` of its own, old readings, once in T.
+    `own` at its own readings, each after `every` ticks; `heard` of the other and `echo` of its own, old
+    readings, once in T.
     """
 
     own: float
     own_before: float
+    every: int
     heard: float
     heard_before: float
     age: int
@@ -85,8 +87,8 @@ def run_pair(
     ticks = leader.commands.shape[0] - 1
     due, its_due = first_due(first, leader.late, nothing), first_due(first, follower.late, nothing)
     for k in range(first, last):
-        read(leader, k)
-        read(follower, k)
+        for arm in (leader, follower):
+            read(arm, k)
         if k % often == 0:
             j = k // often
             leader.sent[j], follower.sent[j] = leader.readings[k], follower.readings[k]
@@ -100,7 +102,10 @@ def run_pair(
 
 @compiled
 def read(arm: Arm, k: int) -> None:
-    """Take the reading of tick k."""
+    """Take the reading of tick k, or keep the last one."""
+    if k % arm.law.every != 0:
+        arm.readings[k] = arm.readings[k - 1]
+        return
     arm.readings[k] = measured(arm.state[POSITION], arm.law.resolution, arm.law.phase)
 
 
@@ -129,7 +134,8 @@ def hear(arm: Arm, other: Arm, j: int) -> None:
 def command(arm: Arm, k: int, points: int) -> None:
     """The force that the newest readings ask for, in steps of the converter and up to the limit."""
     law, state = arm.law, arm.state
-    f = law.own * arm.readings[k] + law.own_before * arm.readings[max(k - 1, 0)] + arm.told[0]
+    last = law.every * (k // law.every - 1)
+    f = law.own * arm.readings[k] + law.own_before * arm.readings[max(last, 0)] + arm.told[0]
     f = rounded(f, law.step)
     if law.limit > 0.0 and abs(f) > law.limit:
         state[SATURATED] += 1.0

@@ -204,12 +204,13 @@ def _inside(free: Plant, wall: Wall) -> Plant:
 def _law(pair: Pair, here: int, frame: Frame, phase: float) -> Law:
     side = pair.sides[here]
     period = pair.sample_period
-    past = pair.own_readings * (side.virtual_damping + side.local_damping) / period
+    past = pair.readings[here] * (side.virtual_damping + side.local_damping) / period
     back = side.echo_damping / period
     heard = side.virtual_damping / period + back
     return Law(
         own=float(side.stiffness + past),
         own_before=-float(past),
+        every=pair.own_readings // pair.readings[here],
         heard=-float(side.felt_stiffness + heard),
         heard_before=float(heard),
         age=ceil(side.link_delay / period),

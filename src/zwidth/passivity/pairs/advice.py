@@ -119,8 +119,11 @@ def _holds(change: Change) -> Holds:
 
 
 def _at_rate(pair: Pair, rate: Fraction) -> Pair:
+    """Both arms so much quicker that the slower of them has this rate."""
+    leader, follower = pair.readings if pair.drive_rate is None else (1, 1)
     return pair.replace(
-        leader=pair.leader.replace(rate=Exact(rate)), follower=pair.follower.replace(rate=Exact(rate))
+        leader=pair.leader.replace(rate=Exact(rate * leader)),
+        follower=pair.follower.replace(rate=Exact(rate * follower)),
     )
 
 

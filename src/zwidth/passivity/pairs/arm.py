@@ -117,7 +117,7 @@ class Arm:
         """
         top, bottom = self._within
         still, moving = (self.weight * v for v in self.helped)
-        if not (still or moving):
+        if self.often == 1 or not (still or moving):
             return top, bottom
         scale = lcm(still.denominator, moving.denominator)
         taken = fmpz_poly([int(v * scale) for v in (still, moving)])
@@ -130,6 +130,8 @@ class Arm:
             return fmpz_poly([beta.numerator]), fmpz_poly([beta.denominator])
         scale = lcm(beta.denominator, gamma.denominator)
         b, g, m = int(beta * scale), int(gamma * scale), self.often
+        if m == 1:
+            return fmpz_poly([b, g]), fmpz_poly([scale])
         t, u = _homogeneous(fmpz_poly.chebyshev_t(m), b, g), _homogeneous(fmpz_poly.chebyshev_u(m - 1), b, g)
         at = (-g) ** m
         return (
@@ -141,6 +143,8 @@ class Arm:
         """M_ii of a drive at a frequency θ, to rounding [N·s/m; N·m·s/rad]."""
         beta, gamma = map(float, self.inside)
         still, moving = (float(self.weight * v) for v in self.helped)
+        if self.often == 1:
+            return float(beta + gamma * np.cos(theta))
         lost = 1 / float(np.sum(self.shares(theta) / (beta + gamma * np.cos(self.places(theta)))))
         return lost - still - moving * float(np.cos(theta))
 

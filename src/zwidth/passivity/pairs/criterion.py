@@ -66,11 +66,11 @@ class PairCriterion:
         """Leader and follower."""
         leader, follower = self.pair.sides
         period = self.pair.sample_period
-        often = self.pair.own_readings
+        often, its = self.pair.readings
         first, second = self.tangents
         return (
             Arm(leader, period, Fraction(1), often, first, self.any_mean),
-            Arm(follower, period, self.pair.power_ratio, often, second, self.any_mean),
+            Arm(follower, period, self.pair.power_ratio, its, second, self.any_mean),
         )
 
     @cached_property

@@ -46,7 +46,13 @@ def pair_document(pair: Pair) -> dict[str, Any]:
     return {
         unit_key("sample_period"): exact_text(pair.sample_period),
         **({"own_readings": pair.own_readings} if pair.own_readings > 1 else {}),
-        **{name: _side(side, pair.motion) for name, side in sides},
+        **{
+            name: {
+                **_side(side, pair.motion),
+                **({} if often == pair.own_readings else {"own_readings": often}),
+            }
+            for (name, side), often in zip(sides, pair.readings, strict=True)
+        },
     }
 
 

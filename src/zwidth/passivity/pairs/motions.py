@@ -81,9 +81,10 @@ def _inside_samples(criterion: PairCriterion) -> Iterator[tuple[Path, tuple[Repe
     for here, arm in enumerate(criterion.arms):
         if not arm.slips:
             continue
-        length = often * (1 + often % 2)
+        length = often * (1 + arm.often % 2)
         rest = [0] * (length + 1)
-        fro = [k % 2 for k in range(length + 1)]
+        step = often // arm.often
+        fro = [step - abs(k % (2 * step) - step) for k in range(length + 1)]
         yield (fro, rest) if here == 0 else (rest, fro), (Repeat(0, length, 1),)
         way = [*range(2 * often), *range(2 * often, -1, -1)]
         still = [0] * len(way)
@@ -122,14 +123,17 @@ def _round(criterion: PairCriterion, turn: Fraction, bits: int) -> Path:
     theta = 2 * pi * p / q
     vector = np.linalg.eigh(criterion.at(theta))[1][:, 0]
     vector = vector / vector[np.argmax(np.abs(vector))]
-    samples = q * criterion.pair.own_readings
-    waves = np.zeros((2, samples + 1))
+    finest = np.arange(q * criterion.pair.own_readings + 1)
+    waves = np.zeros((2, len(finest)))
     for row, (arm, amplitude) in enumerate(zip(criterion.arms, vector, strict=True)):
+        samples = q * arm.often
         beta, gamma = map(float, arm.inside) if arm.often > 1 else (1.0, 0.0)
         share = arm.shares(theta) / (beta + gamma * np.cos(arm.places(theta)))
+        wave = np.zeros(samples + 1)
         for index, part in enumerate(share / share.sum()):
             turned = 2 * pi * ((p + index * q) * np.arange(samples + 1) % samples) / samples
-            waves[row] += (amplitude * part * (np.exp(1j * turned) - 1)).real
+            wave += (amplitude * part * (np.exp(1j * turned) - 1)).real
+        waves[row] = np.interp(finest, np.linspace(0, finest[-1], samples + 1), wave)
     waves *= 2.0**bits
     leader, follower = ([round(v) for v in wave] for wave in waves)
     return leader, follower
@@ -215,7 +219,9 @@ def often_enough(
 ) -> int | None:
     """Rounds after which it gains: beyond what is remembered, energy is affine in them."""
     arms = criterion.arms
-    memory = (max(arm.oldest for arm in arms) + max(arm.whole for arm in arms) + 6) * arms[0].often
+    memory = (max(arm.oldest for arm in arms) + max(arm.whole for arm in arms) + 6) * max(
+        arm.often for arm in arms
+    )
     first = 2 + ceil(memory / min(part.last - part.first for part in parts))
     one = energy(1)
     if one is not None and one > 0:
@@ -313,6 +319,8 @@ def _forces(arms: tuple[Arm, Arm], paths: list[tuple[Fraction, ...]]) -> list[li
 def refute_friction(criterion: PairCriterion) -> PairWitness | None:
     """A motion over the edges of the encoders that Coulomb friction of one arm does not pay for."""
     pair, arms = criterion.pair, criterion.arms
+    if arms[0].often != arms[1].often:
+        return None  # both go over their edges in one rhythm
     for here in (0, 1):
         arm, other = arms[here], arms[1 - here]
         missing = arm.force_error(other) - arm.side.coulomb_friction

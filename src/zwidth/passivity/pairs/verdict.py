@@ -176,9 +176,16 @@ class PairVerdict(PassivityAnswer):
 
     @property
     def _held(self) -> str:
-        often = self.pair.own_readings
-        if often == 1:
+        often, its = self.pair.readings
+        if often == its == 1:
             return "each force is held for a period"
+        if often != its:
+            name, times = ("leader", often) if often > its else ("follower", its)
+            return (
+                f"what comes of the other's reading is held for the longer period of the two; the {name} "
+                f"reads itself {times} times in it, at equal distances, and holds what comes of that until "
+                "it reads again"
+            )
         return (
             f"what comes of the other's reading is held for a period; each drive reads its own arm {often} "
             "times in it, at equal distances, and holds what comes of that until it reads again"
