@@ -14,7 +14,7 @@ from zwidth import plots
 
 plt.rcParams.update(plots.LOOK)
 joint = zw.Device(
-    name="joint",
+    name="a joint",
     motion="rotary",
     mass=0.02,
     damping="0.4 N*m*s/rad",

@@ -27,6 +27,7 @@ NUMBERS = {
     "plot_laws": "wall 18.5 mJ at 99%, virtual-damping 0 mJ at 99%, virtual-coupling 4.78 mJ at 33%",
     "plot_motorized_guide": "measured over passive, Kelvin-Voigt without damping: 9.9",
     "plot_paddle_experiments": "9 of 11 statements agree; the others are the boundary at 90 N/m and at 3 ms",
+    "plot_pair_of_arms": "felt: 95.5 N·m/rad",
     "plot_parallel_controller": "10 g, controller: 0.059 m/s at most",
     "plot_passivity_indices": "short of passive by 0.3815 m/s per N at 57.38 Hz",
     "plot_passivity_controller": "zigzag, at most b: 0.0818 J come out",

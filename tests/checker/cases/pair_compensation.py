@@ -104,6 +104,15 @@ STEEP_COUNTED = put(STEEP, {"loop": helped(5, law(2, 0, 2), **COUNTED, coulomb_f
 DRIVEN_COUNTED = put(
     DRIVEN, {"loop": {**helped(4, law(0, 1, 0), **COUNTED, coulomb_friction_N=5), "own_readings": 2}}
 )
+# with a drive s/2 is uncertain by a count, and the s/2 of the move before by another
+STEEP_DRIVEN_COUNTED = put(
+    STEEP_DRIVEN, {"loop": {**helped(4, law(1, 0, 1), **COUNTED, coulomb_friction_N=5), "own_readings": 2}}
+)
+# T = 2, K T as before: own taps 7/4 and 1/4, 2 of the other, and a quarter
+STEEP_SLOW = put(
+    STEEP, {"loop": loop({**arm(5, 2, **COUNTED, coulomb_friction_N="9/4"), "compensation": law(2, 0, 2)})}
+)
+STEEP_SLOW["loop"]["sample_period_s"] = 2
 # at c = 1/3 the diagonal is b − 2 − C/3
 SHAKEN = helped(5, law(100, 3, 0))
 SLIPPING = {**helped(2 - TINY, law(7, 0, 1), local_damping_N_s_per_m=1), "own_readings": 2}
@@ -212,6 +221,8 @@ CASES = [
             ("C and encoders", WET_COUNTED),
             ("at rest and encoders", STEEP_COUNTED),
             ("C, drives and encoders", DRIVEN_COUNTED),
+            ("at rest, drives and encoders", STEEP_DRIVEN_COUNTED),
+            ("at rest and encoders, every other second", STEEP_SLOW),
             ("C of any mean and encoders", WET_MEAN_COUNTED),
         )
         for case in edge(

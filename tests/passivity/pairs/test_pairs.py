@@ -74,10 +74,11 @@ def age_of(pair: zw.Pair, i: int) -> int:
     return int(np.ceil(float(pair.sides[i].link_delay / pair.sample_period) - 1e-12))
 
 
-def form_of_work(pair: zw.Pair, samples: int) -> np.ndarray:
+def form_of_work(pair: zw.Pair, samples: int, younger: np.random.Generator | None = None) -> np.ndarray:
     """What two hands give over so many samples, as a matrix in the moves of each part of each reading.
 
-    From the definitions alone: readings, taps, held forces, viscous friction.
+    From the definitions alone: readings, taps, held forces, viscous friction.  With `younger` each reading
+    that is received is as old as said or less, at random.
     """
     often = pair.own_readings
     step, moves = float(pair.sample_period) / often, samples * often
@@ -92,10 +93,16 @@ def form_of_work(pair: zw.Pair, samples: int) -> np.ndarray:
         """Of arm i at reading k, its own speed over so many readings."""
         side = pair.sides[i]
         K, B = float(side.stiffness), float(side.virtual_damping)
-        sent = often * (k // often - age_of(pair, i))
+        sent = often * (k // often - age(i, k // often))
         own, was = reading(i, k), reading(i, k - finer)
         other, old = reading(1 - i, sent), reading(1 - i, sent - often)
         return K * (own - other) + B * ((own - was) / finer - (other - old) / often) / step
+
+    ages: dict[tuple[int, int], int] = {}
+
+    def age(i: int, j: int) -> int:
+        most = age_of(pair, i)
+        return most if younger is None else ages.setdefault((i, j), int(younger.integers(0, most + 1)))
 
     total = np.zeros((size, size))
     for i, side in enumerate(pair.sides):
@@ -105,7 +112,7 @@ def form_of_work(pair: zw.Pair, samples: int) -> np.ndarray:
         part = float(side.delay / pair.sample_period - whole)
         forces = [np.zeros(size)] * (whole + 1)
         for k in range(moves):
-            sent = often * (k // often - age_of(pair, i))
+            sent = often * (k // often - age(i, k // often))
             local = D * (reading(i, k) - reading(i, k - 1)) / step
             forces.append(coupling(i, k, 1) + local - share * coupling(1 - i, sent, often))
         for k in range(moves):
@@ -129,6 +136,37 @@ def test_short_motions_against_the_limit(seed, drives, reflected):
     values = np.linalg.eigvalsh(form_of_work(stiffer(pair, limit * Fraction("0.999")), samples))
     assert values[0] >= -1e-9 * values[len(values) // 2]
     assert np.linalg.eigvalsh(form_of_work(stiffer(pair, limit * 2), samples))[0] < 0
+
+
+@pytest.mark.parametrize("reflected", [False, True])
+@pytest.mark.parametrize("drives", [False, True])
+@seeds(3)
+def test_younger_readings_change_nothing_for_springs_alone(seed, drives, reflected):
+    """Ages at random from sample to sample, up to that of the pair: no motion gains just below its limit."""
+    random = np.random.default_rng(seed)
+    pair = random_pair(seed, parts=False, drives=drives, reflected=reflected)
+    delay = tuple(Fraction(int(n), 1000) for n in random.integers(0, 6, 2))
+    pair = pair.replace(damping=0, local_damping=0, delay=delay)
+    below = stiffer(pair, limit_of(pair) * Fraction("0.999"))
+    verdict = zw.check(below.replace(leader=rubbed(below.leader), follower=rubbed(below.follower)))
+    assert any("or any younger one" in text for text in verdict.assumptions)
+    assert "younger" in zw.verify(verdict.certificate.to_dict()).reason
+    for _ in range(2):
+        values = np.linalg.eigvalsh(form_of_work(below, 8 if drives else 20, random))
+        assert values[0] >= -1e-9 * values[len(values) // 2]
+
+
+def rubbed(device: zw.Device) -> zw.Device:
+    """With friction for any encoder."""
+    return device.replace(coulomb_friction=10)
+
+
+def test_a_damper_asks_for_readings_as_old_as_said():
+    """With B two readings of other ages jump: nothing is said of younger ones."""
+    verdict = zw.check(zw.Pair(PADDLE, PADDLE, stiffness=50, damping="0.05", delay="2 ms"))
+    assert verdict.passive
+    assert any("none comes later or sooner" in text for text in verdict.assumptions)
+    assert "younger" not in zw.verify(verdict.certificate.to_dict()).reason
 
 
 @seeds(10)

@@ -89,7 +89,15 @@ def pair(told: Read) -> str:
             )
     counted = any(side.resolution for side in sides)
     more = ", and Coulomb friction covers the steps of both encoders" if counted else ""
+    if not any(_beyond_springs(side, line) for side, line in zip(sides, lines, strict=True)):
+        more += "; younger readings, another in each sample, change nothing"
     return f"the work of both hands is nowhere negative{more}"
+
+
+def _beyond_springs(side: Side, line: Line) -> bool:
+    """True where a younger reading may be worse: damping, a change inside a sample, friction compensated."""
+    past = (side.own[1], side.other[1], side.echo[1], line.moving, side.part)
+    return any(past)
 
 
 def _lines(told: Read, sides: tuple[Side, Side]) -> tuple[Line, Line]:

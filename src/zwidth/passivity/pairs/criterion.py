@@ -149,6 +149,17 @@ class PairCriterion:
         return max(self.missing_friction) <= 0 and self.holds
 
     @property
+    def ages_may_vary(self) -> bool:
+        """True where no more is asked for if readings are younger than said, as they come: springs alone.
+
+        Each of their terms is worst where all have one sign, and so it is bounded whatever the ages are.
+        """
+        return not any(
+            arm.part or arm.of_own_speed or arm.helped[1] or arm.side.virtual_damping or arm.side.echo_damping
+            for arm in self.arms
+        )
+
+    @property
     def undamped(self) -> bool:
         """True where a force changes inside a sample of an arm without damping: any size of that gains."""
         return any(arm.part and arm.damping <= 0 for arm in self.arms)

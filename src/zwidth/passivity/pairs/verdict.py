@@ -157,10 +157,14 @@ class PairVerdict(PassivityAnswer):
             )
         yield f"both arms are read at the same instants, and {self._held}"
         ages = [arm.age for arm in self.criterion.arms]
-        yield (
+        used = (
             f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the "
-            f"leader {ages[1]} samples old; none is lost, none comes later"
+            f"leader {ages[1]} samples old"
         )
+        if self.outcome == "passive" and self.criterion.ages_may_vary:
+            yield f"{used}, or any younger one, another in each sample; none comes later, also after a loss"
+        else:
+            yield f"{used}; none is lost, none comes later or sooner"
         yield from assumed_of_forces(self.criterion)
         if self.scope.encoder == "counted":
             yield "encoder counts of each arm's own size, their phase unknown"
