@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 
 import zwidth as zw
 from zwidth import plots
+from zwidth.plots.pair_trace import draw_both, draw_pair_energies
 
 plt.rcParams.update(plots.LOOK)
 joint = zw.Device(
@@ -30,7 +31,10 @@ print(verdict)
 # %%
 # Which dampings are enough, and how much stiffness the delay of the link leaves.
 
-verdict.plot()
+figure, axes = plt.subplots(1, 2, figsize=(7.6, 3.6), layout="constrained")
+plots.draw_pair_damping(axes[0], verdict)
+plots.draw_pair_link(axes[1], verdict)
+plt.show()
 
 # %%
 # Twice as stiff as is passive, the arms shake by themselves: a push that never grows
@@ -38,7 +42,17 @@ verdict.plot()
 
 push = zw.operators.ConstantForce(force=0.5)
 loose = zw.simulate(pair.replace(stiffness="270 N*m/rad"), push, None, 0.4)
-loose.zwidth.plot()
+
+
+def show(trace):
+    """Positions of both arms, and the energy."""
+    figure, axes = plt.subplots(2, 1, sharex=True, figsize=(8, 4.8), layout="constrained")
+    draw_both(axes[0], trace, "position", "position")
+    draw_pair_energies(axes[1], trace)
+    plt.show()
+
+
+show(loose)
 
 # %%
 # The passive one against a wall that stands there really: the leader feels the spring between the
@@ -46,13 +60,13 @@ loose.zwidth.plot()
 
 pressed = zw.simulate(pair, push, zw.Wall(2000, 2), 1.0)
 print(f"felt: {pressed.zwidth.felt_stiffness:.3g} N·m/rad")
-pressed.zwidth.plot()
+show(pressed)
 
 # %%
 # Other ways to join them, side by side: the follower's force sent in the place of its position, both,
 # each arm's own part in its drive at 20 kHz, friction compensated.
 
-zw.compare(
+compared = zw.compare(
     {
         "position–position": pair,
         "position–force": pair.replace(stiffness=0, follower_stiffness=100, reflection=1),
@@ -65,3 +79,4 @@ zw.compare(
         ),
     }
 )
+print(compared)
