@@ -20,7 +20,7 @@ from zwidth.passivity import gap
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.covering import covering
 from zwidth.passivity.found import Need
-from zwidth.passivity.scope import Scope, scope_of
+from zwidth.passivity.scope import Law, Scope, scope_of
 from zwidth.passivity.verdict import Verdict
 from zwidth.quantity.exact import Exact, Interval, ends
 from zwidth.rendering.rendered import laws_of
@@ -120,10 +120,15 @@ def _row(
     if covered is not None:
         proved = closed(*covered)
         if proved.outcome == "passive" and proved.certificate is not None:
-            scope = proved.scope.replace(also=(), law=("covered by a wall",))
+            scope = proved.scope.replace(also=(), law=(_covered(device, covered[0]),))
             return _proved(verdict, proved.certificate, scope, proved.at_limit)
     on_paper = _on_paper(verdict)
     return _by_values(verdict, progress) if on_paper is None else on_paper
+
+
+def _covered(device: Device, less: Device) -> Law:
+    spent = less.exact("coulomb_friction") < device.exact("coulomb_friction")
+    return "covered with less friction" if spent else "covered by a wall"
 
 
 def _on_paper(verdict: Verdict) -> Verdict | None:

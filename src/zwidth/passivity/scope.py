@@ -42,6 +42,7 @@ Law = Literal[
     "doubles",
     "any before the last",
     "covered by a wall",
+    "covered with less friction",
     "potential bounded below",
     "energy at first bounded",
 ]

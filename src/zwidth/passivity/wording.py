@@ -43,6 +43,10 @@ _LAW = {
     ),
     "doubles": "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
     "covered by a wall": "the laws add no more than the virtual damping of a wall, and that wall is proved",
+    "covered with less friction": (
+        "the laws add no more than the virtual damping of a wall and a part of the device's Coulomb friction; "
+        "that wall is proved with what is left of it"
+    ),
     "potential bounded below": "of springs: those whose potential is bounded below",
     "energy at first bounded": "environments that have stored no more than a bounded energy at first",
     "any before the last": "any environment, and any laws before the last one of the chain",

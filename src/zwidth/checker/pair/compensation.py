@@ -77,20 +77,18 @@ def line_of(law: Read | None, r: Fraction, speed: str = "last move") -> Line:
 def artanh_below(r: Fraction) -> Fraction:
     """A number that is no more than artanh r and within 2^−150 of it in proportion, 0 ≤ r < 1.
 
-    2 artanh r = ln (1 + r)/(1 − r) = ln 2^k m, 1 ≤ m < 2: so artanh r = k artanh ⅓ + artanh (m − 1)/(m + 1).
+    2 artanh r = ln (1 + r)/(1 − r) = ln 2^k m, 1 ≤ m < 4: so artanh r = k artanh ⅓ + artanh (m − 1)/(m + 1).
     """
     y = (1 + r) / (1 - r)
-    spend(200, _BITS, y.numerator.bit_length())
-    k = y.numerator.bit_length() - y.denominator.bit_length()
-    if y < Fraction(2) ** k:
-        k -= 1
+    spend(400, _BITS, y.numerator.bit_length())
+    k = max(0, y.numerator.bit_length() - y.denominator.bit_length() - 1)
     m = y / 2**k
     rest = (m - 1) / (m + 1)
     return Fraction(k * _series(Fraction(1, 3)) + _series(rest), 1 << _BITS)
 
 
 def _series(t: Fraction) -> int:
-    """t + t³/3 + t⁵/5 + …, every term rounded down, in units of 2^−bits; t ≤ ⅓."""
+    """t + t³/3 + t⁵/5 + …, every term rounded down, in units of 2^−192; t ≤ 3/5."""
     power = (t.numerator << _BITS) // t.denominator
     square = power * power >> _BITS
     total, n = 0, 1
@@ -110,19 +108,15 @@ def tanh_between(x: Fraction) -> tuple[int, int]:
 
 
 def _exponential(y: Fraction) -> int:
-    """e^y in units of 2^−192, y ≤ 128, by less than 2^−170 of it too small: every step is rounded down.
+    """e^y in units of 2^−192, 0 ≤ y ≤ 128, by less than 2^−180 of it too small.
 
-    Of y halved until it is ½ or less, where some 50 terms each lose a unit; then squared at most 9 times,
-    each of which doubles what is lost in proportion.
+    No term is negative, and each of some 500 is rounded down.
     """
-    spend(60, 2 * _BITS, y.numerator.bit_length())
-    halvings = max(0, y.numerator.bit_length() - y.denominator.bit_length() + 2)
-    small = (y.numerator << _BITS) // (y.denominator << halvings)
+    spend(600, 2 * _BITS, y.numerator.bit_length())
+    small = (y.numerator << _BITS) // y.denominator
     total = term = 1 << _BITS
     n = 1
     while term:
         term = term * small // (n << _BITS)
         total, n = total + term, n + 1
-    for _ in range(halvings):
-        total = total * total >> _BITS
     return total

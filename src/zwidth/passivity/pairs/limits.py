@@ -63,6 +63,17 @@ def with_share(pair: Pair, share: Fraction) -> Pair:
     return pair.replace(compensation=law, follower_compensation=other)
 
 
+def required_damping(pair: Pair, name: str) -> float | None:
+    """The least b of the "leader" or the "follower", the other's as it is; None if none is enough."""
+    device: Device = getattr(pair, name)
+    guess = max(float(device.exact("damping")), float(pair.felt_stiffness * pair.sample_period))
+
+    def holds(b: Fraction) -> bool:
+        return spending(pair.replace(**{name: device.replace(damping=Exact(b))})).holds
+
+    return smallest_holding(holds, guess, grain_of(pair))
+
+
 def required_friction(pair: Pair, name: str) -> float | None:
     """The least f_c of the "leader" or the "follower", the other's as it is; None if none is enough.
 

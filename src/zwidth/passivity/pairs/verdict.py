@@ -11,17 +11,16 @@ from typing import Any, ClassVar
 from zwidth.device import Device
 from zwidth.pairs import Pair
 from zwidth.passivity.advice import Advice
-from zwidth.passivity.linear.boundary import smallest_holding
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere
 from zwidth.passivity.pairs.compensation import assumed_of_forces, compensation_numbers, compensation_rows
 from zwidth.passivity.pairs.criterion import PairCriterion, spending
 from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, PairWitness
 from zwidth.passivity.pairs.limits import (
-    grain_of,
     is_passive,
     largest_compensation,
     largest_stiffness,
+    required_damping,
     required_friction,
     with_share,
 )
@@ -46,6 +45,9 @@ def check_pair(pair: Pair) -> PairVerdict:
 
     for B, B + D ≥ 0, Δ' the other's encoder and m the readings of its own that an arm takes in T, 1 without
     a drive.  Equality counts as passive.  Derivation: docs/theory/pairs.md.
+
+    With compensation of friction it is passive if for some line above it, F tanh(v/v_s) ≤ h + s v, the same
+    holds with f_c − h, b − s/2 and D − C − s/2; active if a motion gains; between the two undecided.
 
     Raises
     ------
@@ -199,17 +201,7 @@ class PairVerdict(PassivityAnswer):
     @cached_property
     def required_damping(self) -> tuple[float | None, float | None]:
         """The least b of leader and follower, each with the other's as it is; None if none is enough."""
-        found = []
-        for name in ("leader", "follower"):
-            device: Device = getattr(self.pair, name)
-
-            def holds(b: Fraction, name: str = name, device: Device = device) -> bool:
-                return spending(self.pair.replace(**{name: device.replace(damping=b)})).holds
-
-            stretch = self.pair.felt_stiffness * self.pair.sample_period
-            guess = max(float(device.exact("damping")), float(stretch))
-            found.append(smallest_holding(holds, guess, grain_of(self.pair)))
-        return found[0], found[1]
+        return required_damping(self.pair, "leader"), required_damping(self.pair, "follower")
 
     @cached_property
     def required_friction(self) -> tuple[float | None, float | None]:
