@@ -1,9 +1,10 @@
 """Random pairs of arms on both sides of their limit: the proof, and the motion of both hands.
 
 Delays of whole samples and of part of one, links of 0 to 12 samples each way, unequal damping, coupling with
-and without B and D, equal and unequal stiffness, ideal encoders and counted ones, some with drives.  The
-largest stiffness that is passive is found to the last double; a part in 10⁹ below it the checker must accept
-the certificate, a part in 10⁹ above it a motion, replayed, must take energy out.
+and without B and D, equal and unequal stiffness, ideal encoders and counted ones, some with drives, some of
+unequal rates, some with forces that are sent.  The largest stiffness that is passive is found to the last
+double; a part in 10⁹ below it the checker must accept the certificate, a part in 10⁹ above it a motion,
+replayed, must take energy out.  Of every tenth pair a motion a tenth above the limit is simulated too.
 
     python random_pairs.py [PAIRS] [FIRST SEED]
 """
@@ -20,9 +21,12 @@ import numpy as np
 
 import zwidth as zw
 from zwidth.passivity.linear.boundary import largest_holding
+from zwidth.passivity.pairs import PairWitness
 from zwidth.passivity.pairs.criterion import PairCriterion
 
 BILLIONTH = Fraction(1, 10**9)
+LONGEST = 20_000
+"""Samples of a motion that is simulated."""
 
 
 def random_pair(seed: int) -> zw.Pair:
@@ -55,7 +59,17 @@ def random_pair(seed: int) -> zw.Pair:
     local = random.choice([0, 0, 0.3]) * float(leader.damping)
     more = {"follower_stiffness": number(0.5, 2)} if random.random() < 0.3 else {}
     link = tuple(Fraction(int(random.integers(0, 25)), 2) * period for _ in (0, 1))
-    more |= {"drive_rate": often / period} if often > 1 else {}
+    if often > 1 and random.random() < 0.5:
+        quick = period / often
+        leader, follower = (
+            (leader.replace(sample_period=quick), follower)
+            if random.random() < 0.5
+            else (leader, follower.replace(sample_period=quick))
+        )
+    elif often > 1:
+        more |= {"drive_rate": often / period}
+    if random.random() < 0.3:
+        more |= {"reflection": number(0.2, 2), "follower_reflection": random.choice(["0", "0.5"])}
     return zw.Pair(
         leader,
         follower,
@@ -69,7 +83,27 @@ def random_pair(seed: int) -> zw.Pair:
 
 def stiffer(pair: zw.Pair, stiffness: Fraction) -> zw.Pair:
     """Both springs in proportion."""
-    return pair.replace(stiffness=stiffness, follower_stiffness=stiffness / pair.power_ratio)
+    return pair.stiffened(stiffness)
+
+
+def replayed(witness: PairWitness | None) -> float | None:
+    """What the simulator makes of a motion over what it is said to take out; None where that is not compared.
+
+    Not of long ones, nor of counts, nor of small differences of large works: it computes in doubles.
+    """
+    if witness is None or witness.samples > LONGEST:
+        return None
+    pair = witness.pair
+    if any(side.resolution for side in pair.sides):
+        return None
+    hands = [zw.operators.WitnessMotion(motion) for motion in (witness.leader, witness.follower)]
+    tick = pair.sample_period / pair.own_readings
+    trace = zw.simulate(pair, *hands, (witness.samples + 1) * tick, progress=None)
+    moved = float(np.abs(trace["hand_work"].values).max())
+    if witness.energy < 1e-9 * moved:
+        return None
+    leader, follower = trace["hand_work"].values[:, -1]
+    return float(-(leader + float(pair.power_ratio) * follower) / witness.energy)
 
 
 def passive_limit(pair: zw.Pair) -> float | None:
@@ -101,6 +135,10 @@ def main() -> None:
                 (stiffer(pair, exact * (1 - BILLIONTH)), "passive"),
                 (stiffer(pair, exact * (1 + BILLIONTH)), "active"),
             ]
+        if seed % 10 == 0:
+            share = replayed(zw.check(stiffer(pair, Fraction(repr(limit or 1.0)) * Fraction("1.1"))).witness)
+            if share is not None:
+                seen["simulated, as much" if abs(share - 1) < 1e-6 else "WRONG: simulated"] += 1
         for loop, expected in sides:
             began = time.perf_counter()
             verdict = zw.check(loop)
