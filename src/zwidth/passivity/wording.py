@@ -44,7 +44,7 @@ _LAW = {
     "doubles": "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
     "covered by a wall": "the laws add no more than the virtual damping of a wall, and that wall is proved",
     "covered with less friction": (
-        "the laws add no more than the virtual damping of a wall and a part of the device's Coulomb friction; "
+        "the laws add no more than the virtual damping of a wall and a part of Coulomb friction; "
         "that wall is proved with what is left of it"
     ),
     "potential bounded below": "of springs: those whose potential is bounded below",
