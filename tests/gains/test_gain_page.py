@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import zwidth as zw
+from zwidth.passivity.pairs.limits import with_share
 
 PAGE = (Path(__file__).parents[2] / "docs" / "gain-files.md").read_text(encoding="utf-8")
 
@@ -74,3 +76,23 @@ def test_its_plant_is_read(names, tmp_path):
     path.write_text(text, encoding="utf-8")
     pairs = names["gains"].pairs(plant=path)
     assert [float(pair.sides[0].damping) for pair in pairs.values()][:3] == [0.5, 0.4, 0.6]
+
+
+def test_just_above_the_largest_share_a_motion_gains(names):
+    """A ten-thousandth on either side of it, where the page says that both are found."""
+    pairs = names["gains"].pairs(ideal_drive=True)
+    for joint, more in (
+        ("J3", "0.0001"),
+        ("J5", "0.0001"),
+        ("J6", "0.0001"),
+        ("J7", "0.0001"),
+        ("J4", "0.1"),
+    ):
+        share = Fraction(repr(zw.check(pairs[joint]).largest_compensation))
+        assert zw.check(with_share(pairs[joint], share * Fraction("0.9999"))).outcome == "passive"
+        beyond = zw.check(with_share(pairs[joint], share * (1 + Fraction(more))))
+        assert beyond.outcome == "active"
+        assert beyond.witness.verify()
+    for joint in ("J1", "J2"):
+        share = Fraction(repr(zw.check(pairs[joint]).largest_compensation))
+        assert zw.check(with_share(pairs[joint], share * Fraction("1.1"))).outcome == "undecided"

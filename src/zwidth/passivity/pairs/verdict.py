@@ -157,7 +157,9 @@ class PairVerdict(PassivityAnswer):
                 "with hands that are passive each by itself the whole is stable; one body that holds both "
                 "arms is not covered"
             )
-        yield f"both arms are read at the same instants, and {self._held}"
+        alike = len(set(pair.readings)) == 1
+        does = "are read" if alike else "send what they read"
+        yield f"both arms {does} at the same instants, and {self._held}"
         ages = [arm.age for arm in self.criterion.arms]
         used = (
             f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the "
