@@ -126,6 +126,15 @@ DRIVEN_LINK = put(
     proved(loop(arm("13/12", "1/3", link_delay_s=1)), signs(at_one=2, factor=[35, -4, -4])),
     {"loop.own_readings": 2},
 )
+
+
+def losing(leader: Any, follower: Any) -> Any:
+    """β' and γ' of both."""
+    keys = ("damping_N_s_per_m", "local_damping_N_s_per_m")
+    pairs = zip(("leader", "follower"), (leader, follower), strict=True)
+    return {name: dict(zip(keys, least, strict=True)) for name, least in pairs}
+
+
 # the leader reads itself twice in a sample, the follower once: (3 − 1)(4 − 2) = 2²
 UNEQUAL_RATES = put(
     proved(loop(arm(3, 4), arm(4, 4)), NOWHERE), {"loop.own_readings": 2, "loop.follower.own_readings": 1}
@@ -226,6 +235,27 @@ CASES = [
         put(UNEQUAL_RATES, {"loop.follower.damping_N_s_per_m": 4 - TINY}),
         FACTORS,
     ),
+    accepted(
+        "of a drive no more than it loses", put(DRIVEN_DAMPED, {"proof.losses": losing((3, 1), (3, 1))})
+    ),
+    *edge(
+        "a stiffer drive that loses no less",
+        put(
+            DRIVEN_DAMPED,
+            {"loop.leader.damping_N_s_per_m": 4 + TINY, "proof.losses": losing((3, 1), (3, 1))},
+        ),
+        put(
+            DRIVEN_DAMPED,
+            {"loop.leader.damping_N_s_per_m": 4 - TINY, "proof.losses": losing((3, 1), (3, 1))},
+        ),
+        "loses less",
+    ),
+    refused(
+        "another part of it with the speed",
+        put(DRIVEN_DAMPED, {"proof.losses": losing((3, 1), (3, 1 + TINY))}),
+        "loses less",
+    ),
+    refused("losses without a drive", put(SPRING, {"proof.losses": losing((2, 0), (2, 0))}), "of a drive"),
     refused("the quicker arm as slow", put(UNEQUAL_RATES, {"loop.leader.own_readings": 1}), FACTORS),
     refused("more often than the loop", put(UNEQUAL_RATES, {"loop.leader.own_readings": 4}), "whole number"),
     *edge("a force that is sent", SENT, put(SENT, {"loop.leader.damping_N_s_per_m": 5 - TINY}), FACTORS),

@@ -386,6 +386,22 @@ def test_a_spring_inside_the_drive_needs_less():
         assert above.witness.verify()
 
 
+def test_a_drive_that_reads_a_thousand_times_has_a_proof_of_few_digits():
+    """With numbers of 14 digits, to the thousandth power: the losses of the proof are rounded down."""
+    arm = PADDLE.replace(damping="0.52234567891234", rate=20)
+    pair = zw.Pair(
+        arm, arm, stiffness="4.123456789", damping="0.123456789", delay="20 ms", drive_rate="20 kHz"
+    )
+    verdict = zw.check(pair)
+    assert verdict.passive
+    criterion = PairCriterion(pair)
+    for arm_, (beta, gamma) in zip(criterion.arms, verdict.certificate.losses, strict=True):
+        whole, part = arm_.inside
+        assert 0 < beta < whole
+        assert whole - beta >= abs(part - gamma)
+        assert len(str(beta)) < 9
+
+
 @pytest.mark.parametrize("damping", ["0.999", "1.001"])
 def test_a_drive_that_gains_by_itself(damping):
     """b < K T/2m + |B + D|: to and fro from reading to reading of one's own, the other arm at rest."""

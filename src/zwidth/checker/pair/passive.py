@@ -31,6 +31,7 @@ from ..document.effort import spend
 from ..document.fields import Number, Read, Record, document, only_if
 from ..document.number import about, common_scale
 from ..document.refusal import Invalid
+from ..document.unit import DAMPING
 from ..exact.polynomial import bits, multiply, value
 from ..exact.positivity import POSITIVITY, require_nonnegative
 from .compensation import NO_LINE, TANGENTS, Line, line_of
@@ -45,11 +46,21 @@ from .laurent import (
     weighted,
 )
 
+LOSS = Record({"damping": Number(DAMPING), "local_damping": Number(DAMPING)})
+LOSSES = Record({"leader": LOSS, "follower": LOSS}, default=None)
+"""β' and γ' in the place of β and γ, β' + γ' cos φ ≤ β + γ cos φ at every φ: of fewer digits, for powers."""
+
 PAIR_PROOF = document(
     {
         "loop": PAIR,
         "proof": Record(
-            {"leader": POSITIVITY, "follower": POSITIVITY, "both": POSITIVITY, "tangents": TANGENTS},
+            {
+                "leader": POSITIVITY,
+                "follower": POSITIVITY,
+                "both": POSITIVITY,
+                "tangents": TANGENTS,
+                "losses": LOSSES,
+            },
             shown=False,
         ),
     }
@@ -75,7 +86,9 @@ def pair(told: Read) -> str:
     """Friction and encoders too."""
     sides = sides_of(told.loop)
     lines = _lines(told, sides)
-    found = criterion(told.loop, sides, lines)
+    if told.proof.losses is not None and told.loop.own_readings == 1:
+        raise Invalid("proof.losses are of a drive that reads its arm more often, and there is none")
+    found = criterion(told.loop, sides, lines, told.proof.losses)
     if found is None:
         raise Invalid("an arm gains by itself inside a sample")
     for name in Criterion._fields:
@@ -153,7 +166,10 @@ def _spent(side: Side, line: Line, period: Fraction) -> Side:
 
 
 def criterion(
-    told: Read, arms: Sequence[Side], lines: Sequence[Line] = (NO_LINE, NO_LINE)
+    told: Read,
+    arms: Sequence[Side],
+    lines: Sequence[Line] = (NO_LINE, NO_LINE),
+    losses: Read | None = None,
 ) -> Criterion | None:
     """The diagonal of the form, and its determinant; None where the drive of an arm alone lets it gain."""
     period = told.sample_period
@@ -176,7 +192,7 @@ def criterion(
         mixed = times(conjugate(mine), its) if i == 0 else times(conjugate(its), mine)
         crossed = weighted((1, crossed), (-loss, times(_SQUARE, mixed)))
     if told.own_readings > 1:
-        return _driven(told, sides, lines, crossed)
+        return _driven(told, sides, lines, crossed, losses)
     forms = (*own, crossed)
     scale = common_scale([c for form in forms for c in form.values()], _MOST_BITS)
     leader, follower, cross = ({k: int(c * scale) for k, c in form.items()} for form in forms)
@@ -188,13 +204,20 @@ def criterion(
     return Criterion(*diagonal, both)
 
 
-def _driven(told: Read, sides: Sequence[Side], lines: Sequence[Line], crossed: Laurent) -> Criterion | None:
+def _driven(
+    told: Read, sides: Sequence[Side], lines: Sequence[Line], crossed: Laurent, losses: Read | None
+) -> Criterion | None:
     """The same with what each arm loses at least: tops over bottoms, both positive."""
     tops, bottoms = [], []
-    for side, arm in zip(sides, (told.leader, told.follower), strict=True):
+    least = (None, None) if losses is None else (losses.leader, losses.follower)
+    for side, arm, less in zip(sides, (told.leader, told.follower), least, strict=True):
         often, period = side.often, told.sample_period
         beta = side.weight * (side.damping - arm.stiffness * period / (2 * often))
         gamma = -side.weight * side.own[1] * period / often
+        if less is not None:
+            if beta - less.damping < abs(gamma - less.local_damping):
+                raise Invalid("a move inside a sample loses less than the proof counts")
+            beta, gamma = less.damping, less.local_damping
         if often == 1:
             tops.append([beta, gamma])
             bottoms.append([Fraction(1), Fraction(0)])

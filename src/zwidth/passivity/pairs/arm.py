@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from decimal import ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from functools import cached_property
 from math import lcm
@@ -28,7 +29,8 @@ class Arm:
     """One side in samples: `whole` + `part` of delay, `age` of the other's reading, and its weight.
 
     `often` is how many readings of its own it takes in a sample period, `tangent` the r of its compensation,
-    `any_mean` true where that may take any mean of past moves for the speed.
+    `any_mean` true where that may take any mean of past moves for the speed; `least` a β and γ of few digits
+    that stand for those of a drive, `inside`.
     """
 
     side: Side
@@ -37,6 +39,7 @@ class Arm:
     often: int = 1
     tangent: Fraction = Fraction(1)
     any_mean: bool = False
+    least: tuple[Fraction, Fraction] | None = None
 
     @cached_property
     def line(self) -> Line:
@@ -106,8 +109,20 @@ class Arm:
     @property
     def inside(self) -> tuple[Fraction, Fraction]:
         """β and γ of a drive: what a move between two of its own readings loses, and with the one before."""
+        if self.least is not None:
+            return self.least
         lost = self.damping - self.side.stiffness * self.period / self.often / 2
         return self.weight * lost, self.weight * self.of_own_speed
+
+    def rounded(self, digits: int) -> tuple[Fraction, Fraction]:
+        """β' and γ' of so many digits, β' + γ' cos φ ≤ β + γ cos φ at every φ: β − β' ≥ |γ − γ'|."""
+        beta, gamma = self.inside
+        if self.often == 1:
+            return beta, gamma
+        near = Fraction(f"{float(gamma):.{digits - 1}e}")
+        below = beta - abs(gamma - near)
+        context = Context(prec=digits, rounding=ROUND_FLOOR)
+        return Fraction(context.divide(Decimal(below.numerator), Decimal(below.denominator))), near
 
     @property
     def driven(self) -> tuple[fmpz_poly, fmpz_poly]:

@@ -55,11 +55,14 @@ class PairCriterion:
         speed: that of motions so large that F is nothing beside their square.
     any_mean
         True where compensation may take any mean of past moves for the speed, and not the last alone.
+    losses
+        β and γ of few digits in the place of those of both drives, see `with_few_digits`.
     """
 
     pair: Pair
     tangents: tuple[Fraction, Fraction] = (Fraction(1), Fraction(1))
     any_mean: bool = False
+    losses: tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]] | None = None
 
     @cached_property
     def arms(self) -> tuple[Arm, Arm]:
@@ -68,10 +71,16 @@ class PairCriterion:
         period = self.pair.sample_period
         often, its = self.pair.readings
         first, second = self.tangents
+        least, its_least = self.losses or (None, None)
         return (
-            Arm(leader, period, Fraction(1), often, first, self.any_mean),
-            Arm(follower, period, self.pair.power_ratio, its, second, self.any_mean),
+            Arm(leader, period, Fraction(1), often, first, self.any_mean, least),
+            Arm(follower, period, self.pair.power_ratio, its, second, self.any_mean, its_least),
         )
+
+    def with_few_digits(self, digits: int) -> PairCriterion:
+        """With what a move inside a sample loses rounded down: what holds of it, holds."""
+        leader, follower = (arm.rounded(digits) for arm in self.arms)
+        return replace(self, losses=(leader, follower))
 
     @cached_property
     def forms(self) -> tuple[Sums, Sums, Sums]:

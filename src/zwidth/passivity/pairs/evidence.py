@@ -87,12 +87,15 @@ class PairCertificate(Evidence):
         r of the line above the compensation of friction of each arm.
     any_mean
         True where that may take any mean of past moves for the speed.
+    losses
+        β and γ of few digits of both drives, for which it is proved; None where it is for their own.
     """
 
     pair: Pair
     signs: tuple[Positivity, Positivity, Positivity]
     tangents: tuple[Fraction, Fraction] = (Fraction(1), Fraction(1))
     any_mean: bool = False
+    losses: tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]] | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data."""
@@ -103,6 +106,13 @@ class PairCertificate(Evidence):
             proof["tangents"] = {name: exact_text(r) for name, r in arms}
             if self.any_mean:
                 proof["tangents"]["speed"] = "any mean"
+        if self.losses is not None:
+            keys = [unit_key(name, self.pair.motion) for name in ("damping", "local_damping")]
+            both = zip(("leader", "follower"), self.losses, strict=True)
+            proof["losses"] = {
+                name: {key: exact_text(value) for key, value in zip(keys, least, strict=True)}
+                for name, least in both
+            }
         return {"format": CERTIFICATE, "kind": "pair", "loop": pair_document(self.pair), "proof": proof}
 
     def describe(self) -> str:
