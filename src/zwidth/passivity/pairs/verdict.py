@@ -174,10 +174,9 @@ class PairVerdict(PassivityAnswer):
         alike = len(set(pair.readings)) == 1
         does = "are read" if alike else "send what they read"
         yield f"both arms {does} at the same instants, and {self._held}"
-        ages = [arm.age for arm in self.criterion.arms]
+        ages = [f"{arm.age} sample{'' if arm.age == 1 else 's'} old" for arm in self.criterion.arms]
         used = (
-            f"the leader uses a reading of the follower {ages[0]} samples old, the follower one of the "
-            f"leader {ages[1]} samples old"
+            f"the leader uses a reading of the follower {ages[0]}, the follower one of the leader {ages[1]}"
         )
         if self.outcome == "passive" and self.criterion.ages_may_vary:
             yield f"{used}, or any younger one, another in each sample; none comes later, also after a loss"
