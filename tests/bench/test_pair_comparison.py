@@ -7,7 +7,7 @@ import json
 import pytest
 
 import zwidth as zw
-from zwidth.bench.pairs import HARD, missing_damping
+from zwidth.bench.pairs import HARD, missing_damping, schemes
 
 ARM = zw.Device(damping=0.4, coulomb_friction="0.02", resolution="1 um", rate="1 kHz", delay=0, mass=0.05)
 PAIR = zw.Pair(ARM, ARM, stiffness=100, delay="1 ms")
@@ -73,3 +73,15 @@ def test_as_a_table_and_as_json(compared):
 def test_what_cannot_be_compared_is_said(given, message):
     with pytest.raises(zw.InputError, match=message):
         zw.compare(*given)
+
+
+def test_every_scheme_is_as_stiff_for_both_hands():
+    """What the leader feels, and how often the follower's work counts, are those of the given pair."""
+    pair = PAIR.replace(follower_stiffness=250, damping="0.02")
+    ways = schemes(pair)
+    assert list(ways) == ["position–position", "position–force", "four channels"]
+    for way in ways.values():
+        assert way.felt_stiffness == 100
+        assert way.power_ratio == pair.power_ratio
+    mixed = pair.replace(reflection="0.3")
+    assert schemes(mixed)["as given"] == mixed

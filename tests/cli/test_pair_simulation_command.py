@@ -109,3 +109,24 @@ def test_a_wall_needs_its_stiffness_and_a_pair_its_duration(files, capsys):
 def test_one_device_has_no_follower(capsys):
     loop = ["haptic-paddle", "--stiffness", "300", "--operator", "dowel", "--duration", "1"]
     assert "no follower" in said(capsys, *loop, "--follower-operator", "finger")
+
+
+def test_ways_to_join_two_arms_are_compared(files, capsys, tmp_path):
+    saved = tmp_path / "schemes.json"
+    assert main(["compare", files[0], "--stiffness", "40", "-o", str(saved)]) == 0
+    out = capsys.readouterr().out
+    assert "position–force" in out
+    told = json.loads(saved.read_text(encoding="utf-8"))
+    assert told["format"] == "zwidth pairs 1"
+    assert list(told["schemes"]) == ["position–position", "position–force", "four channels"]
+    for scores in told["schemes"].values():
+        assert scores["felt_stiffness_N_per_m"] == pytest.approx(40, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [(["--plot", "a.png"], "--plot"), (["--fastest", "3"], "--fastest"), (["--rate", "3"], "which arm")],
+)
+def test_what_is_of_laws_is_not_of_arms(files, capsys, argv, words):
+    assert main(["compare", files[0], *argv]) == 2
+    assert words in capsys.readouterr().err

@@ -107,6 +107,33 @@ _SCORES = {
 """Of each number what it is, and its meaning in a few words."""
 
 
+def schemes(pair: Pair) -> dict[str, Pair]:
+    """A pair as it is, and joined by positions, by a force, by both, the stiffness at the leader the same.
+
+    Of the follower's force as much is sent as the leader's spring is of its own.
+    """
+    felt, ratio = pair.felt_stiffness, pair.power_ratio
+    none = {"reflection": 0, "follower_reflection": 0}
+    ways: dict[str, dict[str, Any]] = {
+        "position–position": {**none, "stiffness": felt, "follower_stiffness": felt / ratio},
+        "position–force": {
+            **none,
+            "stiffness": 0,
+            "follower_stiffness": felt / ratio,
+            "reflection": ratio,
+        },
+        "four channels": {
+            "stiffness": felt / 2,
+            "follower_stiffness": felt / ratio / 2,
+            "reflection": ratio,
+            "follower_reflection": 1 / ratio,
+        },
+    }
+    found = {name: pair.replace(**changes) for name, changes in ways.items()}
+    is_one = pair.sides in [other.sides for other in found.values()]
+    return found if is_one else {"as given": pair, **found}
+
+
 def compare_pairs(
     pairs: Mapping[str, Pair], *, progress: Callable[[int, int], None] | None = None
 ) -> PairComparison:

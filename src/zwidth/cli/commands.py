@@ -126,7 +126,8 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth compare haptic-paddle --stiffness 2000\n"
             "  zwidth compare haptic-paddle --stiffness 2000 --laws virtual-damping,passivity-controller "
             "--plot laws.png\n"
-            "  zwidth compare my-paddle.toml my-laws.toml --laws wall,virtual-damping",
+            "  zwidth compare my-paddle.toml my-laws.toml --laws wall,virtual-damping\n"
+            "  zwidth compare my-arms.toml",
         ),
         "workspace": Command(
             "where does an arm of several joints render a wall passively?",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.options import Once, add_law_option, add_output, add_parameters, overrides
@@ -11,7 +12,7 @@ from zwidth.cli.output import print_json, print_text, say_written, targets, writ
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 from zwidth.specification.laws import with_laws
-from zwidth.specification.table import quoted, suggestion
+from zwidth.specification.table import Table, quoted, suggestion
 
 if TYPE_CHECKING:
     from zwidth.environment import Environment
@@ -30,7 +31,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "sources",
         metavar="SOURCE",
         nargs="*",
-        help="device of the catalogue, or TOML file with tables [device], [environment], [[law]]",
+        help="device of the catalogue, or TOML file with tables [device], [environment], [[law]]; or one "
+        "with [leader], [follower], [coupling]: ways to join two arms",
     )
     parser.add_argument(
         "--laws",
@@ -51,10 +53,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth compare`: 0."""
-    from zwidth.specification.read import WITH_LAWS, read_tables, specified
+    from zwidth.specification.read import PAIR_TABLES, WITH_LAWS, read_tables, specified
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
-    tables = read_tables(arguments.sources, WITH_LAWS)
+    tables = read_tables(arguments.sources, (*WITH_LAWS, *PAIR_TABLES))
+    if any(name in tables for name in PAIR_TABLES):
+        return _pairs(arguments, tables, save)
     loop = specified(tables, overrides(arguments))
     own = with_laws(loop.environment, tables.get("law"), arguments.law, loop.device.motion)
     from zwidth.bench.laws import standard_laws
@@ -75,6 +79,30 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         print_text(found)
         say_written(save, plot)
+    return 0
+
+
+def _pairs(arguments: argparse.Namespace, tables: Mapping[str, Table], save: Path | None) -> int:
+    """Two arms joined in each of the ways that there are, the stiffness in all the same."""
+    from zwidth.bench.pairs import schemes
+    from zwidth.cli.compile_notice import warn_of_compiling
+    from zwidth.cli.simulate_pair import pair_with_options
+    from zwidth.traces import compare
+
+    given = {"--laws": arguments.laws, "--fastest": arguments.fastest, "--plot": arguments.plot}
+    foreign = [name for name, value in given.items() if value]
+    if foreign:
+        raise InputError(f"{foreign[0]} is of rendering laws: ways to join two arms are compared without it")
+    pair = pair_with_options(arguments, tables)
+    warn_of_compiling()
+    found = compare(schemes(pair))
+    if save is not None:
+        found.save(save)
+    if arguments.json:
+        print_json(found.to_json())
+    else:
+        print_text(found)
+        say_written(save)
     return 0
 
 

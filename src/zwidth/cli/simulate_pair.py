@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.options import given, overrides
 from zwidth.errors import InputError
+from zwidth.pairs import Pair
 from zwidth.passivity.document import unit_key
 from zwidth.specification.pairs import option_keys, pair_of
 from zwidth.specification.read import PAIR_TABLES
@@ -36,20 +37,7 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
     )
     from zwidth.traces import simulate
 
-    for name in ("environment", "law"):
-        if name in tables or (name == "law" and arguments.law):
-            raise InputError(
-                f"two arms meet each other, not a virtual wall: leave out the {name}; a real wall at the "
-                "follower is --follower-operator wall"
-            )
-    coupling, words = option_keys(), overrides(arguments)
-    foreign = sorted(set(words) - set(coupling))
-    if foreign:
-        raise InputError(
-            f"--{foreign[0].replace('_', '-')} does not say of which arm: write it in [leader] or [follower]"
-        )
-    arms = {name: tables[name] for name in ("device", *PAIR_TABLES) if name in tables}
-    pair = pair_of(arms, words)
+    pair = pair_with_options(arguments, tables)
     typed = given(arguments, [p.key for p in (*operator_parameters(), *simulation_parameters())])
     touch = build_touch(tables.get("operator"), tables.get("simulation"), typed, pair.motion)
     of_follower = given(arguments, [p.key for p in follower_parameters()])
@@ -58,6 +46,30 @@ def simulated_pair(arguments: argparse.Namespace, tables: Mapping[str, Table]) -
         raise InputError("no duration is given: set --duration, for example --duration '2 s'")
     warn_of_compiling()
     return simulate(pair, touch.operator, follower, touch.duration, **touch.options)
+
+
+def pair_with_options(arguments: argparse.Namespace, tables: Mapping[str, Table]) -> Pair:
+    """The pair of the tables, with what the command line says of its coupling.
+
+    Raises
+    ------
+    InputError
+        If there is an environment or a law, or an option that does not say of which arm.
+    """
+    for name in ("environment", "law"):
+        if name in tables or (name == "law" and arguments.law):
+            raise InputError(
+                f"two arms meet each other, not a virtual wall: leave out the {name}; what the follower "
+                "really meets is for zwidth simulate, --follower-operator wall"
+            )
+    coupling, words = option_keys(), overrides(arguments)
+    foreign = sorted(set(words) - set(coupling))
+    if foreign:
+        raise InputError(
+            f"--{foreign[0].replace('_', '-')} does not say of which arm: write it in [leader] or [follower]"
+        )
+    arms = {name: tables[name] for name in ("device", *PAIR_TABLES) if name in tables}
+    return pair_of(arms, words)
 
 
 def pair_measures(trace: xr.Dataset) -> dict[str, Any]:
