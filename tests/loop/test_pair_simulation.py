@@ -189,6 +189,7 @@ def test_a_trace_of_a_pair_comes_back_from_a_file(tmp_path, suffix):
         (Finger(), 3, {}, "got int"),
         (Finger(), zw.Wall(100, -1), {}, "give out energy"),
         (Finger(), zw.Wall(100, clamped=True), {}, "clamped"),
+        (Finger(), zw.Wall((100, 200)), {}, "one number"),
         (Finger(), None, {"encoder_phase": (0, 1, 2)}, "one for the leader"),
         (Finger(), None, {"encoder_phase": 1.0}, "part of one count"),
         (Finger(), None, {"initial_velocity": 1.0}, "where its hands do"),

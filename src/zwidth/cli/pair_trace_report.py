@@ -11,6 +11,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from zwidth.cli.page import below, grid, headline, page
+from zwidth.cli.trace_report import how_long
 from zwidth.energy import PairLedger
 from zwidth.energy.ledger import ROUNDING
 from zwidth.loop.trace import UNITS
@@ -55,13 +56,7 @@ def _about(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
     for arm in ("leader", "follower"):
         yield arm, plain(f"{about[f'{arm}_device']}; {about[f'{arm}_holder']}", 200)
         yield f"amplifier of the {arm}", str(about[f"{arm}_amplifier"])
-    seconds = float(trace["time"].values[-1])
-    count = int(trace["sampled"].values.sum()) - 1
-    yield "time", f"{shown(seconds, 's')}, {count:,} samples of {shown(about['sample_period_s'], 's')}"
-    if "interrupted_at_s" in about:
-        yield "interrupted", f"at {shown(about['interrupted_at_s'], 's')}; what was finished is kept"
-    if "diverged_at_s" in about:
-        yield "diverged", f"at {shown(about['diverged_at_s'], 's')}: beyond that the numbers mean nothing"
+    yield from how_long(trace)
 
 
 def _measures(trace: xr.Dataset) -> Iterator[tuple[str, str]]:

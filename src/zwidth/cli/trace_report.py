@@ -74,6 +74,12 @@ def _about(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
     yield "amplifier", str(about["amplifier"])
     if about["timing"] != "regular":
         yield "clock", str(about["timing"])
+    yield from how_long(trace)
+
+
+def how_long(trace: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """How long was simulated, and why no longer."""
+    about = trace.attrs
     seconds = float(trace["time"].values[-1])
     count = int(trace["sampled"].values.sum()) - 1
     yield "time", f"{shown(seconds, 's')}, {count:,} samples of {shown(about['sample_period_s'], 's')}"

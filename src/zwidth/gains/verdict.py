@@ -128,7 +128,7 @@ class JointVerdict:
             return "kd in the drive"
         if verdict.violation is not None:
             return f"at {verdict.violation.frequency:.3g} Hz"
-        return "" if verdict.passive else "Coulomb friction"
+        return "" if verdict.passive else verdict.limit.partition(":")[0]
 
     @property
     def assumptions(self) -> tuple[str, ...]:

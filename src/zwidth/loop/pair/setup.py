@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zwidth.device.amplifier import Amplifier
-from zwidth.device.device import Device
 from zwidth.environment import Wall
 from zwidth.environment.environment import certain
 from zwidth.environment.velocity import BackwardDifference
 from zwidth.errors import InputError
 from zwidth.loop.kernel import RECORDED
+from zwidth.loop.law import measured, rounded
 from zwidth.loop.pair.kernel import Arm, Law
 from zwidth.loop.plant import FORCE, GOAL, POSITION, STATE_SIZE, Plant
 from zwidth.loop.setup import Frame, frame_of
 from zwidth.operator.operator import Operator, Signals
 from zwidth.pairs import Pair
-from zwidth.quantity.exact import Exact, RealLike
+from zwidth.quantity.exact import Exact, Interval, RealLike
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -101,8 +101,7 @@ def prepare_pair(
         If anything cannot be simulated.
     """
     holders = (leader, follower)
-    for name, holder in zip(("leader", "follower"), holders, strict=True):
-        _check(name, holder)
+    walls = [_wall(name, holder) for name, holder in zip(("leader", "follower"), holders, strict=True)]
     if all(not isinstance(holder, Operator) for holder in holders):
         raise InputError(
             "no hand is on either arm, so nothing moves: give one as leader or follower, such as "
@@ -116,30 +115,34 @@ def prepare_pair(
     ]
     starts = _starts(frames, holders)
     arms = [
-        _arm(pair, here, device, frame, holder, starts, phase)
-        for here, (device, frame, holder, phase) in enumerate(
-            zip(devices, frames, holders, encoder_phase, strict=True)
-        )
+        _arm(pair, here, frame, wall, starts[here], phase)
+        for here, (frame, wall, phase) in enumerate(zip(frames, walls, encoder_phase, strict=True))
     ]
     for arm, other in zip(arms, arms[::-1], strict=True):
         _settle(arm, other)
     return PairSetup(pair=pair, holders=holders, frames=(frames[0], frames[1]), arms=(arms[0], arms[1]))
 
 
-def _check(name: str, holder: object) -> None:
-    if isinstance(holder, Wall):
-        if holder.clamped or not isinstance(holder.velocity_filter, BackwardDifference):
-            raise InputError(
-                f"{name}: a real wall is a spring and a damper that act without computing; leave out clamped "
-                "and velocity_filter"
-            )
-        if certain(holder.damping, f"damping of the wall at the {name}") < 0:
-            raise InputError(f"{name}: a real wall has no damping below 0: it would give out energy itself")
-    elif not (holder is None or isinstance(holder, Operator)):
+def _wall(name: str, holder: object) -> Wall | None:
+    """The real wall that stands there, if one does."""
+    if holder is None or isinstance(holder, Operator):
+        return None
+    if not isinstance(holder, Wall):
         raise InputError(
             f"{name} is a hand of zwidth.operators, a zwidth.Wall that stands there, or None for nobody; "
             f"got {type(holder).__name__}"
         )
+    if holder.clamped or not isinstance(holder.velocity_filter, BackwardDifference):
+        raise InputError(
+            f"{name}: a real wall is a spring and a damper that act without computing; leave out clamped and "
+            "velocity_filter"
+        )
+    for key, value in (("stiffness", holder.stiffness), ("damping", holder.damping)):
+        if isinstance(value, Interval):
+            raise InputError(f"{name}: the {key} of a real wall is one number, got the interval {value}")
+    if certain(holder.damping, "damping") < 0:
+        raise InputError(f"{name}: a real wall has no damping below 0: it would give out energy itself")
+    return holder
 
 
 def _hand(holder: Holder) -> Operator:
@@ -158,16 +161,12 @@ def _starts(frames: list[Frame], holders: tuple[Holder, Holder]) -> list[float]:
     return [there if start is None else start for start in given]
 
 
-def _arm(
-    pair: Pair, here: int, device: Device, frame: Frame, holder: Holder, starts: list[float], phase: float
-) -> Arm:
+def _arm(pair: Pair, here: int, frame: Frame, wall: Wall | None, start: float, phase: float) -> Arm:
     if not 0 <= phase < 1:
         raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
     state = np.zeros(STATE_SIZE)
-    state[POSITION] = starts[here]
+    state[POSITION] = start
     free = frame.plant
-    wall = isinstance(holder, Wall)
-    inside = _inside(free, holder) if isinstance(holder, Wall) else free
     samples, often = frame.samples, pair.own_readings
     s = frame.signals
     force, anchor, target, switch = (
@@ -175,8 +174,8 @@ def _arm(
     )
     return Arm(
         plant=free,
-        inside=inside,
-        wall=int(wall),
+        inside=free if wall is None else _inside(free, wall),
+        wall=int(wall is not None),
         law=_law(pair, here, frame, phase),
         late=frame.late,
         offset=frame.offset,
@@ -194,10 +193,7 @@ def _arm(
 
 
 def _inside(free: Plant, wall: Wall) -> Plant:
-    stiffness, damping = (
-        float(certain(value, f"{name} of the wall"))
-        for name, value in (("stiffness", wall.stiffness), ("damping", wall.damping))
-    )
+    stiffness, damping = (float(certain(value, "wall")) for value in (wall.stiffness, wall.damping))
     return free._replace(stiffness=stiffness, hand_damping=damping)
 
 
@@ -231,15 +227,10 @@ def _law(pair: Pair, here: int, frame: Frame, phase: float) -> Law:
 def _settle(arm: Arm, other: Arm) -> None:
     """The force as it was before the start: both arms had always been where they are."""
     law = arm.law
-    count, its = arm.law.resolution, other.law.resolution
-    mine, heard = (
-        step * np.floor(a.state[POSITION] / step + a.law.phase) if step else a.state[POSITION]
-        for a, step in ((arm, count), (other, its))
-    )
+    mine, heard = (measured(a.state[POSITION], a.law.resolution, a.law.phase) for a in (arm, other))
     f = (law.own + law.own_before + law.echo + law.echo_before) * mine
     f += (law.heard + law.heard_before) * heard
-    if law.step:
-        f = law.step * np.floor(f / law.step + 0.5)
+    f = rounded(f, law.step)
     if law.limit:
         f = min(max(f, -law.limit), law.limit)
     arm.state[FORCE] = arm.state[GOAL] = f
