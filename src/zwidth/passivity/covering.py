@@ -12,7 +12,7 @@ from fractions import Fraction
 from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.environment.wall import Wall, wall_of
-from zwidth.passivity.pairs.tangents import best_tangent, line_of
+from zwidth.passivity.tangents import best_tangent, line_of
 from zwidth.quantity.exact import Exact, ends
 from zwidth.rendering.force.friction_compensation import FrictionCompensation
 from zwidth.rendering.rendered import laws_of

@@ -19,7 +19,7 @@ from flint import fmpz_poly
 from numpy.typing import NDArray
 
 from zwidth.pairs import Side
-from zwidth.passivity.pairs.tangents import Line, line_of
+from zwidth.passivity.tangents import Line, line_of
 
 Floats = NDArray[np.float64]
 

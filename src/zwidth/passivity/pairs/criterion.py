@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from zwidth.pairs import Pair
 from zwidth.passivity.linear.positivity import Positivity, prove_nonnegative
 from zwidth.passivity.pairs.arm import Arm
-from zwidth.passivity.pairs.tangents import best_tangent
+from zwidth.passivity.tangents import best_tangent
 
 Sums = dict[int, Fraction]
 Floats = NDArray[np.float64]
