@@ -2,15 +2,15 @@
 
     f_i = φ_i(w_i),   w = w° − M f,   M = N G⁻¹ Nᵀ      w° without them
 
-Each φ_i is monotone, so that with a_i = w_i + M_ii f_i the force is one nondecreasing function J_i(a_i),
-found by bracketed Newton steps or, for friction, at once.  One element is done with that.  Several are the
-least of
+Each φ_i is monotone, the derivative of a convex Φ_i, and the velocities sought are the least of the strictly
+convex P(q) = ½ qᵀ G q − rᵀ q + Σ Φ_i(N_i q).  On the iterates q = q° − G⁻¹ Nᵀ λ Newton's step for P is
 
-    ½ fᵀ M f − w°ᵀ f + Σ Φ_i*(f_i),      Φ_i* the conjugate of the potential of φ_i,
+    (I + S M) δ = φ(w) − λ,   S = diag φ_i'      always solvable: S M has no eigenvalue below 0
 
-convex, and strictly so in each f_i alone: to take them in turn, each at its least, converges always (Tseng
-2001).  Between two rounds Newton's step for f = J(w° − (M − D) f) is tried, and kept where it halves the
-error; D is the diagonal of M.
+and along it the slope of P, Δw·(φ(w + t Δw) − λ − t δ) with Δw = −M δ, rises with t: the step ends where that
+is 0.  So P falls in every step, to its least.  Coulomb friction is no function at w = 0: it is taken as
+clip(c + w/ε, ±F) and c as the force that was found last, the method of multipliers, until what sticks has
+w = 0 (Rockafellar 1976).
 """
 
 from __future__ import annotations
@@ -20,43 +20,11 @@ from zwidth.scene.layout import ROW
 from zwidth.scene.mean_force import mean_force
 from zwidth.scene.nonlinear import COULOMB
 
-ROUNDS = 100
-"""Then what is left over is booked."""
+STEPS = 40
+"""Of Newton, and of the multipliers; what is left then is booked."""
 
-CLOSE = 1e-15
+CLOSE = 4e-16
 """Of the largest force: rounding."""
-
-
-@compiled
-def one_force(
-    p: Array, at: int, row: int, state: float, a: float, m_ii: float, period: float
-) -> tuple[float, float]:
-    """J(a) and its slope: f = φ(a − M_ii f)."""
-    code, number = p[row], at + int(p[row + 1])
-    if code == COULOMB:
-        most = p[number]
-        f = min(max(a / m_ii, -most), most)
-        return f, 1.0 / m_ii if abs(f) < most else 0.0
-    f, slope = mean_force(p, code, number, state, a, 0.0, period)
-    if f == 0.0:
-        return 0.0, slope / (1.0 + m_ii * slope)
-    low, high = min(a, a - m_ii * f), max(a, a - m_ii * f)  # φ is monotone: w lies between
-    w = low
-    for _ in range(100):
-        f, slope = mean_force(p, code, number, state, w, 0.0, period)
-        over = w + m_ii * f - a
-        if over > 0.0:
-            high = w
-        else:
-            low = w
-        after = w - over / (1.0 + m_ii * slope)
-        if not low < after < high:
-            after = 0.5 * (low + high)
-        if after == w or abs(after - w) <= 1e-16 * abs(w):
-            break
-        w = after
-    f, slope = mean_force(p, code, number, state, w, 0.0, period)
-    return f, slope / (1.0 + m_ii * slope)
 
 
 @compiled
@@ -73,44 +41,30 @@ def coupled_forces(
     period: float,
 ) -> None:
     """f in its place in `m`, begun with that of the step before; w° stands at `free`, then there is room."""
-    tried, gaps, slopes = free + count, free + 2 * count, free + 3 * count
-    matrix = free + 4 * count
-    best = -1.0
-    for _ in range(ROUNDS):
-        change, largest = 0.0, 0.0
+    w = free + count
+    largest = 0.0
+    for i in range(count):
+        largest = max(largest, abs(m[free + i]))
+        own = p[compliance + i * count + i]
+        if p[rows + ROW * i] == COULOMB and own > 0.0:  # alone it is found at once
+            most = p[at + int(p[rows + ROW * i + 1])]
+            m[states + i] = min(max(m[free + i] / own, -most), most)
+            m[forces + i] = m[states + i]
+    for _ in range(STEPS):
+        least_of(p, at, rows, compliance, count, m, states, forces, free, period)
+        creeps = 0.0
         for i in range(count):
-            before = m[forces + i]
-            a = m[free + i] - others(p, compliance, count, m, forces, i)
-            f, _slope = one_force(
-                p, at, rows + ROW * i, m[states + i], a, p[compliance + i * count + i], period
-            )
-            m[forces + i] = f
-            change, largest = max(change, abs(f - before)), max(largest, abs(f))
-        if count == 1 or change <= CLOSE * largest:
+            if p[rows + ROW * i] == COULOMB:
+                number = at + int(p[rows + ROW * i + 1])
+                f, _slope = mean_force(p, COULOMB, number, m[states + i], m[w + i], period)
+                creeps = max(creeps, abs(f - m[states + i]) / p[number + 1])
+                m[states + i] = f
+        if creeps <= 1e-14 * largest:
             return
-        error = gap(p, at, rows, compliance, count, m, states, forces, free, gaps, slopes, period)
-        if best < 0.0 or error < best:
-            best = error
-        newton(p, compliance, count, m, forces, gaps, slopes, tried, matrix)
-        error = gap(p, at, rows, compliance, count, m, states, tried, free, gaps, slopes, period)
-        if error <= 0.5 * best:
-            best = error
-            for i in range(count):
-                m[forces + i] = m[tried + i]
 
 
 @compiled
-def others(p: Array, compliance: int, count: int, m: Array, forces: int, i: int) -> float:
-    """What the other forces take of w_i."""
-    taken = 0.0
-    for j in range(count):
-        if j != i:
-            taken += p[compliance + i * count + j] * m[forces + j]
-    return taken
-
-
-@compiled
-def gap(
+def least_of(
     p: Array,
     at: int,
     rows: int,
@@ -120,48 +74,114 @@ def gap(
     states: int,
     forces: int,
     free: int,
-    gaps: int,
-    slopes: int,
     period: float,
-) -> float:
-    """f − J(w° − (M − D) f) and the slopes of J, each in its place; the largest in magnitude is returned."""
-    most = 0.0
-    for i in range(count):
-        a = m[free + i] - others(p, compliance, count, m, forces, i)
-        f, slope = one_force(p, at, rows + ROW * i, m[states + i], a, p[compliance + i * count + i], period)
-        m[gaps + i], m[slopes + i] = m[forces + i] - f, slope
-        most = max(most, abs(m[gaps + i]))
-    return most
+) -> None:
+    """λ of the least P for the frictions' c as they are, in the place of f; w of it behind w°."""
+    w, gap, step, moved = free + count, free + 2 * count, free + 3 * count, free + 4 * count
+    matrix = free + 5 * count
+    wide = count + 1
+    before = -1.0
+    for _ in range(STEPS):
+        error, size = 0.0, 0.0
+        for i in range(count):
+            taken = 0.0
+            for j in range(count):
+                taken += p[compliance + i * count + j] * m[forces + j]
+            m[w + i] = m[free + i] - taken
+            row = rows + ROW * i
+            f, slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], m[w + i], period)
+            if p[compliance + i * count + i] == 0.0:  # the port alone moves it
+                m[forces + i] = f
+            m[gap + i] = f - m[forces + i]
+            error, size = max(error, abs(m[gap + i])), max(size, abs(f))
+            for j in range(count):
+                m[matrix + i * wide + j] = slope * p[compliance + i * count + j]
+            m[matrix + i * wide + i] += 1.0
+            m[matrix + i * wide + count] = m[gap + i]
+        if error <= CLOSE * size or (error <= 1e-13 * size and before >= 0.0 and error >= before):
+            return
+        before = error
+        eliminated(m, matrix, count, step)
+        for i in range(count):
+            taken = 0.0
+            for j in range(count):
+                taken += p[compliance + i * count + j] * m[step + j]
+            m[moved + i] = -taken
+        t = how_far(p, at, rows, count, m, states, forces, w, step, moved, period)
+        for i in range(count):
+            m[forces + i] += t * m[step + i]
 
 
 @compiled
-def newton(
+def slope_at(
     p: Array,
-    compliance: int,
+    at: int,
+    rows: int,
     count: int,
     m: Array,
+    states: int,
     forces: int,
-    gaps: int,
-    slopes: int,
-    tried: int,
-    matrix: int,
-) -> None:
-    """[I + J'(M − D)] Δ = −gap, and f + Δ in its place; f where a pivot vanishes, which is then refused."""
-    wide = count + 1
+    w: int,
+    step: int,
+    moved: int,
+    period: float,
+    t: float,
+) -> float:
+    """The slope of P along a step, at the part t of it."""
+    total = 0.0
     for i in range(count):
-        for j in range(count):
-            own = p[compliance + i * count + j] * m[slopes + i]
-            m[matrix + i * wide + j] = 1.0 if i == j else own
-        m[matrix + i * wide + count] = -m[gaps + i]
-        m[tried + i] = m[forces + i]
+        row = rows + ROW * i
+        there = m[w + i] + t * m[moved + i]
+        f, _slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], there, period)
+        total += m[moved + i] * (f - m[forces + i] - t * m[step + i])
+    return total
+
+
+@compiled
+def how_far(
+    p: Array,
+    at: int,
+    rows: int,
+    count: int,
+    m: Array,
+    states: int,
+    forces: int,
+    w: int,
+    step: int,
+    moved: int,
+    period: float,
+) -> float:
+    """The whole step where the slope has fallen to half there; else where it is about 0."""
+    first = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, 0.0)
+    low, high = 0.0, 1.0
+    last = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, 1.0)
+    while last < 0.5 * first and high < 1e6:
+        low, high = high, 2.0 * high
+        last = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, high)
+    if last <= -0.5 * first:
+        return high
+    for _ in range(STEPS):
+        t = 0.5 * (low + high)
+        here = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, t)
+        if abs(here) <= 0.1 * abs(first):
+            return t
+        if here < 0.0:
+            low = t
+        else:
+            high = t
+    return 0.5 * (low + high)
+
+
+@compiled
+def eliminated(m: Array, matrix: int, count: int, solution: int) -> None:
+    """The solution of a linear system with the right side in its last column; rows are exchanged."""
+    wide = count + 1
     for k in range(count):
         top = k
         for i in range(k + 1, count):
             if abs(m[matrix + i * wide + k]) > abs(m[matrix + top * wide + k]):
                 top = i
-        if m[matrix + top * wide + k] == 0.0:
-            return
-        for j in range(wide):
+        for j in range(k, wide):
             kept = m[matrix + k * wide + j]
             m[matrix + k * wide + j] = m[matrix + top * wide + j]
             m[matrix + top * wide + j] = kept
@@ -172,5 +192,5 @@ def newton(
     for i in range(count - 1, -1, -1):
         total = m[matrix + i * wide + count]
         for j in range(i + 1, count):
-            total -= m[matrix + i * wide + j] * (m[tried + j] - m[forces + j])
-        m[tried + i] = m[forces + i] + total / m[matrix + i * wide + i]
+            total -= m[matrix + i * wide + j] * m[solution + j]
+        m[solution + i] = total / m[matrix + i * wide + i]

@@ -2,7 +2,6 @@
 
     s = (z − 1)/(z + 1)            spring R/s, damper R, mass R s
     Z(s) = det Y(s)/det Y_ff(s)    Y the node matrix with the port, Y_ff without
-    E(z) = Z (z − 1)/(T z)         from the position of the port to the mean force of the step before
 
 Y is positive real, and so is Z.  s Y is a matrix of polynomials; of its leading minors, which Bareiss's
 elimination gives without a fraction, the last is its determinant and the one before that of Y_ff.
@@ -25,7 +24,7 @@ _POWER = {1: 0, 0: 1, -1: 2}
 
 
 def impedance(elements: Sequence[Element], net: Network, period: Fraction) -> RationalFunction:
-    """E(z) [N/m], common factors cancelled; the elements are linear and none is a lever."""
+    """Z(z) [N·s/m], common factors cancelled; the elements are linear and none is a lever."""
     size = len(net.roots) + 1  # the port last
     y = [[flint.fmpq_poly([0]) for _ in range(size)] for _ in range(size)]
     for element, across in zip(elements, net.across, strict=True):
@@ -38,7 +37,7 @@ def impedance(elements: Sequence[Element], net: Network, period: Fraction) -> Ra
     below, above = _minors(y)
     top, bottom = above, below * _S  # Z(s) = det(s Y)/(s det(s Y_ff))
     common = top.gcd(bottom)
-    return _in_z(top // common, bottom // common, period)
+    return _in_z(top // common, bottom // common)
 
 
 def _minors(y: list[list[flint.fmpq_poly]]) -> tuple[flint.fmpq_poly, flint.fmpq_poly]:
@@ -52,17 +51,29 @@ def _minors(y: list[list[flint.fmpq_poly]]) -> tuple[flint.fmpq_poly, flint.fmpq
     return before, y[-1][-1]
 
 
-def _in_z(top: flint.fmpq_poly, bottom: flint.fmpq_poly, period: Fraction) -> RationalFunction:
-    """Z((z − 1)/(z + 1)) (z − 1)/(T z), without what cancels."""
+def _in_z(top: flint.fmpq_poly, bottom: flint.fmpq_poly) -> RationalFunction:
+    """The same in z, s = (z − 1)/(z + 1)."""
     order = max(top.degree(), bottom.degree())
     minus, plus = flint.fmpq_poly([-1, 1]), flint.fmpq_poly([1, 1])
     num, den = (
-        sum((p[i] * minus**i * plus ** (order - i) for i in range(p.degree() + 1)), flint.fmpq_poly([0]))
+        sum((p[i] * minus**i * plus ** (order - i) for i in range(p.degree() + 1)), 0 * _S)
         for p in (top, bottom)
     )
-    num, den = num * minus, den * flint.fmpq_poly([0, _q(period)])
+    return _ratio(num, den)
+
+
+def _ratio(num: flint.fmpq_poly, den: flint.fmpq_poly) -> RationalFunction:
+    """Descending powers, the denominator led by 1."""
+    lead = den[den.degree()]
+    return RationalFunction(_descending(num / lead), _descending(den / lead))
+
+
+def from_position(z: RationalFunction, period: Fraction) -> RationalFunction:
+    """E(z) = Z (z − 1)/(T z) [N/m], of the mean force of the step that ends at a position."""
+    num, den = (flint.fmpq_poly([_q(c) for c in reversed(side)]) for side in z)
+    num, den = num * flint.fmpq_poly([-1, 1]), den * flint.fmpq_poly([0, _q(period)])
     common = num.gcd(den)
-    return RationalFunction(_descending(num // common), _descending(den // common))
+    return _ratio(num // common, den // common)
 
 
 def _q(number: Fraction) -> flint.fmpq:

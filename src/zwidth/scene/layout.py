@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 # The packed scene: T; how many free nodes, linear elements and others; where the rows of the others begin,
 # the factor, and N G⁻¹ Nᵀ.  A row is R and g, or a code and where its numbers begin; then two free nodes,
 # each with its weight, and the weight of the port.  The factor has of each node where its column of L begins,
-# how long that is, and 1/d; a column is places and values in turn.
+# how long that is, and 1/d; a column is places and values in turn.  Of friction the numbers are F and 1/ε.
 PERIOD, NODES, LINEAR, OTHERS, OTHER_ROWS, FACTOR, COMPLIANCE = range(7)
 HEADER = 7
 ROW = 7
@@ -31,7 +31,7 @@ WAVES = 4
 def scene_at_rest(p: Array, at: int, reading: float) -> Array:
     """What a scene remembers at rest, its port at a reading; contacts are as far apart as their gaps say."""
     n, linear, k = (int(p[at + i]) for i in (NODES, LINEAR, OTHERS))
-    m = np.zeros(WAVES + linear + 2 * k + 2 * n + 2 * (linear + k) + n + k * (k + 5) + 1)
+    m = np.zeros(WAVES + linear + 2 * k + 2 * n + 2 * (linear + k) + n + k * (k + 6) + 1)
     m[READING] = reading
     for i in range(k):
         code, number = p[at + int(p[at + OTHER_ROWS]) + ROW * i :][:2]

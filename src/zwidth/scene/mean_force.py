@@ -1,7 +1,7 @@
 """The mean force of an element that is not linear over a step at the mean velocity v̄, from its state.
 
     contact    f̄ = max(0, [½ K δ₊²]/(T v̄) + B [δ₊]/T),   δ₊ = max(0, d), [·] the change over the step
-    friction   f̄ = F sgn v̄
+    friction   f̄ = clip(c + v̄/ε, ±F)             c the force that was found last, see `coupled`
     points     f̄ = mean of f over d … d + T v̄
 
 All are monotone in v̄.  A contact's damping works on the change of the depth, of the sign of v̄, and where the
@@ -16,13 +16,14 @@ from zwidth.scene.nonlinear import CONTACT, COULOMB
 
 @compiled
 def mean_force(
-    p: Array, code: float, number: int, state: float, w: float, f: float, period: float
+    p: Array, code: float, number: int, state: float, w: float, period: float
 ) -> tuple[float, float]:
-    """f̄ and its slope over v̄ at w; `f` is the friction that was found where it sticks."""
+    """f̄ and its slope over v̄ at w."""
     if code == CONTACT:
         return contact_force(p, number, state, w, period)
     if code == COULOMB:
-        return f, 0.0
+        most, f = p[number], state + w * p[number + 1]
+        return (f, p[number + 1]) if abs(f) < most else (min(max(f, -most), most), 0.0)
     return spring_force(p, number, state, w, period)
 
 
@@ -77,9 +78,9 @@ def spring_at(p: Array, number: int, d: float) -> float:
 def spring_force(p: Array, number: int, d: float, w: float, period: float) -> tuple[float, float]:
     """Of points: the trapezia between those that are passed, and no difference of two energies."""
     u = period * w
-    if u == 0.0:
-        return spring_at(p, number, d), 0.0
     begin, end = min(d, d + u), max(d, d + u)
+    if begin == end:
+        return spring_at(p, number, d), 0.0
     count = int(p[number])
     area, x, f = 0.0, begin, spring_at(p, number, begin)
     for i in range(count):
@@ -90,6 +91,7 @@ def spring_force(p: Array, number: int, d: float, w: float, period: float) -> tu
             x, f = place, after
     area += 0.5 * (f + spring_at(p, number, end)) * (end - x)
     mean = area / (end - begin)
+    u = d + u - d  # as the positions have it
     return mean, max(0.0, (spring_at(p, number, d + u) - mean) / u * period)
 
 
@@ -105,5 +107,5 @@ def lost(p: Array, code: float, number: int, state: float, w: float, f: float, p
 
 @compiled
 def moved_on(code: float, state: float, w: float, period: float) -> float:
-    """The state after the step: friction has none."""
-    return 0.0 if code == COULOMB else state + period * w
+    """The state after the step: of friction its force."""
+    return state if code == COULOMB else state + period * w

@@ -108,8 +108,8 @@ class CoulombFriction(Element):
 
     @property
     def law(self) -> NonlinearLaw:
-        """F."""
-        return NonlinearLaw(COULOMB, (float(self.force),))
+        """F, and room for what the step makes of it."""
+        return NonlinearLaw(COULOMB, (float(self.force), 0.0))
 
     def describe(self, motion: str = "linear") -> str:
         """The friction with its force."""

@@ -14,12 +14,19 @@ from zwidth.scene import layout as at
 from zwidth.scene.element import Element
 from zwidth.scene.factor import Factor, factorised
 from zwidth.scene.network import Across, Network
+from zwidth.scene.nonlinear import COULOMB
 from zwidth.scene.potential import stored_in
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
+_STICKS = 1e3
+"""M/ε of friction: each round of the multipliers leaves about ε/M of the creep of the round before."""
+
+_HELD = 1e12
+"""F/ε for each m/s of friction between the port and the ground, where nothing gives way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +108,12 @@ def pack(elements: Sequence[Element], net: Network, period: Fraction) -> Packed:
     columns = begins + len(laws)
     heads, pairs = _columns(factor, columns + 3 * len(factor.order))
     coupled = _compliance(factor, [_row(a, place, len(place)) for _, a in others])
+    for i, (element, _) in enumerate(others):
+        if element.law is not None and element.law.code == COULOMB:
+            own = float(coupled[i, i])
+            laws[int(other_rows[i][1]) - begins + 1] = (
+                _STICKS / own if own else _HELD * element.law.numbers[0]
+            )
     header = [
         float(period), float(len(place)), float(len(linear)), float(len(others)),
         float(at.HEADER + at.ROW * len(linear)), float(columns), float(columns + len(heads) + len(pairs)),

@@ -53,6 +53,7 @@ class SceneRun:
         ).fraction
         self.scene = scene
         self._packed = scene.packed(period)
+        self._places = scene.network.places
         self._memory = self._packed.memory.copy()
         self._at_first = self._packed.stored(self._memory)
 
@@ -70,12 +71,12 @@ class SceneRun:
     @property
     def positions(self) -> Mapping[str, float]:
         """Where every node is [m; rad], counted from where it was at first."""
-        packed, net = self._packed, self.scene.network
+        packed = self._packed
         first = packed.places
         known = dict(zip(packed.nodes, self._memory[first : first + len(packed.nodes)], strict=True))
         known[self.scene.port] = self._memory[at.READING]
         return {
-            node: float(known.get(root, 0.0)) * float(ratio) for node, (root, ratio) in net.places.items()
+            node: float(known.get(root, 0.0)) * float(ratio) for node, (root, ratio) in self._places.items()
         }
 
     @property

@@ -28,7 +28,7 @@ from zwidth.scene.network import Network, network
 if TYPE_CHECKING:
     from zwidth.scene.pack import Packed
 
-MOST_STATES = 24
+MOST_STATES = 60
 """Of more the coefficients of H(z) have so many digits that a proof would take minutes."""
 
 
@@ -110,7 +110,7 @@ class Scene(Environment):
 
     @property
     def has_transfer_function(self) -> bool:
-        """True without contact, friction and springs through points, of at most 24 masses and springs."""
+        """True without contact, friction and springs through points, of at most 60 masses and springs."""
         return all(e.law is None for e in self.elements) and self._states <= MOST_STATES
 
     @property
@@ -135,11 +135,23 @@ class Scene(Environment):
         InputError
             If an element is not linear.
         """
+        from zwidth.scene.impedance import from_position
+
+        return from_position(self.impedance(sample_period), sample_period)
+
+    def impedance(self, sample_period: Fraction) -> RationalFunction:
+        """Z(z), from the mean velocity of the port over a step to the mean force, positive real [N·s/m].
+
+        Raises
+        ------
+        InputError
+            If an element is not linear.
+        """
         curved = [t for t, e in zip(self.titles, self.elements, strict=True) if e.law is not None]
         if curved:
             raise InputError(
-                f"the scene has no H(z), for {curved[0]} is not linear: put it behind a virtual coupling, "
-                "zwidth.VirtualCoupling(stiffness, damping, scene), and zwidth.check answers"
+                f"the scene has no impedance, for {curved[0]} is not linear: put it behind a "
+                "virtual coupling, zwidth.VirtualCoupling(stiffness, damping, scene), for zwidth.check"
             )
         from zwidth.scene.impedance import impedance
 

@@ -114,10 +114,9 @@ def scene_force(p: Array, at: int, m: Array, slot: int, reading: float) -> float
     for e in range(others):
         row = other_rows + ROW * e
         w = across(p, row, m, nodes, v)
-        f, state = m[forces + e], m[states + e]
-        felt += p[row + 6] * f
-        number = at + int(p[row + 1])
-        own, _ = mean_force(p, p[row], number, state, w, f, period)
+        state, number = m[states + e], at + int(p[row + 1])
+        felt += p[row + 6] * m[forces + e]
+        own, _slope = mean_force(p, p[row], number, state, w, period)
         given += own * w * period
         m[work + linear + e] += own * w * period
         m[loss + linear + e] += lost(p, p[row], number, state, w, own, period)
