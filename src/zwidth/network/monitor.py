@@ -1,0 +1,149 @@
+"""One link, watched: how many frames, how old, how many lost, and how much energy went each way.
+
+Waves are numbers whose square is energy [J]: what a side received is never more than what the other
+sent, or the link is no link.  Each side counts its own; the report of both says what was lost between.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+from zwidth.network.channel import Channel
+from zwidth.network.frame import Frame
+from zwidth.showing import Part, Shown, Table
+
+_REMEMBERED = 4096
+"""Round trips kept for the shares of the report."""
+
+WINDOW = 4096
+"""A frame this much older than the newest is dropped: that it was not used yet can no longer be known."""
+
+
+@dataclass(frozen=True, repr=False)
+class LinkReport(Shown):
+    """What was seen of a link from one side."""
+
+    sent: int
+    """Frames sent."""
+    received: int
+    """Frames received, each counted once."""
+    lost: int
+    """Numbers between the first and the newest received that did not come."""
+    doubled: int
+    late: int
+    """Frames that came after a younger one."""
+    foreign: int
+    """Datagrams that were no frame."""
+    rate: float
+    """Frames received per second since the first."""
+    round_trip: tuple[float, float, float]
+    """Median, 99 % and longest round trip [s]; NaN before the first echo."""
+    energy_sent: float
+    """Σ of the squares of the waves sent [J]."""
+    energy_received: float
+    """The same of those received [J]."""
+    silent: float
+    """Since the last frame came [s]; infinite before the first."""
+
+    def report(self) -> Iterable[Part]:
+        """Six lines."""
+        yield Table(rows=self._rows())
+
+    def _rows(self) -> list[list[str]]:
+        p50, p99, longest = (f"{1e3 * t:.3g}" for t in self.round_trip)
+        share = 100 * self.lost / max(self.lost + self.received, 1)
+        return [
+            ["frames", f"{self.sent} sent, {self.received} received, {self.rate:.4g} per second"],
+            ["lost", f"{self.lost} ({share:.2g} %), {self.doubled} twice, {self.late} late"],
+            ["no frames", f"{self.foreign} datagrams"],
+            ["round trip", f"{p50} ms median, {p99} ms in 99 %, {longest} ms longest"],
+            ["energy", f"{self.energy_sent:.4g} J sent, {self.energy_received:.4g} J received"],
+            ["silent", f"for {self.silent:.3g} s"],
+        ]
+
+
+class Link:
+    """Frames over a channel: numbered, dated, each taken once, and counted.
+
+    Parameters
+    ----------
+    channel
+        What carries them.
+    waves
+        How many of the first numbers of a frame are waves [√J], for the account of energy.
+    clock
+        What tells the time [s].
+    """
+
+    def __init__(self, channel: Channel, waves: int = 1, clock: Callable[[], float] = time.monotonic) -> None:
+        self.channel, self._waves, self._clock = channel, waves, clock
+        self._number = 0
+        self._newest = -1
+        self._first = -1
+        self._seen: set[int] = set()
+        self._came: tuple[float, float] | None = None
+        self._began = math.nan
+        self._received = self._doubled = self._late = self._foreign = 0
+        self._in = self._out = 0.0
+        self._trips: deque[float] = deque(maxlen=_REMEMBERED)
+
+    def send(self, values: tuple[float, ...]) -> None:
+        """Send the numbers in a frame."""
+        now = self._clock()
+        echo, held = (self._came[0], now - self._came[1]) if self._came else (math.nan, 0.0)
+        self.channel.send(Frame(self._number, values, now, echo, held).to_bytes())
+        self._number += 1
+        self._out += sum(v * v for v in values[: self._waves])
+
+    def receive(self) -> list[Frame]:
+        """The frames that have come since the last call, none a second time, in the order of arrival."""
+        now = self._clock()
+        return [frame for datagram in self.channel.receive() if (frame := self._taken(datagram, now))]
+
+    def _taken(self, datagram: bytes, now: float) -> Frame | None:
+        frame = Frame.from_bytes(datagram)
+        if frame is None:
+            self._foreign += 1
+            return None
+        if frame.number in self._seen or frame.number <= self._newest - WINDOW:
+            self._doubled += 1
+            return None
+        self._seen.add(frame.number)
+        if frame.number < self._newest:
+            self._late += 1
+        else:
+            self._newest = frame.number
+            if len(self._seen) > 2 * WINDOW:
+                self._seen = {n for n in self._seen if n > frame.number - WINDOW}
+            self._came = (frame.sent, now)
+            if math.isfinite(frame.echo):
+                self._trips.append(now - frame.echo - frame.held)
+        if self._first < 0:
+            self._first, self._began = frame.number, now
+        self._received += 1
+        self._in += sum(v * v for v in frame.values[: self._waves])
+        return frame
+
+    def report(self) -> LinkReport:
+        """What was seen so far."""
+        now = self._clock()
+        trips = sorted(self._trips)
+        at = [trips[min(int(q * len(trips)), len(trips) - 1)] if trips else math.nan for q in (0.5, 0.99, 1)]
+        span = self._newest - self._first + 1 if self._first >= 0 else 0
+        return LinkReport(
+            sent=self._number,
+            received=self._received,
+            lost=max(span - self._received, 0),
+            doubled=self._doubled,
+            late=self._late,
+            foreign=self._foreign,
+            rate=self._received / (now - self._began) if now > self._began else 0.0,
+            round_trip=(at[0], at[1], at[2]),
+            energy_sent=self._out,
+            energy_received=self._in,
+            silent=now - self._came[1] if self._came else math.inf,
+        )
