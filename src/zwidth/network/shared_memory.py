@@ -24,10 +24,10 @@ except ImportError:  # not on Windows
     fcntl = None  # type: ignore[assignment]
 
 _RING_LENGTH = 256
-_HEAD = struct.Struct("<QI")  # the number of the datagram, from 1; its length
+_HEAD = struct.Struct("@QQ")  # the number of the datagram, from 1; its length: words that are written at once
 _PLACE = _HEAD.size + LARGEST
 _RING = 8 + _RING_LENGTH * _PLACE
-_NUMBER = struct.Struct("<Q")
+_NUMBER = struct.Struct("@Q")
 _OURS = 0o600
 _FLAGS = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 
@@ -63,7 +63,7 @@ class SharedMemory(Channel):
         return int(_NUMBER.unpack_from(self._memory, ring)[0])
 
     def send(self, datagram: bytes) -> None:
-        """Write it into the next slot; the oldest there is lost."""
+        """Write it into the next place; the oldest there is lost."""
         if len(datagram) > LARGEST:
             return
         number = self._sent + 1
