@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import mmap
 import os
-import struct
 import tempfile
 from contextlib import suppress
 from pathlib import Path
@@ -24,10 +23,10 @@ except ImportError:  # not on Windows
     fcntl = None  # type: ignore[assignment]
 
 _RING_LENGTH = 256
-_HEAD = struct.Struct("@QQ")  # the number of the datagram, from 1; its length: words that are written at once
-_PLACE = _HEAD.size + LARGEST
-_RING = 8 + _RING_LENGTH * _PLACE
-_NUMBER = struct.Struct("@Q")
+_WORD = 8  # bytes; what is written at once
+_PLACE = 2 + LARGEST // _WORD  # words: the number of the datagram, from 1; its length; itself
+_RING = 1 + _RING_LENGTH * _PLACE  # words: the newest number; the places
+_SIZE = 2 * _RING * _WORD
 _OURS = 0o600
 _FLAGS = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 
@@ -52,38 +51,39 @@ class SharedMemory(Channel):
         self._path = _place(name)
         self._first = first
         self._file = _made(self._path, name) if first else _found(self._path, name)
-        self._memory = mmap.mmap(self._file, 2 * _RING)
+        self._memory = mmap.mmap(self._file, _SIZE)
         if first:
-            self._memory[:] = bytes(2 * _RING)
+            self._memory[:] = bytes(_SIZE)
+        self._words = memoryview(self._memory).cast("Q")  # a word is written at once, not byte by byte
         self._out, self._in = (0, _RING) if first else (_RING, 0)
-        self._sent = self._number_at(self._out)
-        self._taken = self._number_at(self._in)
-
-    def _number_at(self, ring: int) -> int:
-        return int(_NUMBER.unpack_from(self._memory, ring)[0])
+        self._sent = self._words[self._out]
+        self._taken = self._words[self._in]
 
     def send(self, datagram: bytes) -> None:
         """Write it into the next place; the oldest there is lost."""
         if len(datagram) > LARGEST:
             return
         number = self._sent + 1
-        at = self._out + 8 + number % _RING_LENGTH * _PLACE
-        _HEAD.pack_into(self._memory, at, 0, 0)  # no number: being written
-        self._memory[at + _HEAD.size : at + _HEAD.size + len(datagram)] = datagram
-        _HEAD.pack_into(self._memory, at, number, len(datagram))
-        _NUMBER.pack_into(self._memory, self._out, number)
+        at = self._out + 1 + number % _RING_LENGTH * _PLACE
+        self._words[at] = 0  # no number: being written
+        self._words[at + 1] = len(datagram)
+        start = (at + 2) * _WORD
+        self._memory[start : start + len(datagram)] = datagram
+        self._words[at] = number
+        self._words[self._out] = number
         self._sent = number
 
     def receive(self) -> list[bytes]:
         """What was written since the last call, a ring of 256 at most."""
-        newest = self._number_at(self._in)
+        newest = self._words[self._in]
         found: list[bytes] = []
         for number in range(max(self._taken, newest - _RING_LENGTH) + 1, newest + 1):
-            at = self._in + 8 + number % _RING_LENGTH * _PLACE
-            written, length = _HEAD.unpack_from(self._memory, at)
-            datagram = self._memory[at + _HEAD.size : at + _HEAD.size + min(length, LARGEST)]
-            if written == number and _HEAD.unpack_from(self._memory, at) == (number, length):
-                found.append(datagram)
+            at = self._in + 1 + number % _RING_LENGTH * _PLACE
+            if self._words[at] == number:
+                start = (at + 2) * _WORD
+                datagram = self._memory[start : start + min(self._words[at + 1], LARGEST)]
+                if self._words[at] == number:
+                    found.append(datagram)
         self._taken = newest
         return found
 
@@ -91,6 +91,7 @@ class SharedMemory(Channel):
         """Let go of the memory; the first side takes it away."""
         if self._memory.closed:
             return
+        self._words.release()
         self._memory.close()
         os.close(self._file)
         if self._first:
@@ -112,7 +113,7 @@ def _made(path: Path, name: str) -> int:
         file = os.open(path, _FLAGS | os.O_CREAT, _OURS)
         if fcntl is not None:  # what one that was killed has left is not locked any more
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        os.truncate(file, 2 * _RING)
+        os.truncate(file, _SIZE)
     except OSError as error:
         raise InputError(
             f"the shared memory {name!r} cannot be made: {error.strerror}; another process may use it: "
@@ -129,7 +130,7 @@ def _found(path: Path, name: str) -> int:
             f"there is no shared memory {name!r} to be opened: {error.strerror}; "
             "start the first side, which makes it, before this one"
         ) from None
-    if os.fstat(file).st_size != 2 * _RING:
+    if os.fstat(file).st_size != _SIZE:
         os.close(file)
         raise InputError(f"the shared memory {name!r} is not ready; start the first side before this one")
     return file
