@@ -115,8 +115,8 @@ class CoupledBody(Environment):
 
     def _exchanged(self, period: Fraction) -> SteppedBody:
         """Position and speed as they come back."""
-        numbers = (self.virtual_mass, self.body_damping, self.body_stiffness)
-        body = stepped(self.integrator, Body(*(number.fraction for number in numbers), period))
+        m, b, k = (n.fraction for n in (self.virtual_mass, self.body_damping, self.body_stiffness))
+        body = stepped(self.integrator, Body(m, b, k, period))
         way = (Fraction(1), *[Fraction(0)] * (2 * int(self.exchange_delay)))
         if self.wave_impedance is None:
             return body._replace(denominator=multiply(way, body.denominator))
@@ -137,8 +137,9 @@ class CoupledBody(Environment):
             )
         parts.append(f"by {self.integrator.replace('-', ' ')}")
         if self.exchange_delay:
-            how = "" if self.wave_impedance is None else f" through {self.with_unit('wave_impedance', motion)}"
-            parts.append(f"{self.exchange_delay:g} samples away{how}")
+            parts.append(f"{self.exchange_delay:g} sample{'s' * (self.exchange_delay != 1)} away")
+        if self.wave_impedance is not None:
+            parts.append(f"through a line of {self.with_unit('wave_impedance', motion)}")
         return f"virtual coupling, {', '.join(parts)}"
 
 

@@ -11,7 +11,7 @@ step after it:
 Implicit, a force acts over the step that ends with it, and is solved for:
 
     backward-euler        v = v⁻ + T a,       y = y⁻ + T v
-    implicit-midpoint     v = v⁻ + T a,       y = y⁻ + T (v⁻ + v)/2,    in a the means of v and y over the step
+    implicit-midpoint     v = v⁻ + T a,       y = y⁻ + T (v⁻ + v)/2,    a of the means of v and y over the step
     trapezoidal           the same, with the mean of f as well
 
 All but the series of order 2 and 4 are, with the polynomials of the table below,
@@ -120,24 +120,18 @@ def _by_series(body: Body, order: int) -> SteppedBody:
     Without f that is what every Runge–Kutta method of that order with as many stages does to a linear law.
     """
     m, b, k, t = body
-    column = [(_ZERO, t / m)]  # T Aⁱ e Tⁱ
-    rows = [(_ONE, _ZERO), (_ZERO, _ONE)]
-    powers = [list(rows)]
-    for _ in range(order):
-        powers.append([_forward(s, m, b, k, t) for s in powers[-1]])
-        column.append(_forward(column[-1], m, b, k, t))
-    phi = [[sum(p[j][i] / factorial(n) for n, p in enumerate(powers)) for j in (0, 1)] for i in (0, 1)]
-    g = [sum(c[i] / factorial(n + 1) for n, c in enumerate(column[:order])) for i in (0, 1)]
-    (p, q), (r, s) = phi
-    return SteppedBody(
-        (g[0], q * g[1] - s * g[0]),
-        (g[1], r * g[0] - p * g[1]),
-        (_ONE, -p - s, p * s - q * r),
-    )
 
+    def forward(y: Fraction, v: Fraction) -> tuple[Fraction, Fraction]:
+        """T A (y, v)."""
+        return t * v, -t * (k * y + b * v) / m
 
-def _forward(
-    s: tuple[Fraction, Fraction], m: Fraction, b: Fraction, k: Fraction, t: Fraction
-) -> tuple[Fraction, Fraction]:
-    """T A s, A = [[0, 1], [−K/M, −B/M]]."""
-    return t * s[1], -t * (k * s[0] + b * s[1]) / m
+    def series(state: tuple[Fraction, Fraction], first: int) -> tuple[Fraction, Fraction]:
+        """Σ (T A)ⁱ state/(i + first)! over i ≤ order − first."""
+        y, v = _ZERO, _ZERO
+        for i in range(order - first + 1):
+            y, v = y + state[0] / factorial(i + first), v + state[1] / factorial(i + first)
+            state = forward(*state)
+        return y, v
+
+    (p, r), (q, s), (y, v) = series((_ONE, _ZERO), 0), series((_ZERO, _ONE), 0), series((_ZERO, t / m), 1)
+    return SteppedBody((y, q * v - s * y), (v, r * y - p * v), (_ONE, -p - s, p * s - q * r))

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from math import lcm
 
-from flint import Ordering, fmpq, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
+from flint import Ordering, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from zwidth.environment.environment import RationalFunction
 from zwidth.passivity.linear.loop import LinearLoop
@@ -63,7 +63,7 @@ def _on_one_scale(laws: Sequence[RationalFunction], loop: LinearLoop) -> list[Li
     assert len(set(sizes)) == 1, "one order for all values"
     return [
         LinearLoop(
-            tuple(int(c * whole) for c in (*[0] * (sizes[0] - len(h.numerator)), *h.numerator)),
+            (*[0] * (sizes[0] - len(h.numerator)), *(int(c * whole) for c in h.numerator)),
             tuple(int(c * whole) for c in h.denominator),
             loop.damping,
             loop.period,
@@ -93,7 +93,9 @@ def _interpolated(values: Sequence[fmpq_poly], at: Sequence[Fraction]) -> fmpz_m
             p *= fmpq_poly([as_fmpq(-other), 1]) / as_fmpq(here - other)
         basis.append(p)
     order = max(len(value.coeffs()) for value in values)
-    rows = [sum((value[j] * p for value, p in zip(values, basis, strict=True)), fmpq_poly()) for j in range(order)]
+    rows = [
+        sum((value[j] * p for value, p in zip(values, basis, strict=True)), fmpq_poly()) for j in range(order)
+    ]
     whole = lcm(1, *(int(row.denom()) for row in rows))
     return _RING.from_dict(
         {(j, i): int(c * whole) for j, row in enumerate(rows) for i, c in enumerate(row.coeffs()) if c}
