@@ -144,7 +144,7 @@ class CoupledBody(Environment):
 
 
 def _mobility(body: SteppedBody) -> tuple[Polynomial, Polynomial]:
-    """(z − 1) Y, numerator and denominator; where a free body drifts no force or move sees, and is left out."""
+    """(z − 1) Y, numerator and denominator; without the drift of a free body, which no move shows."""
     if sum(body.denominator):
         return multiply(_STEP, body.position), body.denominator
     return body.position, tuple(accumulate(body.denominator[:-1]))

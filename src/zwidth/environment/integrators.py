@@ -11,8 +11,10 @@ step after it:
 Implicit, a force acts over the step that ends with it, and is solved for:
 
     backward-euler        v = v⁻ + T a,       y = y⁻ + T v
-    implicit-midpoint     v = v⁻ + T a,       y = y⁻ + T (v⁻ + v)/2,    a of the means of v and y over the step
+    implicit-midpoint     v = v⁻ + T a,       y = y⁻ + T (v⁻ + v)/2,  with the means of v and y in a
     trapezoidal           the same, with the mean of f as well
+
+The speed that a coupling sees is v at the sample; of implicit-midpoint the mean over the step.
 
 All but the series of order 2 and 4 are, with the polynomials of the table below,
 
@@ -86,9 +88,7 @@ _SCHEMES = MappingProxyType(
         "backward-euler": _Scheme(
             multiply(_Z, _Z), multiply(_Z, _STEP), multiply(_Z, _STEP), multiply(_Z, _Z)
         ),
-        "implicit-midpoint": _Scheme(
-            multiply(_Z, _MEAN), multiply(_Z, _STEP), _CENTRAL, multiply(_MEAN, _MEAN)
-        ),
+        "implicit-midpoint": _Scheme(multiply(_Z, _MEAN), _CENTRAL, _CENTRAL, multiply(_MEAN, _MEAN)),
         "trapezoidal": _Scheme(multiply(_MEAN, _MEAN), _CENTRAL, _CENTRAL, multiply(_MEAN, _MEAN)),
     }
 )

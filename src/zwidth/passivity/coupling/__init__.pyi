@@ -4,6 +4,7 @@ from zwidth.passivity.coupling.coupling import CouplingCondition as CouplingCond
 from zwidth.passivity.coupling.coupling import coupling_condition as coupling_condition
 from zwidth.passivity.coupling.coupling_design import CouplingDesign as CouplingDesign
 from zwidth.passivity.coupling.coupling_design import design_coupling as design_coupling
+from zwidth.passivity.coupling.heavy_body import heavy_body_damping as heavy_body_damping
 from zwidth.passivity.coupling.loop_transformation import PassivityExcess as PassivityExcess
 from zwidth.passivity.coupling.loop_transformation import SlopeBounds as SlopeBounds
 from zwidth.passivity.coupling.loop_transformation import TransformedCondition as TransformedCondition
