@@ -27,8 +27,8 @@ class _Implicit:
         self.body, self._after = body, after
 
     def seen(self, f):
-        y, v, speed = self._after(self.body, self.y, self.v, self.f, f)
-        return y, speed
+        there, _, speed = self._after(self.body, self.y, self.v, self.f, f)
+        return there, speed
 
     def step(self, f):
         self.y, self.v, _ = self._after(self.body, self.y, self.v, self.f, f)
@@ -174,7 +174,9 @@ def _by_waves(law, body, d, t):
     while True:
         pull = yield f
         came = back.popleft()  # f − r v of the body
-        f = solved(lambda f: f, lambda f, came=came, y=y: pull(y + t * (f - came) / r, (f - came) / r))
+        f = solved(
+            lambda f: f, lambda f, pull=pull, came=came, y=y: pull(y + t * (f - came) / r, (f - came) / r)
+        )
         y += t * (f - came) / r
         out.append(f + (f - came))
         arrived = out.popleft()  # f + r v of the coupling

@@ -39,9 +39,7 @@ def response(law, positions):
 @pytest.mark.parametrize("body", [{}, NUMBERS], ids=["free", "held"])
 def test_it_is_what_the_program_does(integrator, body, exchange):
     """Exactly, sample by sample, for a motion of random numbers."""
-    law = zw.coupling.CoupledBody(
-        130, "0.06", "0.8 g", integrator=integrator, **body, **EXCHANGES[exchange]
-    )
+    law = zw.coupling.CoupledBody(130, "0.06", "0.8 g", integrator=integrator, **body, **EXCHANGES[exchange])
     draw = random.Random(7)
     positions = [Fraction(draw.randint(-9, 9), 1000) for _ in range(14)]
     assert response(law, positions) == forces(law, T, positions)
