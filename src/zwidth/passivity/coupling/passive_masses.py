@@ -8,7 +8,7 @@ all that lie there.  What is passive is closed: where a proof holds on both side
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
@@ -92,12 +92,13 @@ class PassiveMasses(Result):
     @cached_property
     def verdict(self) -> LinearVerdict:
         """Of the body's own mass."""
-        return _verdict(self.device, self.body)
+        return _verdict(_ideal(self.device), self.body)
 
     @property
     def scope(self) -> Scope:
         """Every hand, on an exact position."""
-        return self.verdict.scope
+        counted = self.device.exact("resolution")
+        return replace(self.verdict.scope, encoder="not counted") if counted else self.verdict.scope
 
     @property
     def assumptions(self) -> tuple[str, ...]:
@@ -147,7 +148,7 @@ class PassiveMasses(Result):
                 if 0 < end < inf:
                     mass = Exact(end).fraction
                     both = (mass, mass * (1 + outward * _BESIDE))
-                    yield MassLimit(*(_verdict(self.device, _with(self.body, m)) for m in both))
+                    yield MassLimit(*(_verdict(_ideal(self.device), _with(self.body, m)) for m in both))
 
 
 def passive_masses(device: Device, body: CoupledBody) -> PassiveMasses:
@@ -178,7 +179,7 @@ def passive_masses(device: Device, body: CoupledBody) -> PassiveMasses:
             "passive_masses(device, body) takes a Device and a CoupledBody, "
             f"got {type(device).__name__} and {type(body).__name__}"
         )
-    ideal = device.replace(resolution=0, coulomb_friction=0, stiction=None)
+    ideal = _ideal(device)
     found: list[tuple[Fraction, Fraction | None]] = []
     for low, high in pairwise([Fraction(0), *_critical(ideal, body), None]):
         assert low is not None, "only the last is none"
@@ -189,7 +190,12 @@ def passive_masses(device: Device, body: CoupledBody) -> PassiveMasses:
         (_edge(ideal, body, low, inf) if low else 0.0, inf if high is None else _edge(ideal, body, high, 0.0))
         for low, high in found
     )
-    return PassiveMasses(ideal, body, tuple(intervals))
+    return PassiveMasses(device, body, tuple(intervals))
+
+
+def _ideal(device: Device) -> Device:
+    """The device with an ideal encoder and no Coulomb friction."""
+    return device.replace(resolution=0, coulomb_friction=0, stiction=None)
 
 
 def _critical(device: Device, body: CoupledBody) -> list[Fraction]:
