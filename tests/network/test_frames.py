@@ -7,6 +7,7 @@ import zlib
 
 import pytest
 
+from zwidth.links import Packet
 from zwidth.network import Frame, Link
 from zwidth.network.frame import MOST_NUMBERS
 from zwidth.network.monitor import WINDOW
@@ -55,20 +56,33 @@ def test_nothing_else_is_a_frame():
     assert Frame.from_bytes(wrong + struct.pack("<I", zlib.crc32(wrong))) is None
 
 
-def test_each_frame_is_taken_once_and_all_are_counted():
+def packet(number, energy=0.0, wave=0.5):
+    return Packet(number, wave, energy, 0.25)
+
+
+def told(number, energy=0.0, sent=0.0):
+    return Frame(number, (0.5, energy, 0.25), sent=sent).to_bytes()
+
+
+def test_each_packet_is_taken_once_and_all_are_counted():
     now = [10.0]
     wire = Wire()
-    link = Link(wire, waves=1, clock=lambda: now[0])
-    frames = {k: Frame(k, (0.5, 100.0), sent=float(k)).to_bytes() for k in range(10)}
+    link = Link(wire, clock=lambda: now[0])
+    frames = {k: told(k, 0.25 * (k + 1), float(k)) for k in range(10)}
     wire.coming = [frames[0], frames[2], frames[2], frames[1], b"noise", frames[5]]
-    assert [f.number for f in link.receive()] == [0, 2, 1, 5]
+    assert link.receive() == [packet(k, 0.25 * (k + 1)) for k in (0, 2, 1, 5)]
     now[0] = 11.0
-    wire.coming = [frames[1], frames[5]]
+    wire.coming = [
+        frames[1],
+        frames[5],
+        Frame(6, (1.0, 2.0)).to_bytes(),
+        Frame(6, (1.0, -2.0, 0.0)).to_bytes(),
+    ]
     assert link.receive() == []
-    link.send((2.0, 7.0))
+    link.send(packet(0, 4.0))
     seen = link.report()
-    assert (seen.received, seen.lost, seen.doubled, seen.late, seen.foreign) == (4, 2, 3, 1, 1)
-    assert (seen.energy_received, seen.energy_sent) == (1.0, 4.0)
+    assert (seen.received, seen.lost, seen.doubled, seen.late, seen.foreign) == (4, 2, 3, 1, 3)
+    assert (seen.energy_received, seen.energy_sent) == (1.5, 4.0)
     assert (seen.rate, seen.silent) == (4.0, 1.0)
     assert math.isnan(seen.round_trip[0])
     assert "4 received" in repr(seen)
@@ -80,17 +94,19 @@ def test_the_round_trip_needs_no_common_clock():
     here, there = [0.0], [1e6]
     a, b = Wire(), Wire()
     one, other = Link(a, clock=lambda: here[0]), Link(b, clock=lambda: there[0])
-    for _ in range(200):
-        one.send((0.0,))
-        here[0] += 0.003
-        there[0] += 0.003
+
+    def wait(seconds):
+        here[0] += seconds
+        there[0] += seconds
+
+    for k in range(200):
+        one.send(packet(k))
+        wait(0.003)
         b.coming, a.sent = a.sent, []
         other.receive()
-        there[0] += 0.010
-        here[0] += 0.010
-        other.send((0.0,))
-        here[0] += 0.004
-        there[0] += 0.004
+        wait(0.010)
+        other.send(packet(k))
+        wait(0.004)
         a.coming, b.sent = b.sent, []
         one.receive()
     assert one.report().round_trip == pytest.approx((0.007, 0.007, 0.007), abs=1e-9)
@@ -101,8 +117,8 @@ def test_what_is_too_old_to_be_remembered_is_not_taken():
     link = Link(wire)
     for k in range(3 * WINDOW):
         if k != 5:
-            wire.coming.append(Frame(k, (1.0,)).to_bytes())
+            wire.coming.append(told(k))
     assert len(link.receive()) == 3 * WINDOW - 1
-    wire.coming = [Frame(5, (1.0,)).to_bytes(), Frame(3 * WINDOW - 1, (1.0,)).to_bytes()]
+    wire.coming = [told(5), told(3 * WINDOW - 1)]
     assert link.receive() == []
-    assert link.report().energy_received == 3 * WINDOW - 1
+    assert link.report().doubled == 2

@@ -91,9 +91,8 @@ def test_parts_of_different_rates_and_a_bad_link_make_no_energy():
                 if own == "fast":
                     move = draw.gauss(0, 1e-3)
                     x += move
-                force, packets = run.step({name: heard}, move)
-                if own == "fast":
-                    put_in += force * move
+                packets = run.step({name: heard}, move)
+                put_in += run.felt * move
                 for _ in range(draw.choice([0, 0, 1, 1, 2])):
                     coming[other].append((k + draw.randrange(1, 40), packets[name]))
             assert put_in > -1e-12

@@ -1,7 +1,7 @@
-"""One link, watched: how many frames, how old, how many lost, and how much energy went each way.
+"""One link, watched: how many packets, how old, how many lost, and how much energy went each way.
 
-Waves are numbers whose square is energy [J]: what a side received is never more than what the other
-sent, or the link is no link.  Each side counts its own; the report of both says what was lost between.
+A packet tells all the energy that its side has sent so far: what one side has heard of is never more than
+what the other has sent, or the link is no link.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from zwidth.errors import InputError
+from zwidth.links import Packet
 from zwidth.network.channel import Channel
 from zwidth.network.frame import Frame
 from zwidth.showing import Part, Shown, Table
@@ -28,38 +30,38 @@ class LinkReport(Shown):
     """What was seen of a link from one side."""
 
     sent: int
-    """Frames sent."""
+    """Packets sent."""
     received: int
-    """Frames received, each counted once."""
+    """Packets received, each counted once."""
     lost: int
     """Numbers between the first and the newest received that did not come."""
     doubled: int
     late: int
-    """Frames that came after a younger one."""
+    """Packets that came after a younger one."""
     foreign: int
-    """Datagrams that were no frame."""
+    """Datagrams that were none of a port."""
     rate: float
-    """Frames received per second since the first."""
+    """Packets received per second since the first."""
     round_trip: tuple[float, float, float]
     """Median, 99 % and longest round trip [s]; NaN before the first echo."""
     energy_sent: float
-    """Σ of the squares of the waves sent [J]."""
+    """That this side has sent in all [J]."""
     energy_received: float
-    """The same of those received [J]."""
+    """That the other side has sent in all, as far as this one has heard [J]."""
     silent: float
-    """Since the last frame came [s]; infinite before the first."""
+    """Since the last packet came [s]; infinite before the first."""
 
     def report(self) -> Iterable[Part]:
         """Six lines."""
-        yield Table(rows=self._rows())
+        yield Table(rows=self.rows())
 
-    def _rows(self) -> list[list[str]]:
+    def rows(self) -> list[list[str]]:
         p50, p99, longest = (f"{1e3 * t:.3g}" for t in self.round_trip)
         share = 100 * self.lost / max(self.lost + self.received, 1)
         return [
-            ["frames", f"{self.sent} sent, {self.received} received, {self.rate:.4g} per second"],
+            ["packets", f"{self.sent} sent, {self.received} received, {self.rate:.4g} per second"],
             ["lost", f"{self.lost} ({share:.2g} %), {self.doubled} twice, {self.late} late"],
-            ["no frames", f"{self.foreign} datagrams"],
+            ["foreign", f"{self.foreign} datagrams"],
             ["round trip", f"{p50} ms median, {p99} ms in 99 %, {longest} ms longest"],
             ["energy", f"{self.energy_sent:.4g} J sent, {self.energy_received:.4g} J received"],
             ["silent", f"for {self.silent:.3g} s"],
@@ -67,21 +69,19 @@ class LinkReport(Shown):
 
 
 class Link:
-    """Frames over a channel: numbered, dated, each taken once, and counted.
+    """Packets over a channel: dated, each taken once, and counted.
 
     Parameters
     ----------
     channel
         What carries them.
-    waves
-        How many of the first numbers of a frame are waves [√J], for the account of energy.
     clock
         What tells the time [s].
     """
 
-    def __init__(self, channel: Channel, waves: int = 1, clock: Callable[[], float] = time.monotonic) -> None:
-        self.channel, self._waves, self._clock = channel, waves, clock
-        self._number = 0
+    def __init__(self, channel: Channel, clock: Callable[[], float] = time.monotonic) -> None:
+        self.channel, self._clock = channel, clock
+        self._sent = 0
         self._newest = -1
         self._first = -1
         self._seen: set[int] = set()
@@ -91,22 +91,25 @@ class Link:
         self._in = self._out = 0.0
         self._trips: deque[float] = deque(maxlen=_REMEMBERED)
 
-    def send(self, values: tuple[float, ...]) -> None:
-        """Send the numbers in a frame."""
+    def send(self, packet: Packet) -> None:
+        """Send a packet of a port."""
         now = self._clock()
         echo, held = (self._came[0], now - self._came[1]) if self._came else (math.nan, 0.0)
-        self.channel.send(Frame(self._number, values, now, echo, held).to_bytes())
-        self._number += 1
-        self._out += sum(v * v for v in values[: self._waves])
+        self.channel.send(
+            Frame(packet.number, (packet.wave, packet.energy, packet.position), now, echo, held).to_bytes()
+        )
+        self._sent += 1
+        self._out = packet.energy
 
-    def receive(self) -> list[Frame]:
-        """The frames that have come since the last call, none a second time, in the order of arrival."""
+    def receive(self) -> list[Packet]:
+        """The packets that have come since the last call, none a second time, in the order of arrival."""
         now = self._clock()
-        return [frame for datagram in self.channel.receive() if (frame := self._taken(datagram, now))]
+        return [packet for datagram in self.channel.receive() if (packet := self._taken(datagram, now))]
 
-    def _taken(self, datagram: bytes, now: float) -> Frame | None:
+    def _taken(self, datagram: bytes, now: float) -> Packet | None:
         frame = Frame.from_bytes(datagram)
-        if frame is None:
+        packet = _packet(frame)
+        if frame is None or packet is None:
             self._foreign += 1
             return None
         if frame.number in self._seen or frame.number <= self._newest - WINDOW:
@@ -125,8 +128,8 @@ class Link:
         if self._first < 0:
             self._first, self._began = frame.number, now
         self._received += 1
-        self._in += sum(v * v for v in frame.values[: self._waves])
-        return frame
+        self._in = max(self._in, packet.energy)
+        return packet
 
     def report(self) -> LinkReport:
         """What was seen so far."""
@@ -135,7 +138,7 @@ class Link:
         at = [trips[min(int(q * len(trips)), len(trips) - 1)] if trips else math.nan for q in (0.5, 0.99, 1)]
         span = self._newest - self._first + 1 if self._first >= 0 else 0
         return LinkReport(
-            sent=self._number,
+            sent=self._sent,
             received=self._received,
             lost=max(span - self._received, 0),
             doubled=self._doubled,
@@ -147,3 +150,13 @@ class Link:
             energy_received=self._in,
             silent=now - self._came[1] if self._came else math.inf,
         )
+
+
+def _packet(frame: Frame | None) -> Packet | None:
+    """The packet of a port that a frame holds, or None."""
+    if frame is None or len(frame.values) != 3:
+        return None
+    try:
+        return Packet(frame.number, *frame.values)
+    except InputError:
+        return None

@@ -14,6 +14,7 @@ from zwidth.device import Device
 from zwidth.links import Packet, WavePort
 from zwidth.quantity.exact import RealLike
 from zwidth.scene.cut import Part
+from zwidth.scene.element import Element
 from zwidth.scene.run import SceneRun
 
 if TYPE_CHECKING:
@@ -38,19 +39,22 @@ class PartRun:
 
     def __init__(self, part: Part, sample_period: RealLike) -> None:
         self.part = part
+        SceneRun(
+            part.scene, sample_period
+        ).step()  # what has to be compiled is compiled before the clock runs
         self._run = SceneRun(part.scene, sample_period)
-        self.ports = {
-            end.title: WavePort(
-                Device(damping=w, coulomb_friction=0, resolution=0, delay=0, sample_period=sample_period)
-            )
-            for end in part.ends
-            for w in [end.resistance(Fraction(1))]
-        }
+        self.felt = 0.0
+        """The mean force at the port of the scene over the last step, 0 without one [N; N·m]."""
+        self.ports = {end.title: _port(end, sample_period) for end in part.ends}
+        for end in part.ends:
+            ready = _port(end, sample_period)
+            ready.receive()
+            ready.send(0.0)
 
     def step(
         self, heard: Mapping[str, Iterable[Packet]] | None = None, move: float = 0.0
-    ) -> tuple[float, dict[str, Packet]]:
-        """One step: the force at the port of the scene, and the packets for the other ends.
+    ) -> dict[str, Packet]:
+        """One step: the packets for the other ends; the force at the port of the scene is in `felt`.
 
         Parameters
         ----------
@@ -61,8 +65,13 @@ class PartRun:
         """
         heard = heard or {}
         forces = {name: port.receive(heard.get(name, ())) for name, port in self.ports.items()}
-        felt = self._run.step(move, forces)
-        return felt, {name: port.send(self._run.moved(name)) for name, port in self.ports.items()}
+        self.felt = self._run.step(move, forces)
+        return {name: port.send(self._run.moved(name)) for name, port in self.ports.items()}
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """Those that end here."""
+        return tuple(self.ports)
 
     @property
     def positions(self) -> Mapping[str, float]:
@@ -77,6 +86,12 @@ class PartRun:
     def account(self) -> xr.Dataset:
         """Where the energy went, element by element; of a line what went into it."""
         return self._run.account()
+
+
+def _port(end: Element, sample_period: RealLike) -> WavePort:
+    """The port of a line: its device is the node with the line's damper."""
+    w = end.resistance(Fraction(1))
+    return WavePort(Device(damping=w, coulomb_friction=0, resolution=0, delay=0, sample_period=sample_period))
 
 
 def run_parts(
@@ -103,10 +118,9 @@ def run_parts(
                 line: [p for due, p in on_the_way.get((name, line), ()) if due == steps] for line in run.ports
             }
             own = bool(run.part.scene.port)
-            force, packets = run.step(heard, move if own else 0.0)
-            sent.append((name, packets))
+            sent.append((name, run.step(heard, move if own else 0.0)))
             if own:
-                felt.append(force)
+                felt.append(run.felt)
         for name, packets in sent:
             for line, packet in packets.items():
                 (other,) = (n for n, run in parts.items() if line in run.ports and n != name)
