@@ -1,5 +1,6 @@
 from zwidth import arms as arms
 from zwidth import identification as identification
+from zwidth import links as links
 from zwidth import loop as simulation
 from zwidth import maps as maps
 from zwidth import operator as operators

@@ -71,6 +71,9 @@ class Element(Parametric):
     reflection: ClassVar[int] = 0
     """g of a linear element."""
 
+    leads_elsewhere: ClassVar[bool] = False
+    """True of the end of a line, whose wave comes from another part of a scene."""
+
     @property
     def nodes(self) -> tuple[str, str]:
         """Its two ends; a force that it gives acts against the motion of the first."""

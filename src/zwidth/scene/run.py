@@ -15,7 +15,7 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
 from zwidth.scene import layout as at
 from zwidth.scene.scene import Scene
-from zwidth.scene.step import scene_force
+from zwidth.scene.step import across, scene_force
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -56,16 +56,37 @@ class SceneRun:
         self._places = scene.network.places
         self._memory = self._packed.memory.copy()
         self._at_first = self._packed.stored(self._memory)
+        self._lines = {e.title: i for i, e in enumerate(self._packed.linear) if e.leads_elsewhere}
+        self._speed = 0.0
 
-    def step(self, move: float) -> float:
-        """The mean force [N; N·m] over a step in which the port moves by `move` [m; rad]."""
+    def step(self, move: float = 0.0, forces: Mapping[str, float] | None = None) -> float:
+        """The mean force [N; N·m] over a step in which the port moves by `move` [m; rad].
+
+        Parameters
+        ----------
+        move
+            0 for a scene without a port.
+        forces
+            Of lines that end here, by their names, the force that each gives its node over the step
+            [N; N·m]; of a line that is left out 0.
+        """
+        for name, force in (forces or {}).items():
+            self._memory[self._packed.waves + self._lines[name]] = -force
         return float(self.follow([self._memory[at.READING] + move])[0])
+
+    def moved(self, line: str) -> float:
+        """By how much the node where a line ends has moved in the last step [m; rad]."""
+        numbers, row = self._packed.numbers, at.HEADER + at.ROW * self._lines[line]
+        velocities = self._packed.places - len(self._packed.nodes)
+        return float(numbers[at.PERIOD] * across(numbers, row, self._memory, velocities, self._speed))
 
     def follow(self, positions: ArrayLike) -> Array:
         """The mean forces of steps that end with the port at these positions [m; rad]."""
         readings = np.atleast_1d(np.asarray(positions, dtype=np.float64))
         forces = np.empty_like(readings)
+        before = self._memory[at.READING] if len(readings) < 2 else readings[-2]
         _follow(self._packed.numbers, self._memory, readings, forces)
+        self._speed = float(readings[-1] - before) / self._packed.numbers[at.PERIOD]
         return forces
 
     @property
@@ -74,7 +95,8 @@ class SceneRun:
         packed = self._packed
         first = packed.places
         known = dict(zip(packed.nodes, self._memory[first : first + len(packed.nodes)], strict=True))
-        known[self.scene.port] = self._memory[at.READING]
+        if self.scene.port:
+            known[self.scene.port] = self._memory[at.READING]
         return {
             node: float(known.get(root, 0.0)) * float(ratio) for node, (root, ratio) in self._places.items()
         }

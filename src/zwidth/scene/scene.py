@@ -49,6 +49,10 @@ def _elements(given: Iterable[Any], name: str) -> tuple[Element, ...]:
     return elements
 
 
+def _port(given: Any, name: str) -> str:
+    return "" if given == "" else read_node(given, name)
+
+
 @dataclass(frozen=True)
 class Scene(Environment):
     """Masses, springs, dampers, contacts, friction and levers, stepped so that no energy is made.
@@ -61,7 +65,8 @@ class Scene(Environment):
         `Mass`, `Spring`, `Damper`, `Lever`, `Contact`, `CoulombFriction`, `NonlinearSpring` of
         `zwidth.scene`.  What joins them are the names of their nodes; "ground" never moves.
     port
-        The node that the hand holds, or that a virtual coupling pulls.  Default "handle".
+        The node that the hand holds, or that a virtual coupling pulls.  Default "handle"; "" for a scene that
+        is moved by lines alone.
 
     Raises
     ------
@@ -71,12 +76,12 @@ class Scene(Environment):
     """
 
     elements: tuple[Element, ...] = part("elements", _elements, meaning="masses, springs, … and their nodes")
-    port: str = part("node", read_node, "handle", meaning="the node that the hand holds")
+    port: str = part("node", _port, "handle", meaning="the node that the hand holds")
 
     def __post_init__(self) -> None:
         super().__post_init__()
         nodes = self.nodes
-        if self.port not in nodes:
+        if self.port and self.port not in nodes:
             raise InputError(
                 f'the port "{self.port}" is no node of the scene, whose nodes are: {", ".join(nodes)}'
             )

@@ -51,6 +51,11 @@ TYPES: Mapping[str, Kind] = MappingProxyType(
             "VirtualCoupling",
             "spring and damper between the device and another environment",
         ),
+        "coupled-body": Kind(
+            "environment.coupled_body",
+            "CoupledBody",
+            "mass behind a virtual coupling, as an integrator steps it",
+        ),
     }
 )
 

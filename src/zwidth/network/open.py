@@ -1,0 +1,44 @@
+"""A channel from one line of text, as an option or a file gives it.
+
+udp:LOCAL,REMOTE       udp:127.0.0.1:7401,127.0.0.1:7402
+memory:NAME            on one machine; the first side makes it
+zenoh:NAME             found by multicast; zenoh:NAME,listen=ENDPOINT or ,connect=ENDPOINT
+"""
+
+from __future__ import annotations
+
+from zwidth.errors import InputError
+from zwidth.network.channel import Channel
+from zwidth.network.shared_memory import SharedMemory
+from zwidth.network.udp import UDP
+from zwidth.network.zenoh import Zenoh
+
+_FORMS = (
+    "udp:LOCAL,REMOTE such as udp:127.0.0.1:7401,127.0.0.1:7402; memory:NAME; "
+    "or zenoh:NAME, with ,listen=ENDPOINT or ,connect=ENDPOINT behind it if need be"
+)
+
+
+def open_channel(text: str, first: bool) -> Channel:
+    """The channel that a text names; `first` at one side, not at the other.
+
+    Raises
+    ------
+    InputError
+        If the text names none, or the channel cannot be opened.
+    """
+    kind, _, rest = text.partition(":")
+    parts = [part.strip() for part in rest.split(",")]
+    if kind == "udp" and len(parts) == 2:
+        local, remote = parts if first else reversed(parts)
+        return UDP(local, remote)
+    if kind == "memory" and len(parts) == 1 and parts[0]:
+        return SharedMemory(parts[0], first)
+    if kind == "zenoh" and parts[0]:
+        ends = {name: [e.partition("=")[2] for e in parts[1:] if e.startswith(f"{name}=")] for name in _ENDS}
+        if sum(map(len, ends.values())) == len(parts) - 1:
+            return Zenoh(parts[0], first, listen=ends["listen"], connect=ends["connect"])
+    raise InputError(f"no channel is called {text!r}; give {_FORMS}")
+
+
+_ENDS = ("listen", "connect")
