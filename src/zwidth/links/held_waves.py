@@ -14,6 +14,7 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
+    DAMPING,
     ENERGY,
     FORCE,
     FRESH,
@@ -23,6 +24,7 @@ from zwidth.links.memory import (
     OWN_STATE,
     PERIOD,
     POSITION,
+    RESOLUTION,
     WAVE,
     within_actuator,
 )
@@ -76,3 +78,11 @@ class HeldWaves(Waves):
     title: ClassVar[str] = "waves without a ledger"
     code: ClassVar[float] = HELD_WAVES
     steps: ClassVar = (force, send)
+
+    @property
+    def theorem(self) -> str:
+        """w ≤ b, and nothing is rounded off the displacement."""
+        p = self.numbers
+        if p[_IMPEDANCE] > p[DAMPING] or p[RESOLUTION] > 0:
+            return ""
+        return "w ≤ b: in every period the device's damping takes what the hold feeds"

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from zwidth.links.packet import Packet
 from zwidth.quantity.exact import ends
 from zwidth.quantity.parameter import Parametric, parameters_of
 
+P = TypeVar("P", bound="Port")
+
+_TINY = 1e-6
+"""Way over an edge of the encoder [counts]."""
 _WHOLE = 1e-3
 """How far a displacement may be from whole counts [counts]."""
 
@@ -48,8 +52,8 @@ class Port(Parametric):
             raise InputError(f"device is a Device, got {type(self.device).__name__}")
         if ends(self.device.delay)[1] > 0:
             raise InputError(
-                f"a port drives a device without delay, got {self.device.delay} s: its force is booked for the "
-                "period after the reading, in which it would not act yet; sample slower, or compute sooner"
+                f"a port drives a device without delay, got {self.device.delay} s: its force is booked for "
+                "the period after the reading, in which it would not act yet; sample slower, or compute sooner"
             )
         self.complete()
         self._keep(numbers=np.array(self._numbers()), state=self.fresh_state())
@@ -74,6 +78,20 @@ class Port(Parametric):
         state = np.zeros(memory.STATE_SIZE)
         state[memory.HEARD_NUMBER] = state[memory.NUMBER] = -1.0
         return state
+
+    def anew(self: P) -> P:
+        """The same port before its first packet."""
+        return replace(self)
+
+    @property
+    def theorem(self) -> str:
+        """Why it is passive whatever the link does, in a sentence; "" where nothing proves it."""
+        return ""
+
+    def telling_ways(self) -> list[float]:
+        """Ways in a period that the numbers of this port suggest to a hand that wants to take energy out."""
+        step = float(self.numbers[memory.RESOLUTION])
+        return [_TINY * step, step] if step else []
 
     def receive(self, packets: Iterable[Packet] = ()) -> float:
         """The force on the device for the coming period, positive along x [N; N·m].

@@ -45,7 +45,7 @@ def force(p: Array, s: Array) -> float:
     most = max(most, 0.0) if tank > 0.0 else 0.0
     f = min(max(f, -most), most)
     if tank < p[_LEVEL]:
-        f -= p[_FILLING] * (1.0 - tank / p[_LEVEL]) * moved / p[PERIOD]
+        f -= p[_FILLING] * (1.0 - max(tank, 0.0) / p[_LEVEL]) * moved / p[PERIOD]
     f = within_actuator(p, f)
     s[FORCE] = f
     return f

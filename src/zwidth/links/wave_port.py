@@ -155,3 +155,10 @@ class WavePort(Waves):
     title: ClassVar[str] = "waves with a ledger"
     code: ClassVar[float] = WAVE_PORT
     steps: ClassVar = (force, send)
+
+    @property
+    def theorem(self) -> str:
+        """The ledger never falls below 0."""
+        return (
+            "its ledger counts what came and what friction took, and its force is never more than that pays"
+        )
