@@ -12,7 +12,6 @@ import numpy as np
 
 from zwidth.bench.scores import static_stiffness
 from zwidth.device import Device
-from zwidth.environment import Wall
 from zwidth.links.attack import most_taken
 from zwidth.links.feel import felt_stiffness
 from zwidth.links.held_waves import HeldWaves
@@ -38,8 +37,8 @@ _FAR = {"linear": 0.02, "rotary": 0.2}
 """How far the leader is led [m; rad]."""
 _STROKE, _REST, _PRESS, _RISE = 2.0, 1.0, 4.0, 1.0
 """How long: to and fro, at rest after it; a push, its force rising for a part of it [s]."""
-_HARD = 1000
-"""How many times stiffer than the link the wall is that holds the follower."""
+_STILL = 0.05
+"""How far a hand may swing that is said to be at rest, of its depth."""
 
 Ends = tuple[Port, Port]
 
@@ -194,12 +193,13 @@ def compare(
 
 
 def _taken(near: Port, far: Port, link: Schedule) -> dict[str, Any]:
+    """Over this link; that it is active may be seen over one without any delay alone."""
     if near.theorem and far.theorem:
         return {"outcome": "theorem", "taken": 0.0}
-    witness = most_taken(near, far, link)
-    if witness is None:
-        return {"outcome": "undecided", "taken": 0.0}
-    return {"outcome": "active", "taken": witness.energy}
+    found = most_taken(near, far, link)
+    taken = 0.0 if found is None else found.energy
+    active = found is not None or most_taken(near, far, Schedule()) is not None
+    return {"outcome": "active" if active else "undecided", "taken": taken}
 
 
 def _stroke(near: Port, far: Port, link: Schedule) -> xr.Dataset:
@@ -250,6 +250,6 @@ def _dataset(rows: Mapping[str, Mapping[str, Any]], motion: str) -> xr.Dataset:
 
 def _felt(leader: xr.Dataset) -> float:
     """nan where it does not come to rest."""
-    speed = np.abs(leader["velocity"].values)
-    swings = speed[-speed.size // 10 :].max() > 0.1 * speed.max()
-    return float("nan") if swings or "diverged_at_s" in leader.attrs else static_stiffness(leader)
+    late = leader["position"].values[leader.sizes["time"] // 2 :]
+    moves = late.std() > _STILL * abs(late.mean())
+    return float("nan") if moves or "diverged_at_s" in leader.attrs else static_stiffness(leader)

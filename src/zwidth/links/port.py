@@ -53,7 +53,8 @@ class Port(Parametric):
         if ends(self.device.delay)[1] > 0:
             raise InputError(
                 f"a port drives a device without delay, got {self.device.delay} s: its force is booked for "
-                "the period after the reading, in which it would not act yet; sample slower, or compute sooner"
+                "the period after the reading, in which it would not act yet; give delay=0 and the rate at "
+                "which readings and forces alternate"
             )
         self.complete()
         self._keep(numbers=np.array(self._numbers()), state=self.fresh_state())
