@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from zwidth.links.kernel import End
-from zwidth.links.memory import COULOMB, DAMPING, PERIOD, RESOLUTION
+from zwidth.links.memory import ACTING, COULOMB, DAMPING, LATE, PERIOD, RESOLUTION
 from zwidth.links.packet import Packet
 from zwidth.links.port import Port
 from zwidth.links.schedule import LOST, Schedule
@@ -69,7 +69,8 @@ class LinkWitness(Result):
         for k in range(samples):
             told = []
             for end, port in enumerate(ports):
-                force = Fraction(port.receive(due[end].pop(k, ())))
+                port.receive(due[end].pop(k, ()))
+                force = Fraction(float(port.state[ACTING]))
                 x, after = (Fraction(float(v)) for v in self.positions[end, k : k + 2])
                 total += force * (after - x) - _lost(port, after - x)
                 done += abs(force * (after - x))
@@ -162,7 +163,7 @@ def _cut(positions: Array, forces: Array, leader: Port, follower: Port) -> Array
 
 def _hands(port: Port, schedule: Schedule, period: Fraction, samples: int) -> Iterator[tuple[Hand, Hand]]:
     """To and fro in time with the link, at many speeds, or over one edge; the other held, or moving too."""
-    round_trip = 2 * (1 + schedule.samples_late(period))
+    round_trip = 2 * (1 + schedule.samples_late(period) + int(port.numbers[LATE]))
     none = np.empty(0)
     draws = np.random.default_rng(schedule.seed).normal(size=samples)
     sizes = [speed * float(period) for speed in SPEEDS] + port.telling_ways()

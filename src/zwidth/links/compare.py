@@ -146,7 +146,8 @@ def standard_ports(
 def stiffness_of(impedance: Fraction, schedule: Schedule, device: Device) -> Fraction:
     """The stiffness that waves show over a link."""
     period = device.exact("sample_period")
-    return felt_stiffness(impedance, schedule.samples_late(period), period)
+    late = schedule.samples_late(period) + int(device.exact("delay") / period)
+    return felt_stiffness(impedance, late, period)
 
 
 def compare(

@@ -1,4 +1,4 @@
-"""What waves of impedance w feel like over a link that is d samples late each way: a mass and a spring.
+"""What waves of impedance w feel like where a force acts d samples after the wave was sent: a mass and a spring.
 
     K = w/τ    against a follower that is clamped,        τ = (1 + d) T,
     M = w τ    with one that is free, besides both devices; their dampings are felt as b − w each.
@@ -24,7 +24,7 @@ def felt_stiffness(impedance: Fraction, late: int, period: Fraction) -> Fraction
     impedance
         w [N·s/m; N·m·s/rad].
     late
-        d, whole samples from sending to hearing.
+        d, whole samples from sending to the force that acts.
     period
         T [s].
     """

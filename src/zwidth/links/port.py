@@ -50,12 +50,6 @@ class Port(Parametric):
         super().__post_init__()
         if not isinstance(self.device, Device):
             raise InputError(f"device is a Device, got {type(self.device).__name__}")
-        if ends(self.device.delay)[1] > 0:
-            raise InputError(
-                f"a port drives a device without delay, got {self.device.delay} s: its force is booked for "
-                "the period after the reading, in which it would not act yet; give delay=0 and the rate at "
-                "which readings and forces alternate"
-            )
         self.complete()
         self._keep(numbers=np.array(self._numbers()), state=self.fresh_state())
 
@@ -71,6 +65,7 @@ class Port(Parametric):
             float(self.device.exact("resolution")),
             _lower(self.device, "force_limit"),
             0.0 if self.device.force_resolution is None else float(self.device.exact("force_resolution")),
+            float(_samples_late(self.device)),
         ]
         return [*told, *own, *[0.0] * (memory.NUMBERS_SIZE - len(told) - len(own))]
 
@@ -95,7 +90,9 @@ class Port(Parametric):
         return [_TINY * step, step] if step else []
 
     def receive(self, packets: Iterable[Packet] = ()) -> float:
-        """The force on the device for the coming period, positive along x [N; N·m].
+        """The force that the actuator is to give next, positive along x [N; N·m].
+
+        It acts in the period that begins now or, of a device with a delay, after that.
 
         Parameters
         ----------
@@ -121,8 +118,8 @@ class Port(Parametric):
         Parameters
         ----------
         displacement
-            By how much the reading has changed over the period in which the force acted, positive along x;
-            of an encoder a whole number of counts [m; rad].
+            By how much the reading has changed over the period, positive along x; of an encoder a whole
+            number of counts [m; rad].
 
         Raises
         ------
@@ -148,6 +145,18 @@ class Port(Parametric):
         own, motion = parameters_of(type(self)), self.device.motion
         told = [f"{own[name].quantity.symbol} = {self.with_unit(name, motion)}" for name in own]
         return ", ".join([self.title, *told])
+
+
+def _samples_late(device: Device) -> int:
+    """Whole periods from reading to force."""
+    late = device.exact("delay") / device.exact("sample_period")
+    if late.denominator > 1 or late > memory.MOST_LATE:
+        raise InputError(
+            f"from reading to force a port takes whole sample periods, at most {memory.MOST_LATE}, got "
+            f"{float(late):g}: else two forces act in one period, of whose displacements only the sum is read; "
+            "keep each force back until the next reading, and give delay as that"
+        )
+    return int(late)
 
 
 def _lower(device: Device, key: str) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from zwidth.links.attack import LinkWitness, most_taken
+from zwidth.links.memory import LATE
 from zwidth.links.port import Port
 from zwidth.links.schedule import Schedule
 from zwidth.passivity.outcome import Outcome
@@ -95,7 +96,9 @@ class PortVerdict(PassivityAnswer):
         yield "two hands without limit on speed and force, one on each device; both start at rest"
         yield "the link makes up no packets; one with a wrong checksum counts as lost"
         yield "both ports start together; one that starts anew later hears no packet from before"
-        yield "the force is applied at once and held for the period, by an actuator without a lag of its own"
+        late = int(self.port.numbers[LATE])
+        when = f"{late} sample{'' if late == 1 else 's'} after its reading" if late else "at once"
+        yield f"the force is applied {when} and held for the period, by an actuator without a lag of its own"
         yield "friction is b and f_c of the device at least, at every speed and in every period"
         if device.friction_speed is not None:
             unit = quantity_unit("friction_speed", device.motion)

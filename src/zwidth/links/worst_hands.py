@@ -15,7 +15,7 @@ from typing import NamedTuple
 from zwidth.compiled import Array, compiled
 from zwidth.links import laws
 from zwidth.links.kernel import End
-from zwidth.links.memory import COULOMB, DAMPING, PERIOD, RESOLUTION
+from zwidth.links.memory import ACTING, COULOMB, DAMPING, PERIOD, RESOLUTION
 from zwidth.links.wire import deliver, post
 from zwidth.loop.law import measured
 
@@ -83,7 +83,8 @@ def one_end(end: End, hand: Hand, k: int, positions: Array, forces: Array) -> fl
     """A period of one end: hear, push, move, and make a packet; returns what the hand puts in."""
     deliver(end.hears, k, end.state)
     p = end.numbers
-    f = laws.force(end.code, p, end.state)
+    laws.force(end.code, p, end.state)
+    f = end.state[ACTING]
     x = positions[k]
     after = x + displacement(hand, p, k, f)
     laws.send(end.code, p, end.state, reading(p, after) - reading(p, x))
