@@ -12,14 +12,15 @@ from strategies import seeds
 
 import zwidth as zw
 from zwidth.links import Packet, WavePort
+from zwidth.links.memory import ACTING
 
-PERIODS = 300
+PERIODS = 150
 
 
 def arm(damping: str = "0.15", friction: str = "0", resolution: str = "0", **more: object) -> zw.Device:
     """An arm at 1 kHz."""
     return zw.Device(
-        damping=damping, coulomb_friction=friction, resolution=resolution, rate=1000, delay=0, **more
+        damping=damping, coulomb_friction=friction, resolution=resolution, rate=1000, **{"delay": 0, **more}
     )
 
 
@@ -48,7 +49,8 @@ class Ends:
     def period(self, move: Callable[[int, float], float]) -> None:
         """Receive, move, send, at both ends."""
         for end, port in enumerate(self.ports):
-            self.forces[end] = port.receive(self.arrived(end))
+            port.receive(self.arrived(end))
+            self.forces[end] = float(port.state[ACTING])
         for end, port in enumerate(self.ports):
             device, before = port.device, self.at[end]
             moved = Fraction(move(end, self.forces[end]))
@@ -74,13 +76,15 @@ def greedy(ends: Ends) -> Callable[[int, float], float]:
     return move
 
 
-@seeds(12)
+@seeds(5)
 @pytest.mark.parametrize("friction", ["0", "0.12"])
 @pytest.mark.parametrize("resolution", ["0", "22.4e-6"])
-@pytest.mark.parametrize("impedance", ["0.04", "0.15", "1"])
-def test_two_hands_never_take_energy_out(impedance: str, resolution: str, friction: str, seed: int) -> None:
+@pytest.mark.parametrize(("impedance", "late"), [("0.04", 0), ("0.15", 0), ("1", 0), ("0.15", 1), ("1", 3)])
+def test_two_hands_never_take_energy_out(
+    impedance: str, late: int, resolution: str, friction: str, seed: int
+) -> None:
     """Not a joule, whatever impedance: in exact arithmetic, so that rounding is on the safe side too."""
-    device = arm(friction=friction, resolution=resolution)
+    device = arm(friction=friction, resolution=resolution, delay=Fraction(late, 1000))
     ends = Ends([device, device], random.Random(seed), impedance=impedance)
     move = greedy(ends)
     largest = 0.0

@@ -129,6 +129,16 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth compare my-paddle.toml my-laws.toml --laws wall,virtual-damping\n"
             "  zwidth compare my-arms.toml",
         ),
+        "links": Command(
+            "which port joins two devices over a link that loses packets?",
+            "Join two devices over one link by each kind of port: which is passive whatever the link does,\n"
+            "what two hands take out of the others, how the follower follows, what the leader feels.",
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth links touch --mass '45 g' --delay '20 ms' --loss 0.5\n"
+            "  zwidth links leader.toml follower.toml --delay '20 ms' --jitter '10 ms' --loss 0.5 --burst 4 "
+            "--plot links.png",
+        ),
         "workspace": Command(
             "where does an arm of several joints render a wall passively?",
             "Map over the workspace of an arm whether the damping of its joints pays for a wall; prove it\n"

@@ -250,6 +250,7 @@ def test_the_encoder_is_left_out_and_said_to_be():
             lambda: zw.coupling.heavy_body_damping(DEVICE.replace(delay="0.5 ms"), 3),
             "got 0.15 and 0.5 samples",
         ),
+        (lambda: masses(1, "0.12", exchange_delay=40), "would take minutes to find: give a shorter delay"),
         (lambda: zw.coupling.heavy_body_damping(DEVICE, 3, "euler"), "integrator is one of"),
     ],
 )
