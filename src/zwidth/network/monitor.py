@@ -21,6 +21,9 @@ from zwidth.showing import Part, Shown, Table
 _REMEMBERED = 4096
 """Round trips kept for the shares of the report."""
 
+_SILENT = 0.5
+"""What is worth a word [s]."""
+
 WINDOW = 4096
 """A frame this much older than the newest is dropped: that it was not used yet can no longer be known."""
 
@@ -54,6 +57,13 @@ class LinkReport(Shown):
     def report(self) -> Iterable[Part]:
         """Six lines."""
         yield Table(rows=self.rows())
+
+    @property
+    def brief(self) -> str:
+        """In a few words."""
+        trip, share = 1e3 * self.round_trip[0], 100 * self.lost / max(self.lost + self.received, 1)
+        waiting = f", silent for {self.silent:.2g} s" if self.silent > _SILENT else ""
+        return f"{self.rate:.4g} per second, {share:.2g} % lost, {trip:.3g} ms there and back{waiting}"
 
     def rows(self) -> list[list[str]]:
         p50, p99, longest = (f"{1e3 * t:.3g}" for t in self.round_trip)

@@ -93,7 +93,7 @@ class Peer:
         period = read_number(
             sample_period, GLOSSARY["sample_period"], "sample_period", bound="> 0", why="a step takes time"
         )
-        self.runs, self._period, self._clock, self._sleep = runs, float(period), clock, sleep
+        self.runs, self.period, self._clock, self._sleep = runs, float(period), clock, sleep
         self.links = {name: Link(channel, clock) for name, channel in channels.items()}
 
     def run(
@@ -120,17 +120,17 @@ class Peer:
         lateness: list[float] = []
         missed = 0
         deadline = self._clock()
-        steps = round(seconds / self._period)
+        steps = round(seconds / self.period)
         for k in range(steps):
             if stop is not None and stop():
                 break
             self._wait(deadline)
             behind = self._clock() - deadline
             lateness.append(behind)
-            if behind > self._period:
+            if behind > self.period:
                 missed += 1
                 deadline += behind
-            deadline += self._period
+            deadline += self.period
             self.step()
             if each is not None:
                 each(k)
