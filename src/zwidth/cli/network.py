@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 _OFTEN = 1.0
 """Between two lines of what is seen [s]."""
 
+_MEETING = 20.0
+"""How long a process waits for those at the other ends of its lines [s]."""
+
 _PATIENCE = 5.0
 """How long a process that was told to end may take [s]."""
 
@@ -67,6 +70,8 @@ def _one(plan: Plan, name: str, duration: Exact) -> int:
 
     warn_of_compiling()
     peer = plan.peer(name, duration)
+    for line in peer.meet(_MEETING):
+        print(f"{name}: nobody is at the other end of {line} yet; running all the same", file=sys.stderr)
     ended: list[int] = []
     for told in (signal.SIGTERM, signal.SIGINT):
         signal.signal(told, lambda *_: ended.append(1))
@@ -95,6 +100,11 @@ class _Watch:
 
 def _all(plan: Plan, file: str, duration: Exact) -> int:
     """Every process as a child of this one; what they print comes out here."""
+    from zwidth.cli.compile_notice import warn_of_compiling
+
+    warn_of_compiling()
+    for name in plan.names:  # what has to be compiled is compiled once, not by all of them together
+        plan.runs(name, duration)
     command = [
         sys.executable,
         "-m",

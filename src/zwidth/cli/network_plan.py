@@ -85,28 +85,35 @@ class Plan:
         """The processes: parts, then devices."""
         return (*self.periods, *self.devices)
 
-    def peer(self, name: str, duration: Exact) -> Peer:
-        """What the process of a name runs; its channels are open.
+    def runs(self, name: str, duration: Exact) -> PartRun | DeviceRun:
+        """What the process of a name steps.
 
         Raises
         ------
         InputError
-            If there is no such process, or a channel cannot be opened.
+            If there is no such process, or the device cannot be simulated.
         """
         if name not in self.names:
             raise InputError(f'no process is called "{name}"; there are: {", ".join(self.names)}')
-        runs: PartRun | DeviceRun
-        if name in self.devices:
-            device, hand = self.devices[name]
-            ends = (end for part in self.cut.parts for end in part.ends if end.title == name)
-            w = next(ends).resistance(device.exact("sample_period"))
-            runs = DeviceRun(WavePort(device, impedance=w), hand, duration, name)
-            period = device.exact("sample_period")
-        else:
-            part = next(p for p in self.cut.parts if p.name == name)
-            runs = PartRun(part, self.periods[name])
-            period = self.periods[name].fraction
-        return Peer(runs, {line: self.lines[line].opened(line, name) for line in runs.lines}, Exact(period))
+        if name not in self.devices:
+            return PartRun(next(p for p in self.cut.parts if p.name == name), self.periods[name])
+        device, hand = self.devices[name]
+        ends = (end for part in self.cut.parts for end in part.ends if end.title == name)
+        w = next(ends).resistance(device.exact("sample_period"))
+        return DeviceRun(WavePort(device, impedance=w), hand, duration, name)
+
+    def peer(self, name: str, duration: Exact) -> Peer:
+        """The same with its channels open.
+
+        Raises
+        ------
+        InputError
+            As `runs`, or if a channel cannot be opened.
+        """
+        runs = self.runs(name, duration)
+        channels = {line: self.lines[line].opened(line, name) for line in runs.lines}
+        own = self.devices.get(name)
+        return Peer(runs, channels, Exact(own[0].exact("sample_period")) if own else self.periods[name])
 
 
 def load_plan(path: Path) -> Plan:

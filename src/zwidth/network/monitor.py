@@ -11,6 +11,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import ClassVar
 
 from zwidth.errors import InputError
 from zwidth.links import Packet
@@ -58,6 +59,15 @@ class LinkReport(Shown):
         """Six lines."""
         yield Table(rows=self.rows())
 
+    HEADS: ClassVar = ["line", "sent", "received", "lost", "there and back, 99 %", "energy out", "energy in"]
+
+    def row(self, name: str) -> list[str]:
+        """One row of a table of links."""
+        p50, p99 = (f"{1e3 * t:.3g}" for t in self.round_trip[:2])
+        share = 100 * self.lost / max(self.lost + self.received, 1)
+        energies = (f"{1e3 * e:.4g} mJ" for e in (self.energy_sent, self.energy_received))
+        return [name, str(self.sent), str(self.received), f"{share:.2g} %", f"{p50}, {p99} ms", *energies]
+
     @property
     def brief(self) -> str:
         """In a few words."""
@@ -92,6 +102,7 @@ class Link:
     def __init__(self, channel: Channel, clock: Callable[[], float] = time.monotonic) -> None:
         self.channel, self._clock = channel, clock
         self._sent = 0
+        self._called = False
         self._newest = -1
         self._first = -1
         self._seen: set[int] = set()
@@ -111,6 +122,13 @@ class Link:
         self._sent += 1
         self._out = packet.energy
 
+    def call(self) -> bool:
+        """Call the other side, with a frame that holds nothing; True once it was heard of."""
+        if self.receive():
+            self._called = True
+        self.channel.send(Frame(0, (), self._clock()).to_bytes())
+        return self._called
+
     def receive(self) -> list[Packet]:
         """The packets that have come since the last call, none a second time, in the order of arrival."""
         now = self._clock()
@@ -118,6 +136,9 @@ class Link:
 
     def _taken(self, datagram: bytes, now: float) -> Packet | None:
         frame = Frame.from_bytes(datagram)
+        if frame is not None and not frame.values:
+            self._called = True
+            return None
         packet = _packet(frame)
         if frame is None or packet is None:
             self._foreign += 1

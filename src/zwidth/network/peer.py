@@ -20,6 +20,9 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
 from zwidth.showing import Part, Shown, Table
 
+_CALL = 0.02
+"""Between two calls to the other ends [s]."""
+
 _SPIN = 2e-4
 """Slept is until so long before a deadline, the rest is waited out awake [s]."""
 
@@ -48,12 +51,11 @@ class PeerReport(Shown):
 
     def report(self) -> Iterable[Part]:
         """The steps, then line by line."""
-        p50, p99, most = (f"{1e6 * t:.3g}" for t in self.lateness)
-        late = f"late by {p50} µs median, {p99} in 99 %, {most} at most"
+        p50, p99, most = (f"{1e3 * t:.2g}" for t in self.lateness)
+        late = f"late by {p50} ms median, {p99} ms in 99 %, {most} ms at most"
         yield f"{self.steps} steps, {self.late} missed; {late}"
-        for name, link in self.links.items():
-            yield ""
-            yield Table(caption=name, rows=link.rows())
+        rows = [link.row(name) for name, link in self.links.items()]
+        yield Table(heads=[LinkReport.HEADS], rows=rows, lefts=1)
 
 
 class Peer:
@@ -138,6 +140,15 @@ class Peer:
         at = [ordered[min(int(q * len(ordered)), len(ordered) - 1)] for q in (0.5, 0.99, 1)]
         links = {name: link.report() for name, link in self.links.items()}
         return PeerReport(len(lateness), missed, (at[0], at[1], at[2]), links)
+
+    def meet(self, patience: float) -> tuple[str, ...]:
+        """Call the other ends until all have been heard of; the lines where nobody was in that time [s]."""
+        until = self._clock() + patience
+        while True:
+            silent = tuple(name for name, link in self.links.items() if not link.call())
+            if not silent or self._clock() >= until:
+                return silent
+            self._sleep(_CALL)
 
     def step(self) -> None:
         """Hear, step, send."""
