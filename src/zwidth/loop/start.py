@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 DOWNHILL = "the spring pushes away for ever at one end, so that what it holds has no bound"
 IN_A_ROW = "laws in a chain may hold energy of their own"
+LOADED = "the scene is loaded where the touch starts, and pushes the handle"
 ON_THE_WAY = "the amplifier has not yet reached the force of the law when the touch starts"
 
 
@@ -118,7 +119,7 @@ class Start:
 def rest_position(law: Environment, period: Fraction, start: float) -> float:
     """Where a touch that would start at `start` starts at rest, with nothing stored [m; rad]."""
     met = law.met
-    if met.unilateral:
+    if met.unilateral or met.starts_at_rest:
         return start
     if met.points:
         return _lowest(*_columns(met.points), start)
@@ -129,6 +130,9 @@ def rest_position(law: Environment, period: Fraction, start: float) -> float:
 def held_at_start(at: Start, deepest: float) -> Held:
     """What the loop holds at the start; `deepest` is the largest reading of the touch."""
     met = at.law.met
+    stepped = met.stepped(at.period)
+    if stepped is not None:
+        return Held(stored=None, unknown=LOADED) if stepped.stored else Held()
     if met.unilateral and at.reading <= 0.0:
         return Held(stored=at.plant.coulomb * max(at.beyond, 0.0))
     found = _of_law(at, met, deepest)

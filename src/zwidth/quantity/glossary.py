@@ -80,6 +80,13 @@ GLOSSARY: dict[str, Quantity] = dict(
         ),
         _q("compensation", "", "1", "1", "of friction, as a share of what it is"),
         _q("link_delay", "τ_link", "s", "s", "from one arm's reading to the other's controller"),
+        _q(
+            "wave_impedance",
+            "w",
+            "N*s/m",
+            "N*m*s/rad",
+            "of the waves over a link: force over speed in a wave",
+        ),
         _q("branch_stiffness", "μ1", "N/m", "N*m/rad", "spring in series with a dashpot"),
         _q("branch_damping", "η1", "N*s/m", "N*m*s/rad", "dashpot in series with a spring"),
         _q("time_constant", "τ_v", "s", "s", "time constant of a velocity filter"),
