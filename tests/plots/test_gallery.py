@@ -21,6 +21,7 @@ NUMBERS = {
     "plot_creep_relaxation": "relaxation time 0.200 s, retardation time 0.333 s",
     "plot_damped_wall_map": "friction: 8 of 8 brackets lie within 1 % of σ = ½ + β_v",
     "plot_delay": "with 0.3 ms: 174.2 N/m; rounded up to 1 ms: 100 N/m",
+    "plot_explicit_bodies": "stiffest coupling: 248.5 N/m, one sample away 55.4 N/m",
     "plot_how_stiff": "largest passive stiffness at 1 kHz: 300 N/m",
     "plot_identify_a_device": "means over pulses: 299 to 316; differentiated: 327 to 616",
     "plot_known_hand": "with B = 0.5 N·s/m: no hand 1283 N/m, dowel 1285 N/m, finger 4678 N/m",

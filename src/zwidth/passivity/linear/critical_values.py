@@ -124,8 +124,8 @@ def _of_criterion(q: fmpz_mpoly) -> Iterator[fmpz_poly]:
         n, powers = factor.degrees()
         if n**5 * powers**2 > MOST_WORK:
             raise InputError(
-                f"the criterion is of degree {n} in cos ωT and {powers} in the parameter, and where it changes "
-                "would take minutes to find: give a shorter delay, or check single values"
+                f"the criterion is of degree {n} in cos ωT and {powers} in the parameter, and where its sign "
+                "changes would take minutes to find: give a shorter delay, or check single values"
             )
         if n > 1:
             yield _in_m(factor.discriminant("c"))
