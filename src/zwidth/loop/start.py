@@ -119,8 +119,10 @@ class Start:
 def rest_position(law: Environment, period: Fraction, start: float) -> float:
     """Where a touch that would start at `start` starts at rest, with nothing stored [m; rad]."""
     met = law.met
-    if met.unilateral or met.starts_at_rest:
+    if met.unilateral:
         return start
+    if met.starts_at_rest:
+        return 0.0  # so that positions in it are those of the handle
     if met.points:
         return _lowest(*_columns(met.points), start)
     stiffness = _static_stiffness(met, period)

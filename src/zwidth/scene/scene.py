@@ -16,6 +16,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zwidth.environment.environment import CouplingLaw, Environment, RationalFunction, Stepped
@@ -24,6 +26,7 @@ from zwidth.quantity.parameter import part
 from zwidth.scene.coupling import coupled
 from zwidth.scene.element import GROUND, Element, read_node
 from zwidth.scene.network import Network, network
+from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
     from zwidth.scene.pack import Packed
@@ -53,11 +56,11 @@ def _port(given: Any, name: str) -> str:
     return "" if given == "" else read_node(given, name)
 
 
-@dataclass(frozen=True)
-class Scene(Environment):
+@dataclass(frozen=True, repr=False)
+class Scene(Environment, Shown):
     """Masses, springs, dampers, contacts, friction and levers, stepped so that no energy is made.
 
-    It is at rest where a touch starts, and positions are counted from there.
+    It is at rest where a touch starts, by default at x = 0, and positions are counted from there.
 
     Parameters
     ----------
@@ -116,7 +119,8 @@ class Scene(Environment):
     @property
     def has_transfer_function(self) -> bool:
         """True without contact, friction and springs through points, of at most 60 masses and springs."""
-        return all(e.law is None for e in self.elements) and self._states <= MOST_STATES
+        small = self._states <= MOST_STATES
+        return bool(self.port) and small and all(e.law is None for e in self.elements)
 
     @property
     def _states(self) -> int:
@@ -129,8 +133,8 @@ class Scene(Environment):
 
     @property
     def starts_at_rest(self) -> bool:
-        """True."""
-        return True
+        """True of a scene that can be held."""
+        return bool(self.port)
 
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
         """E(z), from the position of the port to the mean force of the step before [N/m].
@@ -152,6 +156,8 @@ class Scene(Environment):
         InputError
             If an element is not linear.
         """
+        if not self.port:
+            raise InputError("the scene has no port: name the node that the hand holds, port=…")
         curved = [t for t, e in zip(self.titles, self.elements, strict=True) if e.law is not None]
         if curved:
             raise InputError(
@@ -173,6 +179,40 @@ class Scene(Environment):
 
         elements, port = coupled(self.elements, self.port, couplings, sample_period)
         return pack([e for e in elements if e.ratio is None], network(elements, port), sample_period)
+
+    def plot(self, path: str | Path | None = None) -> Any:
+        """Its drawing, a matplotlib figure that belongs to no window; saved where a path is given.
+
+        Parameters
+        ----------
+        path
+            Ends in .png, .svg or .pdf.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        figure = import_module("zwidth.plots").plot_scene(self)
+        if path is not None:
+            import_module("zwidth.plots.files").save_figure(lambda: figure, path, overwrite=True)
+        return figure
+
+    def report(self) -> Iterable[Part]:
+        """Its elements, one to a row."""
+        held = f'held at "{self.port}"' if self.port else "moved by lines alone"
+        yield f"scene of {len(self.elements)} elements and {len(self.nodes)} nodes, {held}"
+        yield ""
+        yield Table(
+            heads=[["element", "first", "second", ""]],
+            rows=[
+                [title, *e.nodes, e.describe().removeprefix(e.title).strip()]
+                for title, e in zip(self.titles, self.elements, strict=True)
+            ],
+            lefts=4,
+        )
+
+    __repr__ = Shown.__repr__
 
     def describe(self, motion: str = "linear") -> str:
         """How many elements, on one line; a few are named."""
