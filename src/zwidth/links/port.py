@@ -153,7 +153,7 @@ def _samples_late(device: Device) -> int:
     if late.denominator > 1 or late > memory.MOST_LATE:
         raise InputError(
             f"from reading to force a port takes whole sample periods, at most {memory.MOST_LATE}, got "
-            f"{float(late):g}: else two forces act in one period, of whose displacements only the sum is read; "
+            f"{float(late):g}: else two forces act in one period, whose two displacements are read as one; "
             "keep each force back until the next reading, and give delay as that"
         )
     return int(late)
