@@ -2,13 +2,18 @@
 Two arms over a bad link
 ========================
 
-Half of the packets are lost, in bursts, and the rest comes 20 to 30 ms late.  Ports of six kinds join the same
-two arms, all as stiff as each other: which follow, and from which can two hands take energy?
+Half of the packets are lost, in bursts, and the rest comes 20 to 30 ms late.  Ports of six kinds join
+the same two arms, all as stiff as each other: which follow, and from which can two hands take energy?
 """
 
+import matplotlib.pyplot as plt
 import numpy as np
 
 import zwidth as zw
+from zwidth import plots
+from zwidth.plots import draw_links
+
+plt.rcParams.update(plots.LOOK)
 
 arm = zw.Device(
     name="an arm",
@@ -24,7 +29,8 @@ print(zw.links.check(zw.links.WavePort(arm)))
 
 found = zw.links.compare(arm, schedule=link)
 print(found)
-found.plot()
+draw_links(plt.figure(figsize=(9.6, 6), layout="constrained"), found)
+plt.show()
 
 # %%
 # Waves of the textbook, sampled as they stand, need no hand: a push of 50 ms sets arms of 0.1 kg going that
