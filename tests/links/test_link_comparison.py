@@ -105,3 +105,30 @@ def test_other_laws_are_told_from_theorems() -> None:
     assert naive.outcome == "active"
     assert naive.to_dict()["motion"]["energy_J"] > 0
     assert "no packets" in "\n".join(naive.assumptions)
+
+
+def test_a_rotary_device_has_its_own_units() -> None:
+    """Torques and angles, in the table and in the document."""
+    device = zw.Device(
+        mass="2e-5 kg*m^2",
+        damping="1e-3 N*m*s/rad",
+        coulomb_friction="2 mN*m",
+        rate=1000,
+        delay="1 ms",
+        motion="rotary",
+    )
+    link = Schedule(delay="10 ms")
+    ports = {"waves": (zw.links.WavePort(device), zw.links.WavePort(device))}
+    found = zw.links.compare(device, schedule=link, ports=ports)
+    assert found.scores["felt_stiffness"].attrs["units"] == "N*m/rad"
+    assert float(found.scores["felt_stiffness"].sel(port="waves")) == pytest.approx(1e-3 / 0.012, rel=0.01)
+    assert "w = 0.001 N·m·s/rad" in ports["waves"][0].describe()
+
+
+def test_ports_that_do_not_fit_are_refused() -> None:
+    """Two rates cannot be simulated together, nor what is no port."""
+    one = zw.Device(mass=0.05, damping=0.1, rate=1000, delay=0)
+    with pytest.raises(zw.InputError, match="one sample period"):
+        zw.links.compare(one, one.replace(rate=500))
+    with pytest.raises(zw.InputError, match=r"a port of zwidth\.links"):
+        zw.links.simulate(one, one, Schedule(), None, None, 1)
