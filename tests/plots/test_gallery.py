@@ -25,6 +25,7 @@ NUMBERS = {
     "plot_how_stiff": "largest passive stiffness at 1 kHz: 300 N/m",
     "plot_identify_a_device": "means over pulses: 299 to 316; differentiated: 327 to 616",
     "plot_known_hand": "with B = 0.5 N·s/m: no hand 1283 N/m, dowel 1285 N/m, finger 4678 N/m",
+    "plot_links": "20 samples late: textbook waves 3.1 m/s, waves with a ledger 0.048 m/s",
     "plot_laws": "wall 18.5 mJ at 99%, virtual-damping 0 mJ at 99%, virtual-coupling 4.78 mJ at 33%",
     "plot_motorized_guide": "measured over passive, Kelvin-Voigt without damping: 9.9",
     "plot_paddle_experiments": "9 of 11 statements agree; the others are the boundary at 90 N/m and at 3 ms",

@@ -1,8 +1,8 @@
 from zwidth.links.attack import LinkWitness as LinkWitness
 from zwidth.links.attack import most_taken as most_taken
-from zwidth.links.compare import LinkComparison as LinkComparison
-from zwidth.links.compare import compare as compare
-from zwidth.links.compare import standard_ports as standard_ports
+from zwidth.links.comparison import LinkComparison as LinkComparison
+from zwidth.links.comparison import compare as compare
+from zwidth.links.comparison import standard_ports as standard_ports
 from zwidth.links.feel import felt_mass as felt_mass
 from zwidth.links.feel import felt_stiffness as felt_stiffness
 from zwidth.links.held_waves import HeldWaves as HeldWaves
@@ -11,7 +11,7 @@ from zwidth.links.packet import Packet as Packet
 from zwidth.links.port import Port as Port
 from zwidth.links.position_hold import PositionHold as PositionHold
 from zwidth.links.schedule import Schedule as Schedule
-from zwidth.links.simulate import simulate as simulate
+from zwidth.links.simulation import simulate as simulate
 from zwidth.links.time_domain import TimeDomain as TimeDomain
 from zwidth.links.two_layer import TwoLayer as TwoLayer
 from zwidth.links.verdict import PortVerdict as PortVerdict

@@ -16,8 +16,8 @@ from zwidth.links.memory import ACTING, COULOMB, DAMPING, LATE, PERIOD, RESOLUTI
 from zwidth.links.packet import Packet
 from zwidth.links.port import Port
 from zwidth.links.schedule import LOST, Schedule
+from zwidth.links.two_hands import Hand, try_hands
 from zwidth.links.wire import wire_of
-from zwidth.links.worst_hands import Hand, try_hands
 from zwidth.passivity.result import Result
 from zwidth.quantity.glossary import unit_suffix
 from zwidth.quantity.text import shown

@@ -1,4 +1,4 @@
-"""What waves of impedance w feel like where a force acts d samples after the wave was sent: a mass and a spring.
+"""What waves of impedance w feel like where a force acts d samples after its wave was sent: mass and spring.
 
     K = w/τ    against a follower that is clamped,        τ = (1 + d) T,
     M = w τ    with one that is free, besides both devices; their dampings are felt as b − w each.

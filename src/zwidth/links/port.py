@@ -130,12 +130,13 @@ class Port(Parametric):
         if not isfinite(moved):
             raise InputError(f"displacement must be finite, got {displacement!r}")
         step = self.numbers[memory.RESOLUTION]
-        if step > 0 and abs(moved / step - round(moved / step)) > _WHOLE:
+        counts = round(moved / step) if step > 0 else 0
+        if step > 0 and abs(moved / step - counts) > _WHOLE:
             raise InputError(
                 f"displacement is a whole number of counts of {step:g}, got {moved:g}: give the "
                 "difference of two readings as they are, not filtered"
             )
-        self.steps[1](self.numbers, self.state, moved)
+        self.steps[1](self.numbers, self.state, counts * step if step > 0 else moved)
         s = self.state
         told = (float(s[i]) for i in (memory.WAVE, memory.ENERGY, memory.POSITION))
         return Packet(int(s[memory.NUMBER]), *told)
@@ -153,7 +154,7 @@ def _samples_late(device: Device) -> int:
     if late.denominator > 1 or late > memory.MOST_LATE:
         raise InputError(
             f"from reading to force a port takes whole sample periods, at most {memory.MOST_LATE}, got "
-            f"{float(late):g}: else two forces act in one period, of whose displacements only the sum is read; "
+            f"{float(late):g}: else two forces act in one period, whose two displacements are read as one; "
             "keep each force back until the next reading, and give delay as that"
         )
     return int(late)

@@ -47,7 +47,7 @@ from zwidth.links.memory import (
     apply,
     queued,
 )
-from zwidth.links.sure_losses import newly_lost
+from zwidth.links.sure_losses import ROUNDING, newly_lost
 from zwidth.links.waves import Waves
 
 WAVE_PORT = 1.0
@@ -59,9 +59,6 @@ acts in this period what is held back for it and c [J]."""
 _HELD = OWN_STATE + 6
 _CHARGES = _HELD + MOST_LATE + 1
 
-_ROUNDING = 2.0**-48
-"""Of sums of a few terms, and of the device's numbers: all is rounded to the side of less energy."""
-_DOWN = 1.0 - _ROUNDING
 _MARGIN = 1.0 - 1e-12
 
 
@@ -71,9 +68,9 @@ def force(p: Array, s: Array) -> float:
     told = max(s[HEARD_ENERGY] - s[BASE_ENERGY], 0.0)
     reserve = s[RESERVE]
     if told > s[COUNTED]:
-        reserve += (told - s[COUNTED]) * _DOWN
+        reserve += told - s[COUNTED]
         s[COUNTED] = told
-    reserve *= _DOWN
+    reserve -= ROUNDING * abs(reserve)
     r = p[IMPEDANCE] / p[PERIOD]
     missing = s[HEARD_POSITION] - s[BASE_POSITION] - s[USED]
     size = abs(missing)
@@ -87,8 +84,8 @@ def force(p: Array, s: Array) -> float:
     size = min(abs(wanted), affordable(p, reserve, same))
     f = apply(p, s, size if wanted >= 0.0 else -size)
     charge = 0.5 * p[RESOLUTION] * (abs(f) - abs(before) + abs(f - before))
-    held = (1.0 + _ROUNDING) * at_worst(p, abs(f)) + charge
-    s[RESERVE] = max(0.0, reserve - held)
+    held = (1.0 + ROUNDING) * at_worst(p, abs(f)) + charge
+    s[RESERVE] = reserve - held
     s[HELD], s[CHARGE] = queued(p, s, _HELD, held), queued(p, s, _CHARGES, charge)
     s[USED] += f / (2.0 * r)
     return f
@@ -110,8 +107,11 @@ def at_worst(p: Array, size: float) -> float:
 def affordable(p: Array, reserve: float, before: float) -> float:
     """The largest |f| that R pays for in every case; `before` is that of the last period, of the same sign.
 
-    max (f Δx − b s²/T − f_c s) + c = (|f| − f_c)₊² T/(4b) + |f| Δ + Δ (|f| − |f⁻|)₊ ≤ R.
+    max (f Δx − b s²/T − f_c s) + c = (|f| − f_c)₊² T/(4b) + |f| Δ + Δ (|f| − |f⁻|)₊ ≤ R; by rounding R may be
+    a little below 0.
     """
+    if reserve <= 0.0:
+        return 0.0
     step = p[RESOLUTION]
     size = _pays(p, reserve, step)
     if size > before:
@@ -139,10 +139,10 @@ def send(p: Array, s: Array, moved: float) -> None:
     r = p[IMPEDANCE] / p[PERIOD]
     paid = reserve + newly_lost(p, s, moved)
     work = f * moved
-    left = max(0.0, paid - work - charge - _ROUNDING * (paid + abs(work) + charge))
+    left = paid - work - charge - ROUNDING * (abs(paid) + abs(work) + charge)
     wave = moved - f / (2.0 * r)
     owed = s[OWED] + r * wave * wave
-    total = s[ENERGY] + max(0.0, min(owed, left - _ROUNDING * s[ENERGY]))
+    total = s[ENERGY] + max(0.0, min(owed, left - ROUNDING * s[ENERGY]))
     gone = total - s[ENERGY]
     s[OWED] = max(0.0, owed - gone)
     s[RESERVE], s[ENERGY] = left - gone, total

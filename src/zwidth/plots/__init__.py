@@ -13,7 +13,7 @@ from zwidth.plots.criterion import criterion, draw_criterion
 from zwidth.plots.cycle import cycle, draw_cycle
 from zwidth.plots.indices import draw_index, indices
 from zwidth.plots.limit import limit_figure
-from zwidth.plots.links import plot_links
+from zwidth.plots.links import draw_links, plot_links
 from zwidth.plots.pair import draw_pair_damping, draw_pair_link, plot_pair
 from zwidth.plots.pair_motion import draw_pair_energy, draw_pair_motion
 from zwidth.plots.plane import draw_plane, plane
@@ -37,6 +37,7 @@ __all__ = [
     "draw_damping",
     "draw_friction",
     "draw_index",
+    "draw_links",
     "draw_pair_damping",
     "draw_pair_energy",
     "draw_pair_link",

@@ -31,8 +31,14 @@ def plot_links(comparison: Any) -> Figure:
     comparison
         A `zwidth.links.LinkComparison`, what `zwidth.links.compare` gives.
     """
+    figure = new_figure(9.6, 0.75 * comparison.scores.sizes["port"] + 1.5)
+    draw_links(figure, comparison)
+    return figure
+
+
+def draw_links(figure: Figure, comparison: Any) -> None:
+    """The same on a figure of your own."""
     names = [str(name) for name in comparison.scores["port"].values]
-    figure = new_figure(9.6, 0.75 * len(names) + 1.5)
     grid = figure.add_gridspec(len(names), 3, width_ratios=(1.5, 1.2, 1.0))
     worst = figure.add_subplot(grid[:, 2])
     factor, unit = _length(comparison)
@@ -50,7 +56,6 @@ def plot_links(comparison: Any) -> Figure:
             energy.set_xlabel("time [s]; put in by both\nhands [mJ], below 0 red")
     _worst(worst, comparison.scores, names)
     figure.suptitle(verbatim(comparison.schedule.describe()), x=0.01, ha="left", fontsize=10)
-    return figure
 
 
 def _length(comparison: Any) -> tuple[float, str]:

@@ -19,7 +19,7 @@ from zwidth.links.naive_waves import NaiveWaves
 from zwidth.links.port import Port
 from zwidth.links.position_hold import PositionHold
 from zwidth.links.schedule import Schedule
-from zwidth.links.simulate import check_ends, simulate
+from zwidth.links.simulation import check_ends, simulate
 from zwidth.links.time_domain import TimeDomain
 from zwidth.links.two_layer import TwoLayer
 from zwidth.links.wave_port import WavePort
@@ -37,7 +37,7 @@ _FAR = {"linear": 0.02, "rotary": 0.2}
 """How far the leader is led [m; rad]."""
 _STROKE, _REST, _PRESS, _RISE = 2.0, 1.0, 4.0, 1.0
 """How long: to and fro, at rest after it; a push, its force rising for a part of it [s]."""
-_STILL = 0.05
+_STILL = 0.1
 """How far a hand may swing that is said to be at rest, of its depth."""
 
 Ends = tuple[Port, Port]
