@@ -48,7 +48,8 @@ _HELD = Record(
         "mass": Between(MASS, above=0),
         "damping": Between(DAMPING, least=0),
         "stiffness": Between(STIFFNESS, least=0),
-    }
+    },
+    named=True,
 )
 """Which arm, and what moves there: arm and hand together."""
 

@@ -13,7 +13,9 @@ from typing import Any, ClassVar
 from zwidth.errors import InputError
 from zwidth.operator.hand_impedance import as_hand
 from zwidth.pairs import Pair
+from zwidth.passivity.advice import Advice
 from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.pairs.advice import StiffnessAt
 from zwidth.passivity.pairs.assumed import assumed_of_arms, assumed_of_timing, friction_goes_on
 from zwidth.passivity.pairs.criterion import PairCriterion
 from zwidth.passivity.pairs.evidence import PairCertificate
@@ -99,6 +101,8 @@ class HeldVerdict(PassivityAnswer):
     certificate: PairCertificate | HeldCertificate | None = None
     violation: HeldViolation | None = None
     witness: None = None
+    advice: tuple[Advice, ...] = ()
+    stiffness_elsewhere: tuple[StiffnessAt, ...] = ()
 
     @property
     def pair(self) -> Pair:
@@ -126,16 +130,12 @@ class HeldVerdict(PassivityAnswer):
             return f"No motion of the {free}'s hand takes energy out of this pair {self._while}{goes_on}."
         if self.outcome == "active":
             hand = "this hand" if self.question.motion.is_certain else "one of these hands"
-            by = "nobody" if self._nobody else hand
+            by = "nobody" if self.question.hand.is_nobody else hand
             return (
                 f"A hand on the {free} can take energy out of this pair, without end, while {by} holds the "
                 f"{self.question.held}."
             )
         return f"Neither a proof nor a motion of the {free} that takes energy out was found."
-
-    @property
-    def _nobody(self) -> bool:
-        return not any(ends(v)[1] for v in vars(self.question.hand).values())
 
     @property
     def _hand(self) -> str:
@@ -145,7 +145,8 @@ class HeldVerdict(PassivityAnswer):
     def _while(self) -> str:
         held = self.question.held
         if not self.with_any_such_hand:
-            return f"while {'nobody' if self._nobody else f'just this hand ({self._hand})'} holds the {held}"
+            by = "nobody" if self.question.hand.is_nobody else f"just this hand ({self._hand})"
+            return f"while {by} holds the {held}"
         least = ends(self.question.hand.damping)[0]
         if not least:
             return f"whatever holds the {held}, if that is passive"
@@ -176,7 +177,7 @@ class HeldVerdict(PassivityAnswer):
         else:
             yield (
                 f"nobody holds the {held}"
-                if self._nobody
+                if self.question.hand.is_nobody
                 else (
                     f"the {held} is held by {self._hand}, fixed to the arm and to a place, which pushes with "
                     "nothing of its own"
@@ -247,7 +248,7 @@ class HeldVerdict(PassivityAnswer):
         unit = {name: self.pair.leader.unit(name) for name in ("stiffness", "damping", "coulomb_friction")}
         free = self.question.free
         yield "coupling", self.pair.describe()
-        yield f"on the {self.question.held}", "nobody" if self._nobody else self._hand
+        yield f"on the {self.question.held}", "nobody" if self.question.hand.is_nobody else self._hand
         yield "limit", self.limit
         for name, value in (
             ("largest stiffness", self.largest_stiffness),
@@ -273,7 +274,7 @@ class HeldVerdict(PassivityAnswer):
             "limit": self.limit,
             "held": {
                 "arm": self.question.held,
-                "hand": "nobody" if self._nobody else self._hand,
+                "hand": "nobody" if self.question.hand.is_nobody else self._hand,
             },
             stiffness: self.largest_stiffness,
             f"{stiffness}_with_any_such_hand": self.largest_stiffness_of_any_such_hand,
