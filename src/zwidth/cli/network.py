@@ -27,7 +27,7 @@ _OFTEN = 1.0
 _MEETING = 20.0
 """How long a process waits for those at the other ends of its lines [s]."""
 
-_PATIENCE = 5.0
+_LONGEST_WAIT = 5.0
 """How long a process that was told to end may take [s]."""
 
 
@@ -132,6 +132,6 @@ def _end(children: Iterable[subprocess.Popen[bytes]]) -> None:
         child.terminate()
     for child in children:
         try:
-            child.wait(_PATIENCE)
+            child.wait(_LONGEST_WAIT)
         except subprocess.TimeoutExpired:
             child.kill()

@@ -126,7 +126,7 @@ class Peer:
         for k in range(steps):
             if stop is not None and stop():
                 break
-            self._wait(deadline)
+            self._until(deadline)
             behind = self._clock() - deadline
             lateness.append(behind)
             if behind > self.period:
@@ -141,9 +141,9 @@ class Peer:
         links = {name: link.report() for name, link in self.links.items()}
         return PeerReport(len(lateness), missed, (at[0], at[1], at[2]), links)
 
-    def meet(self, patience: float) -> tuple[str, ...]:
+    def meet(self, wait: float) -> tuple[str, ...]:
         """Call the other ends until all have been heard of; the lines where nobody was in that time [s]."""
-        until = self._clock() + patience
+        until = self._clock() + wait
         while True:
             silent = tuple(name for name, link in self.links.items() if not link.call())
             if not silent or self._clock() >= until:
@@ -156,7 +156,7 @@ class Peer:
         for name, packet in packets.items():
             self.links[name].send(packet)
 
-    def _wait(self, deadline: float) -> None:
+    def _until(self, deadline: float) -> None:
         left = deadline - self._clock() - _SPIN
         if left > 0:
             self._sleep(left)
