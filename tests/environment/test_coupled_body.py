@@ -10,6 +10,7 @@ import pytest
 from stepped_body import forces
 
 import zwidth as zw
+from zwidth.environment.environment import multiply
 from zwidth.environment.integrators import Integrator
 
 T = Fraction(1, 1000)
@@ -62,6 +63,20 @@ def test_behind_the_coupling_stands_the_same_body():
     parts = zw.VirtualCoupling(130, "0.06", body)
     device = zw.Device(damping="0.15", rate=1000)
     assert zw.check(device, whole).required_damping == zw.check(device, parts).required_damping
+
+
+def test_a_scene_steps_its_bodies_by_the_implicit_midpoint():
+    """Of the same coupling before a scene of mass, damper and spring H(z) is the same."""
+    parts = [
+        zw.scene.Mass("tip", "1 g"),
+        zw.scene.Damper("tip", "ground", "0.3"),
+        zw.scene.Spring("tip", "ground", 40),
+    ]
+    there = zw.VirtualCoupling(130, "0.06", zw.Scene(parts, port="tip"))
+    here = zw.coupling.CoupledBody(130, "0.06", "1 g", integrator="implicit-midpoint", **NUMBERS)
+    a, b = (law.pulse_transfer_function(T) for law in (there, here))
+    tops = [(*[Fraction(0)] * (len(h.denominator) - len(h.numerator)), *h.numerator) for h in (a, b)]
+    assert multiply(tops[0], b.denominator) == multiply(tops[1], a.denominator)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 
 import zwidth as zw
 from zwidth.errors import InputError
-from zwidth.links import WavePort
+from zwidth.links import Schedule, WavePort
 from zwidth.network import Channel, Lossy
 from zwidth.network.device_run import DeviceRun
 from zwidth.network.part_run import PartRun
@@ -88,9 +88,9 @@ def test_two_people_in_one_scene_over_different_bad_links_take_out_no_energy():
     for i, (name, hand) in enumerate(hands.items()):
         runs[name] = DeviceRun(WavePort(PADDLE), hand, 2, name)
         here, there = Tube.pair()
-        bad = Lossy(here, delay=0.004 * (1 + 5 * i), jitter=0.01, loss=0.4, doubled=0.2, seed=i, clock=clock)
-        peers.append((1, Peer(runs[name], {name: bad}, "1 ms", clock=clock)))
-        channels[name] = Lossy(there, delay=0.004, loss=0.4, seed=9 + i, clock=clock)
+        bad = Schedule(delay=0.004 * (1 + 5 * i), jitter=0.01, loss=0.4, duplicates=0.2, seed=i)
+        peers.append((1, Peer(runs[name], {name: Lossy(here, bad, clock=clock)}, "1 ms", clock=clock)))
+        channels[name] = Lossy(there, bad, way=1, clock=clock)
     scene = PartRun(room(*hands), "5 ms")
     peers.append((5, Peer(scene, channels, "5 ms", clock=clock)))
     together(peers, clock, 2)

@@ -39,6 +39,9 @@ ENVIRONMENTS = {
     "transfer-function": zw.ContinuousTransferFunction([1, 2], [1, THIRD], discretization="zoh"),
     "pulse-transfer-function": zw.PulseTransferFunction([1, "-0.5"], [1, "0.25"]),
     "its own period": zw.PulseTransferFunction([1], [1], sample_period="0.001"),
+    "coupled-body": zw.coupling.CoupledBody(
+        100, "0.05", THIRD, "0.1", 3, "trapezoidal", exchange_delay=2, wave_impedance=4
+    ),
     "scene": zw.Scene(
         [
             scene.Spring("tip", "a", THIRD),

@@ -15,12 +15,13 @@ from zwidth.device import Device
 from zwidth.pairs import Pair
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.pairs import PairVerdict, PairWitness
+from zwidth.passivity.pairs.held import HeldVerdict
 from zwidth.quantity.text import quantity_unit, shown
 
 _SAMPLES_SHOWN = 48
 
 
-def print_pair(verdict: PairVerdict) -> None:
+def print_pair(verdict: PairVerdict | HeldVerdict) -> None:
     """Print the report on standard output."""
     witness = verdict.witness if verdict.outcome == "active" else None
     with page() as out:
@@ -35,7 +36,7 @@ def print_pair(verdict: PairVerdict) -> None:
         section(out, "assumes", items(verdict.small_print(), "dim"))
 
 
-def _claim(verdict: PairVerdict, witness: PairWitness | None) -> str:
+def _claim(verdict: PairVerdict | HeldVerdict, witness: PairWitness | None) -> str:
     if verdict.outcome != "active" or witness is not None:
         return verdict.claim
     return f"{verdict.claim} No motion that shows it was found short enough to be written down."
@@ -54,7 +55,7 @@ def _line(role: str, device: Device) -> str:
     return device_line(device).removeprefix(f"{role}: ")
 
 
-def _numbers(verdict: PairVerdict) -> Iterator[tuple[str, str | Text]]:
+def _numbers(verdict: PairVerdict | HeldVerdict) -> Iterator[tuple[str, str | Text]]:
     """All but the motion, which has a section of its own."""
     for name, text in verdict.rows():
         if name != "motion":

@@ -1,12 +1,5 @@
 """Ports between a device and a link that delays, loses and reorders packets."""
 
-from zwidth.links.held_waves import HeldWaves
-from zwidth.links.naive_waves import NaiveWaves
-from zwidth.links.packet import Packet
-from zwidth.links.port import Port
-from zwidth.links.position_hold import PositionHold
-from zwidth.links.time_domain import TimeDomain
-from zwidth.links.two_layer import TwoLayer
-from zwidth.links.wave_port import WavePort
+from zwidth.lazy import attach
 
-__all__ = ["HeldWaves", "NaiveWaves", "Packet", "Port", "PositionHold", "TimeDomain", "TwoLayer", "WavePort"]
+__getattr__, __dir__, __all__ = attach(__name__)

@@ -14,42 +14,40 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
+    ACTING,
+    DAMPING,
     ENERGY,
-    FORCE,
     FRESH,
     HEARD_WAVE,
     NUMBER,
     OWN_NUMBERS,
-    OWN_STATE,
     PERIOD,
     POSITION,
+    RESOLUTION,
     WAVE,
-    within_actuator,
+    apply,
 )
 from zwidth.links.waves import Waves
 
 HELD_WAVES = 2.0
 
 _IMPEDANCE = OWN_NUMBERS
-_RECEIVED = OWN_STATE
 
 
 @compiled
 def force(p: Array, s: Array) -> float:
     """The force of the newest wave, used once; of a packet that is missing none."""
     root = sqrt(p[_IMPEDANCE] / p[PERIOD])
-    s[_RECEIVED] = s[HEARD_WAVE] if s[FRESH] > 0.0 else 0.0
+    received = s[HEARD_WAVE] if s[FRESH] > 0.0 else 0.0
     s[FRESH] = 0.0
-    f = within_actuator(p, 2.0 * root * s[_RECEIVED])
-    s[FORCE] = f
-    return f
+    return apply(p, s, 2.0 * root * received)
 
 
 @compiled
 def send(p: Array, s: Array, moved: float) -> None:
     """The wave that goes back."""
     root = sqrt(p[_IMPEDANCE] / p[PERIOD])
-    wave = root * moved - s[_RECEIVED]
+    wave = root * moved - s[ACTING] / (2.0 * root)
     s[WAVE] = wave
     s[ENERGY] += wave * wave
     s[POSITION] += wave / root
@@ -76,3 +74,11 @@ class HeldWaves(Waves):
     title: ClassVar[str] = "waves without a ledger"
     code: ClassVar[float] = HELD_WAVES
     steps: ClassVar = (force, send)
+
+    @property
+    def theorem(self) -> str:
+        """w ≤ b, and nothing is rounded off the displacement."""
+        p = self.numbers
+        if p[_IMPEDANCE] > p[DAMPING] or p[RESOLUTION] > 0:
+            return ""
+        return "w ≤ b: in every period the device's damping takes what the hold feeds"

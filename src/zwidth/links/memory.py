@@ -1,16 +1,18 @@
 """What a port knows, as its step functions see it: float64 in flat arrays.
 
 `p` does not change: the device, then from OWN_NUMBERS on what the law has of its own.  `s` is the state: the
-newest packet heard, the packet to be sent next, the force of this period, then from OWN_STATE on the law's.
+newest packet heard, the packet to be sent next, forces, then from OWN_STATE on the law's.
 """
 
 from __future__ import annotations
 
 from zwidth.compiled import Array, compiled
 
-PERIOD, DAMPING, COULOMB, RESOLUTION, FORCE_LIMIT, FORCE_STEP = range(6)
-OWN_NUMBERS = 6
-NUMBERS_SIZE = 9
+PERIOD, DAMPING, COULOMB, RESOLUTION, FORCE_LIMIT, FORCE_STEP, LATE = range(7)
+"""LATE: in how many periods the force that is computed now begins to act."""
+OWN_NUMBERS = 7
+NUMBERS_SIZE = 10
+MOST_LATE = 7
 
 HEARD_NUMBER, HEARD_WAVE, HEARD_ENERGY, HEARD_POSITION, FRESH = range(5)
 """Of the newest packet; FRESH is 1 where it came in this period.  HEARD_NUMBER is −1 before any."""
@@ -18,12 +20,13 @@ BASE_ENERGY, BASE_POSITION = 5, 6
 """What the other end had sent before the first packet that was heard."""
 NUMBER, WAVE, ENERGY, POSITION = range(7, 11)
 """Of the packet that is sent next."""
-FORCE = 11
-"""On the device in this period [N; N·m], positive along x."""
-OWN_STATE = 12
-LOSSES = 20
+FORCE, ACTING = 11, 12
+"""That is computed newest, and that acts in this period [N; N·m], positive along x."""
+_FORCES = 13
+OWN_STATE = _FORCES + MOST_LATE + 1
+LOSSES = 48
 """Where what friction has taken is kept."""
-STATE_SIZE = 150
+STATE_SIZE = 180
 
 
 @compiled
@@ -42,11 +45,25 @@ def hear(s: Array, number: float, wave: float, energy: float, position: float) -
 
 
 @compiled
-def within_actuator(p: Array, force: float) -> float:
-    """The force in steps of the converter and within the limit, both rounded towards 0 [N; N·m]."""
+def apply(p: Array, s: Array, force: float) -> float:
+    """What the actuator makes of a force: in steps and within the limit, both rounded towards 0 [N; N·m]."""
     size = abs(force)
     if p[FORCE_LIMIT] > 0.0:
         size = min(size, p[FORCE_LIMIT])
     if p[FORCE_STEP] > 0.0:
         size = p[FORCE_STEP] * (size // p[FORCE_STEP])
-    return size if force >= 0.0 else -size
+    f = size if force >= 0.0 else -size
+    s[FORCE] = f
+    s[ACTING] = queued(p, s, _FORCES, f)
+    return f
+
+
+@compiled
+def queued(p: Array, s: Array, at: int, value: float) -> float:
+    """Put a value into the queue that begins at `at`; the one of LATE periods ago comes out."""
+    late = int(p[LATE])
+    for k in range(late, 0, -1):
+        s[at + k] = s[at + k - 1]
+    s[at] = value
+    out: float = s[at + late]
+    return out

@@ -15,7 +15,6 @@ from typing import ClassVar
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
     ENERGY,
-    FORCE,
     FRESH,
     HEARD_WAVE,
     NUMBER,
@@ -24,7 +23,7 @@ from zwidth.links.memory import (
     PERIOD,
     POSITION,
     WAVE,
-    within_actuator,
+    apply,
 )
 from zwidth.links.waves import Waves
 
@@ -42,9 +41,7 @@ def force(p: Array, s: Array) -> float:
     received = s[HEARD_WAVE] if s[FRESH] > 0.0 else 0.0
     s[FRESH] = 0.0
     s[_NEXT] = root * s[_MOVED] - received
-    f = within_actuator(p, 2.0 * root * received - root * root * s[_MOVED])
-    s[FORCE] = f
-    return f
+    return apply(p, s, 2.0 * root * received - root * root * s[_MOVED])
 
 
 @compiled

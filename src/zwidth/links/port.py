@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from zwidth.links.packet import Packet
 from zwidth.quantity.exact import ends
 from zwidth.quantity.parameter import Parametric, parameters_of
 
+P = TypeVar("P", bound="Port")
+
+_TINY = 1e-6
+"""Way over an edge of the encoder [counts]."""
 _WHOLE = 1e-3
 """How far a displacement may be from whole counts [counts]."""
 
@@ -46,11 +50,6 @@ class Port(Parametric):
         super().__post_init__()
         if not isinstance(self.device, Device):
             raise InputError(f"device is a Device, got {type(self.device).__name__}")
-        if ends(self.device.delay)[1] > 0:
-            raise InputError(
-                f"a port drives a device without delay, got {self.device.delay} s: its force is booked for the "
-                "period after the reading, in which it would not act yet; sample slower, or compute sooner"
-            )
         self.complete()
         self._keep(numbers=np.array(self._numbers()), state=self.fresh_state())
 
@@ -66,6 +65,7 @@ class Port(Parametric):
             float(self.device.exact("resolution")),
             _lower(self.device, "force_limit"),
             0.0 if self.device.force_resolution is None else float(self.device.exact("force_resolution")),
+            float(_samples_late(self.device)),
         ]
         return [*told, *own, *[0.0] * (memory.NUMBERS_SIZE - len(told) - len(own))]
 
@@ -75,8 +75,24 @@ class Port(Parametric):
         state[memory.HEARD_NUMBER] = state[memory.NUMBER] = -1.0
         return state
 
+    def anew(self: P) -> P:
+        """The same port before its first packet."""
+        return replace(self)
+
+    @property
+    def theorem(self) -> str:
+        """Why it is passive whatever the link does, in a sentence; "" where nothing proves it."""
+        return ""
+
+    def telling_ways(self) -> list[float]:
+        """Ways in a period that the numbers of this port suggest to a hand that wants to take energy out."""
+        step = float(self.numbers[memory.RESOLUTION])
+        return [_TINY * step, step] if step else []
+
     def receive(self, packets: Iterable[Packet] = ()) -> float:
-        """The force on the device for the coming period, positive along x [N; N·m].
+        """The force that the actuator is to give next, positive along x [N; N·m].
+
+        It acts in the period that begins now or, of a device with a delay, after that.
 
         Parameters
         ----------
@@ -96,14 +112,19 @@ class Port(Parametric):
             memory.hear(self.state, float(packet.number), packet.wave, packet.energy, packet.position)
         return float(self.steps[0](self.numbers, self.state))
 
+    @property
+    def force(self) -> float:
+        """The force of this period, positive along x [N; N·m]."""
+        return float(self.state[memory.FORCE])
+
     def send(self, displacement: float) -> Packet:
         """The packet for the other end, after the device has moved.
 
         Parameters
         ----------
         displacement
-            By how much the reading has changed over the period in which the force acted, positive along x;
-            of an encoder a whole number of counts [m; rad].
+            By how much the reading has changed over the period, positive along x; of an encoder a whole
+            number of counts [m; rad].
 
         Raises
         ------
@@ -114,12 +135,13 @@ class Port(Parametric):
         if not isfinite(moved):
             raise InputError(f"displacement must be finite, got {displacement!r}")
         step = self.numbers[memory.RESOLUTION]
-        if step > 0 and abs(moved / step - round(moved / step)) > _WHOLE:
+        counts = round(moved / step) if step > 0 else 0
+        if step > 0 and abs(moved / step - counts) > _WHOLE:
             raise InputError(
                 f"displacement is a whole number of counts of {step:g}, got {moved:g}: give the "
                 "difference of two readings as they are, not filtered"
             )
-        self.steps[1](self.numbers, self.state, moved)
+        self.steps[1](self.numbers, self.state, counts * step if step > 0 else moved)
         s = self.state
         told = (float(s[i]) for i in (memory.WAVE, memory.ENERGY, memory.POSITION))
         return Packet(int(s[memory.NUMBER]), *told)
@@ -129,6 +151,18 @@ class Port(Parametric):
         own, motion = parameters_of(type(self)), self.device.motion
         told = [f"{own[name].quantity.symbol} = {self.with_unit(name, motion)}" for name in own]
         return ", ".join([self.title, *told])
+
+
+def _samples_late(device: Device) -> int:
+    """Whole periods from reading to force."""
+    late = device.exact("delay") / device.exact("sample_period")
+    if late.denominator > 1 or late > memory.MOST_LATE:
+        raise InputError(
+            f"from reading to force a port takes whole sample periods, at most {memory.MOST_LATE}, got "
+            f"{float(late):g}: else two forces act in one period, whose two displacements are read as one; "
+            "keep each force back until the next reading, and give delay as that"
+        )
+    return int(late)
 
 
 def _lower(device: Device, key: str) -> float:

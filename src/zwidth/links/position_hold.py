@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
-from zwidth.links.memory import FORCE, within_actuator
+from zwidth.links.memory import apply
 from zwidth.links.springs import Springs, move_on, pull
 
 POSITION_HOLD = 4.0
@@ -21,9 +21,7 @@ POSITION_HOLD = 4.0
 @compiled
 def force(p: Array, s: Array) -> float:
     """K (x_other − x), the last position heard held."""
-    f = within_actuator(p, pull(p, s))
-    s[FORCE] = f
-    return f
+    return apply(p, s, pull(p, s))
 
 
 @compiled

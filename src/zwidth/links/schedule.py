@@ -28,14 +28,10 @@ LOST = -1
 
 _EARLY = "a packet cannot arrive before it is sent"
 _JITTER = Quantity("jitter", "", "s", "s", "at most this much later than the delay, each packet by itself")
+_LOSS = plain("loss", "share of the packets that is lost")
+_TWICE = plain("duplicates", "share of the packets that arrives twice")
+_SHARE = "it is a share of all packets"
 _BURST = plain("burst", "packets that are lost in a row, in the mean")
-
-
-def _share(name: str, meaning: str) -> Certain:
-    field: Certain = parameter(
-        plain(name, meaning), 0, kept=Exact, bound="≥ 0", why="it is a share of all packets"
-    )
-    return field
 
 
 @dataclass(frozen=True)
@@ -67,9 +63,9 @@ class Schedule(Parametric):
 
     delay: Certain = parameter("link_delay", 0, kept=Exact, bound="≥ 0", why=_EARLY, meaning="each way")
     jitter: Certain = parameter(_JITTER, 0, kept=Exact, bound="≥ 0", why=_EARLY)
-    loss: Certain = _share("loss", "share of the packets that is lost")
+    loss: Certain = parameter(_LOSS, 0, kept=Exact, bound="≥ 0", why=_SHARE)
     burst: Certain = parameter(_BURST, 1, kept=Exact, bound="> 0", why="a loss is of one packet at least")
-    duplicates: Certain = _share("duplicates", "share of the packets that arrives twice")
+    duplicates: Certain = parameter(_TWICE, 0, kept=Exact, bound="≥ 0", why=_SHARE)
     seed: Count = parameter(
         plain("seed", "of the draws"), 1, kept=int, bound="≥ 0", why="it counts the draws"
     )

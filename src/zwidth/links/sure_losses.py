@@ -17,6 +17,9 @@ from __future__ import annotations
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import COULOMB, DAMPING, LOSSES, PERIOD, RESOLUTION
 
+ROUNDING = 2.0**-48
+"""Of sums of a few terms, and of the device's numbers: all is rounded to the side of less energy."""
+
 WINDOW = 64
 _AT, _SINCE = LOSSES, LOSSES + 1
 """Sample, in the ring; how many samples there are behind it."""
@@ -42,7 +45,8 @@ def newly_lost(p: Array, s: Array, moved: float) -> float:
     while n < WINDOW and n <= s[_SINCE] + 1.0:
         then = (now + WINDOW - n) % WINDOW
         sure = (abs(counts - s[_COUNTS + then]) - 1.0) * step
-        lost = max(lost, s[_LOST + then] + at_least(p, max(sure, 0.0), float(n)))
+        more, base = at_least(p, max(sure, 0.0), float(n)), s[_LOST + then]
+        lost = max(lost, base + more - ROUNDING * (abs(base) + more))
         n *= 2
     gain: float = lost - s[_LOST + before]
     s[_COUNTS + now], s[_LOST + now], s[_AT] = counts, lost, float(now)

@@ -16,12 +16,12 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
+    ACTING,
     BASE_ENERGY,
     ENERGY,
-    FORCE,
     HEARD_ENERGY,
     PERIOD,
-    within_actuator,
+    apply,
 )
 from zwidth.links.springs import MOVED, OWN, STIFFNESS, Springs, move_on, pull
 from zwidth.quantity.exact import Exact
@@ -41,15 +41,13 @@ def force(p: Array, s: Array) -> float:
     moved = s[MOVED]
     if excess > 0.0 and moved != 0.0:
         f -= min(excess / (moved * moved), p[_LARGEST] / p[PERIOD]) * moved
-    f = within_actuator(p, f)
-    s[FORCE] = f
-    return f
+    return apply(p, s, f)
 
 
 @compiled
 def send(p: Array, s: Array, moved: float) -> None:
     """The position, and the energy put in; what came out is kept."""
-    work = s[FORCE] * moved
+    work = s[ACTING] * moved
     if work > 0.0:
         s[_OUT] += work
     else:

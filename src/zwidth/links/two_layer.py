@@ -14,12 +14,12 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
+    ACTING,
     BASE_ENERGY,
     ENERGY,
-    FORCE,
     HEARD_ENERGY,
     PERIOD,
-    within_actuator,
+    apply,
 )
 from zwidth.links.springs import MOVED, OWN, STIFFNESS, Springs, move_on, pull
 from zwidth.quantity.exact import Exact
@@ -45,16 +45,14 @@ def force(p: Array, s: Array) -> float:
     most = max(most, 0.0) if tank > 0.0 else 0.0
     f = min(max(f, -most), most)
     if tank < p[_LEVEL]:
-        f -= p[_FILLING] * (1.0 - tank / p[_LEVEL]) * moved / p[PERIOD]
-    f = within_actuator(p, f)
-    s[FORCE] = f
-    return f
+        f -= p[_FILLING] * (1.0 - max(tank, 0.0) / p[_LEVEL]) * moved / p[PERIOD]
+    return apply(p, s, f)
 
 
 @compiled
 def send(p: Array, s: Array, moved: float) -> None:
     """The position, and a share of the tank."""
-    s[_TANK] -= s[FORCE] * moved
+    s[_TANK] -= s[ACTING] * moved
     share = _SHARE * max(s[_TANK], 0.0)
     s[_TANK] -= share
     s[ENERGY] += share

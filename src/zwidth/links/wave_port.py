@@ -15,7 +15,8 @@ which is the wave of a link that loses nothing.  An encoder of resolution Δ rea
 
     R ← R − f Δx − c + b s²/T + f_c s,   s = max(0, |Δx| − Δ),   c = ½ Δ (|f| − |f⁻| + |f − f⁻|)
 
-and |f| is kept so small that R ≥ 0 for every Δx.  The proof is in docs/theory/links.md.
+and |f| is kept so small that R ≥ 0 for every Δx; what that takes is held back until the force has acted.
+The proof is in docs/theory/links.md.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from typing import ClassVar
 
 from zwidth.compiled import Array, compiled
 from zwidth.links.memory import (
+    ACTING,
     BASE_ENERGY,
     BASE_POSITION,
     COULOMB,
@@ -34,6 +36,7 @@ from zwidth.links.memory import (
     FORCE,
     HEARD_ENERGY,
     HEARD_POSITION,
+    MOST_LATE,
     NUMBER,
     OWN_NUMBERS,
     OWN_STATE,
@@ -41,20 +44,21 @@ from zwidth.links.memory import (
     POSITION,
     RESOLUTION,
     WAVE,
-    within_actuator,
+    apply,
+    queued,
 )
-from zwidth.links.sure_losses import newly_lost
+from zwidth.links.sure_losses import ROUNDING, newly_lost
 from zwidth.links.waves import Waves
 
 WAVE_PORT = 1.0
 
 IMPEDANCE = OWN_NUMBERS
-RESERVE, COUNTED, USED, CHARGE, OWED = range(OWN_STATE, OWN_STATE + 5)
-"""R [J]; energy and position of the other end that are used; c [J]; energy still to be sent [J]."""
+RESERVE, COUNTED, USED, OWED, HELD, CHARGE = range(OWN_STATE, OWN_STATE + 6)
+"""R [J]; energy and position of the other end that are used; energy still to be sent [J]; of the force that
+acts in this period what is held back for it and c [J]."""
+_HELD = OWN_STATE + 6
+_CHARGES = _HELD + MOST_LATE + 1
 
-_ROUNDING = 2.0**-48
-"""Of sums of a few terms, and of the device's numbers: all is rounded to the side of less energy."""
-_DOWN = 1.0 - _ROUNDING
 _MARGIN = 1.0 - 1e-12
 
 
@@ -64,9 +68,9 @@ def force(p: Array, s: Array) -> float:
     told = max(s[HEARD_ENERGY] - s[BASE_ENERGY], 0.0)
     reserve = s[RESERVE]
     if told > s[COUNTED]:
-        reserve += (told - s[COUNTED]) * _DOWN
+        reserve += told - s[COUNTED]
         s[COUNTED] = told
-    reserve *= _DOWN
+    reserve -= ROUNDING * abs(reserve)
     r = p[IMPEDANCE] / p[PERIOD]
     missing = s[HEARD_POSITION] - s[BASE_POSITION] - s[USED]
     size = abs(missing)
@@ -78,19 +82,36 @@ def force(p: Array, s: Array) -> float:
     before = s[FORCE]
     same = abs(before) if before * wanted > 0.0 else 0.0
     size = min(abs(wanted), affordable(p, reserve, same))
-    f = within_actuator(p, size if wanted >= 0.0 else -size)
-    s[RESERVE], s[FORCE] = reserve, f
-    s[CHARGE] = 0.5 * p[RESOLUTION] * (abs(f) - abs(before) + abs(f - before))
+    f = apply(p, s, size if wanted >= 0.0 else -size)
+    charge = 0.5 * p[RESOLUTION] * (abs(f) - abs(before) + abs(f - before))
+    held = (1.0 + ROUNDING) * at_worst(p, abs(f)) + charge
+    s[RESERVE] = reserve - held
+    s[HELD], s[CHARGE] = queued(p, s, _HELD, held), queued(p, s, _CHARGES, charge)
     s[USED] += f / (2.0 * r)
     return f
+
+
+@compiled
+def at_worst(p: Array, size: float) -> float:
+    """The most that a force of this size costs, but for c: max (f Δx − b s²/T − f_c s) over all readings [J].
+
+    (|f| − f_c)₊² T/(4b) + |f| Δ; without damping |f| is at most f_c.
+    """
+    more = max(0.0, size - p[COULOMB])
+    bend = p[PERIOD] / (4.0 * p[DAMPING]) if p[DAMPING] > 0.0 else 0.0
+    cost: float = bend * more * more + p[RESOLUTION] * size
+    return cost
 
 
 @compiled
 def affordable(p: Array, reserve: float, before: float) -> float:
     """The largest |f| that R pays for in every case; `before` is that of the last period, of the same sign.
 
-    max (f Δx − b s²/T − f_c s) + c = (|f| − f_c)₊² T/(4b) + |f| Δ + Δ (|f| − |f⁻|)₊ ≤ R.
+    max (f Δx − b s²/T − f_c s) + c = (|f| − f_c)₊² T/(4b) + |f| Δ + Δ (|f| − |f⁻|)₊ ≤ R; by rounding R may be
+    a little below 0.
     """
+    if reserve <= 0.0:
+        return 0.0
     step = p[RESOLUTION]
     size = _pays(p, reserve, step)
     if size > before:
@@ -114,14 +135,14 @@ def _pays(p: Array, reserve: float, slope: float) -> float:
 @compiled
 def send(p: Array, s: Array, moved: float) -> None:
     """Book the displacement that was read over the period, and make the next packet."""
-    f, charge, reserve = s[FORCE], s[CHARGE], s[RESERVE]
+    f, charge, reserve = s[ACTING], s[CHARGE], s[RESERVE] + s[HELD]
     r = p[IMPEDANCE] / p[PERIOD]
     paid = reserve + newly_lost(p, s, moved)
     work = f * moved
-    left = max(0.0, paid - work - charge - _ROUNDING * (paid + abs(work) + charge))
+    left = paid - work - charge - ROUNDING * (abs(paid) + abs(work) + charge)
     wave = moved - f / (2.0 * r)
     owed = s[OWED] + r * wave * wave
-    total = s[ENERGY] + max(0.0, min(owed, left - _ROUNDING * s[ENERGY]))
+    total = s[ENERGY] + max(0.0, min(owed, left - ROUNDING * s[ENERGY]))
     gone = total - s[ENERGY]
     s[OWED] = max(0.0, owed - gone)
     s[RESERVE], s[ENERGY] = left - gone, total
@@ -155,3 +176,10 @@ class WavePort(Waves):
     title: ClassVar[str] = "waves with a ledger"
     code: ClassVar[float] = WAVE_PORT
     steps: ClassVar = (force, send)
+
+    @property
+    def theorem(self) -> str:
+        """The ledger never falls below 0."""
+        return (
+            "its ledger counts what came and what friction took, and its force is never more than that pays"
+        )

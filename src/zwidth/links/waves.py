@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from zwidth.errors import InputError
+from zwidth.links.memory import COULOMB, DAMPING, OWN_NUMBERS, PERIOD
 from zwidth.links.port import Port
 from zwidth.quantity.exact import Exact, ends
 from zwidth.quantity.parameter import CertainOrNone, parameter
@@ -28,3 +29,10 @@ class Waves(Port):
                     "a passive port needs damping in the device; give impedance where another law is tried"
                 )
             self._keep(impedance=Exact(damping))
+
+    def telling_ways(self) -> list[float]:
+        """Quick enough, where w > b, that (w − b) Δx²/T is twice what Coulomb friction takes."""
+        p = self.numbers
+        more = p[OWN_NUMBERS] - p[DAMPING]
+        quick = [2.0 * p[COULOMB] * p[PERIOD] / more] if more > 0 else []
+        return [*super().telling_ways(), *quick]

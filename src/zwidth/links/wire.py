@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Wire(NamedTuple):
-    """`when` and `again` of each packet are as of `Schedule.arrivals`; the rest is filled as packets are sent.
+    """`when` and `again` of each packet are as of `Schedule.arrivals`; the rest is filled by and by.
 
     `first` has for each sample the packet that is heard first, `following` for each packet the next one
     that is heard at the same sample, duplicates counted on behind the packets; −1 for none.

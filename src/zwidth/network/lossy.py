@@ -1,4 +1,4 @@
-"""A channel made worse on purpose: what a bad network does, drawn at random from a seed."""
+"""A channel made worse on purpose: what a bad network does, drawn as a schedule says."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from itertools import count
 
-from zwidth.errors import InputError
+from zwidth.links import Schedule
 from zwidth.network.channel import Channel
 
 
@@ -19,49 +19,40 @@ class Lossy(Channel):
     ----------
     channel
         What really carries the datagrams.
-    delay, jitter
-        Each datagram waits `delay` and a random part of `jitter` [s].
-    loss, doubled
-        The share that is lost, and the share of the rest that is sent twice, 0 to 1.
-    seed
-        Of the draws.
+    schedule
+        Delay, jitter, loss in bursts, duplicates and the seed of the draws.
+    way
+        0 at one end, 1 at the other: each way is drawn by itself.
     clock
         What tells the time [s].
-
-    Raises
-    ------
-    InputError
-        If a time is negative or a share not between 0 and 1.
     """
 
     def __init__(
         self,
         channel: Channel,
+        schedule: Schedule,
         *,
-        delay: float = 0.0,
-        jitter: float = 0.0,
-        loss: float = 0.0,
-        doubled: float = 0.0,
-        seed: int = 0,
+        way: int = 0,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        for name, seconds in (("delay", delay), ("jitter", jitter)):
-            if not 0 <= seconds < float("inf"):
-                raise InputError(f"the {name} of a link must be ≥ 0 s, got {seconds!r}")
-        for name, share in (("loss", loss), ("doubled", doubled)):
-            if not 0 <= share <= 1:
-                raise InputError(f"the share {name} of a link must be from 0 to 1, got {share!r}")
-        self._channel, self._clock = channel, clock
-        self._delay, self._jitter, self._loss, self._doubled = delay, jitter, loss, doubled
-        self._random, self._order = random.Random(seed), count()
+        self._channel, self._clock, self._order = channel, clock, count()
+        self._random = random.Random(2 * schedule.seed + way)
+        self._delay, self._jitter = float(schedule.delay), float(schedule.jitter)
+        self._twice = float(schedule.duplicates)
+        share = float(schedule.loss)
+        self._back = 1.0 / max(float(schedule.burst), 1.0 / (1.0 - share))
+        self._there = share * self._back / (1.0 - share)
+        self._bad = self._random.random() < share
         self._waiting: list[tuple[float, int, bytes]] = []
 
     def send(self, datagram: bytes) -> None:
         """Lose it, or keep it until its time has come."""
-        if self._random.random() >= self._loss:
-            for _ in range(2 if self._random.random() < self._doubled else 1):
-                due = self._clock() + self._delay + self._jitter * self._random.random()
+        draw = self._random.random
+        if not self._bad:
+            for _ in range(2 if draw() < self._twice else 1):
+                due = self._clock() + self._delay + self._jitter * draw()
                 heapq.heappush(self._waiting, (due, next(self._order), datagram))
+        self._bad = draw() >= self._back if self._bad else draw() < self._there
         self._forward()
 
     def receive(self) -> list[bytes]:

@@ -11,6 +11,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from zwidth.errors import InputError
 from zwidth.links import Packet
@@ -20,6 +21,9 @@ from zwidth.showing import Part, Shown, Table
 
 _REMEMBERED = 4096
 """Round trips kept for the shares of the report."""
+
+_SILENT = 0.5
+"""What is worth a word [s]."""
 
 WINDOW = 4096
 """A frame this much older than the newest is dropped: that it was not used yet can no longer be known."""
@@ -55,6 +59,39 @@ class LinkReport(Shown):
         """Six lines."""
         yield Table(rows=self.rows())
 
+    HEADS: ClassVar = ["line", "sent", "received", "lost", "there and back, 99 %", "energy out", "energy in"]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same with a unit in every key; null where there is none yet."""
+        p50, p99, most = (t if math.isfinite(t) else None for t in self.round_trip)
+        return {
+            "sent": self.sent,
+            "received": self.received,
+            "lost": self.lost,
+            "doubled": self.doubled,
+            "late": self.late,
+            "foreign": self.foreign,
+            "rate_Hz": self.rate,
+            "round_trip_s": {"median": p50, "of_99_percent": p99, "longest": most},
+            "energy_sent_J": self.energy_sent,
+            "energy_received_J": self.energy_received,
+            "silent_s": self.silent if math.isfinite(self.silent) else None,
+        }
+
+    def row(self, name: str) -> list[str]:
+        """One row of a table of links."""
+        p50, p99 = (f"{1e3 * t:.3g}" for t in self.round_trip[:2])
+        share = 100 * self.lost / max(self.lost + self.received, 1)
+        energies = (f"{1e3 * e:.4g} mJ" for e in (self.energy_sent, self.energy_received))
+        return [name, str(self.sent), str(self.received), f"{share:.2g} %", f"{p50}, {p99} ms", *energies]
+
+    @property
+    def brief(self) -> str:
+        """In a few words."""
+        trip, share = 1e3 * self.round_trip[0], 100 * self.lost / max(self.lost + self.received, 1)
+        waiting = f", silent for {self.silent:.2g} s" if self.silent > _SILENT else ""
+        return f"{self.rate:.4g} per second, {share:.2g} % lost, {trip:.3g} ms there and back{waiting}"
+
     def rows(self) -> list[list[str]]:
         p50, p99, longest = (f"{1e3 * t:.3g}" for t in self.round_trip)
         share = 100 * self.lost / max(self.lost + self.received, 1)
@@ -82,6 +119,7 @@ class Link:
     def __init__(self, channel: Channel, clock: Callable[[], float] = time.monotonic) -> None:
         self.channel, self._clock = channel, clock
         self._sent = 0
+        self._called = False
         self._newest = -1
         self._first = -1
         self._seen: set[int] = set()
@@ -101,6 +139,13 @@ class Link:
         self._sent += 1
         self._out = packet.energy
 
+    def call(self) -> bool:
+        """Call the other side, with a frame that holds nothing; True once it was heard of."""
+        if self.receive():
+            self._called = True
+        self.channel.send(Frame(0, (), self._clock()).to_bytes())
+        return self._called
+
     def receive(self) -> list[Packet]:
         """The packets that have come since the last call, none a second time, in the order of arrival."""
         now = self._clock()
@@ -108,6 +153,9 @@ class Link:
 
     def _taken(self, datagram: bytes, now: float) -> Packet | None:
         frame = Frame.from_bytes(datagram)
+        if frame is not None and not frame.values:
+            self._called = True
+            return None
         packet = _packet(frame)
         if frame is None or packet is None:
             self._foreign += 1

@@ -199,6 +199,30 @@ def test_a_motion_gains_in_the_program_itself(case):
     assert work < 0
 
 
+@pytest.mark.parametrize(
+    ("lag", "integrator", "exchange"), [(1, "forward-euler", 0), (4, "velocity-verlet", 2)]
+)
+def test_the_stiffest_coupling_before_heavy_bodies(lag, integrator, exchange):
+    """K_c T/b = (2/ψ²) [√((1 + ψ)² + ψ²) − (1 + ψ)], ψ = φ − ½: there the device just pays for both needs."""
+    psi = lag - 0.5
+    limit = 2 / psi**2 * (np.hypot(1 + psi, psi) - 1 - psi) * float(B / T)
+    for part, pays in ((0.999, True), (1.001, False)):
+        stiffness = Fraction(part * limit)
+        left = B - stiffness * T / 2
+        need = zw.coupling.heavy_body_damping(DEVICE, stiffness, integrator, exchange).fraction
+        assert (need < left) is pays
+        if pays:
+            between = float((need + left) / 2)
+            found = masses(float(stiffness), between, integrator=integrator, exchange_delay=exchange)
+            assert found.largest == inf
+
+
+def test_the_limit_of_the_mass_is_the_lightest():
+    """`zw.limit` looks downward for it."""
+    bracket = zw.limit(DEVICE, body(150, "0.0375"), "virtual_mass", tolerance=1e-3)
+    assert bracket.proved_active < 2.25e-4 <= bracket.proved_passive < 2.26e-4
+
+
 # What it says
 
 
@@ -250,6 +274,7 @@ def test_the_encoder_is_left_out_and_said_to_be():
             lambda: zw.coupling.heavy_body_damping(DEVICE.replace(delay="0.5 ms"), 3),
             "got 0.15 and 0.5 samples",
         ),
+        (lambda: masses(1, "0.12", exchange_delay=40), "would take minutes to find: give a shorter delay"),
         (lambda: zw.coupling.heavy_body_damping(DEVICE, 3, "euler"), "integrator is one of"),
     ],
 )

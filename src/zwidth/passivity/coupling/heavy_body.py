@@ -66,5 +66,5 @@ def heavy_body_damping(
 def _lag(integrator: Integrator) -> Fraction:
     """φ₀ = 1 − the mean power of z in M (z − 1)² Y/T² of a free body."""
     position = stepped(integrator, Body(Fraction(1), Fraction(0), Fraction(0), Fraction(1))).position
-    mean = sum(i * c for i, c in enumerate(reversed(position))) / sum(position)
+    mean = sum((i * c for i, c in enumerate(reversed(position))), Fraction(0)) / sum(position)
     return 1 - mean

@@ -171,8 +171,8 @@ def passive_masses(device: Device, body: CoupledBody) -> PassiveMasses:
     Notes
     -----
     Behind a spring alone a free body by an explicit integrator is passive with no mass, however much the
-    device damps.  Derived for this project, with Brown & Colgate (1997, 1998) who found in experiments and
-    simulations that explicit integrators ask for a least mass.
+    device damps.  Derived for this project; that explicit integrators ask for a least mass is said by Brown &
+    Colgate (1997, 1998).
     """
     if not isinstance(device, Device) or not isinstance(body, CoupledBody):
         raise InputError(

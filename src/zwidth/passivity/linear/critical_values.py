@@ -20,6 +20,7 @@ from math import lcm
 from flint import Ordering, fmpq_poly, fmpz_mpoly, fmpz_mpoly_ctx, fmpz_poly
 
 from zwidth.environment.environment import RationalFunction
+from zwidth.errors import InputError
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.passivity.linear.roots import roots_inside
 from zwidth.quantity.balls import as_fmpq
@@ -28,6 +29,9 @@ Law = Callable[[Fraction], RationalFunction]
 """H(z) at a value of the parameter; N and D are polynomials in it."""
 
 _RING = fmpz_mpoly_ctx.get(("c", "m"), Ordering.lex)
+MOST_WORK = 300_000_000
+"""The fifth power of the degree in c, times the square of that in m: some seconds."""
+
 _CIRCLE = ({"c": 1}, {"c": -1})
 
 
@@ -44,6 +48,11 @@ def critical_values(law: Law, degree: int, loop: LinearLoop, scale: Fraction) ->
         On the same device: its b, T and delay are taken.
     scale
         A value of the size that is looked for.
+
+    Raises
+    ------
+    InputError
+        If orders and delays are so high that this would take minutes.
     """
     numbers = [Fraction(i) for i in range(1, 2 * degree + 2)]
     loops = _on_one_scale([law(scale * number) for number in numbers], loop)
@@ -112,7 +121,13 @@ def _of_criterion(q: fmpz_mpoly) -> Iterator[fmpz_poly]:
             continue
         for end in _CIRCLE:
             yield _in_m(factor.subs(end))
-        if factor.degrees()[0] > 1:
+        n, powers = factor.degrees()
+        if n**5 * powers**2 > MOST_WORK:
+            raise InputError(
+                f"the criterion is of degree {n} in cos ωT and {powers} in the parameter, and where its sign "
+                "changes would take minutes to find: give a shorter delay, or check single values"
+            )
+        if n > 1:
             yield _in_m(factor.discriminant("c"))
 
 

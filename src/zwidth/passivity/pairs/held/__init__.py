@@ -1,0 +1,6 @@
+"""A pair of arms of which one is held by a hand that is known, or by nobody."""
+
+from zwidth.passivity.pairs.held.law import HeldPair
+from zwidth.passivity.pairs.held.verdict import ANY, HeldVerdict, check_held_pair
+
+__all__ = ["ANY", "HeldPair", "HeldVerdict", "check_held_pair"]
