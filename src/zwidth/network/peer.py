@@ -142,9 +142,9 @@ class Peer:
         lateness: list[float] = []
         missed = 0
         deadline = self._clock()
-        steps = int(seconds / self._exactly)
-        for k in range(steps):
-            if stop is not None and stop():
+        end = deadline + float(seconds) - 0.5 * self.period
+        for k in range(int(seconds / self._exactly)):
+            if deadline > end or (stop is not None and stop()):
                 break
             self._until(deadline)
             behind = self._clock() - deadline
