@@ -7,10 +7,10 @@ convex P(q) = ½ qᵀ G q − rᵀ q + Σ Φ_i(N_i q).  On the iterates q = q° 
 
     (I + S M) δ = φ(w) − λ,   S = diag φ_i'      always solvable: S M has no eigenvalue below 0
 
-and along it the slope of P, Δw·(φ(w + t Δw) − λ − t δ) with Δw = −M δ, rises with t: the step ends where that
-is 0.  So P falls in every step, to its least.  Coulomb friction is no function at w = 0: it is taken as
-clip(c + w/ε, ±F) and c as the force that was found last, the method of multipliers, until what sticks has
-w = 0 (Rockafellar 1976).
+and along it the slope of P, Δw·(φ(w + t Δw) − λ − t δ) with Δw = −M δ, rises with t: the step ends where it
+is about 0, or is a whole one.  So P falls in every step, to its least.  Coulomb friction is no function at
+w = 0: it is taken as clip(c + w/ε, ±F) and c as the force that was found last, ε less each time, the method of
+multipliers, until what sticks has w = 0 (Rockafellar 1976).
 """
 
 from __future__ import annotations
@@ -23,8 +23,11 @@ from zwidth.scene.nonlinear import COULOMB
 STEPS = 40
 """Of Newton, and of the multipliers; what is left then is booked."""
 
-CLOSE = 4e-16
-"""Of the largest force: rounding."""
+FIRMER, FIRMEST = 30.0, 1e7
+"""How much less ε is each time, and at most: beyond that it is rounding that creeps."""
+
+CLOSE = 1e-15
+"""Of the numbers that a difference is made of: rounding."""
 
 
 @compiled
@@ -41,26 +44,26 @@ def coupled_forces(
     period: float,
 ) -> None:
     """f in its place in `m`, begun with that of the step before; w° stands at `free`, then there is room."""
-    w = free + count
-    largest = 0.0
+    w, noise = free + count, free + 5 * count
     for i in range(count):
-        largest = max(largest, abs(m[free + i]))
         own = p[compliance + i * count + i]
         if p[rows + ROW * i] == COULOMB and own > 0.0:  # alone it is found at once
             most = p[at + int(p[rows + ROW * i + 1])]
             m[states + i] = min(max(m[free + i] / own, -most), most)
             m[forces + i] = m[states + i]
+    firm = 1.0
     for _ in range(STEPS):
-        least_of(p, at, rows, compliance, count, m, states, forces, free, period)
-        creeps = 0.0
+        least_of(p, at, rows, compliance, count, m, states, forces, free, period, firm)
+        creeps = False
         for i in range(count):
             if p[rows + ROW * i] == COULOMB:
                 number = at + int(p[rows + ROW * i + 1])
-                f, _slope = mean_force(p, COULOMB, number, m[states + i], m[w + i], period)
-                creeps = max(creeps, abs(f - m[states + i]) / p[number + 1])
+                f, _slope = mean_force(p, COULOMB, number, m[states + i], m[w + i], period, firm)
+                creeps |= abs(f - m[states + i]) > firm * p[number + 1] * m[noise + i]
                 m[states + i] = f
-        if creeps <= 1e-14 * largest:
+        if not creeps:
             return
+        firm = min(FIRMER * firm, FIRMEST)
 
 
 @compiled
@@ -75,39 +78,39 @@ def least_of(
     forces: int,
     free: int,
     period: float,
+    firm: float,
 ) -> None:
     """λ of the least P for the frictions' c as they are, in the place of f; w of it behind w°."""
     w, gap, step, moved = free + count, free + 2 * count, free + 3 * count, free + 4 * count
-    matrix = free + 5 * count
+    noise, matrix = free + 5 * count, free + 6 * count
     wide = count + 1
-    before = -1.0
     for _ in range(STEPS):
-        error, size = 0.0, 0.0
+        solved = True
         for i in range(count):
-            taken = 0.0
+            taken, size = 0.0, abs(m[free + i])
             for j in range(count):
-                taken += p[compliance + i * count + j] * m[forces + j]
-            m[w + i] = m[free + i] - taken
+                part = p[compliance + i * count + j] * m[forces + j]
+                taken, size = taken + part, size + abs(part)
+            m[w + i], m[noise + i] = m[free + i] - taken, CLOSE * size
             row = rows + ROW * i
-            f, slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], m[w + i], period)
+            f, slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], m[w + i], period, firm)
             if p[compliance + i * count + i] == 0.0:  # the port alone moves it
                 m[forces + i] = f
             m[gap + i] = f - m[forces + i]
-            error, size = max(error, abs(m[gap + i])), max(size, abs(f))
+            solved &= abs(m[gap + i]) <= CLOSE * abs(f) + slope * m[noise + i]
             for j in range(count):
                 m[matrix + i * wide + j] = slope * p[compliance + i * count + j]
             m[matrix + i * wide + i] += 1.0
             m[matrix + i * wide + count] = m[gap + i]
-        if error <= CLOSE * size or (error <= 1e-13 * size and before >= 0.0 and error >= before):
+        if solved:
             return
-        before = error
         eliminated(m, matrix, count, step)
         for i in range(count):
             taken = 0.0
             for j in range(count):
                 taken += p[compliance + i * count + j] * m[step + j]
             m[moved + i] = -taken
-        t = how_far(p, at, rows, count, m, states, forces, w, step, moved, period)
+        t = how_far(p, at, rows, count, m, states, forces, w, step, moved, period, firm)
         for i in range(count):
             m[forces + i] += t * m[step + i]
 
@@ -125,6 +128,7 @@ def slope_at(
     step: int,
     moved: int,
     period: float,
+    firm: float,
     t: float,
 ) -> float:
     """The slope of P along a step, at the part t of it."""
@@ -132,7 +136,7 @@ def slope_at(
     for i in range(count):
         row = rows + ROW * i
         there = m[w + i] + t * m[moved + i]
-        f, _slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], there, period)
+        f, _slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], there, period, firm)
         total += m[moved + i] * (f - m[forces + i] - t * m[step + i])
     return total
 
@@ -150,26 +154,23 @@ def how_far(
     step: int,
     moved: int,
     period: float,
+    firm: float,
 ) -> float:
-    """The whole step where the slope has fallen to half there; else where it is about 0."""
-    first = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, 0.0)
+    """The whole step where P still falls or its slope is half of what it was; else where that is about 0."""
+    first = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, firm, 0.0)
     low, high = 0.0, 1.0
-    last = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, 1.0)
-    while last < 0.5 * first and high < 1e6:
-        low, high = high, 2.0 * high
-        last = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, high)
-    if last <= -0.5 * first:
+    if slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, firm, high) <= -0.5 * first:
         return high
     for _ in range(STEPS):
         t = 0.5 * (low + high)
-        here = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, t)
+        here = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, firm, t)
         if abs(here) <= 0.1 * abs(first):
             return t
         if here < 0.0:
             low = t
         else:
             high = t
-    return 0.5 * (low + high)
+    return low
 
 
 @compiled
