@@ -9,8 +9,8 @@ convex P(q) = ½ qᵀ G q − rᵀ q + Σ Φ_i(N_i q).  On the iterates q = q° 
 
 and along it the slope of P, Δw·(φ(w + t Δw) − λ − t δ) with Δw = −M δ, rises with t: the step ends where it
 is about 0, or is a whole one.  So P falls in every step, to its least.  Coulomb friction is no function at
-w = 0: it is taken as clip(c + w/ε, ±F) and c as the force that was found last, ε less each time, the method of
-multipliers, until what sticks has w = 0 (Rockafellar 1976).
+w = 0: it is taken as clip(c + w/ε, ±F) and c as the force that was found last, ε less each time, the method
+of multipliers, until what sticks has w = 0 (Rockafellar 1976).
 """
 
 from __future__ import annotations
