@@ -59,13 +59,14 @@ acts in this period what is held back for it and c [J]."""
 _HELD = OWN_STATE + 6
 _CHARGES = _HELD + MOST_LATE + 1
 
+_DOWN = 1.0 - ROUNDING
 _MARGIN = 1.0 - 1e-12
 
 
 @compiled
 def force(p: Array, s: Array) -> float:
     """The force on the device for the coming period [N; N·m], positive along x."""
-    told = max(s[HEARD_ENERGY] - s[BASE_ENERGY], 0.0)
+    told = max(s[HEARD_ENERGY] - s[BASE_ENERGY], 0.0) * _DOWN
     reserve = s[RESERVE]
     if told > s[COUNTED]:
         reserve += told - s[COUNTED]
