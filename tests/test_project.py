@@ -330,6 +330,7 @@ def test_every_parameter_is_on_the_command_line_page() -> None:
         "check",
         "limit",
         "pair",
+        "links",
         "gains",
         "map",
         "simulate",

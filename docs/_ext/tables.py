@@ -90,6 +90,14 @@ def coupling_options() -> str:
     return markdown(("option", "symbol", "meaning"), rows)
 
 
+def link_options() -> str:
+    """What a link does to packets, as options of the command line."""
+    from zwidth.cli.links import link_parameters
+
+    rows = [(f"`{p.option}`", _pretty(p.help)) for p in link_parameters()]
+    return markdown(("option", "meaning"), rows)
+
+
 def environment_types() -> str:
     """Every type of environment with its keys in a specification."""
     rows = []
@@ -200,6 +208,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "law_keys": law_keys,
     "law_types": law_types,
     "lines_to_trust": lines_to_trust,
+    "link_options": link_options,
     "operator_options": operator_options,
     "plants": plants,
     "follower_options": follower_options,

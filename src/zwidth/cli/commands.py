@@ -112,6 +112,18 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth simulate my-arms.toml --operator finger --follower-operator wall "
             "--follower-operator.stiffness '2 kN/m' --duration 1",
         ),
+        "network": Command(
+            "run a scene in several processes, with the devices that hold it",
+            "Start a process for each part of a scene and for each device, join them by lines over shared\n"
+            "memory, UDP or Zenoh, and say what each saw: pace, delay, losses, energy.",
+            "A file has the scene in [environment], and in [network] who runs what. On several machines\n"
+            "give --run NAME on each, with channels that reach the others.\n\n"
+            "exit status: 0 all ran to the end, 1 one of them did not, 2 bad input, 130 interrupted\n\n"
+            "examples:\n"
+            "  zwidth network room.toml --duration '10 s'\n"
+            "  zwidth network room.toml --run bed\n"
+            "  zwidth network room.toml --plan",
+        ),
         "traces": Command(
             "compare saved touches",
             "Read traces that zwidth simulate saved, and set their numbers beside each other.",
@@ -128,6 +140,16 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "--plot laws.png\n"
             "  zwidth compare my-paddle.toml my-laws.toml --laws wall,virtual-damping\n"
             "  zwidth compare my-arms.toml",
+        ),
+        "links": Command(
+            "which port joins two devices over a link that loses packets?",
+            "Join two devices over one link by each kind of port: which is passive whatever the link does,\n"
+            "what two hands take out of the others, how the follower follows, what the leader feels.",
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth links touch --mass '45 g' --delay '20 ms' --loss 0.5\n"
+            "  zwidth links leader.toml follower.toml --delay '20 ms' --jitter '10 ms' --loss 0.5 --burst 4 "
+            "--plot links.png",
         ),
         "workspace": Command(
             "where does an arm of several joints render a wall passively?",

@@ -37,6 +37,14 @@ def warn_of_compiling_the_estimates() -> None:
         _say("compiling the estimates")
 
 
+def warn_of_compiling_the_links() -> None:
+    """Say that ports and links are being compiled, where they have not been yet."""
+    from zwidth.compiled import is_compiled
+
+    if not is_compiled("links"):
+        _say("compiling the ports")
+
+
 def _say(what: str) -> None:
     if sys.stderr is not None:
         print(f"zwidth: {what}, once; this takes some seconds", file=sys.stderr)

@@ -1,0 +1,75 @@
+"""The command `links`: which port joins two devices over a link that loses packets?"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+
+from zwidth.cli.options import Once, Parameter, add_all, add_output, given
+from zwidth.cli.output import print_json, print_text, say_written, targets, writing
+from zwidth.errors import InputError
+from zwidth.specification.read import load_device
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth links`."""
+    parser.usage = (
+        "%(prog)s SOURCE [SOURCE] [--delay TIME] [--jitter TIME] [--loss SHARE] [--burst N] "
+        "[--duplicates SHARE] [--seed N] [--impedance W] [--json] [--plot FILE] [-o FILE] [--force]"
+    )
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="one device for both ends, or leader and follower: each of the catalogue, or a TOML file with a "
+        "[device] table; each with a mass",
+    )
+    add_all(parser.add_argument_group("link"), link_parameters())
+    parser.add_argument(
+        "--impedance",
+        metavar="w",
+        action=Once,
+        help="of the waves [N*s/m; rotary N*m*s/rad] (default: the smaller damping of both devices)",
+    )
+    add_output(parser, "the scores", "the plot", "the scores as JSON")
+
+
+def link_parameters() -> Iterator[Parameter]:
+    """The options of a link."""
+    from zwidth.links.schedule import Schedule
+    from zwidth.quantity.parameter import parameters_of
+
+    for name, own in parameters_of(Schedule).items():
+        unit = "" if own.quantity.unit == "1" else f" [{own.quantity.unit}]"
+        yield Parameter(name, own.quantity.symbol or name.upper(), f"{own.meaning}{unit}")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth links`: 0."""
+    if not 1 <= len(arguments.sources) <= 2:
+        raise InputError(
+            "a link has two ends: name one device for both, or leader and follower; "
+            f"got {len(arguments.sources)}"
+        )
+    from zwidth.cli.compile_notice import warn_of_compiling_the_links
+    from zwidth.links import Schedule, compare
+    from zwidth.traces.progress import progress_bar
+
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    devices = [load_device([source], {}) for source in arguments.sources]
+    link = Schedule(**given(arguments, [p.key for p in link_parameters()]))
+    impedance = arguments.impedance
+    warn_of_compiling_the_links()
+    with progress_bar("ports") as progress:
+        found = compare(devices[0], devices[-1], link, impedance=impedance, progress=progress)
+    if save is not None:
+        found.save(save)
+    if plot is not None:
+        with writing(plot):
+            found.plot(plot)
+    if arguments.json:
+        print_json(found.to_json())
+    else:
+        print_text(found)
+        say_written(save, plot)
+    return 0

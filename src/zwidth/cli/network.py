@@ -1,0 +1,137 @@
+"""`zwidth network`: a scene in several processes, with the devices that hold it."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import subprocess
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from zwidth.cli.options import Once
+from zwidth.cli.output import print_text
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import read_number
+
+if TYPE_CHECKING:
+    from zwidth.cli.network_plan import Plan
+    from zwidth.network.peer import Peer
+
+_OFTEN = 1.0
+"""Between two lines of what is seen [s]."""
+
+_MEETING = 20.0
+"""How long a process waits for those at the other ends of its lines [s]."""
+
+_LONGEST_WAIT = 5.0
+"""How long a process that was told to end may take [s]."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Set up the arguments."""
+    parser.add_argument("file", metavar="FILE", help="a TOML file with [environment] and [network]")
+    parser.add_argument("--run", metavar="NAME", action=Once, help="run this part or device alone, here")
+    parser.add_argument("--plan", action="store_true", help="say which parts and lines there are, and end")
+    parser.add_argument("--duration", metavar="t", action=Once, help="how long (default: 10 s)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run all processes, or one of them."""
+    from zwidth.cli.network_plan import load_plan
+
+    if arguments.plan and (arguments.run or arguments.duration):
+        raise InputError("--plan runs nothing: leave out --run and --duration")
+    plan = load_plan(Path(arguments.file))
+    duration = read_number(
+        arguments.duration or "10 s",
+        GLOSSARY["sample_period"],
+        "--duration",
+        bound="> 0",
+        why="0 has no step",
+    )
+    if arguments.plan:
+        print_text(_described(plan))
+        return 0
+    return _one(plan, arguments.run, duration) if arguments.run else _all(plan, arguments.file, duration)
+
+
+def _described(plan: Plan) -> str:
+    devices = (f"{name}: {device.name or 'device'}" for name, (device, _) in plan.devices.items())
+    lines = (f"{name}: {line.channel}" for name, line in plan.lines.items())
+    return "\n".join([repr(plan.cut), "", *devices, *lines])
+
+
+def _one(plan: Plan, name: str, duration: Exact) -> int:
+    from zwidth.cli.compile_notice import warn_of_compiling
+
+    warn_of_compiling()
+    peer = plan.peer(name, duration)
+    for line in peer.meet(_MEETING):
+        print(f"{name}: nobody is at the other end of {line} yet; running all the same", file=sys.stderr)
+    ended: list[int] = []
+    for told in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(told, lambda *_: ended.append(1))
+    try:
+        report = peer.run(duration, _Watch(peer, name), stop=lambda: bool(ended))
+    finally:
+        peer.close()
+    print_text(f"{name}: {report!r}")
+    return 0
+
+
+class _Watch:
+    """A line a second of what a peer sees."""
+
+    def __init__(self, peer: Peer, name: str) -> None:
+        self._peer, self._name = peer, name
+        self._next = round(_OFTEN / peer.period)
+
+    def __call__(self, k: int) -> None:
+        """After step k."""
+        if (k + 1) % self._next:
+            return
+        seen = (f"{line}: {link.report().brief}" for line, link in self._peer.links.items())
+        print(f"{self._name} at {(k + 1) * self._peer.period:.3g} s, {'; '.join(seen)}", file=sys.stderr)
+
+
+def _all(plan: Plan, file: str, duration: Exact) -> int:
+    """Every process as a child of this one; what they print comes out here."""
+    from zwidth.cli.compile_notice import warn_of_compiling
+
+    warn_of_compiling()
+    for name in plan.names:  # what has to be compiled is compiled once, not by all of them together
+        plan.runs(name, duration)
+    command = [
+        sys.executable,
+        "-m",
+        "zwidth",
+        "network",
+        file,
+        "--duration",
+        f"{float(duration):.17g}",
+        "--run",
+    ]
+    children = {name: subprocess.Popen([*command, name]) for name in plan.names}
+    try:
+        ends = {name: child.wait() for name, child in children.items()}
+    except KeyboardInterrupt:
+        _end(children.values())
+        raise
+    failed = [name for name, status in ends.items() if status]
+    if failed:
+        print(f"did not run to the end: {', '.join(failed)}", file=sys.stderr)
+    return int(bool(failed))
+
+
+def _end(children: Iterable[subprocess.Popen[bytes]]) -> None:
+    for child in children:
+        child.terminate()
+    for child in children:
+        try:
+            child.wait(_LONGEST_WAIT)
+        except subprocess.TimeoutExpired:
+            child.kill()

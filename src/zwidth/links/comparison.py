@@ -1,0 +1,256 @@
+"""Ports beside each other over one link: what is proved, how the devices follow, what is felt."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isfinite
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from zwidth.bench.scores import static_stiffness
+from zwidth.device import Device
+from zwidth.links.attack import most_taken
+from zwidth.links.feel import felt_stiffness
+from zwidth.links.held_waves import HeldWaves
+from zwidth.links.naive_waves import NaiveWaves
+from zwidth.links.port import Port
+from zwidth.links.position_hold import PositionHold
+from zwidth.links.schedule import Schedule
+from zwidth.links.simulation import check_ends, simulate
+from zwidth.links.time_domain import TimeDomain
+from zwidth.links.two_layer import TwoLayer
+from zwidth.links.wave_port import WavePort
+from zwidth.operator import PrescribedMotion, RecordedForce
+from zwidth.passivity.result import Documented
+from zwidth.quantity.exact import Exact, RealLike, ends
+from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.text import unit_text
+from zwidth.showing import Part, Table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_FAR = {"linear": 0.02, "rotary": 0.2}
+"""How far the leader is led [m; rad]."""
+_STROKE, _REST, _PRESS, _RISE = 2.0, 1.0, 4.0, 1.0
+"""How long: to and fro, at rest after it; a push, its force rising for a part of it [s]."""
+_STILL = 0.1
+"""How far a hand may swing that is said to be at rest, of its depth."""
+
+Ends = tuple[Port, Port]
+
+
+@dataclass(frozen=True, repr=False)
+class LinkComparison(Documented):
+    """What became of each kind of port over one link.
+
+    Attributes
+    ----------
+    scores
+        Dimension `port`; `outcome` of each, `taken` by the worst of the hands that were tried over this link,
+        0 where none takes any; `tracking_error`, root mean square of x_l − x_f while the leader is led to and
+        fro and nobody holds the follower, and `apart`, |x_l − x_f| a second after; `felt_stiffness` of the
+        leader when the follower is clamped.  Units and meanings in the attributes.
+    schedule
+        The link.
+    traces
+        By port: `stroke` and `press`.
+    """
+
+    FORMAT: ClassVar[str] = "zwidth links 1"
+    PICTURE: ClassVar[str] = "plot_links"
+
+    scores: xr.Dataset
+    schedule: Schedule
+    traces: Mapping[str, Mapping[str, xr.Dataset]]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The scores by port, a unit in every key of a physical quantity."""
+        ports = {
+            str(name): {
+                "outcome": str(self.scores["outcome"].sel(port=name).item()),
+                **{
+                    f"{key}_{unit_suffix(self.scores[key].attrs['units'])}": self._number(key, name)
+                    for key in _SCORES
+                },
+            }
+            for name in self.scores["port"].values
+        }
+        return {"format": self.FORMAT, "link": self.schedule.describe(), "ports": ports}
+
+    def report(self) -> Iterable[Part]:
+        """The link, and a table with a row for each port."""
+        told = [self.scores[key].attrs for key in _SCORES]
+        heads = [
+            ("", "any link", *(about["long_name"] for about in told)),
+            ("", "", *(unit_text(about["units"]) for about in told)),
+        ]
+        rows = []
+        for name in self.scores["port"].values:
+            numbers = [self._number(key, name) for key in _SCORES]
+            cells = ["–" if number is None else f"{number:.3g}" for number in numbers]
+            rows.append((str(name), str(self.scores["outcome"].sel(port=name).item()), *cells))
+        yield self.schedule.describe()
+        yield Table(heads=heads, rows=rows, lefts=2)
+
+    def _number(self, key: str, name: object) -> float | None:
+        value = float(self.scores[key].sel(port=name))
+        return value if isfinite(value) else None
+
+
+_SCORES = {
+    "taken": ("energy", "worst hands take"),
+    "tracking_error": ("position", "apart, rms"),
+    "apart": ("position", "a second after"),
+    "felt_stiffness": ("stiffness", "felt, follower clamped"),
+}
+"""Of each number what it is, and its meaning in a few words."""
+
+
+def standard_ports(
+    leader: Device, follower: Device, schedule: Schedule, impedance: RealLike | None = None
+) -> dict[str, Ends]:
+    """Every kind of port for two devices, leader first, as stiff as each other.
+
+    Parameters
+    ----------
+    leader, follower
+        What the ports drive.
+    schedule
+        The link, whose delay says how stiff waves feel; the springs are as stiff.
+    impedance
+        w of the waves; None: the smaller damping of the two.
+    """
+    least = min(ends(device.damping)[0] for device in (leader, follower))
+    w = least if impedance is None else Exact(impedance).fraction
+    spring = Exact(stiffness_of(w, schedule, leader))
+    level = Exact(spring.fraction * Fraction(_FAR[leader.motion]).limit_denominator(1000) ** 2 / 2)
+    damping = Exact(least)
+
+    def both(make: Callable[[Device], Port]) -> Ends:
+        return make(leader), make(follower)
+
+    return {
+        "waves with a ledger": both(lambda d: WavePort(d, impedance=Exact(w))),
+        "waves without a ledger": both(lambda d: HeldWaves(d, impedance=Exact(w))),
+        "textbook waves": both(lambda d: NaiveWaves(d, impedance=Exact(w))),
+        "positions, last one held": both(lambda d: PositionHold(d, stiffness=spring)),
+        "time-domain passivity": both(lambda d: TimeDomain(d, stiffness=spring, largest_damping=damping)),
+        "two layers": both(lambda d: TwoLayer(d, stiffness=spring, level=level, filling_damping=damping)),
+    }
+
+
+def stiffness_of(impedance: Fraction, schedule: Schedule, device: Device) -> Fraction:
+    """The stiffness that waves show over a link."""
+    period = device.exact("sample_period")
+    late = schedule.samples_late(period) + int(device.exact("delay") / period)
+    return felt_stiffness(impedance, late, period)
+
+
+def compare(
+    leader: Device,
+    follower: Device | None = None,
+    schedule: Schedule | None = None,
+    *,
+    impedance: RealLike | None = None,
+    ports: Mapping[str, Ends] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> LinkComparison:
+    """Lead, press and attack two devices that are joined over one link by each kind of port.
+
+    Parameters
+    ----------
+    leader, follower
+        Devices with a mass and one sample period; without a follower both are the same.
+    schedule
+        What the link does to packets; None: no delay.
+    impedance
+        w of the waves; None: the smaller damping of the two.
+    ports
+        By name, leader's and follower's, in the place of `standard_ports`.
+    progress
+        Told (kinds of port done, kinds in all).
+
+    Raises
+    ------
+    InputError
+        If the devices do not fit together, or have no mass.
+    """
+    link = Schedule() if schedule is None else schedule
+    other = leader if follower is None else follower
+    kinds = standard_ports(leader, other, link, impedance) if ports is None else ports
+    rows: dict[str, dict[str, Any]] = {}
+    traces = {}
+    for done, (name, (near, far)) in enumerate(kinds.items()):
+        if progress is not None:
+            progress(done, len(kinds))
+        check_ends(near, far)
+        traces[name] = {"stroke": _stroke(near, far, link), "press": _press(near, far, link)}
+        rows[name] = {**_taken(near, far, link), **_measured(traces[name])}
+    return LinkComparison(_dataset(rows, leader.motion), link, traces)
+
+
+def _taken(near: Port, far: Port, link: Schedule) -> dict[str, Any]:
+    """Over this link; that it is active may be seen over one without any delay alone."""
+    if near.theorem and far.theorem:
+        return {"outcome": "theorem", "taken": 0.0}
+    found = most_taken(near, far, link)
+    taken = 0.0 if found is None else found.energy
+    active = found is not None or most_taken(near, far, Schedule()) is not None
+    return {"outcome": "active" if active else "undecided", "taken": taken}
+
+
+def _stroke(near: Port, far: Port, link: Schedule) -> xr.Dataset:
+    """The leader is led to and fro, smoothly, and held; nobody holds the follower."""
+    most = _FAR[near.device.motion]
+
+    def path(t: float) -> float:
+        return most * float(np.sin(np.pi * t / _STROKE)) ** 2 if t < _STROKE else 0.0
+
+    return simulate(near, far, link, PrescribedMotion(path), None, _STROKE + _REST)
+
+
+def _press(near: Port, far: Port, link: Schedule) -> xr.Dataset:
+    """The leader is pushed slowly harder, to about half the way of a stroke; the follower is clamped."""
+    device = near.device
+    period = float(device.exact("sample_period"))
+    stiffness = float(stiffness_of(ends(device.damping)[0], link, device))
+    most = 2 * float(ends(device.coulomb_friction)[1]) + stiffness * _FAR[device.motion] / 2
+    push = RecordedForce(most * np.minimum(np.arange(round(_PRESS / period)) * period / _RISE, 1.0))
+    clamp = PrescribedMotion(lambda t: 0.0)
+    return simulate(near, far, link, push, clamp, _PRESS)
+
+
+def _measured(traces: Mapping[str, xr.Dataset]) -> dict[str, float]:
+    apart = np.diff(traces["stroke"]["position"].values, axis=0)[0]
+    diverged = "diverged_at_s" in traces["stroke"].attrs
+    return {
+        "tracking_error": np.inf if diverged else float(np.sqrt(np.mean(apart**2))),
+        "apart": np.inf if diverged else float(abs(apart[-1])),
+        "felt_stiffness": _felt(traces["press"].sel(arm="leader")),
+    }
+
+
+def _dataset(rows: Mapping[str, Mapping[str, Any]], motion: str) -> xr.Dataset:
+    import xarray as xr
+
+    variables = {
+        key: (
+            "port",
+            np.array([row[key] for row in rows.values()]),
+            {"units": GLOSSARY[quantity].unit_for(motion), "long_name": meaning},
+        )
+        for key, (quantity, meaning) in _SCORES.items()
+    }
+    outcomes = ("port", [row["outcome"] for row in rows.values()])
+    return xr.Dataset({"outcome": outcomes, **variables}, coords={"port": list(rows)})
+
+
+def _felt(leader: xr.Dataset) -> float:
+    """nan where it does not come to rest."""
+    late = leader["position"].values[leader.sizes["time"] // 2 :]
+    moves = late.std() > _STILL * abs(late.mean())
+    return float("nan") if moves or "diverged_at_s" in leader.attrs else static_stiffness(leader)

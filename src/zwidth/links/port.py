@@ -1,0 +1,165 @@
+"""A port: between a sampled device and a link, it turns packets into a force and a move into a packet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from math import isfinite
+from typing import ClassVar, TypeVar
+
+import numpy as np
+
+from zwidth.compiled import Array
+from zwidth.device import Device
+from zwidth.errors import InputError
+from zwidth.links import memory
+from zwidth.links.packet import Packet
+from zwidth.quantity.exact import ends
+from zwidth.quantity.parameter import Parametric, parameters_of
+
+P = TypeVar("P", bound="Port")
+
+_TINY = 1e-6
+"""Way over an edge of the encoder [counts]."""
+_WHOLE = 1e-3
+"""How far a displacement may be from whole counts [counts]."""
+
+
+@dataclass(frozen=True)
+class Port(Parametric):
+    """One end of a link.  Each period: ``receive``, then the device moves, then ``send``.
+
+    Parameters
+    ----------
+    device
+        What the port drives.  Of a number that is an interval the worse end counts.
+    """
+
+    title: ClassVar[str]
+    """What the law is called."""
+    code: ClassVar[float]
+    """By which the compiled law is known."""
+    steps: ClassVar[tuple[Callable[[Array, Array], float], Callable[[Array, Array, float], None]]]
+    """What is compiled: the force of a period, and what is sent after it."""
+
+    device: Device
+    numbers: Array = field(init=False, repr=False, compare=False)
+    state: Array = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not isinstance(self.device, Device):
+            raise InputError(f"device is a Device, got {type(self.device).__name__}")
+        self.complete()
+        self._keep(numbers=np.array(self._numbers()), state=self.fresh_state())
+
+    def complete(self) -> None:
+        """Fill in what was not given."""
+
+    def _numbers(self) -> list[float]:
+        own = [float(getattr(self, name)) for name in parameters_of(type(self))]
+        told = [
+            float(self.device.exact("sample_period")),
+            float(ends(self.device.damping)[0]),
+            float(ends(self.device.coulomb_friction)[0]),
+            float(self.device.exact("resolution")),
+            _lower(self.device, "force_limit"),
+            0.0 if self.device.force_resolution is None else float(self.device.exact("force_resolution")),
+            float(_samples_late(self.device)),
+        ]
+        return [*told, *own, *[0.0] * (memory.NUMBERS_SIZE - len(told) - len(own))]
+
+    def fresh_state(self) -> Array:
+        """Before the first packet."""
+        state = np.zeros(memory.STATE_SIZE)
+        state[memory.HEARD_NUMBER] = state[memory.NUMBER] = -1.0
+        return state
+
+    def anew(self: P) -> P:
+        """The same port before its first packet."""
+        return replace(self)
+
+    @property
+    def theorem(self) -> str:
+        """Why it is passive whatever the link does, in a sentence; "" where nothing proves it."""
+        return ""
+
+    def telling_ways(self) -> list[float]:
+        """Ways in a period that the numbers of this port suggest to a hand that wants to take energy out."""
+        step = float(self.numbers[memory.RESOLUTION])
+        return [_TINY * step, step] if step else []
+
+    def receive(self, packets: Iterable[Packet] = ()) -> float:
+        """The force that the actuator is to give next, positive along x [N; N·m].
+
+        It acts in the period that begins now or, of a device with a delay, after that.
+
+        Parameters
+        ----------
+        packets
+            All that have come since the last call, in any order; none is no mistake.
+
+        Raises
+        ------
+        InputError
+            If one of them is no `Packet`.
+        """
+        for packet in packets:
+            if not isinstance(packet, Packet):
+                raise InputError(
+                    f"packets are Packet objects, got {packet!r}; bytes: Packet.from_bytes(data)"
+                )
+            memory.hear(self.state, float(packet.number), packet.wave, packet.energy, packet.position)
+        return float(self.steps[0](self.numbers, self.state))
+
+    def send(self, displacement: float) -> Packet:
+        """The packet for the other end, after the device has moved.
+
+        Parameters
+        ----------
+        displacement
+            By how much the reading has changed over the period, positive along x; of an encoder a whole
+            number of counts [m; rad].
+
+        Raises
+        ------
+        InputError
+            If it is not finite, or no whole number of counts.
+        """
+        moved = float(displacement)
+        if not isfinite(moved):
+            raise InputError(f"displacement must be finite, got {displacement!r}")
+        step = self.numbers[memory.RESOLUTION]
+        counts = round(moved / step) if step > 0 else 0
+        if step > 0 and abs(moved / step - counts) > _WHOLE:
+            raise InputError(
+                f"displacement is a whole number of counts of {step:g}, got {moved:g}: give the "
+                "difference of two readings as they are, not filtered"
+            )
+        self.steps[1](self.numbers, self.state, counts * step if step > 0 else moved)
+        s = self.state
+        told = (float(s[i]) for i in (memory.WAVE, memory.ENERGY, memory.POSITION))
+        return Packet(int(s[memory.NUMBER]), *told)
+
+    def describe(self) -> str:
+        """The law with its numbers, on one line."""
+        own, motion = parameters_of(type(self)), self.device.motion
+        told = [f"{own[name].quantity.symbol} = {self.with_unit(name, motion)}" for name in own]
+        return ", ".join([self.title, *told])
+
+
+def _samples_late(device: Device) -> int:
+    """Whole periods from reading to force."""
+    late = device.exact("delay") / device.exact("sample_period")
+    if late.denominator > 1 or late > memory.MOST_LATE:
+        raise InputError(
+            f"from reading to force a port takes whole sample periods, at most {memory.MOST_LATE}, got "
+            f"{float(late):g}: else two forces act in one period, whose two displacements are read as one; "
+            "keep each force back until the next reading, and give delay as that"
+        )
+    return int(late)
+
+
+def _lower(device: Device, key: str) -> float:
+    value = getattr(device, key)
+    return 0.0 if value is None else float(ends(value)[0])

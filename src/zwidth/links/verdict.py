@@ -1,0 +1,128 @@
+"""Is a port passive whatever the link does?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from zwidth.links.attack import LinkWitness, most_taken
+from zwidth.links.memory import LATE
+from zwidth.links.port import Port
+from zwidth.links.schedule import Schedule
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.scope import Scope
+from zwidth.quantity.exact import ends
+from zwidth.quantity.text import quantity_unit
+
+
+def check(port: Port, schedule: Schedule | None = None) -> PortVerdict:
+    """Decide whether two hands can take energy out of two such ports, one at each end of a link.
+
+    Passive, as a theorem, means for every link that makes up no packets: Σ over both ends of ∫ f_h v dt is
+    never below 0 for devices that start at rest.  For waves without a ledger that is so exactly if w ≤ b and
+    the displacement is read without steps; waves with a ledger are always.  Of other laws a motion is looked
+    for that takes energy out.  Derivation: docs/theory/links.md.
+
+    Parameters
+    ----------
+    port
+        One end; the other is the same.
+    schedule
+        The link over which a motion is looked for; None: no delay.
+    """
+    link = Schedule() if schedule is None else schedule
+    return PortVerdict(port, link, None if port.theorem else most_taken(port, port, link))
+
+
+@dataclass(frozen=True, repr=False)
+class PortVerdict(PassivityAnswer):
+    """Whether two hands can take energy out of two ports and the link between them.
+
+    Attributes
+    ----------
+    port
+        What was asked.
+    schedule
+        The link of the motion, where there is one.
+    witness
+        The motion that takes energy out; None where none was found.
+    """
+
+    FORMAT: ClassVar[str] = "zwidth port 1"
+
+    port: Port
+    schedule: Schedule
+    witness: LinkWitness | None
+
+    @property
+    def outcome(self) -> Outcome:
+        """ "theorem", "active" or "undecided"."""
+        if self.port.theorem:
+            return "theorem"
+        return "undecided" if self.witness is None else "active"
+
+    @property
+    def claim(self) -> str:
+        """The outcome in a sentence."""
+        if self.port.theorem:
+            return (
+                "Over a link that delays, loses, repeats or reorders packets as it likes, two hands take no "
+                f"energy out: {self.port.theorem}."
+            )
+        if self.witness is not None:
+            return f"Over a link with {self.schedule.describe()}, {self.witness.describe()}."
+        return "Neither a proof nor a motion that takes energy out was found."
+
+    @property
+    def scope(self) -> Scope:
+        """Every hand, and whether the encoder's steps are counted."""
+        steps = ends(self.port.device.resolution)[1] > 0
+        return Scope(
+            contact="both sides",
+            encoder="counted" if steps else "ideal",
+            motion=self.port.device.motion,
+            assumed=self.port.device.assumed,
+        )
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted."""
+        return tuple(self._assumptions())
+
+    def _assumptions(self) -> Iterator[str]:
+        device = self.port.device
+        yield "two hands without limit on speed and force, one on each device; both start at rest"
+        yield "the link makes up no packets; one with a wrong checksum counts as lost"
+        yield "both ports start together; one that starts anew later hears no packet from before"
+        late = int(self.port.numbers[LATE])
+        when = f"{late} sample{'' if late == 1 else 's'} after its reading" if late else "at once"
+        yield f"the force is applied {when} and held for the period, by an actuator without a lag of its own"
+        yield "friction is b and f_c of the device at least, at every speed and in every period"
+        if device.friction_speed is not None:
+            unit = quantity_unit("friction_speed", device.motion)
+            yield f"they were measured up to {float(ends(device.friction_speed)[0]):.6g} {unit}"
+        if self.scope.encoder == "counted":
+            yield "encoder counts, their phase unknown; none is lost"
+        else:
+            yield "an ideal position sensor: the displacement is read without error"
+        if device.assumed:
+            yield f"{', '.join(device.assumed)} not given, taken as 0"
+        if self.port.theorem:
+            yield "a proof on paper: docs/theory/links.md; no certificate"
+
+    def rows(self) -> Iterator[tuple[str, str]]:
+        """The port."""
+        yield "port", self.port.describe()
+
+    def numbers(self) -> dict[str, Any]:
+        """The port and the motion as plain data, units in the keys."""
+        found: dict[str, Any] = {"port": self.port.describe(), "link": self.schedule.describe()}
+        if self.witness is not None:
+            found["motion"] = self.witness.to_dict()
+        return found
+
+    def evidence(self) -> dict[str, Any]:
+        """Nothing that `zwidth verify` reads: the proof is on paper, the motion runs the port itself."""
+        return {}

@@ -1,0 +1,185 @@
+"""Waves with a ledger: passive whatever the link does to the packets.
+
+The device is its own matched damper.  In each period, with a the wave received in metres and r = w/T,
+
+    f = 2 r a,    u = Δx − a,    r u² = r a² − f Δx + r Δx²
+
+so that the hand puts in f Δx less than the damping b Δx²/T takes, if w ≤ b.  A packet does not carry the
+wave but the sums of all u and of their energies: what is lost on the way comes with the next one.
+(Niemeyer and Slotine 1998 send both integrals over a link of varying delay.)  What has come and is not
+yet used, d [m] and R [J], is used as
+
+    a = min(|d|, R/(r |d|)) sgn d
+
+which is the wave of a link that loses nothing.  An encoder of resolution Δ reads Δx no better than ± Δ, so
+
+    R ← R − f Δx − c + b s²/T + f_c s,   s = max(0, |Δx| − Δ),   c = ½ Δ (|f| − |f⁻| + |f − f⁻|)
+
+and |f| is kept so small that R ≥ 0 for every Δx; what that takes is held back until the force has acted.
+The proof is in docs/theory/links.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import ClassVar
+
+from zwidth.compiled import Array, compiled
+from zwidth.links.memory import (
+    ACTING,
+    BASE_ENERGY,
+    BASE_POSITION,
+    COULOMB,
+    DAMPING,
+    ENERGY,
+    FORCE,
+    HEARD_ENERGY,
+    HEARD_POSITION,
+    MOST_LATE,
+    NUMBER,
+    OWN_NUMBERS,
+    OWN_STATE,
+    PERIOD,
+    POSITION,
+    RESOLUTION,
+    WAVE,
+    apply,
+    queued,
+)
+from zwidth.links.sure_losses import ROUNDING, newly_lost
+from zwidth.links.waves import Waves
+
+WAVE_PORT = 1.0
+
+IMPEDANCE = OWN_NUMBERS
+RESERVE, COUNTED, USED, OWED, HELD, CHARGE = range(OWN_STATE, OWN_STATE + 6)
+"""R [J]; energy and position of the other end that are used; energy still to be sent [J]; of the force that
+acts in this period what is held back for it and c [J]."""
+_HELD = OWN_STATE + 6
+_CHARGES = _HELD + MOST_LATE + 1
+
+_MARGIN = 1.0 - 1e-12
+
+
+@compiled
+def force(p: Array, s: Array) -> float:
+    """The force on the device for the coming period [N; N·m], positive along x."""
+    told = max(s[HEARD_ENERGY] - s[BASE_ENERGY], 0.0)
+    reserve = s[RESERVE]
+    if told > s[COUNTED]:
+        reserve += told - s[COUNTED]
+        s[COUNTED] = told
+    reserve -= ROUNDING * abs(reserve)
+    r = p[IMPEDANCE] / p[PERIOD]
+    missing = s[HEARD_POSITION] - s[BASE_POSITION] - s[USED]
+    size = abs(missing)
+    wanted = 0.0
+    if reserve > 0.0 and size > 0.0:
+        wanted = 2.0 * r * min(size, reserve / (r * size))
+    if missing < 0.0:
+        wanted = -wanted
+    before = s[FORCE]
+    same = abs(before) if before * wanted > 0.0 else 0.0
+    size = min(abs(wanted), affordable(p, reserve, same))
+    f = apply(p, s, size if wanted >= 0.0 else -size)
+    charge = 0.5 * p[RESOLUTION] * (abs(f) - abs(before) + abs(f - before))
+    held = (1.0 + ROUNDING) * at_worst(p, abs(f)) + charge
+    s[RESERVE] = reserve - held
+    s[HELD], s[CHARGE] = queued(p, s, _HELD, held), queued(p, s, _CHARGES, charge)
+    s[USED] += f / (2.0 * r)
+    return f
+
+
+@compiled
+def at_worst(p: Array, size: float) -> float:
+    """The most that a force of this size costs, but for c: max (f Δx − b s²/T − f_c s) over all readings [J].
+
+    (|f| − f_c)₊² T/(4b) + |f| Δ; without damping |f| is at most f_c.
+    """
+    more = max(0.0, size - p[COULOMB])
+    bend = p[PERIOD] / (4.0 * p[DAMPING]) if p[DAMPING] > 0.0 else 0.0
+    cost: float = bend * more * more + p[RESOLUTION] * size
+    return cost
+
+
+@compiled
+def affordable(p: Array, reserve: float, before: float) -> float:
+    """The largest |f| that R pays for in every case; `before` is that of the last period, of the same sign.
+
+    max (f Δx − b s²/T − f_c s) + c = (|f| − f_c)₊² T/(4b) + |f| Δ + Δ (|f| − |f⁻|)₊ ≤ R; by rounding R may be
+    a little below 0.
+    """
+    if reserve <= 0.0:
+        return 0.0
+    step = p[RESOLUTION]
+    size = _pays(p, reserve, step)
+    if size > before:
+        size = _pays(p, reserve + step * before, 2.0 * step)
+    return size * _MARGIN
+
+
+@compiled
+def _pays(p: Array, reserve: float, slope: float) -> float:
+    """The largest f with (f − f_c)₊² T/(4b) + slope f ≤ R."""
+    coulomb: float = p[COULOMB]
+    left = reserve - slope * coulomb
+    if left <= 0.0:
+        return reserve / slope if slope > 0.0 else coulomb
+    if p[DAMPING] == 0.0:
+        return coulomb
+    bend = p[PERIOD] / (4.0 * p[DAMPING])
+    return coulomb + 2.0 * left / (slope + sqrt(slope * slope + 4.0 * bend * left))
+
+
+@compiled
+def send(p: Array, s: Array, moved: float) -> None:
+    """Book the displacement that was read over the period, and make the next packet."""
+    f, charge, reserve = s[ACTING], s[CHARGE], s[RESERVE] + s[HELD]
+    r = p[IMPEDANCE] / p[PERIOD]
+    paid = reserve + newly_lost(p, s, moved)
+    work = f * moved
+    left = paid - work - charge - ROUNDING * (abs(paid) + abs(work) + charge)
+    wave = moved - f / (2.0 * r)
+    owed = s[OWED] + r * wave * wave
+    total = s[ENERGY] + max(0.0, min(owed, left - ROUNDING * s[ENERGY]))
+    gone = total - s[ENERGY]
+    s[OWED] = max(0.0, owed - gone)
+    s[RESERVE], s[ENERGY] = left - gone, total
+    s[WAVE] = sqrt(gone) if wave > 0.0 else -sqrt(gone)
+    s[POSITION] += wave
+    s[NUMBER] += 1.0
+
+
+@dataclass(frozen=True)
+class WavePort(Waves):
+    """Waves with a ledger: passive whatever the link does to the packets, encoder and all.
+
+    ``f = 2 (w/T) a``, where a is the wave received [m], and ``u = Δx − a`` is sent: the device's own damping
+    b takes what the hold feeds. The ledger counts what has come, what the force does at worst between two
+    counts, and what friction surely takes; the force is never more than it pays for.
+
+    Parameters
+    ----------
+    device
+        What the port drives; its b and f_c are counted on, so give no more than is sure.
+    impedance
+        w > 0 [N·s/m; N·m·s/rad]; None: the device's damping. The same at both ends, at most the smaller
+        damping for waves that are never cut; larger is passive too, and cut at high speeds.
+
+    Raises
+    ------
+    InputError
+        If a number is missing or out of its bounds.
+    """
+
+    title: ClassVar[str] = "waves with a ledger"
+    code: ClassVar[float] = WAVE_PORT
+    steps: ClassVar = (force, send)
+
+    @property
+    def theorem(self) -> str:
+        """The ledger never falls below 0."""
+        return (
+            "its ledger counts what came and what friction took, and its force is never more than that pays"
+        )

@@ -1,0 +1,134 @@
+"""Ports beside each other: scores, table, picture, command."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import zwidth as zw
+from zwidth.cli.main import main
+from zwidth.links import LinkComparison, Schedule
+
+NAMES = {
+    "waves with a ledger": "theorem",
+    "waves without a ledger": "active",
+    "textbook waves": "active",
+    "positions, last one held": "undecided",
+    "time-domain passivity": "undecided",
+    "two layers": "undecided",
+}
+
+DEVICE = """
+[device]
+mass = "50 g"
+damping = "0.15 N*s/m"
+coulomb_friction = "0.05 N"
+resolution = "22.4 um"
+rate = "1 kHz"
+delay = 0
+"""
+
+
+@pytest.fixture(scope="module")
+def compared() -> LinkComparison:
+    """One arm over a bad link."""
+    device = zw.Device(
+        mass="50 g",
+        damping=0.15,
+        coulomb_friction=0.05,
+        resolution="22.4 um",
+        rate=1000,
+        delay=0,
+    )
+    return zw.links.compare(device, schedule=Schedule(delay="20 ms", jitter="10 ms", loss=0.5, burst=4))
+
+
+def test_every_kind_of_port_has_its_row(compared: LinkComparison) -> None:
+    """What is known of each, and its numbers."""
+    scores = compared.scores
+    found = dict(zip(scores["port"].values.tolist(), scores["outcome"].values.tolist(), strict=True))
+    assert found == NAMES
+    assert float(scores["taken"].sel(port="waves with a ledger")) == 0
+    assert float(scores["taken"].sel(port="textbook waves")) > 1e-3
+    assert scores["felt_stiffness"].attrs["units"] == "N/m"
+
+
+def test_two_hands_put_in_what_friction_takes(compared: LinkComparison) -> None:
+    """With the ledger the sum of both hands' work never falls below 0."""
+    for trace in compared.traces["waves with a ledger"].values():
+        assert trace["hand_work"].values.sum(axis=0).min() >= -1e-12
+
+
+def test_it_is_written_and_drawn(compared: LinkComparison, tmp_path: Path) -> None:
+    """A table, a document with units in the keys, a picture."""
+    assert "waves with a ledger" in str(compared)
+    compared.save(tmp_path / "links.json")
+    ports = json.loads((tmp_path / "links.json").read_text())["ports"]
+    assert set(ports) == set(NAMES)
+    assert set(ports["two layers"]) >= {"taken_J", "tracking_error_m", "felt_stiffness_N_per_m"}
+    compared.plot(tmp_path / "links.png")
+    assert (tmp_path / "links.png").exists()
+
+
+def test_the_command_says_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`zwidth links`, one device for both ends."""
+    (tmp_path / "arm.toml").write_text(DEVICE, encoding="utf-8")
+    arguments = ["links", str(tmp_path / "arm.toml"), "--delay", "2 ms", "--loss", "0.2", "--json"]
+    assert main(arguments) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["link"] == "2 ms each way, 20% lost"
+    assert set(found["ports"]) == set(NAMES)
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [(["--loss", "1"], "below 1"), (["--delay", "3 m"], "delay"), (["--impedance", "0"], "> 0")],
+)
+def test_bad_input_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], more: list[str], said: str
+) -> None:
+    """One message, status 2."""
+    (tmp_path / "arm.toml").write_text(DEVICE, encoding="utf-8")
+    assert main(["links", str(tmp_path / "arm.toml"), *more]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_other_laws_are_told_from_theorems() -> None:
+    """A verdict is no truth value; what is no theorem says what was tried."""
+    device = zw.Device(damping=0.15, coulomb_friction=0.1, rate=1000, delay=0)
+    verdict = zw.links.check(zw.links.PositionHold(device, stiffness=1))
+    assert verdict.outcome == "undecided"
+    assert not verdict.passive
+    naive = zw.links.check(zw.links.NaiveWaves(device))
+    assert naive.outcome == "active"
+    assert naive.to_dict()["motion"]["energy_J"] > 0
+    assert "no packets" in "\n".join(naive.assumptions)
+
+
+def test_a_rotary_device_has_its_own_units() -> None:
+    """Torques and angles, in the table and in the document."""
+    device = zw.Device(
+        mass="2e-5 kg*m^2",
+        damping="1e-3 N*m*s/rad",
+        coulomb_friction="2 mN*m",
+        rate=1000,
+        delay="1 ms",
+        motion="rotary",
+    )
+    link = Schedule(delay="10 ms")
+    ports = {"waves": (zw.links.WavePort(device), zw.links.WavePort(device))}
+    found = zw.links.compare(device, schedule=link, ports=ports)
+    assert found.scores["felt_stiffness"].attrs["units"] == "N*m/rad"
+    assert float(found.scores["felt_stiffness"].sel(port="waves")) == pytest.approx(1e-3 / 0.012, rel=0.01)
+    assert "w = 0.001 N·m·s/rad" in ports["waves"][0].describe()
+
+
+def test_ports_that_do_not_fit_are_refused() -> None:
+    """Two rates cannot be simulated together, nor what is no port."""
+    one = zw.Device(mass=0.05, damping=0.1, rate=1000, delay=0)
+    with pytest.raises(zw.InputError, match="one sample period"):
+        zw.links.compare(one, one.replace(rate=500))
+    with pytest.raises(zw.InputError, match=r"a port of zwidth\.links"):
+        zw.links.simulate(one, one, Schedule(), None, None, 1)

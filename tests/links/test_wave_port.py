@@ -1,0 +1,188 @@
+"""A wave port never gives out more than it was sent: booked once more in exact arithmetic."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from fractions import Fraction
+from math import floor
+
+import pytest
+from strategies import seeds
+
+import zwidth as zw
+from zwidth.links import Packet, WavePort
+from zwidth.links.memory import ACTING
+
+PERIODS = 150
+
+
+def arm(damping: str = "0.15", friction: str = "0", resolution: str = "0", **more: object) -> zw.Device:
+    """An arm at 1 kHz."""
+    return zw.Device(
+        damping=damping, coulomb_friction=friction, resolution=resolution, rate=1000, **{"delay": 0, **more}
+    )
+
+
+class Ends:
+    """Two ports and a link that does what it likes with packets, and what two hands put in, exactly.
+
+    Within a period each hand moves at constant speed: no motion between two readings costs it less.
+    """
+
+    def __init__(self, devices: list[zw.Device], draw: random.Random, **law: object) -> None:
+        self.ports = [WavePort(device, **law) for device in devices]
+        self.draw = draw
+        self.on_the_way: list[list[Packet]] = [[], []]
+        self.at = [Fraction(draw.random()) * port.device.exact("resolution") for port in self.ports]
+        self.work = Fraction(0)
+        self.forces = [0.0, 0.0]
+
+    def arrived(self, end: int) -> list[Packet]:
+        """Any of what is on the way, in any order, some of it twice; some never."""
+        waiting, draw = self.on_the_way[end], self.draw
+        out = [draw.choice(waiting) for _ in range(draw.choice([0, 0, 1, 1, 2, 3]))] if waiting else []
+        if draw.random() < 0.05:
+            waiting.clear()
+        return out
+
+    def period(self, move: Callable[[int, float], float]) -> None:
+        """Receive, move, send, at both ends."""
+        for end, port in enumerate(self.ports):
+            port.receive(self.arrived(end))
+            self.forces[end] = float(port.state[ACTING])
+        for end, port in enumerate(self.ports):
+            device, before = port.device, self.at[end]
+            moved = Fraction(move(end, self.forces[end]))
+            self.at[end] = after = before + moved
+            lost = device.exact("damping") * moved**2 / device.exact("sample_period")
+            lost += device.exact("coulomb_friction") * abs(moved)
+            self.work += lost - Fraction(self.forces[end]) * moved
+            step = device.exact("resolution")
+            counts = floor(after / step) - floor(before / step) if step else 0
+            read = float(counts * step) if step else float(moved)
+            self.on_the_way[1 - end].append(port.send(read))
+
+
+def greedy(ends: Ends) -> Callable[[int, float], float]:
+    """What takes most in this period, a leap, a small move, or one to and fro over an edge."""
+
+    def move(end: int, force: float) -> float:
+        device, draw = ends.ports[end].device, ends.draw
+        step = float(device.resolution) or 1e-5
+        most = force * 1e-3 / (2 * float(device.damping))
+        return draw.choice([most, most, draw.gauss(0, 30 * step), draw.gauss(0, step / 3), 0.0])
+
+    return move
+
+
+@seeds(5)
+@pytest.mark.parametrize("friction", ["0", "0.12"])
+@pytest.mark.parametrize("resolution", ["0", "22.4e-6"])
+@pytest.mark.parametrize(("impedance", "late"), [("0.04", 0), ("0.15", 0), ("1", 0), ("0.15", 1), ("1", 3)])
+def test_two_hands_never_take_energy_out(
+    impedance: str, late: int, resolution: str, friction: str, seed: int
+) -> None:
+    """Not a joule, whatever impedance: in exact arithmetic, so that rounding is on the safe side too."""
+    device = arm(friction=friction, resolution=resolution, delay=Fraction(late, 1000))
+    ends = Ends([device, device], random.Random(seed), impedance=impedance)
+    move = greedy(ends)
+    largest = 0.0
+    for _ in range(PERIODS):
+        ends.period(move)
+        assert ends.work >= 0
+        largest = max(largest, *map(abs, ends.forces))
+    assert largest > 1e-3
+
+
+def test_what_a_packet_tells_is_used_once() -> None:
+    """The same again, and what is older, change nothing."""
+    port, other = WavePort(arm()), WavePort(arm())
+    other.receive()
+    port.receive([other.send(0.0)])
+    first, second = other.send(2e-4), other.send(1e-4)
+    assert port.receive([second, first, second, first]) > 0
+    for _ in range(5):
+        port.send(0.0)
+        last = port.receive([first, second])
+    assert last == 0
+
+
+def test_what_is_lost_comes_with_the_next_packet() -> None:
+    """The sums of lost packets are those of the ones that arrive, so the forces are the same later."""
+    sender, whole, lossy = (WavePort(arm()) for _ in range(3))
+    sender.receive()
+    for port in (whole, lossy):
+        port.receive([Packet(0, 0.0, 0.0, 0.0)])
+    packets = [sender.send(0.0)]
+    for _ in range(3):
+        packets.append(sender.send(1e-4))
+    every, some = [], []
+    for arriving in ([1], [2], [3], [], []):
+        every.append(whole.receive([packets[k] for k in arriving]))
+        some.append(lossy.receive([packets[k] for k in arriving if k == 3]))
+        step = 1e-4
+        whole.send(step)
+        lossy.send(step)
+    assert every[:3] == pytest.approx([0.03] * 3, rel=1e-9)
+    assert some[2:] == pytest.approx([0.03] * 3, rel=1e-9)
+    assert every[3:] == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_a_port_that_starts_anew_counts_nothing_of_before() -> None:
+    """The sums of its first packet may have been used by another: only what is added to them counts."""
+    other = WavePort(arm())
+    other.receive()
+    packets = [other.send(1e-4) for _ in range(3)]
+    port = WavePort(arm())
+    assert port.receive([packets[1]]) == 0
+    port.send(0.0)
+    assert port.receive([packets[2]]) > 0
+
+
+def test_an_actuator_that_gives_less_is_booked_as_it_gives() -> None:
+    """A force limit and steps of the converter: the port asks for what is given, and no energy comes out."""
+    device = arm(friction="0.02", resolution="1e-5", force_limit="0.03", force_resolution="0.004")
+    ends = Ends([device, device], random.Random(3))
+    move, seen = greedy(ends), set()
+    for _ in range(PERIODS):
+        ends.period(move)
+        seen |= set(map(abs, ends.forces))
+        assert ends.work >= 0
+    assert max(seen) == pytest.approx(0.028)
+    assert all(Fraction(f).limit_denominator(10**6) % Fraction(4, 1000) == 0 for f in seen)
+
+
+@seeds(3)
+def test_unlike_ends_take_nothing_out_of_each_other(seed: int) -> None:
+    """Other damping, friction, encoder and impedance at each end."""
+    draw = random.Random(seed)
+    leader = arm(damping="0.5", friction="0.05", resolution="5e-5")
+    follower = arm(damping="0.03", delay="1 ms")
+    ends = Ends([leader, follower], draw)
+    move = greedy(ends)
+    for _ in range(PERIODS):
+        ends.period(move)
+        assert ends.work >= 0
+
+
+def test_ends_of_two_rates_come_to_the_same_place() -> None:
+    """A wave of the slower end is spread over two periods of the quicker; what goes back comes in pairs."""
+    slow, quick = WavePort(arm()), WavePort(zw.Device(damping="0.15", rate=2000, delay=0))
+    there: list[Packet] = []
+    back: list[Packet] = []
+    gone = followed = 0.0
+    for k in range(200):
+        slow.receive(back)
+        forces, back = [], []
+        for _ in range(2):
+            forces.append(quick.receive(there))
+            there = []
+            way = forces[-1] * 0.0005 / 0.15  # without a mass: f = b v
+            followed += way
+            back.append(quick.send(way))
+        assert forces[0] == pytest.approx(forces[1], abs=1e-9)
+        step = 2e-5 if k < 150 else 0.0
+        gone += step
+        there = [slow.send(step)]
+    assert followed == pytest.approx(gone, rel=1e-9)
