@@ -112,6 +112,11 @@ class Port(Parametric):
             memory.hear(self.state, float(packet.number), packet.wave, packet.energy, packet.position)
         return float(self.steps[0](self.numbers, self.state))
 
+    @property
+    def force(self) -> float:
+        """The force of this period, positive along x [N; N·m]."""
+        return float(self.state[memory.FORCE])
+
     def send(self, displacement: float) -> Packet:
         """The packet for the other end, after the device has moved.
 
