@@ -128,7 +128,8 @@ def run(parts: int, seconds: float, folder: Path) -> None:
     print(
         f"{parts} parts: {missed / steps:.1%} of steps missed, {lost / (lost + came):.1%} lost, "
         f"{trips[0]:.1f} to {trips[-1]:.1f} ms there and back; "
-        f"dead line {1e3 * last['energy_received_J']:.3g} mJ, then {last['last_force_N']:g} N; energy from nothing {beyond:.2g} J",
+        f"dead line {1e3 * last['energy_received_J']:.3g} mJ, then {last['last_force_N']:g} N; "
+        f"energy from nothing {beyond:.2g} J",
         flush=True,
     )
 

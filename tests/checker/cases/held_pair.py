@@ -2,7 +2,7 @@
 
 The need, and the friction for encoders, were computed in 40 digits by another road: the matrix exponential of
 arm and hand, the answers of both laws to a wave solved for, the largest need by golden section; ‖h‖₁ by
-running both arms.
+running both arms, and so the energy of the motions.
 """
 
 from __future__ import annotations
@@ -94,6 +94,12 @@ def counted(friction: Any) -> Any:
     )
 
 
+def moved(document: Any, damping: Any, friction: Any, path: Any, energy: Any) -> Any:
+    """The free arm along a path."""
+    told = put(with_damping(document, damping), {"loop.leader.coulomb_friction_N": friction})
+    return {**told, "kind": "held pair motion", "positions_m": path, "energy_J": energy}
+
+
 FRICTION = Fraction("0.3130708513820214770908369")
 BOX = put(
     with_damping(HAND, "0.3968"),
@@ -105,7 +111,40 @@ BOX = put(
 )
 """Of its corners the heavy one that damps least, with the softer spring, needs most: 0.39666344."""
 
+ROUND = [0, 3, 4, 1, -3, -4, -1, 3, 4, 1, -2, -2, 0]
+MOTIONS = {
+    "a hand": moved(HAND, "0.1", "0.01", [0, 1, -1, 2, -2, 1, 0], "10.7912174467386850853793611568"),
+    "late": moved(LATE, "0.02", 0, ROUND, "8.30598966240401990221771646198"),
+    "a force that is sent": moved(SENT, "0.02", "0.01", ROUND, "29.1679274015447923701730057924"),
+}
+MOVED = MOTIONS["a hand"]
+
 CASES = [
+    *(
+        case
+        for name, told in MOTIONS.items()
+        for case in (
+            accepted(f"a motion, {name}", told, "the motion extracts", shows="active"),
+            accepted(f"a motion, {name}, turned", other_way_round(told), hands="beside a known one"),
+            refused(
+                f"a motion, {name}, more",
+                put(told, {"energy_J": Fraction(told["energy_J"]) * (1 + 2 * TINY)}),
+                "the energy is",
+            ),
+            refused(
+                f"a motion, {name}, less",
+                put(told, {"energy_J": Fraction(told["energy_J"]) * (1 - 2 * TINY)}),
+                "the energy is",
+            ),
+        )
+    ),
+    refused("a motion that takes nothing out", put(with_damping(MOVED, 2), {"energy_J": 0}), "no more than"),
+    refused("a motion from elsewhere", put(MOVED, {"positions_m.0": 1}), "at rest at 0"),
+    refused("a motion of a box", put(MOVED, {"held.mass_kg": [2, "2.5"]}), "single values"),
+    *(
+        refused(f"a motion, {key}", put(MOVED, {f"loop.{key}": TINY}), "re-run without encoders")
+        for key in ("follower.coulomb_friction_N", "follower.resolution_m", "leader.resolution_m")
+    ),
     *(
         case
         for name, (_, _, cosine) in NEEDS.items()

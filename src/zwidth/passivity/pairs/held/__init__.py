@@ -2,5 +2,6 @@
 
 from zwidth.passivity.pairs.held.law import HeldPair
 from zwidth.passivity.pairs.held.verdict import ANY, HeldVerdict, check_held_pair
+from zwidth.passivity.pairs.held.wave import HeldWitness
 
-__all__ = ["ANY", "HeldPair", "HeldVerdict", "check_held_pair"]
+__all__ = ["ANY", "HeldPair", "HeldVerdict", "HeldWitness", "check_held_pair"]

@@ -26,6 +26,7 @@ from zwidth.passivity.pairs.held.criterion import (
 )
 from zwidth.passivity.pairs.held.evidence import HeldCertificate, HeldViolation
 from zwidth.passivity.pairs.held.law import ArmName, HeldPair
+from zwidth.passivity.pairs.held.wave import HeldWitness, gaining_wave
 from zwidth.passivity.pairs.limits import largest_stiffness
 from zwidth.passivity.pairs.verdict import check_pair
 from zwidth.passivity.result import PassivityAnswer
@@ -100,7 +101,6 @@ class HeldVerdict(PassivityAnswer):
     question: HeldPair
     certificate: PairCertificate | HeldCertificate | None = None
     violation: HeldViolation | None = None
-    witness: None = None
     advice: tuple[Advice, ...] = ()
     stiffness_elsewhere: tuple[StiffnessAt, ...] = ()
 
@@ -115,6 +115,11 @@ class HeldVerdict(PassivityAnswer):
         if self.certificate is not None:
             return "passive"
         return "undecided" if self.violation is None else "active"
+
+    @cached_property
+    def witness(self) -> HeldWitness | None:
+        """A motion of the free arm that takes energy out; None where none that is short enough was found."""
+        return None if self.violation is None else gaining_wave(self.violation)
 
     @property
     def with_any_such_hand(self) -> bool:
@@ -265,6 +270,8 @@ class HeldVerdict(PassivityAnswer):
                 yield name, f"{shown(getattr(device, key), unit[key])}, {shown(need, unit[key])} needed"
         if self.violation is not None:
             yield "violated", self.violation.describe()
+        if self.witness is not None:
+            yield "motion", self.witness.describe()
 
     def numbers(self) -> dict[str, Any]:
         """The main numbers as plain data, a unit in every key of a physical quantity."""
