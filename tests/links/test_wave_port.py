@@ -198,7 +198,7 @@ def test_unlike_ends_take_nothing_out_of_each_other(seed: int) -> None:
     draw = random.Random(seed)
     leader = arm(damping="0.5", friction="0.05", resolution="5e-5")
     follower = arm(damping="0.03", delay="1 ms")
-    ends = Ends([leader, follower], draw)
+    ends = Ends([leader, follower], draw, smoothing="3 ms")
     move = greedy(ends)
     for _ in range(PERIODS):
         ends.period(move)
