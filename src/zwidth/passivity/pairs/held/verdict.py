@@ -97,6 +97,7 @@ class HeldVerdict(PassivityAnswer):
     """
 
     FORMAT: ClassVar[str] = "zwidth held pair 1"
+    PICTURE: ClassVar[str] = "plot_held_pair"
 
     question: HeldPair
     certificate: PairCertificate | HeldCertificate | None = None
@@ -193,6 +194,8 @@ class HeldVerdict(PassivityAnswer):
                 yield f"friction and encoders do not help against large motions of the {free}"
             else:
                 yield f"no Coulomb friction in the {held}"
+                if self.scope.encoder == "counted":
+                    yield "what the springs hold at the start for half a count of each reading may come back"
         yield from assumed_of_timing(PairCriterion(self.pair), self.with_any_such_hand)
         yield from assumed_of_arms(self.pair)
 
@@ -245,7 +248,7 @@ class HeldVerdict(PassivityAnswer):
         if criterion.bends:
             return f"{criterion.bends}: only what two hands gain is proved"
         if not criterion.holds:
-            return f"the {self.question.held} does not come to rest by itself"
+            return f"the {self.question.held} may not come to rest by itself, or it is too near the limit to be told"
         return "Coulomb friction: the steps of the encoders may feed more energy than it takes"
 
     def rows(self) -> Iterator[tuple[str, str]]:
