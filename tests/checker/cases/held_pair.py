@@ -29,6 +29,23 @@ def with_damping(document: Any, value: Any) -> Any:
     return put(document, {f"loop.{free}.damping_N_s_per_m": value})
 
 
+def twice_as_quick(document: Any) -> Any:
+    """In half the time: all damping by 2, masses by 4; forces and stiffness as they are."""
+
+    def quicker(told: Any) -> Any:
+        by = {"_s": 2, "_N_s_per_m": 2, "_kg": 4}
+        return {
+            key: quicker(value)
+            if isinstance(value, dict)
+            else Fraction(value) / next((n for end, n in by.items() if key.endswith(end)), 1)
+            if key not in ("arm", "cosine", "kind", "energy_J")
+            else value
+            for key, value in told.items()
+        }
+
+    return {**document, "loop": quicker(document["loop"]), "held": quicker(document["held"])}
+
+
 def other_way_round(document: Any) -> Any:
     """The leader held."""
     told, free = document["loop"], document["held"]
@@ -126,6 +143,7 @@ CASES = [
         for case in (
             accepted(f"a motion, {name}", told, "the motion extracts", shows="active"),
             accepted(f"a motion, {name}, turned", other_way_round(told), hands="beside a known one"),
+            accepted(f"a motion, {name}, twice as quick", twice_as_quick(told)),
             refused(
                 f"a motion, {name}, more",
                 put(told, {"energy_J": Fraction(told["energy_J"]) * (1 + 2 * TINY)}),
@@ -153,6 +171,8 @@ CASES = [
             refused(f"{name}, too little", SHORT[name], POSITIVE),
             accepted(f"{name}, too little and said so", gains(SHORT[name], cosine), "takes energy out"),
             refused(f"{name}, enough and said not", gains(ENOUGH[name], cosine), GAINS),
+            accepted(f"{name}, enough, twice as quick", twice_as_quick(ENOUGH[name])),
+            refused(f"{name}, too little, twice as quick", twice_as_quick(SHORT[name]), POSITIVE),
         )
     ),
     accepted(
@@ -173,7 +193,7 @@ CASES = [
     ),
     refused("the other one is held", put(ENOUGH["a hand"], {"held.arm": "leader"}), POSITIVE),
     refused("nobody's name", put(NOBODY, {"held.arm": "both"}), "must be leader or follower"),
-    accepted("encoders", counted(FRICTION * (1 + TINY)), "covers the steps of both", encoder="counted"),
+    accepted("encoders", counted(FRICTION * (1 + TINY)), "nowhere negative", encoder="counted"),
     refused("encoders, too little friction", counted(FRICTION * (1 - TINY)), "below the force error"),
     accepted(
         "a gain that friction does not stop",
@@ -200,6 +220,12 @@ CASES = [
     refused(
         "a hand that drives", put(ENOUGH["a hand"], {"held.damping_N_s_per_m": "0.29"}), "would drive it"
     ),
+    refused(
+        "a hand that may drive",
+        put(ENOUGH["a hand"], {"held.damping_N_s_per_m": ["0.29", "1.5"]}),
+        "would drive it",
+    ),
+    accepted("a hand that damps nothing", put(ENOUGH["nobody"], {"loop.follower.damping_N_s_per_m": "0.5"})),
     refused(
         "a held arm that does not come to rest",
         with_damping(held(loop(arm(0, 1), arm(0, 1)), 1, 0, 0), 100),

@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.passivity.pairs.held import HeldPair
+from zwidth.passivity.pairs.held import HeldPair, felt_law
 from zwidth.passivity.pairs.held.law import felt
 
 Hand = zw.stability.HandImpedance
@@ -194,6 +194,20 @@ def test_what_is_no_linear_law_is_decided_by_two_hands_alone(change: dict, phras
     pair = PAIR.replace(leader=ARM.replace(coulomb_friction=2), **change)
     assert zw.check(pair.replace(stiffness=5000), follower=HAND).outcome == "undecided"
     assert phrase in zw.check(pair.replace(stiffness=5000), follower=HAND).limit
+
+
+def test_the_law_that_is_felt_is_one_for_every_tool() -> None:
+    """On both sides of the limit the verdict of one arm is that of the pair; at rest nobody pulls."""
+    for stiffness, outcome in ((100.5, "passive"), (102, "active")):
+        pair = PAIR.replace(stiffness=stiffness)
+        law = felt_law(pair, follower=None)
+        assert zw.check(pair.leader, law).outcome == zw.check(pair, follower=None).outcome == outcome
+        top, bottom = law.pulse_transfer_function(Fraction(1, 1000))
+        assert sum(top) == 0 < sum(bottom)
+    with pytest.raises(zw.InputError, match="single numbers"):
+        felt_law(PAIR, follower=Hand(mass=(0, 1)))
+    with pytest.raises(zw.InputError, match="without drives"):
+        felt_law(PAIR.replace(drive_rate="10 kHz"), follower=None)
 
 
 def test_bad_input() -> None:

@@ -68,9 +68,7 @@ def held_pair(told: Read) -> str:
         raise Invalid("that the held arm comes to rest in its hand could not be confirmed")
     boxes = _covered(held)
     hands = "the hand on the other arm" if boxes == 1 else f"every such hand, in {boxes} boxes, the other one"
-    counted = held.free.resolution or held.arm.resolution
-    more = ", and Coulomb friction covers the steps of both encoders" if counted else ""
-    return f"with the {told.held.arm} held, the work of {hands} is nowhere negative{more}"
+    return f"with the {told.held.arm} held, the work of {hands} is nowhere negative"
 
 
 def held_violation(told: Read) -> str:
@@ -122,8 +120,6 @@ def _covered(held: Held) -> int:
             _require(held._replace(motion=box))
             shown += 1
         except Invalid:
-            if held.motion.middle == held.motion:
-                raise
             _require(held._replace(motion=box.middle))
             if tried > MOST_BOXES or halved > MOST_HALVINGS:
                 raise Invalid(
