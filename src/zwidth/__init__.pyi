@@ -3,6 +3,7 @@ from zwidth import identification as identification
 from zwidth import links as links
 from zwidth import loop as simulation
 from zwidth import maps as maps
+from zwidth import network as network
 from zwidth import operator as operators
 from zwidth import plots as plots
 from zwidth import rendering as rendering

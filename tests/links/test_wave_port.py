@@ -13,6 +13,7 @@ from strategies import seeds
 import zwidth as zw
 from zwidth.links import Packet, WavePort
 from zwidth.links.memory import ACTING
+from zwidth.links.wave_port import RESERVE
 
 PERIODS = 150
 
@@ -62,6 +63,7 @@ class Ends:
             counts = floor(after / step) - floor(before / step) if step else 0
             read = float(counts * step) if step else float(moved)
             self.on_the_way[1 - end].append(port.send(read))
+            assert port.state[RESERVE] >= -1e-15
 
 
 def greedy(ends: Ends) -> Callable[[int, float], float]:
@@ -95,6 +97,28 @@ def test_two_hands_never_take_energy_out(
     assert largest > 1e-3
 
 
+def test_a_hand_inside_one_count_gains_nothing() -> None:
+    """It rests at the lower edge, goes up with each push and comes back slowly: no reading ever changes.
+
+    Without what a force that grows is charged, each push would be free.
+    """
+    device = arm(resolution="22.4e-6")
+    port, told, taken, height = WavePort(device), 1e-6, 0.0, 20e-6
+    port.receive([Packet(0, 0.0, 0.0, 0.0)])
+    sent = port.send(0.0).energy
+    seen = 0.0
+    for k in range(200):
+        force = port.receive([Packet(2 * k + 1, 0.0, told, (k + 1) * 6e-5)])
+        seen = max(seen, force)
+        taken += force * height - 0.15 * height**2 / 0.001
+        sent = port.send(0.0).energy
+        for _ in range(20):
+            taken -= port.receive() * height / 20 + 0.15 * (height / 20) ** 2 / 0.001
+            sent = port.send(0.0).energy
+        assert taken <= told - sent
+    assert seen > 2 * 0.15 * height / 0.001
+
+
 def test_what_a_packet_tells_is_used_once() -> None:
     """The same again, and what is older, change nothing."""
     port, other = WavePort(arm()), WavePort(arm())
@@ -106,6 +130,21 @@ def test_what_a_packet_tells_is_used_once() -> None:
         port.send(0.0)
         last = port.receive([first, second])
     assert last == 0
+
+
+def test_an_older_packet_changes_nothing() -> None:
+    """Neither where it sends the port to, nor what it may spend."""
+    other = WavePort(arm())
+    other.receive()
+    packets = [other.send(1e-4) for _ in range(4)]
+    ports = WavePort(arm()), WavePort(arm())
+    forces: list[list[float]] = [[], []]
+    for k, old in ((0, 0), (3, 1), (3, 2), (3, 0)):
+        for port, heard, found in zip(ports, ([k], [k, old]), forces, strict=True):
+            found.append(port.receive([packets[i] for i in heard]))
+            port.send(1e-4)
+    assert forces[0] == forces[1]
+    assert forces[0][2] > 0
 
 
 def test_what_is_lost_comes_with_the_next_packet() -> None:

@@ -5,7 +5,7 @@ import random
 import numpy as np
 import pytest
 
-from zwidth.network.part_run import PartRun, run_parts
+from zwidth.network import PartRun, run_parts
 from zwidth.scene import Contact, Damper, Mass, Scene, Spring
 from zwidth.scene.cut import best_parts, cut
 from zwidth.scene.run import SceneRun

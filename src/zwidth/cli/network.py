@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import signal
 import subprocess
 import sys
@@ -11,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.options import Once
-from zwidth.cli.output import print_text
+from zwidth.cli.output import print_json, print_text
 from zwidth.errors import InputError
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
@@ -21,13 +22,17 @@ if TYPE_CHECKING:
     from zwidth.cli.network_plan import Plan
     from zwidth.network.peer import Peer
 
+FORMAT = "zwidth network 1"
+
+_DURATION = "10 s"
+
 _OFTEN = 1.0
 """Between two lines of what is seen [s]."""
 
 _MEETING = 20.0
 """How long a process waits for those at the other ends of its lines [s]."""
 
-_PATIENCE = 5.0
+_LONGEST_WAIT = 5.0
 """How long a process that was told to end may take [s]."""
 
 
@@ -36,7 +41,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="a TOML file with [environment] and [network]")
     parser.add_argument("--run", metavar="NAME", action=Once, help="run this part or device alone, here")
     parser.add_argument("--plan", action="store_true", help="say which parts and lines there are, and end")
-    parser.add_argument("--duration", metavar="t", action=Once, help="how long (default: 10 s)")
+    parser.add_argument("--json", action="store_true", help="print what was seen as JSON, units in the keys")
+    parser.add_argument("--duration", metavar="t", action=Once, help=f"how long (default: {_DURATION})")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -46,17 +52,14 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plan and (arguments.run or arguments.duration):
         raise InputError("--plan runs nothing: leave out --run and --duration")
     plan = load_plan(Path(arguments.file))
-    duration = read_number(
-        arguments.duration or "10 s",
-        GLOSSARY["sample_period"],
-        "--duration",
-        bound="> 0",
-        why="0 has no step",
-    )
+    typed = arguments.duration or _DURATION
+    duration = read_number(typed, GLOSSARY["sample_period"], "--duration", bound="> 0", why="0 has no step")
     if arguments.plan:
         print_text(_described(plan))
         return 0
-    return _one(plan, arguments.run, duration) if arguments.run else _all(plan, arguments.file, duration)
+    if arguments.run:
+        return _one(plan, arguments.run, duration, arguments.json)
+    return _all(plan, arguments.file, typed, arguments.json)
 
 
 def _described(plan: Plan) -> str:
@@ -65,7 +68,7 @@ def _described(plan: Plan) -> str:
     return "\n".join([repr(plan.cut), "", *devices, *lines])
 
 
-def _one(plan: Plan, name: str, duration: Exact) -> int:
+def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
     from zwidth.cli.compile_notice import warn_of_compiling
 
     warn_of_compiling()
@@ -79,7 +82,10 @@ def _one(plan: Plan, name: str, duration: Exact) -> int:
         report = peer.run(duration, _Watch(peer, name), stop=lambda: bool(ended))
     finally:
         peer.close()
-    print_text(f"{name}: {report!r}")
+    if as_json:
+        print_json(json.dumps({"format": FORMAT, "processes": {name: report.to_dict()}}, allow_nan=False))
+    else:
+        print_text(f"{name}: {report!r}")
     return 0
 
 
@@ -98,40 +104,39 @@ class _Watch:
         print(f"{self._name} at {(k + 1) * self._peer.period:.3g} s, {'; '.join(seen)}", file=sys.stderr)
 
 
-def _all(plan: Plan, file: str, duration: Exact) -> int:
+def _all(plan: Plan, file: str, typed: str, as_json: bool) -> int:
     """Every process as a child of this one; what they print comes out here."""
     from zwidth.cli.compile_notice import warn_of_compiling
 
     warn_of_compiling()
     for name in plan.names:  # what has to be compiled is compiled once, not by all of them together
-        plan.runs(name, duration)
-    command = [
-        sys.executable,
-        "-m",
-        "zwidth",
-        "network",
-        file,
-        "--duration",
-        f"{float(duration):.17g}",
-        "--run",
-    ]
-    children = {name: subprocess.Popen([*command, name]) for name in plan.names}
+        plan.runs(name, Exact(1))
+    command = [sys.executable, "-m", "zwidth", "network", file, "--duration", typed]
+    more = ["--json"] if as_json else []
+    out = subprocess.PIPE if as_json else None
+    children = {
+        name: subprocess.Popen([*command, *more, "--run", name], stdout=out, text=True) for name in plan.names
+    }
     try:
-        ends = {name: child.wait() for name, child in children.items()}
+        told = {name: child.communicate()[0] for name, child in children.items()}
     except KeyboardInterrupt:
         _end(children.values())
         raise
-    failed = [name for name, status in ends.items() if status]
+    if as_json:
+        seen = [json.loads(text)["processes"] for text in told.values() if text]
+        processes = {name: report for one in seen for name, report in one.items()}
+        print_json(json.dumps({"format": FORMAT, "processes": processes}, indent=2, allow_nan=False))
+    failed = [name for name, child in children.items() if child.returncode]
     if failed:
         print(f"did not run to the end: {', '.join(failed)}", file=sys.stderr)
     return int(bool(failed))
 
 
-def _end(children: Iterable[subprocess.Popen[bytes]]) -> None:
+def _end(children: Iterable[subprocess.Popen[str]]) -> None:
     for child in children:
         child.terminate()
     for child in children:
         try:
-            child.wait(_PATIENCE)
+            child.wait(_LONGEST_WAIT)
         except subprocess.TimeoutExpired:
             child.kill()

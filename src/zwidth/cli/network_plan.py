@@ -42,7 +42,7 @@ from zwidth.specification.read import load_device, read_tables
 from zwidth.specification.table import Table, located
 from zwidth.specification.values import read
 
-_PATIENCE = 20.0
+_LONGEST_WAIT = 20.0
 """How long a process waits for the one that makes their shared memory [s]."""
 
 _WORSE = parameters_of(Schedule)
@@ -67,7 +67,7 @@ class Line:
     def opened(self, name: str, here: str) -> Channel:
         """This process's side."""
         with located(f"line {name}"):
-            channel = open_channel(self.channel, here == self.first, wait=_PATIENCE)
+            channel = open_channel(self.channel, here == self.first, wait=_LONGEST_WAIT)
             return Lossy(channel, self.worse, way=int(here == self.first)) if self.worse else channel
 
 

@@ -30,6 +30,10 @@ _OF_TWO_ARMS = ("pair", "pair violation")
 _ONE_BY_ONE = {"zwidth gains 1": "joints", "zwidth passive masses 1": "verdicts"}
 """Documents that hold one for each joint, or for each of some masses, and where."""
 
+_BESIDE_A_KNOWN_ONE = "beside a known one"
+_OF_A_HELD_PAIR = "zwidth held pair 1"
+"""Hands on the free one of two arms, and the documents about them."""
+
 _OF_A_PORT = "zwidth indices 1"
 """A document about a port by itself."""
 
@@ -144,6 +148,8 @@ def _misfit(part: Part, outcome: str, told: Mapping[str, Any]) -> str | None:
         return "is of corners that show different things"
     if covered.shows in ("stable", "unstable"):
         return "is of a hand that is known"
+    if covered.hands == _BESIDE_A_KNOWN_ONE and told.get("format") != _OF_A_HELD_PAIR:
+        return "is of two arms of which a known hand holds one"
     if covered.shows in ("index at least", "index below"):
         return _misfit_of_a_port(part.evidence, covered.shows, outcome, told)
     if outcome == "active":
@@ -202,6 +208,10 @@ def _head(covered: Scope, kind: str) -> str:
         return "Proved"
     if covered.shows in ("index at least", "index below"):
         return "Of the port below, proved"
+    if covered.hands == _BESIDE_A_KNOWN_ONE:
+        if covered.shows == "active":
+            return "A hand can take any amount of energy out of the arms below, proved"
+        return "A hand on the arm that is not held takes no energy out of the arms below, proved"
     if kind in _OF_TWO_ARMS:
         if covered.shows == "active":
             return "Two hands can take any amount of energy out of the arms below, proved"

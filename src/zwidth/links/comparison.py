@@ -22,6 +22,7 @@ from zwidth.links.schedule import Schedule
 from zwidth.links.simulation import check_ends, simulate
 from zwidth.links.time_domain import TimeDomain
 from zwidth.links.two_layer import TwoLayer
+from zwidth.links.verdict import check
 from zwidth.links.wave_port import WavePort
 from zwidth.operator import PrescribedMotion, RecordedForce
 from zwidth.passivity.result import Documented
@@ -39,6 +40,8 @@ _STROKE, _REST, _PRESS, _RISE = 2.0, 1.0, 4.0, 1.0
 """How long: to and fro, at rest after it; a push, its force rising for a part of it [s]."""
 _STILL = 0.1
 """How far a hand may swing that is said to be at rest, of its depth."""
+_WEAKEST_FIRST = ("undecided", "theorem", "passive")
+"""What two ports are together."""
 
 Ends = tuple[Port, Port]
 
@@ -195,11 +198,12 @@ def compare(
 
 def _taken(near: Port, far: Port, link: Schedule) -> dict[str, Any]:
     """Over this link; that it is active may be seen over one without any delay alone."""
-    if near.theorem and far.theorem:
-        return {"outcome": "theorem", "taken": 0.0}
-    found = most_taken(near, far, link)
-    taken = 0.0 if found is None else found.energy
-    active = found is not None or most_taken(near, far, Schedule()) is not None
+    if all(port.has_ledger or port.theorem for port in (near, far)):
+        found = {check(port).outcome for port in (near, far)}
+        return {"outcome": next(word for word in _WEAKEST_FIRST if word in found), "taken": 0.0}
+    motion = most_taken(near, far, link)
+    taken = 0.0 if motion is None else motion.energy
+    active = motion is not None or most_taken(near, far, Schedule()) is not None
     return {"outcome": "active" if active else "undecided", "taken": taken}
 
 

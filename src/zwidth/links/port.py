@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from math import isfinite
+from fractions import Fraction
+from math import inf, isfinite, nextafter
 from typing import ClassVar, TypeVar
 
 import numpy as np
@@ -59,9 +60,9 @@ class Port(Parametric):
     def _numbers(self) -> list[float]:
         own = [float(getattr(self, name)) for name in parameters_of(type(self))]
         told = [
-            float(self.device.exact("sample_period")),
-            float(ends(self.device.damping)[0]),
-            float(ends(self.device.coulomb_friction)[0]),
+            -rounded_down(-self.device.exact("sample_period")),
+            rounded_down(ends(self.device.damping)[0]),
+            rounded_down(ends(self.device.coulomb_friction)[0]),
             float(self.device.exact("resolution")),
             _lower(self.device, "force_limit"),
             0.0 if self.device.force_resolution is None else float(self.device.exact("force_resolution")),
@@ -79,9 +80,12 @@ class Port(Parametric):
         """The same port before its first packet."""
         return replace(self)
 
+    has_ledger: ClassVar[bool] = False
+    """True where a ledger pays for every force, which has a certificate."""
+
     @property
     def theorem(self) -> str:
-        """Why it is passive whatever the link does, in a sentence; "" where nothing proves it."""
+        """Why it is passive whatever the link does, by a proof on paper; "" where there is none."""
         return ""
 
     def telling_ways(self) -> list[float]:
@@ -111,6 +115,11 @@ class Port(Parametric):
                 )
             memory.hear(self.state, float(packet.number), packet.wave, packet.energy, packet.position)
         return float(self.steps[0](self.numbers, self.state))
+
+    @property
+    def force(self) -> float:
+        """The force of this period, positive along x [N; N·m]."""
+        return float(self.state[memory.FORCE])
 
     def send(self, displacement: float) -> Packet:
         """The packet for the other end, after the device has moved.
@@ -146,6 +155,12 @@ class Port(Parametric):
         own, motion = parameters_of(type(self)), self.device.motion
         told = [f"{own[name].quantity.symbol} = {self.with_unit(name, motion)}" for name in own]
         return ", ".join([self.title, *told])
+
+
+def rounded_down(value: Fraction) -> float:
+    """The largest double that is no larger: no more is counted on than there is."""
+    near = float(value)
+    return nextafter(near, -inf) if Fraction(near) > value else near
 
 
 def _samples_late(device: Device) -> int:

@@ -59,13 +59,14 @@ acts in this period what is held back for it and c [J]."""
 _HELD = OWN_STATE + 6
 _CHARGES = _HELD + MOST_LATE + 1
 
-_MARGIN = 1.0 - 1e-12
+_DOWN = 1.0 - ROUNDING
+MARGIN = 1.0 - 1e-12
 
 
 @compiled
 def force(p: Array, s: Array) -> float:
     """The force on the device for the coming period [N; N·m], positive along x."""
-    told = max(s[HEARD_ENERGY] - s[BASE_ENERGY], 0.0)
+    told = max(s[HEARD_ENERGY] - s[BASE_ENERGY], 0.0) * _DOWN
     reserve = s[RESERVE]
     if told > s[COUNTED]:
         reserve += told - s[COUNTED]
@@ -116,7 +117,7 @@ def affordable(p: Array, reserve: float, before: float) -> float:
     size = _pays(p, reserve, step)
     if size > before:
         size = _pays(p, reserve + step * before, 2.0 * step)
-    return size * _MARGIN
+    return size * MARGIN
 
 
 @compiled
@@ -175,11 +176,5 @@ class WavePort(Waves):
 
     title: ClassVar[str] = "waves with a ledger"
     code: ClassVar[float] = WAVE_PORT
+    has_ledger: ClassVar[bool] = True
     steps: ClassVar = (force, send)
-
-    @property
-    def theorem(self) -> str:
-        """The ledger never falls below 0."""
-        return (
-            "its ledger counts what came and what friction took, and its force is never more than that pays"
-        )

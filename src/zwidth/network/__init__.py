@@ -1,12 +1,5 @@
-"""Scenes and devices in several processes: what carries their waves, and what is seen of it."""
+"""Scenes and devices in several processes: what each runs, what carries their waves, and what is seen of it."""
 
-from zwidth.network.channel import Channel
-from zwidth.network.frame import Frame
-from zwidth.network.lossy import Lossy
-from zwidth.network.monitor import Link, LinkReport
-from zwidth.network.open import open_channel
-from zwidth.network.shared_memory import SharedMemory
-from zwidth.network.udp import UDP
-from zwidth.network.zenoh import Zenoh
+from zwidth.lazy import attach
 
-__all__ = ["UDP", "Channel", "Frame", "Link", "LinkReport", "Lossy", "SharedMemory", "Zenoh", "open_channel"]
+__getattr__, __dir__, __all__ = attach(__name__)

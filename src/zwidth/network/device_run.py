@@ -88,6 +88,11 @@ class DeviceRun:
         """The one that ends here."""
         return (self.line,)
 
+    @property
+    def forces(self) -> dict[str, float]:
+        """What the line gives the device in the last sample [N; N·m]."""
+        return {self.line: self.port.force}
+
     def step(self, heard: Mapping[str, Iterable[Packet]] | None = None) -> dict[str, Packet]:
         """Hear, hold the force for a period while the hand moves on, and send.
 

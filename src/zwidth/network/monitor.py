@@ -11,7 +11,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from zwidth.errors import InputError
 from zwidth.links import Packet
@@ -60,6 +60,23 @@ class LinkReport(Shown):
         yield Table(rows=self.rows())
 
     HEADS: ClassVar = ["line", "sent", "received", "lost", "there and back, 99 %", "energy out", "energy in"]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same with a unit in every key; null where there is none yet."""
+        p50, p99, most = (t if math.isfinite(t) else None for t in self.round_trip)
+        return {
+            "sent": self.sent,
+            "received": self.received,
+            "lost": self.lost,
+            "doubled": self.doubled,
+            "late": self.late,
+            "foreign": self.foreign,
+            "rate_Hz": self.rate,
+            "round_trip_s": {"median": p50, "of_99_percent": p99, "longest": most},
+            "energy_sent_J": self.energy_sent,
+            "energy_received_J": self.energy_received,
+            "silent_s": self.silent if math.isfinite(self.silent) else None,
+        }
 
     def row(self, name: str) -> list[str]:
         """One row of a table of links."""

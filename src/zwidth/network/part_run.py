@@ -74,6 +74,11 @@ class PartRun:
         return tuple(self.ports)
 
     @property
+    def forces(self) -> dict[str, float]:
+        """What each line gives its node in the last step [N; N·m]."""
+        return {name: port.force for name, port in self.ports.items()}
+
+    @property
     def positions(self) -> Mapping[str, float]:
         """Where every node of this part is [m; rad]."""
         return self._run.positions

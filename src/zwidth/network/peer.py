@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from zwidth.errors import InputError
 from zwidth.links import Packet
@@ -34,6 +34,10 @@ class Steps(Protocol):
     def lines(self) -> tuple[str, ...]:
         """The names of the lines that end in it."""
 
+    @property
+    def forces(self) -> Mapping[str, float]:
+        """What each line gives in the last step [N; N·m]."""
+
     def step(self, heard: Mapping[str, Iterable[Packet]] | None = None) -> dict[str, Packet]:
         """One step, from packets to packets."""
 
@@ -48,6 +52,21 @@ class PeerReport(Shown):
     lateness: tuple[float, float, float]
     """Median, 99 % and largest lateness of a step [s]."""
     links: Mapping[str, LinkReport]
+    forces: Mapping[str, float]
+    """What each line gave at last [N; N·m]."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same with a unit in every key."""
+        p50, p99, most = self.lateness
+        return {
+            "steps": self.steps,
+            "missed": self.late,
+            "lateness_s": {"median": p50, "of_99_percent": p99, "largest": most},
+            "links": {
+                name: {**link.to_dict(), "last_force_N": self.forces[name]}
+                for name, link in self.links.items()
+            },
+        }
 
     def report(self) -> Iterable[Part]:
         """The steps, then line by line."""
@@ -96,6 +115,7 @@ class Peer:
             sample_period, GLOSSARY["sample_period"], "sample_period", bound="> 0", why="a step takes time"
         )
         self.runs, self.period, self._clock, self._sleep = runs, float(period), clock, sleep
+        self._exactly = period.fraction
         self.links = {name: Link(channel, clock) for name, channel in channels.items()}
 
     def run(
@@ -116,17 +136,17 @@ class Peer:
         stop
             Asked before each step whether to end.
         """
-        seconds = float(
-            read_number(duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no step")
-        )
+        seconds = read_number(
+            duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no step"
+        ).fraction
         lateness: list[float] = []
         missed = 0
         deadline = self._clock()
-        steps = round(seconds / self.period)
-        for k in range(steps):
-            if stop is not None and stop():
+        end = deadline + float(seconds) - 0.5 * self.period
+        for k in range(int(seconds / self._exactly)):
+            if deadline > end or (stop is not None and stop()):
                 break
-            self._wait(deadline)
+            self._until(deadline)
             behind = self._clock() - deadline
             lateness.append(behind)
             if behind > self.period:
@@ -139,11 +159,11 @@ class Peer:
         ordered = sorted(lateness) or [0.0]
         at = [ordered[min(int(q * len(ordered)), len(ordered) - 1)] for q in (0.5, 0.99, 1)]
         links = {name: link.report() for name, link in self.links.items()}
-        return PeerReport(len(lateness), missed, (at[0], at[1], at[2]), links)
+        return PeerReport(len(lateness), missed, (at[0], at[1], at[2]), links, dict(self.runs.forces))
 
-    def meet(self, patience: float) -> tuple[str, ...]:
+    def meet(self, wait: float) -> tuple[str, ...]:
         """Call the other ends until all have been heard of; the lines where nobody was in that time [s]."""
-        until = self._clock() + patience
+        until = self._clock() + wait
         while True:
             silent = tuple(name for name, link in self.links.items() if not link.call())
             if not silent or self._clock() >= until:
@@ -156,7 +176,7 @@ class Peer:
         for name, packet in packets.items():
             self.links[name].send(packet)
 
-    def _wait(self, deadline: float) -> None:
+    def _until(self, deadline: float) -> None:
         left = deadline - self._clock() - _SPIN
         if left > 0:
             self._sleep(left)

@@ -1,6 +1,6 @@
 from zwidth.scene.cut import Cut as Cut
 from zwidth.scene.cut import best_parts as best_parts
-from zwidth.scene.cut import cut as cut
+from zwidth.scene.cut import cut as cut_scene
 from zwidth.scene.element import Damper as Damper
 from zwidth.scene.element import Element as Element
 from zwidth.scene.element import Lever as Lever

@@ -6,8 +6,9 @@ Delay is then physics, not error: a line is a long elastic rod, of the stiffness
     K = w/τ,   M = w τ.
 
 So a spring K between two parts becomes the line w = K τ, which is as stiff and brings M = K τ² along: soft
-springs are best cut.  Any other element stays in one part, and a line of a given w leads from its
-far end to the node that it held: stiff where w is large, light where it is small.
+springs are best cut.  A body M in two parts becomes the line w = M/τ, as heavy, which gives way by τ²/M.  Any
+other element stays in one part, and a line of a given w leads from its far end to the node that it held:
+stiff where w is large, light where it is small.
 """
 
 from __future__ import annotations
@@ -40,12 +41,21 @@ class Line(NamedTuple):
     delay: Fraction
     """τ, one way [s]."""
     in_place_of: str
-    """The spring that it replaces, "" where it was put in beside all that was there."""
+    """The spring or body that it replaces, "" where it was put in beside all that was there."""
+    keeps: str = "stiffness"
+    """What the line has of it: its "stiffness", or its "mass"."""
 
     @property
     def stiffness(self) -> float:
         """w/τ, of the line at rest [N/m; N·m/rad]."""
         return float(self.impedance.fraction / self.delay)
+
+    @property
+    def adds(self) -> str:
+        """The mass of a line, or how far the one of a body gives way, in words."""
+        if self.keeps == "mass":
+            return f"{1e3 / self.stiffness:.4g} mm/N"
+        return f"{1e3 * self.mass:.4g} g"
 
     @property
     def mass(self) -> float:
@@ -86,7 +96,7 @@ class Cut(Shown):
         if self.lines:
             yield ""
             yield Table(
-                heads=[["line", "in place of", "w", "delay", "stiffness", "adds mass"]],
+                heads=[["line", "in place of", "w", "delay", "stiffness", "adds"]],
                 rows=[
                     [
                         line.name,
@@ -94,7 +104,7 @@ class Cut(Shown):
                         f"{float(line.impedance):.4g} N·s/m",
                         f"{1e3 * float(line.delay):.4g} ms",
                         f"{line.stiffness:.4g} N/m",
-                        f"{1e3 * line.mass:.4g} g",
+                        line.adds,
                     ]
                     for line in self.lines
                 ],
@@ -115,7 +125,8 @@ def cut(
     scene
         What is cut.
     parts
-        Of each part the nodes that are in it; every node of the scene in one of them.
+        Of each part the nodes that are in it; every node of the scene in one of them, or, for a body whose
+        mass becomes a line, in two: what joins it to the second part hangs on that end.
     delay
         τ > 0, one way; not less than a step of the parts [s].
     impedances
@@ -125,18 +136,20 @@ def cut(
     Raises
     ------
     InputError
-        If a node is in no part or in two, a part has none, τ is not > 0, or w is missing, or given for an
-        element that is not cut.
+        If a node is in no part, or in two and no body, a part has none, τ is not > 0, or w is missing, or
+        given for an element that is not cut.
     """
     tau = read_number(delay, GLOSSARY["delay"], "delay", bound="> 0", why="a wave takes time").fraction
-    home = _homes(scene, parts)
+    titled, home, lines = _split(scene, _homes(scene, parts), tau)
     given = {
         name: read_number(w, GLOSSARY["wave_impedance"], f"impedance of {name}", bound="> 0", why=_NO_FORCE)
         for name, w in (impedances or {}).items()
     }
     inside: dict[str, list[Element]] = {name: [] for name in parts}
-    lines: list[Line] = []
-    for title, element in zip(scene.titles, scene.elements, strict=True):
+    for line in lines:
+        for part, node in zip(line.parts, line.nodes, strict=True):
+            inside[part].append(LineEnd(node, line.impedance, line.name))
+    for title, element in titled:
         here, there = (home.get(n) for n in element.nodes)
         owner = here if here is not None else there
         assert owner is not None  # an element has one end at least that moves
@@ -174,8 +187,41 @@ def cut(
 _NO_FORCE = "a wave of no impedance carries no force"
 
 
-def _homes(scene: Scene, parts: Mapping[str, Iterable[str]]) -> dict[str, str]:
-    home: dict[str, str] = {}
+def _split(
+    scene: Scene, homes: Mapping[str, tuple[str, ...]], tau: Fraction
+) -> tuple[list[tuple[str, Element]], dict[str, str], list[Line]]:
+    """The elements, with two nodes for a body in two parts; the part of each node; the lines of bodies."""
+    home = {node: own[0] for node, own in homes.items()}
+    titled = list(zip(scene.titles, scene.elements, strict=True))
+    lines = []
+    for node, own in homes.items():
+        if len(own) == 1:
+            continue
+        bodies = [(t, e) for t, e in titled if e.reflection == -1 and e.nodes[0] == node]
+        if len(own) > 2 or len(bodies) != 1:
+            raise InputError(
+                f'node "{node}" is in {len(own)} parts; in two can be what has one mass, no other'
+            )
+        ((title, body),) = bodies
+        second = f"{node} in {own[1]}"
+        home[second] = own[1]
+        titled = [
+            (t, _moved(e, node, second) if any(homes.get(n) == (own[1],) for n in e.nodes) else e)
+            for t, e in titled
+            if e is not body
+        ]
+        w = Exact(body.resistance(2 * tau))  # M/τ
+        lines.append(Line(title, (own[0], own[1]), (node, second), w, tau, title, "mass"))
+    return titled, home, lines
+
+
+def _moved(element: Element, node: str, other: str) -> Element:
+    end = "first" if element.nodes[0] == node else "second"
+    return replace(element, **{end: other}) if node in element.nodes else element
+
+
+def _homes(scene: Scene, parts: Mapping[str, Iterable[str]]) -> dict[str, tuple[str, ...]]:
+    home: dict[str, tuple[str, ...]] = {}
     for name, nodes in parts.items():
         own = [nodes] if isinstance(nodes, str) else list(nodes)
         if not own:
@@ -185,9 +231,7 @@ def _homes(scene: Scene, parts: Mapping[str, Iterable[str]]) -> dict[str, str]:
                 raise InputError(
                     f'"{node}" of part "{name}" is no node of the scene: {", ".join(scene.nodes)}'
                 )
-            if node in home:
-                raise InputError(f'node "{node}" is in part "{home[node]}" and in "{name}"; it can be in one')
-            home[node] = name
+            home[node] = (*home.get(node, ()), name)
     left = [n for n in scene.nodes if n not in home]
     if left:
         raise InputError(f"in no part: {', '.join(left)}; every node must be somewhere")

@@ -55,7 +55,7 @@ class SceneRun:
         self._packed = scene.packed(period)
         self._places = scene.network.places
         self._memory = self._packed.memory.copy()
-        self._at_first = self._packed.stored(self._memory)
+        self._stored_at_first = self._packed.stored(self._memory)
         self._lines = {e.title: i for i, e in enumerate(self._packed.linear) if e.leads_elsewhere}
         self._speed = 0.0
 
@@ -88,6 +88,11 @@ class SceneRun:
         _follow(self._packed.numbers, self._memory, readings, forces)
         self._speed = float(readings[-1] - before) / self._packed.numbers[at.PERIOD]
         return forces
+
+    @property
+    def energy_at_first(self) -> float:
+        """What contacts and springs through points held at rest, before the first step [J]."""
+        return float(self._stored_at_first.sum())
 
     @property
     def positions(self) -> Mapping[str, float]:
@@ -125,7 +130,7 @@ class SceneRun:
         own = dict(zip(map(id, self.scene.elements), self.scene.titles, strict=True))
         columns = {
             "work": (m[packed.work : packed.work + count], "energy into the element"),
-            "stored": (packed.stored(m) - self._at_first, "energy stored since the start"),
+            "stored": (packed.stored(m) - self._stored_at_first, "energy stored since the start"),
             "lost": (m[packed.work + count : packed.work + 2 * count], "energy turned into heat"),
         }
         return xr.Dataset(
