@@ -11,7 +11,7 @@ from zwidth.network.device_run import DeviceRun
 from zwidth.network.part_run import PartRun
 from zwidth.network.peer import Peer
 from zwidth.scene import Contact, Damper, LineEnd, Mass, Scene, Spring
-from zwidth.scene.cut import Part
+from zwidth.scene.parts import Part
 
 PADDLE = zw.Device(mass=0.036, damping=0.15, coulomb_friction=0.12, resolution=22.4e-6, sample_period=1e-3)
 
