@@ -78,7 +78,7 @@ class HeldWaves(Waves):
     @property
     def theorem(self) -> str:
         """w ≤ b, and nothing is rounded off the displacement."""
-        assert self.impedance is not None  # it is the damping where none was given
-        if ends(self.impedance)[0] > ends(self.device.damping)[0] or self.numbers[RESOLUTION] > 0:
+        w = self.impedance  # the damping where none was given
+        if w is None or w > ends(self.device.damping)[0] or self.numbers[RESOLUTION] > 0:
             return ""
         return "w ≤ b: in every period the device's damping takes what the hold feeds"
