@@ -11,7 +11,8 @@ yet used, d [m] and R [J], is used as
 
     a = min(|d|, R/(r |d|)) sgn d
 
-which is the wave of a link that loses nothing; or T/(T + s) of d at most, where the force is smoothed over s.  An encoder of resolution Δ reads Δx no better than ± Δ, so
+which is the wave of a link that loses nothing; or T/(T + s) of d at most, to smooth the force over s.  An
+encoder of resolution Δ reads Δx no better than ± Δ, so
 
     R ← R − f Δx − c + b s²/T + f_c s,   s = max(0, |Δx| − Δ),   c = ½ Δ (|f| − |f⁻| + |f − f⁻|)
 
