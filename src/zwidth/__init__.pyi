@@ -3,9 +3,11 @@ from zwidth import identification as identification
 from zwidth import links as links
 from zwidth import loop as simulation
 from zwidth import maps as maps
+from zwidth import network as network
 from zwidth import operator as operators
 from zwidth import plots as plots
 from zwidth import rendering as rendering
+from zwidth import scene as scene
 from zwidth import stability as stability
 from zwidth import traces as traces
 from zwidth.checker import verify as verify
@@ -45,6 +47,7 @@ from zwidth.quantity import Interval as Interval
 from zwidth.rendering import FrictionCompensation as FrictionCompensation
 from zwidth.rendering import VirtualCoupling as VirtualCoupling
 from zwidth.rendering import render as render
+from zwidth.scene import Scene as Scene
 from zwidth.specification.load import load as load
 from zwidth.traces import available_storage as available_storage
 from zwidth.traces import compare as compare

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 _PACKAGE = Path(__file__).parent
 
 _TOGETHER = (
-    ("rendering", "loop", "links"),
+    ("scene", "rendering", "loop", "links", "network"),
     ("passivity/storage/solve",),
     ("checker/storage",),
     ("identification/tissue",),

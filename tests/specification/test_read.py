@@ -164,6 +164,14 @@ ENVIRONMENTS: list[tuple[str, Callable[[], Any]]] = [
         'environment = { type = "wall", stiffness = 9 }\n',
         lambda: zw.VirtualCoupling(1, 2, zw.Wall(9)),
     ),
+    (
+        'type = "scene"\nport = "tip"\n[[environment.elements]]\ntype = "spring"\nfirst = "tip"\n'
+        'second = "body"\nstiffness = "3 N/mm"\nname = "shaft"\n[[environment.elements]]\ntype = "mass"\n'
+        'node = "body"\nmass = "20 g"',
+        lambda: zw.Scene(
+            [zw.scene.Spring("tip", "body", 3000, name="shaft"), zw.scene.Mass("body", "0.02")], port="tip"
+        ),
+    ),
 ]
 
 

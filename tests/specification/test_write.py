@@ -8,7 +8,7 @@ import pytest
 from needed import needed
 
 import zwidth as zw
-from zwidth import rendering
+from zwidth import rendering, scene
 from zwidth.rendering import LAWS
 from zwidth.specification.environments import TYPES
 from zwidth.specification.read import load
@@ -39,6 +39,22 @@ ENVIRONMENTS = {
     "transfer-function": zw.ContinuousTransferFunction([1, 2], [1, THIRD], discretization="zoh"),
     "pulse-transfer-function": zw.PulseTransferFunction([1, "-0.5"], [1, "0.25"]),
     "its own period": zw.PulseTransferFunction([1], [1], sample_period="0.001"),
+    "coupled-body": zw.coupling.CoupledBody(
+        100, "0.05", THIRD, "0.1", 3, "trapezoidal", exchange_delay=2, wave_impedance=4
+    ),
+    "scene": zw.Scene(
+        [
+            scene.Spring("tip", "a", THIRD),
+            scene.Mass("a", "0.02", name='the "tool"'),
+            scene.Damper("a", "b", 2),
+            scene.Lever("a", "b", "-1.5"),
+            scene.Contact("b", "ground", 1000, "0.5", "0.001"),
+            scene.CoulombFriction("b", "ground", "0.1"),
+            scene.NonlinearSpring("a", "ground", [-1, THIRD], [-1, 2]),
+            scene.LineEnd("a", 3),
+        ],
+        port="tip",
+    ),
     "virtual-coupling": zw.VirtualCoupling(1000, 2, zw.VirtualCoupling(500, 1, zw.Wall(100))),
 }
 CHOSEN = {

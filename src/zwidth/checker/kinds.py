@@ -29,6 +29,8 @@ from .loop.nonlinear_spring import NONLINEAR_SPRING, endless_pull, nonlinear_spr
 from .loop.spring import SPRING, spring
 from .loop.violation import VIOLATION, violation
 from .loop.wave_port import WAVE_PORT, wave_port
+from .pair.held import HELD_PAIR, HELD_VIOLATION, held_pair, held_violation
+from .pair.held_motion import HELD_MOTION, held_motion_energy
 from .pair.motion import PAIR_MOTION, pair_motion_energy, pair_stored_at_start
 from .pair.passive import PAIR_PROOF, PAIR_VIOLATION, pair, pair_violation
 from .port.index import POSITIVE_REAL, positive_real
@@ -149,6 +151,11 @@ KINDS: dict[str, Kind] = {
     "pair violation": Kind(PAIR_VIOLATION, _proof(pair_violation), scope.of_a_pair(ACTIVE)),
     "pair motion": Kind(
         PAIR_MOTION, _motion(pair_motion_energy, pair_stored_at_start), scope.of_a_pair(ACTIVE)
+    ),
+    "held pair": Kind(HELD_PAIR, _proof(held_pair), scope.of_a_held_pair(PASSIVE)),
+    "held pair violation": Kind(HELD_VIOLATION, _proof(held_violation), scope.of_a_held_pair(ACTIVE)),
+    "held pair motion": Kind(
+        HELD_MOTION, _motion(held_motion_energy, _nothing), scope.of_a_held_pair(ACTIVE)
     ),
     "arm": Kind(ARM, _arm, scope.of_an_arm),
     "violation": Kind(VIOLATION, _proof(violation), _of_every_hand(KEPT, ACTIVE)),

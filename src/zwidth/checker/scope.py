@@ -33,7 +33,7 @@ class Scope(NamedTuple):
         hand comes to rest, or does not.  "index at least", "index below": of a port.
     hands
         "every"; "bounded", within bounds of speed and depth; "activity", that give out no more than a
-        stated activity; "known".
+        stated activity; "known"; "beside a known one", of two arms one of which that one holds.
     contact
         "made and broken" at will; "kept": the hand stays inside; "both sides": the law has no surface.
         Of a motion: what it does.
@@ -71,7 +71,7 @@ def weakest(scopes: Sequence[Scope]) -> Scope | None:
     )
 
 
-_FEWEST_FIRST = ("known", "bounded", "every", "activity")
+_FEWEST_FIRST = ("known", "beside a known one", "bounded", "every", "activity")
 """Each of them is among the hands of the next one: those of an activity may also have none."""
 
 
@@ -157,6 +157,11 @@ def of_a_pair(shows: str) -> Callable[[Read], Scope]:
         return Scope(shows, encoder=COUNTED if counted else IDEAL)
 
     return scope
+
+
+def of_a_held_pair(shows: str) -> Callable[[Read], Scope]:
+    """Every hand on one arm; on the other one that is known."""
+    return lambda told: of_a_pair(shows)(told)._replace(hands="beside a known one")
 
 
 def of_a_port(shows: str) -> Callable[[Read], Scope]:

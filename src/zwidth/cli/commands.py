@@ -112,6 +112,18 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth simulate my-arms.toml --operator finger --follower-operator wall "
             "--follower-operator.stiffness '2 kN/m' --duration 1",
         ),
+        "network": Command(
+            "run a scene in several processes, with the devices that hold it",
+            "Start a process for each part of a scene and for each device, join them by lines over shared\n"
+            "memory, UDP or Zenoh, and say what each saw: pace, delay, losses, energy.",
+            "A file has the scene in [environment], and in [network] who runs what. On several machines\n"
+            "give --run NAME on each, with channels that reach the others.\n\n"
+            "exit status: 0 all ran to the end, 1 one of them did not, 2 bad input, 130 interrupted\n\n"
+            "examples:\n"
+            "  zwidth network room.toml --duration '10 s'\n"
+            "  zwidth network room.toml --run bed\n"
+            "  zwidth network room.toml --plan",
+        ),
         "traces": Command(
             "compare saved touches",
             "Read traces that zwidth simulate saved, and set their numbers beside each other.",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from zwidth.cli.decision import exit_status
+from zwidth.cli.known_hands import hand_parameters, known_hands
 from zwidth.cli.options import add_all, add_output, coupling_parameters, given
 from zwidth.cli.output import print_json, say_written, targets, writing
 from zwidth.specification.pairs import load_pair
@@ -26,15 +27,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_output(parser, "the verdict", "the plots", "verdict and evidence as JSON, for zwidth verify")
     coupling = parser.add_argument_group("coupling", "override what [coupling] says, or replace it")
     add_all(coupling, coupling_parameters())
+    hands = parser.add_argument_group("hands", "leave out what any hand may hold")
+    add_all(hands, hand_parameters())
 
 
 def run(arguments: argparse.Namespace) -> int:
     """`zwidth pair`: the status says the outcome."""
-    from zwidth.passivity.pairs import check_pair
+    from zwidth.passivity.check import check
 
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     pair = load_pair(arguments.sources, given(arguments, [p.key for p in coupling_parameters()]))
-    verdict = check_pair(pair)
+    verdict = check(pair, **known_hands(arguments, pair.motion))
     if save is not None:
         with writing(save):
             verdict.save(save)

@@ -133,7 +133,7 @@ def build_touch(
             hand_table.override(key.removeprefix(f"{OPERATOR}."), value)
         else:
             run_table.override(key, value)
-    hand = _hand(hand_table, motion, OPERATOR)
+    hand = build_hand(hand_table, motion, OPERATOR)
     run_table.check_keys(KEYS, "a simulation")
     options = _options(run_table, motion)
     return Touch(hand, options.pop("duration", None), options)
@@ -153,7 +153,7 @@ def build_follower(table: Table | None, overrides: Mapping[str, str], motion: st
     if not table.values:
         return None
     if table.values.get("type") != WALL:
-        return _hand(table, motion, FOLLOWER)
+        return build_hand(table, motion, FOLLOWER)
     table.check_keys(("type", *_WALL_KEYS), "a wall that the follower meets")
     if "stiffness" not in table.values:
         raise InputError(f"{table.label}: the wall that the follower meets needs a stiffness")
@@ -166,7 +166,14 @@ def build_follower(table: Table | None, overrides: Mapping[str, str], motion: st
         return Wall(numbers["stiffness"], numbers.get("damping", 0))
 
 
-def _hand(table: Table, motion: str, option: str) -> Operator:
+def build_hand(table: Table, motion: str, option: str = OPERATOR) -> Operator:
+    """The hand that a table describes; `option` is what it is called on the command line.
+
+    Raises
+    ------
+    InputError
+        As `build_touch`.
+    """
     if "type" not in table.values:
         kinds = ", ".join((*OPERATORS, RECORD, WITNESS))
         raise InputError(f"no hand is given: set --{option.replace('_', '-')} to one of {kinds}")

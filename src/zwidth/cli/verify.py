@@ -27,8 +27,12 @@ _OF_BOUNDED_HANDS = "zwidth worst hand 1"
 _OF_TWO_ARMS = ("pair", "pair violation")
 """Proofs about arms that follow each other."""
 
-_OF_JOINTS = "zwidth gains 1"
-"""A document that holds one of two arms for each joint."""
+_ONE_BY_ONE = {"zwidth gains 1": "joints", "zwidth passive masses 1": "verdicts"}
+"""Documents that hold one for each joint, or for each of some masses, and where."""
+
+_BESIDE_A_KNOWN_ONE = "beside a known one"
+_OF_A_HELD_PAIR = "zwidth held pair 1"
+"""Hands on the free one of two arms, and the documents about them."""
 
 _OF_A_PORT = "zwidth indices 1"
 """A document about a port by itself."""
@@ -88,8 +92,8 @@ def verifications(document: object) -> list[Part]:
         If the document contains no evidence.
     """
     told = document if isinstance(document, Mapping) else {}
-    if told.get("format") == _OF_JOINTS:
-        return [part for joint in _joints(told) for part in verifications(joint)]
+    if told.get("format") in _ONE_BY_ONE:
+        return [part for one in _listed(told, _ONE_BY_ONE[told["format"]]) for part in verifications(one)]
     found = [_with_law(Part(part, verify_document(part))) for part in evidence(document)]
     outcome = told.get("outcome")
     if outcome not in ("passive", "passive in contact", "active"):
@@ -101,18 +105,18 @@ def verifications(document: object) -> list[Part]:
     return [_refused(part, outcome, _misfit(part, outcome, told)) for part in found]
 
 
-def _joints(told: Mapping[str, Any]) -> Sequence[object]:
+def _listed(told: Mapping[str, Any], key: str) -> Sequence[object]:
     """Those of which something is proved."""
-    joints = told.get("joints")
-    if not isinstance(joints, Sequence) or isinstance(joints, str):
-        raise InputError("no evidence found: the document has no joints")
+    listed = told.get(key)
+    if not isinstance(listed, Sequence) or isinstance(listed, str):
+        raise InputError(f"no evidence found: the document has no {key}")
     found = [
-        joint
-        for joint in joints
-        if not isinstance(joint, Mapping) or joint.get("outcome") != "undecided" or set(EVIDENCE) & set(joint)
+        one
+        for one in listed
+        if not isinstance(one, Mapping) or one.get("outcome") != "undecided" or set(EVIDENCE) & set(one)
     ]
     if not found:
-        raise InputError("no evidence found: nothing was proved of any joint")
+        raise InputError(f"no evidence found: nothing was proved of any of the {key}")
     return found
 
 
@@ -144,6 +148,8 @@ def _misfit(part: Part, outcome: str, told: Mapping[str, Any]) -> str | None:
         return "is of corners that show different things"
     if covered.shows in ("stable", "unstable"):
         return "is of a hand that is known"
+    if covered.hands == _BESIDE_A_KNOWN_ONE and told.get("format") != _OF_A_HELD_PAIR:
+        return "is of two arms of which a known hand holds one"
     if covered.shows in ("index at least", "index below"):
         return _misfit_of_a_port(part.evidence, covered.shows, outcome, told)
     if outcome == "active":
@@ -202,6 +208,10 @@ def _head(covered: Scope, kind: str) -> str:
         return "Proved"
     if covered.shows in ("index at least", "index below"):
         return "Of the port below, proved"
+    if covered.hands == _BESIDE_A_KNOWN_ONE:
+        if covered.shows == "active":
+            return "A hand can take any amount of energy out of the arms below, proved"
+        return "A hand on the arm that is not held takes no energy out of the arms below, proved"
     if kind in _OF_TWO_ARMS:
         if covered.shows == "active":
             return "Two hands can take any amount of energy out of the arms below, proved"

@@ -9,6 +9,7 @@ the law may pull by `clamped`.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple, Self
@@ -42,6 +43,20 @@ class PowerLaw(NamedTuple):
     stiffness: Exact
     exponent: Exact
     dissipation: Exact
+
+
+class Stepped(NamedTuple):
+    """A law that is stepped as a scene is: what its step reads, and the energy in it at first [J]."""
+
+    numbers: Iterable[float]
+    stored: float
+
+
+class CouplingLaw(NamedTuple):
+    """K and B of a spring and damper by backward Euler, f_k = K u_k + B (u_k − u_{k−1})/T."""
+
+    stiffness: Fraction
+    damping: Fraction
 
 
 class Box(NamedTuple):
@@ -154,6 +169,37 @@ class Environment(Parametric, ABC):
         ------
         InputError
             If one of them is an interval.
+        """
+        return None
+
+    @property
+    def passive_backward(self) -> bool:
+        """True where Σ f_k (x_k − x_{k−1}) ≥ −S for every motion is known of how the law is made."""
+        return False
+
+    @property
+    def starts_at_rest(self) -> bool:
+        """True where the law is at rest wherever a touch starts, as what is `stepped` is."""
+        return False
+
+    @property
+    def coupling(self) -> CouplingLaw | None:
+        """The spring and damper that stand before a law which is `passive_backward`; None where none do.
+
+        Raises
+        ------
+        InputError
+            If one of their numbers is an interval.
+        """
+        return None
+
+    def stepped(self, sample_period: Fraction, couplings: tuple[CouplingLaw, ...] = ()) -> Stepped | None:
+        """What the simulator steps in the place of H(z), couplings first; None of most laws.
+
+        Raises
+        ------
+        InputError
+            If one of its numbers is an interval.
         """
         return None
 

@@ -5,6 +5,7 @@
     f   = g x_m + Σ (sections)          H(z), each section a transposed direct form;
     f   = table(x_m)                    or points, linear between them
     f   = K uⁿ (1 + λ v)                or a contact, u = max(x_m, 0), v the backward difference of x_m
+    f   = step of a scene               or a scene, moved to x_m
     f   = max(f, 0)                     where the law never pulls
     f   = law(x_m, f)                   one after the other, where laws render the environment
     f   = ΔF round(f/ΔF)                what the converter makes of it
@@ -18,17 +19,21 @@ from __future__ import annotations
 
 from zwidth.compiled import Array, compiled
 from zwidth.rendering.chain import after, before
+from zwidth.scene.step import scene_force
 
 BILATERAL, PENETRATION, SURFACE = 0.0, 1.0, 2.0
 """At the surface: a law without one; one fed with max(x_m, 0); one fed with x_m.  Both push inside only."""
 
 # The packed law: gate, encoder resolution, phase, force step, force limit (0: none), whether it never
-# pulls, number of sections, number of points, whether it is a contact; then for each section its order n,
-# b_0 … b_n, a_1 … a_n; or, where there are points and no section, their positions and their forces; or K, n
-# and λ/T of a contact, which remembers the last reading.
+# pulls, number of sections, number of points, whether it is a contact or a scene; then for each section its
+# order n, b_0 … b_n, a_1 … a_n; or, where there are points and no section, their positions and their forces;
+# or K, n and λ/T of a contact, which remembers the last reading; or a scene as `scene.layout` has it.
 # Behind all that the laws in a chain, see `rendering.chain`: how many, where they begin, where their memory.
 GATE, RESOLUTION, PHASE, STEP, LIMIT, CLAMPED, SECTIONS, POINTS, CONTACT, CHAIN, ROW, REMEMBERED = range(12)
 HEADER = 12
+
+POWER_LAW, SCENE = 1.0, 2.0
+"""Which contact: K uⁿ (1 + λ v), or a scene."""
 
 
 @compiled
@@ -75,6 +80,8 @@ def contact_force(law: Array, memory: Array, reading: float) -> float:
 def law_force(law: Array, memory: Array, reading: float) -> float:
     """The force that the law commands at a measured position; its memory moves on."""
     gate = law[GATE]
+    if law[CONTACT] == SCENE:
+        return scene_force(law, HEADER, memory, 0, reading)
     x = max(reading, 0.0) if gate == PENETRATION else reading
     points = int(law[POINTS])
     f = table_force(law, points, x) if points > 0 else 0.0
@@ -91,7 +98,7 @@ def law_force(law: Array, memory: Array, reading: float) -> float:
         f += y
         at += 2 * order + 2
         slot += order
-    if law[CONTACT] > 0.0:
+    if law[CONTACT] == POWER_LAW:
         f = contact_force(law, memory, reading)
     if law[CLAMPED] > 0.0:
         f = max(f, 0.0)

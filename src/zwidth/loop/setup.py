@@ -24,6 +24,7 @@ from zwidth.operator.operator import Operator, Signals
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.rendering.rendered import laws_of
 from zwidth.rendering.rendering_law import LoopContext, RenderingLaw
+from zwidth.scene.layout import scene_at_rest
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -274,7 +275,10 @@ def _body(law: Environment, period: Fraction) -> tuple[list[float], list[float]]
         return [0.0, float(len(places)), 0.0], [*map(float, places), *map(float, forces)]
     if law.power_law is not None:
         k, n, dissipation = law.power_law
-        return [0.0, 0.0, 1.0], [float(k), float(n), float(dissipation.fraction / period)]
+        return [0.0, 0.0, laws.POWER_LAW], [float(k), float(n), float(dissipation.fraction / period)]
+    stepped = law.stepped(period)
+    if stepped is not None:
+        return [0.0, 0.0, laws.SCENE], list(stepped.numbers)
     sections = sections_of(law, period)
     return [float(len(sections)), 0.0, 0.0], [c for s in sections for c in s]
 
@@ -316,8 +320,10 @@ def resting_memory(setup: Setup, reading: float) -> Array:
 def at_rest(law: Array, reading: float) -> Array:
     """The law's memory after it has read this position for ever; 0 where it would not settle."""
     gate, at = law[laws.GATE], laws.HEADER
-    if law[laws.CONTACT] > 0.0:
+    if law[laws.CONTACT] == laws.POWER_LAW:
         return np.array([reading])
+    if law[laws.CONTACT] == laws.SCENE:
+        return scene_at_rest(law, laws.HEADER, reading)
     x = max(reading, 0.0) if gate == laws.PENETRATION else reading
     remembered: list[float] = []
     for _ in range(int(law[laws.SECTIONS])):

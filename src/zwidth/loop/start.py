@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 DOWNHILL = "the spring pushes away for ever at one end, so that what it holds has no bound"
 IN_A_ROW = "laws in a chain may hold energy of their own"
+LOADED = "the scene is loaded where the touch starts, and pushes the handle"
 ON_THE_WAY = "the amplifier has not yet reached the force of the law when the touch starts"
 
 
@@ -120,6 +121,8 @@ def rest_position(law: Environment, period: Fraction, start: float) -> float:
     met = law.met
     if met.unilateral:
         return start
+    if met.starts_at_rest:
+        return 0.0  # so that positions in it are those of the handle
     if met.points:
         return _lowest(*_columns(met.points), start)
     stiffness = _static_stiffness(met, period)
@@ -129,6 +132,9 @@ def rest_position(law: Environment, period: Fraction, start: float) -> float:
 def held_at_start(at: Start, deepest: float) -> Held:
     """What the loop holds at the start; `deepest` is the largest reading of the touch."""
     met = at.law.met
+    stepped = met.stepped(at.period)
+    if stepped is not None:
+        return Held(stored=None, unknown=LOADED) if stepped.stored else Held()
     if met.unilateral and at.reading <= 0.0:
         return Held(stored=at.plant.coulomb * max(at.beyond, 0.0))
     found = _of_law(at, met, deepest)

@@ -18,12 +18,12 @@ from zwidth.device import Device
 from zwidth.environment import BackwardDifference
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
+from zwidth.operator.hand_impedance import as_hand
 from zwidth.quantity.balls import precision
 from zwidth.quantity.exact import RealLike
 from zwidth.stability.known_hand.characteristic import PRECISIONS, family
 from zwidth.stability.known_hand.coupled import motion_of
 from zwidth.stability.known_hand.crossing import Curve, curve, line, plain
-from zwidth.stability.known_hand.hand import as_hand
 
 _SLOWEST = 1e-4
 """Smallest angle ωT on the curve, as a part of π."""

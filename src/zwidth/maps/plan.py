@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from zwidth.environment import Wall
 from zwidth.environment.environment import RationalFunction
+from zwidth.loop.sampled_plant import Coefficients, Motion
 from zwidth.maps.request import Array, Request
 from zwidth.maps.sustained import sustained_walls
 from zwidth.passivity.decision import decide
@@ -32,7 +33,6 @@ from zwidth.quantity.exact import Exact
 from zwidth.stability.known_hand.characteristic import Family, as_floats, bilinear, family
 from zwidth.stability.known_hand.coupled import motion_of
 from zwidth.stability.known_hand.crossing import last_stable, plain
-from zwidth.stability.known_hand.plant import Coefficients, Motion
 
 _BITS = 192
 """Of the coefficients before they are rounded to doubles."""

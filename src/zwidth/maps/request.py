@@ -20,10 +20,9 @@ from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
 from zwidth.operator import Dowel, Finger
+from zwidth.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.quantity.exact import Exact, RealLike, ends
-from zwidth.stability.known_hand import HandImpedance
 from zwidth.stability.known_hand.coupled import motion_of
-from zwidth.stability.known_hand.hand import as_hand
 
 Array = NDArray[np.float64]
 

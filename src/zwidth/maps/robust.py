@@ -16,10 +16,9 @@ from zwidth.device import Device
 from zwidth.environment import BackwardDifference, Wall
 from zwidth.environment.velocity import VelocityEstimator
 from zwidth.errors import InputError
+from zwidth.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.quantity.exact import Exact, RealLike
 from zwidth.stability.known_hand.coupled import largest_stable, motion_of
-from zwidth.stability.known_hand.decide import corners
-from zwidth.stability.known_hand.hand import HandImpedance, as_hand
 
 
 def robust_boundary(
@@ -94,6 +93,6 @@ def _limits(device: Device, hand: HandImpedance, wall: Wall) -> tuple[float, ...
     found, _ = largest_stable(motion, wall, device.motion)
     worst = min(
         (largest_stable(corner, wall, device.motion)[0] or 0.0, *(float(ends[0]) for ends in corner[:3]))
-        for corner in corners(motion)
+        for corner in motion.grid(2)
     )
     return (np.nan if found is None else found, *worst)

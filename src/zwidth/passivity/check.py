@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from zwidth.arms.matrix_wall import MatrixWall
     from zwidth.environment import Wall
     from zwidth.passivity.pairs import PairVerdict
+    from zwidth.passivity.pairs.held import HeldVerdict
     from zwidth.passivity.workspace import Workspace
 
 MOST_CORNERS_OF_HIGH_DEGREE = 8
@@ -59,6 +60,8 @@ def check(
 @overload
 def check(device: Pair) -> PairVerdict: ...
 @overload
+def check(device: Pair, *, leader: Any = ..., follower: Any = ...) -> PairVerdict | HeldVerdict: ...
+@overload
 def check(device: Arm, environment: Wall | MatrixWall, **of_an_arm: Any) -> Workspace: ...
 def check(
     device: Device | Arm | Pair,
@@ -67,7 +70,7 @@ def check(
     contact: str = "made and broken",
     progress: Callable[[int], None] | None = None,
     **of_an_arm: Any,
-) -> Verdict | Workspace | PairVerdict:
+) -> Verdict | Workspace | PairVerdict | HeldVerdict:
     """Decide whether a hand can ever take energy out of the sampled loop.
 
     Passive means ∫ f_h v dt + E(0) ≥ 0 for every motion, E(0) finite.  For a
@@ -91,7 +94,8 @@ def check(
     device
         The device; where parameters are intervals the verdict holds for all values.  An arm of several joints
         is answered by `workspace`, whose further arguments (rate, delay, …) are given by name.  A `Pair` of
-        arms that follow each other stands alone, and has its verdict from `check_pair`.
+        arms that follow each other stands alone, and has its verdict from `check_pair`; with
+        ``follower=hand`` or ``leader=hand``, None for nobody, from `check_held_pair`.
     environment
         Whatever can be rendered: an `Environment`, what `render` gives, a discrete python-control or
         scipy.signal system H(z); for an arm a `Wall` or a `MatrixWall`.
@@ -133,10 +137,17 @@ def check(
     return with_value_iteration(device, law, verdict, progress)
 
 
-def _check_pair(pair: Pair, environment: Any, further: Mapping[str, Any]) -> PairVerdict:
+def _check_pair(pair: Pair, environment: Any, further: Mapping[str, Any]) -> PairVerdict | HeldVerdict:
     """The verdict on two arms that follow each other."""
-    if environment is not None or further:
-        raise InputError("a pair of arms holds its coupling in itself: check(pair)")
+    if environment is not None or not {"leader", "follower"}.issuperset(further):
+        raise InputError(
+            "a pair of arms holds its coupling in itself: check(pair), or check(pair, follower=hand) where a "
+            "known hand holds an arm"
+        )
+    if further:
+        from zwidth.passivity.pairs.held import check_held_pair
+
+        return check_held_pair(pair, **further)
     from zwidth.passivity.pairs import check_pair
 
     return check_pair(pair)

@@ -23,6 +23,11 @@ def claim(verdict: Found) -> str:
     if verdict.outcome == "undecided":
         return " ".join([_undecided(verdict), *_by_bounded_hands(verdict)])
     proved = claim_of_passivity(verdict.scope, verdict.at_limit)
+    if verdict.outcome == "passive without encoder steps":
+        return (
+            f"Read without encoder steps: {proved} With steps no Coulomb friction is enough for every scene, "
+            "and of this one nothing is known."
+        )
     if verdict.outcome == "passive":
         return proved
     open_still = ["Of one that touches and leaves nothing is proved or refuted."]
@@ -54,6 +59,8 @@ _ROADS = {
 
 def decided_by(verdict: Found) -> str:
     """The road on which the outcome was found."""
+    if "behind a coupling" in verdict.scope.law:
+        return "the condition on the coupling, whatever passive scene stands behind it"
     if verdict.certificate is not None:
         documents = verdict.certificate.documents
         return "; ".join(dict.fromkeys(_ROADS.get(d["kind"], d["kind"]) for d in documents))
@@ -91,6 +98,16 @@ def _undecided(verdict: Found) -> str:
         return (
             "Beyond an end the spring pulls away, with no more than Coulomb friction holds: its potential "
             "has no lowest value, and no proof for that is known."
+        )
+    if verdict.finding == "no coupling":
+        return (
+            "Of a scene that is not linear, or of many elements, a proof is known only behind a virtual "
+            "coupling: zwidth.VirtualCoupling(stiffness, damping, scene)."
+        )
+    if verdict.finding == "no coupling is enough":
+        return (
+            "The coupling's damping takes away as much as its stiffness holds, K T + 2 B ≤ 0: no damping of "
+            "the device is enough for every scene behind it."
         )
     decision: Decision | None = getattr(verdict, "decision", None)  # of laws with H(z)
     return _not_found(verdict) if decision is None else _open(decision)

@@ -20,10 +20,18 @@ if TYPE_CHECKING:
     from zwidth.passivity.storage import AvailableStorage
     from zwidth.passivity.storage.evidence.gain import Gain
 
-Finding = Literal["open", "unconfirmed", "between corners", "depends on values", "no lowest energy"]
+Finding = Literal[
+    "open",
+    "unconfirmed",
+    "between corners",
+    "depends on values",
+    "no lowest energy",
+    "no coupling",
+    "no coupling is enough",
+]
 """Why a loop is undecided: neither shown; a proof that the checker did not confirm; proved at the corners of
 intervals and not between them; active at one corner and not at others; a spring that pulls away for ever, but
-no more than Coulomb friction holds."""
+no more than Coulomb friction holds; a scene without a coupling; one behind a coupling that loses nothing."""
 
 
 class Need(NamedTuple):

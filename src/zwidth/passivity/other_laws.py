@@ -2,6 +2,7 @@
 
     a nonlinear spring       its slopes; else value iteration, or a motion
     a Hunt–Crossley contact  value iteration, for hands within bounds
+    a scene                  the coupling before it
     laws in a chain            force bounding at the end; a wall with as much virtual damping covers them;
                              a proof on paper, where the last law has one; value iteration
 
@@ -17,6 +18,7 @@ from zwidth.device import Device
 from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity import gap
+from zwidth.passivity.behind_coupling import Closed, decide_behind_coupling
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.covering import covering
 from zwidth.passivity.found import Need
@@ -30,8 +32,6 @@ _ACTUATOR = ("force_limit", "force_resolution", "motor_inductance", "supply_volt
 """What a device states of its actuator."""
 
 Progress = Callable[[int], None]
-Closed = Callable[[Device, Environment], Verdict]
-"""How a law with H(z) is decided."""
 
 
 def check_other(
@@ -44,7 +44,7 @@ def check_other(
     device
         Where parameters are intervals, damping, Coulomb friction and resolution are taken at their worst.
     law
-        A `NonlinearSpring`, a `HuntCrossley` contact, or what `render` gives.
+        A `NonlinearSpring`, a `HuntCrossley` contact, a scene, or what `render` gives.
     closed
         How a wall that covers laws in a chain is decided.
     progress
@@ -61,6 +61,8 @@ def check_other(
         verdict = _spring(worst, law, asked, progress)
     elif law.power_law is not None:
         verdict = _by_values(Verdict("undecided", asked, worst, law), progress)
+    elif law.starts_at_rest:
+        verdict = decide_behind_coupling(Verdict("undecided", asked, worst, law), closed)
     elif laws_of(law):
         verdict = _row(worst, law, asked, closed, progress)
     else:

@@ -3,7 +3,7 @@
 passive             a proof, with contact made and broken at will, or as was asked
 passive in contact  a proof of hands that stay inside alone, where nothing else was asked
 passive without encoder steps
-                    a proof of an arm that is read without steps, where this one has them
+                    a proof of an arm, or of a scene, that is read without steps, where this one has them
 theorem             a proof on paper, reckoned in doubles, without a certificate
 active              a motion that takes energy out, or a proof that there is one
 undecided           neither

@@ -41,6 +41,7 @@ Law = Literal[
     "table",
     "doubles",
     "any before the last",
+    "behind a coupling",
     "covered by a wall",
     "covered with less friction",
     "potential bounded below",

@@ -31,7 +31,7 @@ class Verdict(Found):
     Attributes
     ----------
     outcome
-        "passive", "passive in contact", "theorem", "active" or "undecided".
+        "passive", "passive in contact", "passive without encoder steps", "theorem", "active" or "undecided".
     scope
         What it is about: hands, contact, encoder, actuator.
     device, environment

@@ -16,7 +16,15 @@ from fractions import Fraction
 from typing import Any
 
 from zwidth.environment.discretization import trimmed
-from zwidth.environment.environment import Environment, RationalFunction, add, certain, multiply
+from zwidth.environment.environment import (
+    CouplingLaw,
+    Environment,
+    RationalFunction,
+    Stepped,
+    add,
+    certain,
+    multiply,
+)
 from zwidth.environment.transfer_function import as_environment
 from zwidth.environment.wall import NEGATIVE_SPRING
 from zwidth.environment.wording import with_unit
@@ -25,12 +33,13 @@ from zwidth.quantity.exact import ends
 from zwidth.quantity.parameter import Reads, Uncertain, parameter, part
 
 
-def _linear(given: Any, name: str) -> Environment:
-    """The environment, if H(z) says all about it: that of coupling and environment is made of it."""
+def _behind(given: Any, name: str) -> Environment:
+    """The environment, if H(z) says all about it, or if its step takes the coupling in."""
     environment = as_environment(given)
-    if not environment.linear:
+    if not (environment.linear or environment.starts_at_rest):
         raise InputError(
-            f"the {name} behind a coupling must be linear, which this is not: {environment.describe()}"
+            f"the {name} behind a coupling must be linear, or a zwidth.Scene with a port, which this is not: "
+            f"{environment.describe()}"
         )
     return environment
 
@@ -51,19 +60,54 @@ class VirtualCoupling(Environment):
     Raises
     ------
     InputError
-        If K_c < 0, or the environment is none or not linear.
+        If K_c < 0, or the environment is none, or neither linear nor a scene.
     """
 
     stiffness: Uncertain = parameter("stiffness", bound="≥ 0", why=NEGATIVE_SPRING)
     damping: Uncertain = parameter("virtual_damping")
     environment: Reads[Environment, Any] = part(
-        "environment", _linear, meaning="the environment behind the coupling"
+        "environment", _behind, meaning="the environment behind the coupling"
     )
 
     @property
     def unilateral(self) -> bool:
         """As the environment behind the coupling."""
         return self.environment.unilateral
+
+    @property
+    def linear(self) -> bool:
+        """As the environment."""
+        return self.environment.linear
+
+    @property
+    def has_transfer_function(self) -> bool:
+        """As the environment."""
+        return self.environment.has_transfer_function
+
+    @property
+    def starts_at_rest(self) -> bool:
+        """As the environment."""
+        return self.environment.starts_at_rest
+
+    @property
+    def passive_backward(self) -> bool:
+        """True before what is so, if B_c ≥ 0."""
+        return self.environment.passive_backward and ends(self.damping)[0] >= 0
+
+    @property
+    def coupling(self) -> CouplingLaw | None:
+        """K_c and B_c before what is passive in the backward pairing; None before anything else."""
+        return self._law if self.environment.passive_backward else None
+
+    @property
+    def _law(self) -> CouplingLaw:
+        return CouplingLaw(certain(self.stiffness, "stiffness"), certain(self.damping, "damping"))
+
+    def stepped(self, sample_period: Fraction, couplings: tuple[CouplingLaw, ...] = ()) -> Stepped | None:
+        """The step of a scene with this coupling in it; None before anything else."""
+        if not self.starts_at_rest:
+            return None
+        return self.environment.stepped(sample_period, (*couplings, self._law))
 
     @property
     def spring(self) -> bool:

@@ -14,6 +14,7 @@ from zwidth.environment import Environment
 from zwidth.errors import InputError
 from zwidth.quantity.kind import Kind, bracketed
 from zwidth.quantity.parameter import Parameter
+from zwidth.specification.scenes import build_elements
 from zwidth.specification.table import COMMAND_LINE, Table, located, quoted, suggestion
 from zwidth.specification.values import read
 
@@ -51,6 +52,12 @@ TYPES: Mapping[str, Kind] = MappingProxyType(
             "VirtualCoupling",
             "spring and damper between the device and another environment",
         ),
+        "scene": Kind("scene.scene", "Scene", "masses, springs, contacts, … that give out no energy"),
+        "coupled-body": Kind(
+            "environment.coupled_body",
+            "CoupledBody",
+            "mass behind a virtual coupling, as an integrator steps it",
+        ),
     }
 )
 
@@ -60,12 +67,12 @@ def option_keys() -> dict[str, Parameter]:
 
     There `damping` is the device's, so the environment's is `virtual_damping`;
     `sample_period`, too, is the device's. A key of the environment behind a
-    coupling is written `environment.stiffness`.
+    coupling is written `environment.stiffness`.  A scene is given in a file.
     """
     return {
         "virtual_damping" if name == "damping" else name: key
         for name, key in all_keys().items()
-        if key.form != "environment" and name != "sample_period"
+        if key.form not in ("environment", "elements", "node") and name != "sample_period"
     }
 
 
@@ -103,6 +110,8 @@ def build_environment(table: Table, motion: str, depth: int = 0) -> Environment:
 
 def _named(table: Table, key: str) -> str:
     """A key as it is written where the table was: as an option on the command line."""
+    if key == "elements":
+        return "elements, one [[environment.elements]] table each, in a file"
     own = "virtual_damping" if key == "damping" else key
     return f"--{own.replace('_', '-')}" if table.label == COMMAND_LINE else own
 
@@ -121,6 +130,8 @@ def _read(table: Table, key: str, own: Parameter, motion: str, depth: int) -> An
     value = table.values[key]
     if own.form == "environment":
         return _nested(table, key, value, motion, depth)
+    if own.form == "elements":
+        return build_elements(value, table.where(key), motion)
     with located(table.where(key)):
         return read(value, key, own, motion)
 

@@ -102,6 +102,13 @@ def flag(value: object, key: str) -> bool:
     raise InputError(f"{key} is true or false; got {given}")
 
 
+def as_text(value: object, key: str) -> str:
+    """The name of a node, or of an element."""
+    if not isinstance(value, str):
+        raise InputError(f'{key} is a name in quotes, such as {key} = "tool"')
+    return value
+
+
 FILTERS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "backward-difference": (),
@@ -174,6 +181,6 @@ def _filter_table(text: str) -> dict[str, object]:
 
 
 _READ: Mapping[str, Callable[[Any, str], Any]] = MappingProxyType(
-    {"coefficients": coefficients, "flag": flag, "velocity filter": velocity_filter}
+    {"coefficients": coefficients, "flag": flag, "node": as_text, "velocity filter": velocity_filter}
 )
 """By form, what has no unit."""

@@ -24,6 +24,7 @@ from zwidth.rendering import ESTIMATORS, LAWS
 from zwidth.specification.environments import TYPES
 from zwidth.specification.laws import with_laws
 from zwidth.specification.read import WITH_LAWS, Specification, specified, tables_of
+from zwidth.specification.scenes import ELEMENTS
 
 
 def written(device: Device, environment: Environment) -> str:
@@ -108,6 +109,8 @@ def _environment(environment: Environment, motion: str) -> dict[str, object]:
             values[key] = [_branch(branch, motion) for branch in value]
         elif kind.form == "environment":
             values[key] = _environment(value, motion)
+        elif kind.form == "elements":
+            values[key] = [_law(element, ELEMENTS, motion) for element in value]
         elif kind.form == "velocity filter":
             values[key] = _filter(value)
         elif value is not None:

@@ -107,7 +107,7 @@ def the_polynomial_is_enclosed() -> str:
             motion = motions.motion_of(
                 (Fraction(3),) * 2, zero, zero, Fraction(2), 2 * (whole + Fraction(part))
             )
-            loop = rest._Loop(motion, in_zeta(above), in_zeta(below))
+            loop = rest.Loop(motion, in_zeta(above), in_zeta(below))
             for bits in (20, 128):
                 found = rest._characteristic(loop, bits)
                 off = [

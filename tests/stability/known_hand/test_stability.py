@@ -11,11 +11,11 @@ from scipy.linalg import expm
 
 import zwidth as zw
 from zwidth.operator import Dowel, Finger, PrescribedMotion
+from zwidth.operator.hand_impedance import as_hand
 from zwidth.passivity.linear.schur import is_schur
 from zwidth.quantity.balls import precision
 from zwidth.stability.known_hand.characteristic import PRECISIONS, decays, family
 from zwidth.stability.known_hand.coupled import motion_of
-from zwidth.stability.known_hand.hand import as_hand
 
 MASS, PERIOD = Fraction("0.036"), Fraction("0.001")
 BARE = zw.Device(mass=MASS, damping=0, sample_period=PERIOD)

@@ -54,7 +54,9 @@ _Numbers = list[Any]
 """All Enclosed or all Fraction."""
 
 
-class _Loop(NamedTuple):
+class Loop(NamedTuple):
+    """What moves, and the law that pushes it."""
+
     motion: Motion
     above: list[int]  # H(z), in descending powers of ζ, both in whole numbers
     below: list[int]
@@ -64,7 +66,7 @@ def stability(told: Read) -> str:
     """That every motion dies out."""
     loop = _read(told.loop)
     middle = loop.motion.middle
-    if not _decays(loop._replace(motion=middle)):
+    if not comes_to_rest(loop._replace(motion=middle)):
         raise Invalid("that all roots lie inside the unit circle could not be confirmed")
     if middle == loop.motion:
         return "device, hand and wall come to rest after every disturbance, contact kept"
@@ -77,21 +79,21 @@ def instability(told: Read) -> str:
     loop = _read(told.loop)
     if loop.motion.middle != loop.motion:
         raise Invalid("that a loop does not come to rest is proved of single values, not of intervals")
-    if _decays(loop) is not False:
+    if comes_to_rest(loop) is not False:
         raise Invalid("that a root lies on or outside the unit circle could not be confirmed")
     return "device, hand and wall do not come to rest, contact kept: a disturbance does not die out"
 
 
-def _read(loop: Read) -> _Loop:
+def _read(loop: Read) -> Loop:
     motion = motion_of(loop.mass, loop.damping, loop.stiffness, loop.sample_period, loop.delay)
     above, below = loop.numerator, loop.denominator
     if below[0] == 0 or len(above) > len(below):
         raise Invalid("H(z) must be proper, with a denominator that does not begin with 0")
     scale = common_scale((*above, *below))
-    return _Loop(motion, *(shifted([int(c * scale) for c in part]) for part in (above, below)))
+    return Loop(motion, *(shifted([int(c * scale) for c in part]) for part in (above, below)))
 
 
-def _decays(loop: _Loop) -> bool | None:
+def comes_to_rest(loop: Loop) -> bool | None:
     """Of a certain loop, with more and more bits; without spring and damper exactly."""
     for bits in PRECISIONS:
         answer = decays(_characteristic(loop, bits))
@@ -104,13 +106,13 @@ def _decays(loop: _Loop) -> bool | None:
     return decays(whole) if cost <= MOST_EXACT else None
 
 
-def _characteristic(loop: _Loop, bits: int) -> list[Enclosed]:
+def _characteristic(loop: Loop, bits: int) -> list[Enclosed]:
     """P, monic, in descending powers of ζ."""
     above, below = ([quotient(c, loop.below[0], bits) for c in part] for part in (loop.above, loop.below))
     return _closed(sampled(loop.motion, bits), above, below, Enclosed(bits, 0))
 
 
-def _exactly(loop: _Loop) -> list[Enclosed]:
+def _exactly(loop: Loop) -> list[Enclosed]:
     """A whole multiple of P, its first coefficient > 0, of a motion without spring and damper."""
     found = _closed(sampled_free(loop.motion), loop.above, loop.below, Fraction(0))
     scale = lcm(*(c.denominator for c in found)) * (1 if loop.below[0] > 0 else -1)
@@ -126,7 +128,7 @@ def _closed(plant: Sampled, above: _Numbers, below: _Numbers, zero: Any) -> _Num
     return [*free[:ahead], *(x + y for x, y in zip(free[ahead:], force, strict=True))]
 
 
-def _covered(loop: _Loop) -> int:
+def _covered(loop: Loop) -> int:
     """In how many boxes no root was found to meet the circle."""
     order = len(loop.below) + 1 + int(loop.motion.late) + (loop.motion.late % 1 > 0)
     most = min(MOST_BOXES, MOST_EFFORT // (order**3 + ceil(SERIES * loop.motion.norm)))

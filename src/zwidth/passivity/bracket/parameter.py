@@ -17,6 +17,9 @@ Loop = tuple[Device, Environment]
 MORE_IS_SAFER = frozenset({"damping", "coulomb_friction", "rate"})
 """Parameters of a device of which a loop needs enough; of all others it may have too much."""
 
+_MORE_OF_A_LAW_IS_SAFER = frozenset({"virtual_mass"})
+"""The same of an environment."""
+
 _NO_PART = {
     "mass": "a hand without a limit on its force moves every mass as it likes",
     "stiction": "only sliding friction is counted",
@@ -95,7 +98,8 @@ def _of_environment(device: Device, environment: Environment, key: str) -> Param
         return device, environment.around(met.replace(**{key: value}))
 
     unit = met.unit_of(key, device.motion)
-    return Parameter(f"environment.{key}", unit, abs(float(now)) or _guess(device, key), change)
+    first = abs(float(now)) or _guess(device, key)
+    return Parameter(f"environment.{key}", unit, first, change, key in _MORE_OF_A_LAW_IS_SAFER)
 
 
 def _of_device(device: Device, environment: Environment, key: str) -> Parameter:

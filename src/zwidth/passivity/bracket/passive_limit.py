@@ -14,7 +14,7 @@ from zwidth.errors import InputError
 from zwidth.passivity.bracket.bounded import BoundedSearch
 from zwidth.passivity.bracket.bracket import Bracket
 from zwidth.passivity.bracket.parameter import parameter_of, refuse_without_part
-from zwidth.passivity.bracket.search import NOTHING, Search
+from zwidth.passivity.bracket.search import NOTHING, Search, is_stepped
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.storage.program import DynamicProgram, program_of
 from zwidth.passivity.storage.row.program import RowProgram, row_program
@@ -87,7 +87,9 @@ def passive_limit(
     counted = penetration, speed, force_limit, force_resolution, friction
     ideal = ends(device.resolution)[1] == 0
     in_a_row = bool(laws_of(law))
-    if not (ideal or in_a_row) and isinstance(first := program_of(device, law, *counted), DynamicProgram):
+    if not (ideal or in_a_row or is_stepped(law)) and isinstance(
+        first := program_of(device, law, *counted), DynamicProgram
+    ):
         first.warm_up()
     search = Search(asked, tolerance, time.monotonic(), time_limit(seconds), progress)
     if friction is not None and asked.name in ("device.damping", "device.coulomb_friction"):
@@ -99,6 +101,11 @@ def passive_limit(
     if not bounded and (search.is_close(every.passive, every.active) or (settled and ideal)):
         return search.bracket(every, (every.passive, every.active))  # no grid narrows an ideal encoder's
 
+    if is_stepped(law):
+        raise InputError(
+            "a scene that is not linear, or of many elements, is decided for every hand, behind a virtual "
+            "coupling, and read without encoder steps: give it one, the device resolution=0, and no bounds"
+        )
     # laws in a chain have one grid for all values: that on which they close as they are given
     grids = (row_program(device, law, *counted).counts,) if in_a_row else ()
 

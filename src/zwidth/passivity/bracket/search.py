@@ -6,11 +6,12 @@ import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from zwidth.environment.environment import Environment
 from zwidth.errors import InputError
 from zwidth.passivity.bracket.bracket import Bracket
 from zwidth.passivity.bracket.parameter import Parameter
 from zwidth.passivity.certificate import Certificate
-from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.check import check, check_by_closed_forms
 from zwidth.passivity.scope import Scope
 from zwidth.passivity.storage.evidence.gain import Gain
 from zwidth.passivity.storage.evidence.storage_function import StorageFunction
@@ -34,6 +35,11 @@ class Found(NamedTuple):
     witness: Gain | Witness | None
     scope: Scope
     violation: Violation | None = None
+
+
+def is_stepped(law: Environment) -> bool:
+    """True of a scene without H(z), which the coupling before it decides."""
+    return law.starts_at_rest and not law.has_transfer_function
 
 
 NOTHING = Found(None, None, None, None, Scope())
@@ -62,7 +68,8 @@ class Search:
         def verdict(value: Exact) -> Any:
             if value not in verdicts:
                 self.count()
-                verdicts[value] = check_by_closed_forms(*self.parameter.change(value))
+                device, law = self.parameter.change(value)
+                verdicts[value] = (check if is_stepped(law) else check_by_closed_forms)(device, law)
             return verdicts[value]
 
         def proved(value: Exact, _: float) -> bool:

@@ -1,8 +1,10 @@
+from zwidth.environment.coupled_body import CoupledBody as CoupledBody
 from zwidth.passivity.coupling import two_port as two_port
 from zwidth.passivity.coupling.coupling import CouplingCondition as CouplingCondition
 from zwidth.passivity.coupling.coupling import coupling_condition as coupling_condition
 from zwidth.passivity.coupling.coupling_design import CouplingDesign as CouplingDesign
 from zwidth.passivity.coupling.coupling_design import design_coupling as design_coupling
+from zwidth.passivity.coupling.heavy_body import heavy_body_damping as heavy_body_damping
 from zwidth.passivity.coupling.loop_transformation import PassivityExcess as PassivityExcess
 from zwidth.passivity.coupling.loop_transformation import SlopeBounds as SlopeBounds
 from zwidth.passivity.coupling.loop_transformation import TransformedCondition as TransformedCondition
@@ -13,3 +15,6 @@ from zwidth.passivity.coupling.loop_transformation import (
 )
 from zwidth.passivity.coupling.loop_transformation import transformed_blocks as transformed_blocks
 from zwidth.passivity.coupling.loop_transformation import transformed_condition as transformed_condition
+from zwidth.passivity.coupling.passive_masses import MassLimit as MassLimit
+from zwidth.passivity.coupling.passive_masses import PassiveMasses as PassiveMasses
+from zwidth.passivity.coupling.passive_masses import passive_masses as passive_masses

@@ -34,8 +34,9 @@ from zwidth.environment.environment import Environment, certain
 from zwidth.environment.wall import wall_of
 from zwidth.errors import InputError
 from zwidth.passivity.check import check
-from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition, needed_damping
+from zwidth.passivity.coupling.coupling import CouplingCondition, coupling_condition
 from zwidth.passivity.document import unit_key
+from zwidth.passivity.formulas.coupling_need import needed_damping
 from zwidth.passivity.formulas.hypotheses import number
 from zwidth.passivity.result import Result
 from zwidth.passivity.scope import Scope

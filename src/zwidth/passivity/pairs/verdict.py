@@ -13,7 +13,8 @@ from zwidth.pairs import Pair
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.pairs.advice import StiffnessAt, advise, stiffness_elsewhere
-from zwidth.passivity.pairs.compensation import assumed_of_forces, compensation_numbers, compensation_rows
+from zwidth.passivity.pairs.assumed import assumed_of_arms, assumed_of_timing, friction_goes_on
+from zwidth.passivity.pairs.compensation import compensation_numbers, compensation_rows
 from zwidth.passivity.pairs.criterion import PairCriterion, spending
 from zwidth.passivity.pairs.evidence import PairCertificate, PairViolation, PairWitness
 from zwidth.passivity.pairs.limits import (
@@ -28,8 +29,7 @@ from zwidth.passivity.pairs.motions import refute_criterion, refute_friction
 from zwidth.passivity.pairs.slow import refute_compensation
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
-from zwidth.quantity.exact import ends
-from zwidth.quantity.text import quantity_unit, shown
+from zwidth.quantity.text import shown
 from zwidth.showing import Lines, Part, Table
 
 _DIGITS = (2, 3, 4, 6, 9, 13)
@@ -129,23 +129,10 @@ class PairVerdict(PassivityAnswer):
         """The outcome in a sentence."""
         if self.outcome == "passive":
             hands = "No motion of two hands, one on each arm, takes energy out of this pair"
-            return f"{hands}{self._friction_goes_on}."
+            return f"{hands}{friction_goes_on(self.pair)}."
         if self.outcome == "active":
             return "Two hands, one on each arm, can take energy out of this pair, without end."
         return "Neither a proof nor a motion that takes energy out was found."
-
-    @property
-    def _friction_goes_on(self) -> str:
-        unit = quantity_unit("friction_speed", self.pair.motion)
-        devices = (("leader", self.pair.leader), ("follower", self.pair.follower))
-        told = ", ".join(
-            f"{name}: {float(ends(device.friction_speed)[0]):.6g} {unit}"
-            for name, device in devices
-            if device.friction_speed is not None
-        )
-        if not told:
-            return ""
-        return f", if friction beyond the speeds where it was measured ({told}) is no less than f_c + b |v|"
 
     @property
     def scope(self) -> Scope:
@@ -171,42 +158,8 @@ class PairVerdict(PassivityAnswer):
                 "with hands that are passive each by itself the whole is stable; one body that holds both "
                 "arms is not covered"
             )
-        alike = len(set(pair.readings)) == 1
-        does = "are read" if alike else "send what they read"
-        yield f"both arms {does} at the same instants, and {self._held}"
-        ages = [f"{arm.age} sample{'' if arm.age == 1 else 's'} old" for arm in self.criterion.arms]
-        used = (
-            f"the leader uses a reading of the follower {ages[0]}, the follower one of the leader {ages[1]}"
-        )
-        if self.outcome == "passive" and self.criterion.ages_may_vary:
-            yield f"{used}, or any younger one, another in each sample; none comes later, also after a loss"
-        else:
-            yield f"{used}; none is lost, none comes later or sooner"
-        yield from assumed_of_forces(self.criterion)
-        if self.scope.encoder == "counted":
-            yield "encoder counts of each arm's own size, their phase unknown"
-        else:
-            yield "ideal position sensors: no quantization"
-        for name, device in (("leader", pair.leader), ("follower", pair.follower)):
-            if device.assumed:
-                yield f"{name}: {', '.join(device.assumed)} not given, taken as 0"
-
-    @property
-    def _held(self) -> str:
-        often, its = self.pair.readings
-        if often == its == 1:
-            return "each force is held for a period"
-        if often != its:
-            name, times = ("leader", often) if often > its else ("follower", its)
-            return (
-                f"what comes of the other's reading is held for the longer period of the two; the {name} "
-                f"reads itself {times} times in it, at equal distances, and holds what comes of that until "
-                "it reads again"
-            )
-        return (
-            f"what comes of the other's reading is held for a period; each drive reads its own arm {often} "
-            "times in it, at equal distances, and holds what comes of that until it reads again"
-        )
+        yield from assumed_of_timing(self.criterion, self.passive)
+        yield from assumed_of_arms(pair)
 
     @cached_property
     def largest_stiffness(self) -> float | None:

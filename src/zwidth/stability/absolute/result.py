@@ -9,6 +9,7 @@ from typing import Any
 from zwidth.device import Device
 from zwidth.environment import PulseTransferFunction
 from zwidth.errors import InputError
+from zwidth.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.operator.operator import LinearHand, Operator
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.result import Result, evidence_of
@@ -21,7 +22,6 @@ from zwidth.stability.absolute.plant import Plant, given_plant, touched_plant
 from zwidth.stability.absolute.proof import proved
 from zwidth.stability.absolute.search import largest_slope
 from zwidth.stability.absolute.terms import CRITERIA, Criterion
-from zwidth.stability.known_hand.hand import HandImpedance, as_hand
 
 _MOST = 1e9
 """Over |G(1)|: slopes are sought up to here where a linear spring never makes the loop unstable."""

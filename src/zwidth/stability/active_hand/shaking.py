@@ -18,13 +18,13 @@ from typing import NamedTuple
 import flint
 import numpy as np
 
+from zwidth.loop.sampled_plant import ball
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.loop import LinearLoop
 from zwidth.quantity.balls import precision
 from zwidth.quantity.text import quantity_unit
 from zwidth.stability.active_hand.band import PI, Band
 from zwidth.stability.known_hand.characteristic import as_floats, decays
-from zwidth.stability.known_hand.plant import ball
 
 EXCESS = 1e-3
 """By how much more than its limit the hand is active."""

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zwidth.environment.environment import RationalFunction
-from zwidth.stability.known_hand.plant import (
+from zwidth.loop.sampled_plant import (
     Coefficients,
     Motion,
     Number,

@@ -18,6 +18,8 @@ from zwidth.device import Device
 from zwidth.environment.environment import Environment, RationalFunction
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
+from zwidth.loop.sampled_plant import Motion
+from zwidth.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.boundary import largest_holding
@@ -29,9 +31,7 @@ from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.text import in_unit
 from zwidth.stability.known_hand.characteristic import PRECISIONS, as_floats, family, of_law
 from zwidth.stability.known_hand.crossing import Plain, last_stable, plain
-from zwidth.stability.known_hand.decide import Found, Outcome, corners, decided
-from zwidth.stability.known_hand.hand import HandImpedance, as_hand
-from zwidth.stability.known_hand.plant import Motion
+from zwidth.stability.known_hand.decide import Found, Outcome, decided
 from zwidth.stability.known_hand.proof import evidence
 
 _HALVINGS = 8
@@ -152,7 +152,7 @@ def coupled_stability(device: Device, wall: Environment | Any, hand: Any = None)
     motion = motion_of(device, holding)
     transfer = law.pulse_transfer_function(motion.period)
     found, certificate = _checked(motion, transfer, device.motion)
-    worst = max((_poles(corner, transfer) for corner in corners(motion)), key=lambda z: abs(z))
+    worst = max((_poles(corner, transfer) for corner in motion.grid(2)), key=lambda z: abs(z))
     largest, limit = largest_stable(motion, law, device.motion)
     return Stability(
         outcome=found.outcome,
@@ -215,7 +215,7 @@ def largest_stable(motion: Motion, law: Environment, units: str) -> tuple[float 
     if wall is None:
         return None, None
     damping, velocity = wall.damping, wall.velocity
-    ends_of_bands = [last_stable(_plain(corner, velocity), float(damping)) for corner in corners(motion)]
+    ends_of_bands = [last_stable(_plain(corner, velocity), float(damping)) for corner in motion.grid(2)]
     if any(end is None for end in ends_of_bands):
         return None, None
     guess = min(end for end in ends_of_bands if end is not None)

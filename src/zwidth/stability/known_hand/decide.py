@@ -7,13 +7,11 @@ that does not decay settles it.  If all do, "stable" is what is left to be prove
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
-from itertools import product
 from typing import Literal, NamedTuple
 
+from zwidth.loop.sampled_plant import Coefficients, Motion
 from zwidth.quantity.balls import precision
 from zwidth.stability.known_hand.characteristic import PRECISIONS, decays
-from zwidth.stability.known_hand.plant import Coefficients, Motion
 
 Outcome = Literal["stable", "unstable", "undecided"]
 
@@ -32,7 +30,7 @@ class Found(NamedTuple):
 
 def decided(motion: Motion, polynomial: Polynomial) -> Found:
     """Whether a certain loop decays; of a box "unstable" with a value in it, or "stable" as a conjecture."""
-    answers = [_certain(point, polynomial) for point in _grid(motion)]
+    answers = [_certain(point, polynomial) for point in motion.grid(_ON_A_SIDE)]
     worst = next((found for found in answers if found.outcome == "unstable"), None)
     return worst or next((found for found in answers if found.outcome == "undecided"), Found("stable"))
 
@@ -44,19 +42,3 @@ def _certain(motion: Motion, polynomial: Polynomial) -> Found:
         if answer is not None:
             return Found("stable") if answer else Found("unstable", motion)
     return Found("undecided")
-
-
-def corners(motion: Motion) -> list[Motion]:
-    """The certain motions at the corners of the box."""
-    return _points(motion, lambda low, high: [low, high])
-
-
-def _grid(motion: Motion) -> list[Motion]:
-    last = _ON_A_SIDE - 1
-    return _points(motion, lambda low, high: [low + (high - low) * i / last for i in range(_ON_A_SIDE)])
-
-
-def _points(motion: Motion, along: Callable[[Fraction, Fraction], list[Fraction]]) -> list[Motion]:
-    """All combinations of values along the sides of a box."""
-    sides = [dict.fromkeys(along(*ends)) for ends in motion[:3]]
-    return [Motion((m, m), (d, d), (k, k), *motion[3:]) for m, d, k in product(*sides)]

@@ -8,11 +8,11 @@ from __future__ import annotations
 from typing import Any
 
 from zwidth.environment.environment import RationalFunction
+from zwidth.loop.sampled_plant import Motion
 from zwidth.passivity.certificate import FORMAT
 from zwidth.passivity.document import unit_key
 from zwidth.quantity.text import exact_text
 from zwidth.stability.known_hand.decide import Found
-from zwidth.stability.known_hand.plant import Motion, Range
 
 
 def evidence(found: Found, motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any] | None:
@@ -29,14 +29,9 @@ def evidence(found: Found, motion: Motion, transfer: RationalFunction, units: st
 
 def _loop(motion: Motion, transfer: RationalFunction, units: str) -> dict[str, Any]:
     return {
-        **{unit_key(name, units): _ends(getattr(motion, name)) for name in ("mass", "damping", "stiffness")},
+        **motion.told(units),
         unit_key("sample_period", units): exact_text(motion.period),
         unit_key("delay", units): exact_text(motion.delay),
         "numerator": [exact_text(c) for c in transfer.numerator],
         "denominator": [exact_text(c) for c in transfer.denominator],
     }
-
-
-def _ends(ends: Range) -> str | list[str]:
-    low, high = (exact_text(end) for end in ends)
-    return low if low == high else [low, high]

@@ -19,12 +19,15 @@ one (python-flint), also where the parameters are intervals.
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product
 from math import floor
 from typing import Any, NamedTuple
 
 import flint
 
 from zwidth.quantity import balls
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.text import exact_text
 
 Number = Any
 """A Fraction or a `flint.arb`."""
@@ -49,6 +52,23 @@ class Motion(NamedTuple):
     def is_certain(self) -> bool:
         """True when none of the three is an interval."""
         return all(low == high for low, high in self[:3])
+
+    def grid(self, on_a_side: int) -> list[Motion]:
+        """Certain motions at equal distances along the sides of the box; of 2 its corners."""
+        last = on_a_side - 1
+        sides = [
+            dict.fromkeys(low + (high - low) * i / last for i in range(on_a_side)) for low, high in self[:3]
+        ]
+        return [Motion((m, m), (d, d), (k, k), *self[3:]) for m, d, k in product(*sides)]
+
+    def told(self, units: str) -> dict[str, str | list[str]]:
+        """Mass, damping and stiffness as a document has them, exact: a number, or both ends."""
+        names = ("mass", "damping", "stiffness")
+        both = [[exact_text(end) for end in ends] for ends in self[:3]]
+        return {
+            GLOSSARY[name].key_for(units): low if low == high else [low, high]
+            for name, (low, high) in zip(names, both, strict=True)
+        }
 
 
 class SampledPlant(NamedTuple):

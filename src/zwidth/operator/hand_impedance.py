@@ -12,14 +12,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from zwidth.errors import InputError
-from zwidth.quantity.exact import Exact, Interval, RealLike, as_parameter, ends
+from zwidth.quantity.exact import Interval, ends
 from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import Parametric, Uncertain, parameter
 
-Parameter = RealLike | Interval | tuple[RealLike, RealLike]
+_DRIVES = "a passive hand has no energy of its own to give; 0 where it has none"
 
 
-@dataclass(frozen=True, init=False, kw_only=True)
-class HandImpedance:
+@dataclass(frozen=True, kw_only=True)
+class HandImpedance(Parametric):
     """``f_h = −k x − c ẋ − m_h ẍ``, each number certain or an interval.
 
     Parameters
@@ -37,19 +38,14 @@ class HandImpedance:
         If a number is not finite or negative.
     """
 
-    mass: Exact | Interval
-    stiffness: Exact | Interval
-    damping: Exact | Interval
+    mass: Uncertain = parameter("mass", 0, bound="≥ 0", why=_DRIVES, meaning="of the hand")
+    stiffness: Uncertain = parameter("stiffness", 0, bound="≥ 0", why=_DRIVES, meaning="of the hand")
+    damping: Uncertain = parameter("damping", 0, bound="≥ 0", why=_DRIVES, meaning="of the hand")
 
-    def __init__(self, *, mass: Parameter = 0, stiffness: Parameter = 0, damping: Parameter = 0) -> None:
-        for name, value in (("mass", mass), ("stiffness", stiffness), ("damping", damping)):
-            number = as_parameter(value)
-            if ends(number)[0] < 0:
-                raise InputError(
-                    f"{name} of a hand must be ≥ 0, got {number}: "
-                    "a passive hand has no energy of its own to give"
-                )
-            object.__setattr__(self, name, number)
+    @property
+    def is_nobody(self) -> bool:
+        """True where there is no hand at all."""
+        return not any(ends(v)[1] for v in (self.mass, self.stiffness, self.damping))
 
     def describe(self, motion: str = "linear") -> str:
         """The hand with its numbers, on one line, in linear or rotary units."""

@@ -1,0 +1,60 @@
+"""Known hands on the arms of a pair, from the command line: nobody, or mass, spring and damper."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Mapping
+
+from zwidth.cli.options import Parameter, given
+from zwidth.cli.simulation_tables import FOLLOWER, OPERATOR
+from zwidth.errors import InputError
+from zwidth.operator.hand_impedance import HandImpedance
+from zwidth.quantity.parameter import parameters_of
+from zwidth.specification.table import located, quoted
+from zwidth.specification.values import read
+
+NOBODY, IMPEDANCE = "nobody", "impedance"
+
+_SIDES: Mapping[str, str] = {"leader": OPERATOR, "follower": FOLLOWER}
+
+
+def hand_parameters() -> Iterator[Parameter]:
+    """The options of both."""
+    for side, option in _SIDES.items():
+        kinds = f"{NOBODY}, or {IMPEDANCE} with the numbers below"
+        yield Parameter(option, "TYPE", f"a known hand on the {side}: {kinds} (default: any hand)")
+        for name, own in parameters_of(HandImpedance).items():
+            unit, rotary = own.unit_for("linear"), own.unit_for("rotary")
+            more = f"{name} {own.meaning} on the {side}, or an interval [{unit}; rotary {rotary}]"
+            yield Parameter(f"{option}.{name}", own.quantity.symbol, more)
+
+
+def known_hands(arguments: argparse.Namespace, motion: str) -> dict[str, HandImpedance | None]:
+    """What holds the leader or the follower, None for nobody; without those that any hand may hold.
+
+    Raises
+    ------
+    InputError
+        If a kind is unknown, or a number has a value it cannot have.
+    """
+    typed = given(arguments, [p.key for p in hand_parameters()])
+    return {
+        side: _hand(option, {k: v for k, v in typed.items() if k.partition(".")[0] == option}, motion)
+        for side, option in _SIDES.items()
+        if any(key.partition(".")[0] == option for key in typed)
+    }
+
+
+def _hand(option: str, typed: Mapping[str, str], motion: str) -> HandImpedance | None:
+    kind, flag = typed.get(option), f"--{option.replace('_', '-')}"
+    if kind is None:
+        raise InputError(f"{flag} says what the numbers are of: {flag} {IMPEDANCE}")
+    if kind not in (NOBODY, IMPEDANCE):
+        raise InputError(f"{flag}: {quoted(kind)} is no known hand; it is {NOBODY} or {IMPEDANCE}")
+    numbers = {key.partition(".")[2]: value for key, value in typed.items() if key != option}
+    if kind == NOBODY and numbers:
+        raise InputError(f"{flag} {NOBODY} has no {min(numbers)}: {flag} {IMPEDANCE} is a hand that has")
+    own = parameters_of(HandImpedance)
+    with located(flag):
+        known = {name: read(value, name, own[name], motion) for name, value in numbers.items()}
+        return HandImpedance(**known) if known else None

@@ -1,0 +1,260 @@
+"""Which process runs what: the parts of a scene, the devices that hold it, and what carries the lines.
+
+    [environment]                        [[network.part]]
+    type = "scene"                       name = "bed"
+    port = ""                            nodes = ["bed"]
+    …                                    sample_period = "5 ms"
+
+    [[network.device]]                   [[network.line]]
+    name = "paddle"                      name = "paddle"
+    source = "haptic-paddle"             channel = "udp:127.0.0.1:7401,127.0.0.1:7402"
+    operator = { type = "finger" }       loss = 0.1
+
+A device holds the line end of its name; its source is of the catalogue, or a file with a [device].  A part
+without nodes has all that are in no other; a line without a channel goes through shared memory.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from zwidth.cli.simulation_tables import build_hand
+from zwidth.device import Device
+from zwidth.errors import InputError
+from zwidth.links import Schedule, WavePort
+from zwidth.network.channel import Channel
+from zwidth.network.device_run import DeviceRun
+from zwidth.network.lossy import Lossy
+from zwidth.network.open import open_channel
+from zwidth.network.part_run import PartRun
+from zwidth.network.peer import Peer
+from zwidth.operator.operator import Operator
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import parameters_of, read_number
+from zwidth.scene.cut import Cut, best_parts, cut
+from zwidth.scene.scene import Scene
+from zwidth.specification.environments import build_environment
+from zwidth.specification.read import load_device, read_tables
+from zwidth.specification.table import Table, located
+from zwidth.specification.values import read
+
+_LONGEST_WAIT = 20.0
+"""How long a process waits for the one that makes their shared memory [s]."""
+
+_WORSE = parameters_of(Schedule)
+_KINDS = {
+    "part": ("name", "nodes", "sample_period"),
+    "device": ("name", "source", "operator"),
+    "line": ("name", "channel", "impedance", *_WORSE),
+}
+_KEYS = ("delay", "parts", "sample_period", *_KINDS)
+
+
+@dataclass(frozen=True)
+class Line:
+    """How the packets of a line travel."""
+
+    channel: str
+    first: str
+    """The process that opens its first side."""
+    worse: Schedule | None = None
+    """What is done to it on purpose."""
+
+    def opened(self, name: str, here: str) -> Channel:
+        """This process's side."""
+        with located(f"line {name}"):
+            channel = open_channel(self.channel, here == self.first, wait=_LONGEST_WAIT)
+            return Lossy(channel, self.worse, way=int(here == self.first)) if self.worse else channel
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A scene, its parts and its devices, each to be run by a process of its name."""
+
+    cut: Cut
+    periods: Mapping[str, Exact]
+    devices: Mapping[str, tuple[Device, Operator]]
+    lines: Mapping[str, Line]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The processes: parts, then devices."""
+        return (*self.periods, *self.devices)
+
+    def runs(self, name: str, duration: Exact) -> PartRun | DeviceRun:
+        """What the process of a name steps.
+
+        Raises
+        ------
+        InputError
+            If there is no such process, or the device cannot be simulated.
+        """
+        if name not in self.names:
+            raise InputError(f'no process is called "{name}"; there are: {", ".join(self.names)}')
+        if name not in self.devices:
+            return PartRun(next(p for p in self.cut.parts if p.name == name), self.periods[name])
+        device, hand = self.devices[name]
+        ends = (end for part in self.cut.parts for end in part.ends if end.title == name)
+        w = next(ends).resistance(device.exact("sample_period"))
+        return DeviceRun(WavePort(device, impedance=w), hand, duration, name)
+
+    def peer(self, name: str, duration: Exact) -> Peer:
+        """The same with its channels open.
+
+        Raises
+        ------
+        InputError
+            As `runs`, or if a channel cannot be opened.
+        """
+        runs = self.runs(name, duration)
+        channels = {line: self.lines[line].opened(line, name) for line in runs.lines}
+        own = self.devices.get(name)
+        return Peer(runs, channels, Exact(own[0].exact("sample_period")) if own else self.periods[name])
+
+
+def load_plan(path: Path) -> Plan:
+    """Read the file of a network.
+
+    Raises
+    ------
+    InputError
+        If anything cannot be used: it says where it stands and what is allowed.
+    """
+    tables = read_tables([path], ("environment", "network"))
+    for needed in ("environment", "network"):
+        if needed not in tables:
+            raise InputError(
+                f"{path}: there is no [{needed}] table; a network has the scene and who runs what"
+            )
+    table = tables["network"]
+    scene = build_environment(tables["environment"], "linear")
+    if not isinstance(scene, Scene):
+        raise InputError(f'{tables["environment"].label}: a network runs a scene, type = "scene"')
+    table.check_keys(_KEYS, "a network")
+    rows = {kind: list(_rows(table, kind)) for kind in _KINDS}
+    devices = dict(map(_device, rows["device"]))
+    names, periods = _parts(scene, table, rows["part"])
+    delay = _number(table, "delay", "delay") if "delay" in table.values else max(periods.values())
+    with located(table.label):
+        made = cut(scene, names, delay, dict(_impedances(rows["line"])))
+    return Plan(made, periods, devices, _lines(made, devices, rows["line"], path.stem))
+
+
+def _rows(table: Table, kind: str) -> Iterator[Table]:
+    given = table.values.get(kind, [])
+    if not isinstance(given, list) or not all(isinstance(row, Mapping) for row in given):
+        raise InputError(f"{table.label}: {kind} is written as [[network.{kind}]] tables")
+    for i, row in enumerate(given):
+        one = Table(f"{table.label.removesuffix(']')}.{kind} {i + 1}]", row)
+        one.check_keys(_KINDS[kind], f"a {kind} of a network")
+        if "name" not in one.values:
+            raise InputError(f"{one.label}: name is missing")
+        one.text("name")
+        yield one
+
+
+def _number(
+    table: Table, key: str, quantity: str, bound: str = "> 0", why: str = "a step takes time"
+) -> Exact:
+    with located(table.where(key)):
+        found: Exact = read_number(table.values[key], GLOSSARY[quantity], key, bound=bound, why=why)
+    return found
+
+
+def _parts(
+    scene: Scene, table: Table, rows: list[Table]
+) -> tuple[dict[str, tuple[str, ...]], dict[str, Exact]]:
+    if "parts" in table.values:
+        if rows:
+            raise InputError(f"{table.label}: give the number of parts, or [[network.part]] tables, not both")
+        count = table.values["parts"]
+        with located(table.label):
+            if not isinstance(count, int) or isinstance(count, bool):
+                raise InputError(f"parts is how many, a whole number, got {count!r}")
+            names = best_parts(scene, count)
+        return names, dict.fromkeys(names, _period(table, table))
+    if not rows:
+        raise InputError(f"{table.label}: say how many parts, or which nodes are in each [[network.part]]")
+    names, periods = {}, {}
+    for row in rows:
+        name = row.text("name")
+        if name in names:
+            raise InputError(f'{row.label}: there are two parts "{name}"')
+        nodes = row.values.get("nodes", ())
+        if isinstance(nodes, str) or not all(isinstance(n, str) for n in nodes):  # type: ignore[attr-defined]
+            raise InputError(f'{row.label}: nodes is a list of names, such as ["tool", "bed"]')
+        names[name], periods[name] = tuple(nodes), _period(row, table)  # type: ignore[arg-type]
+    open_ones = [name for name, nodes in names.items() if not nodes]
+    if len(open_ones) > 1:
+        raise InputError(
+            f"{table.label}: {open_ones[0]} and {open_ones[1]} have no nodes; one may have the rest"
+        )
+    for name in open_ones:
+        taken = {node for nodes in names.values() for node in nodes}
+        names[name] = tuple(node for node in scene.nodes if node not in taken)
+    return names, periods
+
+
+def _period(row: Table, table: Table) -> Exact:
+    owner = row if "sample_period" in row.values else table
+    if "sample_period" not in owner.values:
+        raise InputError(f"{row.label}: sample_period is missing: how long a step of this part takes")
+    return _number(owner, "sample_period", "sample_period")
+
+
+def _device(row: Table) -> tuple[str, tuple[Device, Operator]]:
+    if "source" not in row.values:
+        raise InputError(
+            f"{row.label}: source is missing: a device of the catalogue, or a file with a [device]"
+        )
+    hand = row.values.get("operator", {"type": "finger"})
+    if not isinstance(hand, Mapping):
+        raise InputError(f'{row.label}: operator is a table, such as {{ type = "finger" }}')
+    device = load_device([row.text("source")], {})
+    return row.text("name"), (device, build_hand(Table(f"{row.label} operator", hand), device.motion))
+
+
+def _impedances(rows: list[Table]) -> Iterator[tuple[str, Exact]]:
+    for row in rows:
+        if "impedance" in row.values:
+            why = "a wave of no impedance carries no force"
+            yield row.text("name"), _number(row, "impedance", "wave_impedance", why=why)
+
+
+def _lines(made: Cut, devices: Mapping[str, Any], rows: list[Table], stem: str) -> dict[str, Line]:
+    ends: dict[str, str] = {line.name: line.parts[0] for line in made.lines}
+    for part in made.parts:
+        ends |= {end.title: part.name for end in part.ends if end.title not in ends}
+    for name in devices:
+        if name not in ends:
+            raise InputError(
+                f'device "{name}" holds no line end of the scene; those that lead out are: '
+                f"{', '.join(n for n in ends if n not in {line.name for line in made.lines}) or 'none'}"
+            )
+    loose = [n for n in ends if n not in devices and n not in {line.name for line in made.lines}]
+    if loose:
+        raise InputError(f'nothing holds the line end "{loose[0]}"; add a [[network.device]] of that name')
+    told = {row.text("name"): row for row in rows}
+    for name, row in told.items():
+        if name not in ends:
+            raise InputError(f'{row.label}: there is no line "{name}"; there are: {", ".join(ends)}')
+    memory = "".join(c if c.isalnum() else "-" for c in stem)
+    return {
+        name: _line(told.get(name), f"memory:{memory}-{i}", first)
+        for i, (name, first) in enumerate(ends.items())
+    }
+
+
+def _line(row: Table | None, channel: str, first: str) -> Line:
+    if row is None:
+        return Line(channel, first)
+    told = {
+        key: read(row.values[key], key, own, "linear") for key, own in _WORSE.items() if key in row.values
+    }
+    with located(row.label):
+        worse = Schedule(**told) if told else None
+    return Line(row.text("channel") if "channel" in row.values else channel, first, worse)

@@ -1,0 +1,5 @@
+"""Scenes and devices in several processes: what each runs, what carries their waves, and what is seen of it."""
+
+from zwidth.lazy import attach
+
+__getattr__, __dir__, __all__ = attach(__name__)

@@ -1,0 +1,14 @@
+from zwidth.network.channel import Channel as Channel
+from zwidth.network.device_run import DeviceRun as DeviceRun
+from zwidth.network.frame import Frame as Frame
+from zwidth.network.lossy import Lossy as Lossy
+from zwidth.network.monitor import Link as Link
+from zwidth.network.monitor import LinkReport as LinkReport
+from zwidth.network.open import open_channel as open_channel
+from zwidth.network.part_run import PartRun as PartRun
+from zwidth.network.part_run import run_parts as run_parts
+from zwidth.network.peer import Peer as Peer
+from zwidth.network.peer import PeerReport as PeerReport
+from zwidth.network.shared_memory import SharedMemory as SharedMemory
+from zwidth.network.udp import UDP as UDP
+from zwidth.network.zenoh import Zenoh as Zenoh

@@ -1,0 +1,262 @@
+"""Which masses a body behind a virtual coupling may have, as its integrator steps it.
+
+The loop is linear, and of its criterion the mass is a parameter: all masses at which the verdict may
+change are roots of polynomials (`linear.critical_values`), and one mass between two of them decides for
+all that lie there.  What is passive is closed: where a proof holds on both sides of a root it holds at it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+from math import inf, nextafter
+from typing import Any
+
+from zwidth.device import Device
+from zwidth.environment.coupled_body import CoupledBody
+from zwidth.environment.environment import RationalFunction
+from zwidth.environment.integrators import POWER_OF_MASS, times
+from zwidth.errors import InputError
+from zwidth.passivity.check import check_by_closed_forms
+from zwidth.passivity.document import unit_key
+from zwidth.passivity.linear.critical_values import critical_values
+from zwidth.passivity.linear.linear import LinearProof, decide_linear
+from zwidth.passivity.linear.loop import linear_loop
+from zwidth.passivity.linear_verdict import LinearVerdict
+from zwidth.passivity.result import Result, evidence_of
+from zwidth.passivity.scope import Scope
+from zwidth.passivity.witness.sinusoid import simplest_between
+from zwidth.passivity.wording import lines
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.text import quantity_unit
+
+_BESIDE = Fraction(1, 10**6)
+"""How far beyond an end, relatively, a motion is looked for."""
+
+
+@dataclass(frozen=True)
+class MassLimit:
+    """One end of an interval of masses.
+
+    Attributes
+    ----------
+    passive
+        The verdict at the end, with its certificate.
+    beyond
+        The verdict at a mass a millionth beyond it, with what takes energy out.
+    """
+
+    passive: LinearVerdict
+    beyond: LinearVerdict
+
+
+@dataclass(frozen=True, repr=False)
+class PassiveMasses(Result):
+    """All masses of a body behind a coupling with which the loop is passive, single ones apart.
+
+    Attributes
+    ----------
+    device
+        The device; its encoder and Coulomb friction play no part.
+    body
+        Coupling, body and integrator; `verdict` is about its own mass.
+    intervals
+        (lightest, heaviest) of each interval [kg; kg·m²], ascending: 0 where none is too light, inf where
+        none is too heavy; empty where no mass is passive.
+    """
+
+    FORMAT = "zwidth passive masses 1"
+
+    device: Device
+    body: CoupledBody
+    intervals: tuple[tuple[float, float], ...]
+
+    @property
+    def smallest(self) -> float | None:
+        """The lightest passive mass [kg; kg·m²]; None where there is none."""
+        return self.intervals[0][0] if self.intervals else None
+
+    @property
+    def largest(self) -> float | None:
+        """The heaviest passive mass [kg; kg·m²], inf where none is too heavy; None where there is none."""
+        return self.intervals[-1][1] if self.intervals else None
+
+    @cached_property
+    def limits(self) -> tuple[MassLimit, ...]:
+        """Each end that is a mass, ascending: a proof at it, a violation beyond it."""
+        return tuple(self._limits())
+
+    @cached_property
+    def verdict(self) -> LinearVerdict:
+        """Of the body's own mass."""
+        return _verdict(_ideal(self.device), self.body)
+
+    @property
+    def scope(self) -> Scope:
+        """Every hand, on an exact position."""
+        counted = self.device.exact("resolution")
+        return replace(self.verdict.scope, encoder="not counted") if counted else self.verdict.scope
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What is taken for granted, line by line."""
+        return lines(self.scope)
+
+    def describe(self) -> str:
+        """The masses in a sentence."""
+        return f"passive {self._masses()}: {self.body.describe(self.device.motion)}"
+
+    def rows(self) -> list[tuple[str, str]]:
+        """The intervals, and what proves and refutes at their ends."""
+        unit = quantity_unit("virtual_mass", self.device.motion)
+        rows = [("passive masses", self._masses())]
+        for limit in self.limits:
+            at, past = (_mass(verdict) for verdict in (limit.passive, limit.beyond))
+            rows.append((f"at {at:.6g} {unit}", f"{limit.passive.outcome}, {limit.passive.limit}"))
+            rows.append((f"at {past:.6g} {unit}, a millionth beyond", limit.beyond.outcome))
+        return rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """The intervals, and at each end its proof and violation, as plain data."""
+        key = unit_key("virtual_mass", self.device.motion)
+        return {
+            "format": self.FORMAT,
+            "body": self.body.describe(self.device.motion),
+            f"intervals_{key}": [[low, None if high == inf else high] for low, high in self.intervals],
+            "assumptions": list(self.assumptions),
+            "verdicts": [_stated(verdict, key) for verdict in self._verdicts()],
+        }
+
+    def _verdicts(self) -> Iterator[LinearVerdict]:
+        """Of the body's own mass, and of each end."""
+        yield self.verdict
+        for limit in self.limits:
+            yield from (limit.passive, limit.beyond)
+
+    def _masses(self) -> str:
+        unit = quantity_unit("virtual_mass", self.device.motion)
+        if not self.intervals:
+            return "for no mass"
+        return " and ".join(_span(low, high, unit) for low, high in self.intervals)
+
+    def _limits(self) -> Iterator[MassLimit]:
+        for interval in self.intervals:
+            for end, outward in zip(interval, (-1, 1), strict=True):
+                if 0 < end < inf:
+                    mass = Exact(end).fraction
+                    both = (mass, mass * (1 + outward * _BESIDE))
+                    yield MassLimit(*(_verdict(_ideal(self.device), _with(self.body, m)) for m in both))
+
+
+def passive_masses(device: Device, body: CoupledBody) -> PassiveMasses:
+    """All masses with which this body, stepped so, is passive behind its coupling.
+
+    Exactly: the criterion of `zwidth.check` is decided between all masses at which it can change.
+
+    Parameters
+    ----------
+    device
+        Certain b, T and delay; the answer is for an ideal encoder.
+    body
+        Coupling, body and integrator; its own mass is where `verdict` is about.
+
+    Raises
+    ------
+    InputError
+        If it is no such body, a number of the device is an interval, or delays are too long to be decided.
+
+    Notes
+    -----
+    Behind a spring alone a free body by an explicit integrator is passive with no mass, however much the
+    device damps.  Derived for this project; that explicit integrators ask for a least mass is said by Brown &
+    Colgate (1997, 1998).
+    """
+    if not isinstance(device, Device) or not isinstance(body, CoupledBody):
+        raise InputError(
+            "passive_masses(device, body) takes a Device and a CoupledBody, "
+            f"got {type(device).__name__} and {type(body).__name__}"
+        )
+    ideal = _ideal(device)
+    found: list[tuple[Fraction, Fraction | None]] = []
+    for low, high in pairwise([Fraction(0), *_critical(ideal, body), None]):
+        assert low is not None, "only the last is none"
+        if _holds(ideal, body, _between(low, high)):
+            joined = found and found[-1][1] == low
+            found = [*found[:-1], (found[-1][0], high)] if joined else [*found, (low, high)]
+    intervals = (
+        (_edge(ideal, body, low, inf) if low else 0.0, inf if high is None else _edge(ideal, body, high, 0.0))
+        for low, high in found
+    )
+    return PassiveMasses(device, body, tuple(intervals))
+
+
+def _ideal(device: Device) -> Device:
+    """The device with an ideal encoder and no Coulomb friction."""
+    return device.replace(resolution=0, coulomb_friction=0, stiction=None)
+
+
+def _critical(device: Device, body: CoupledBody) -> list[Fraction]:
+    """Masses at which the verdict may change."""
+    period = device.exact("sample_period")
+
+    def law(mass: Fraction) -> RationalFunction:
+        h = _with(body, mass).pulse_transfer_function(period)
+        return RationalFunction(*(times(mass**POWER_OF_MASS, side) for side in h))
+
+    scale = (body.damping.fraction or body.stiffness.fraction * period or device.exact("damping")) * period
+    return critical_values(law, POWER_OF_MASS + 1, linear_loop(device, body), scale or period)
+
+
+def _with(body: CoupledBody, mass: Fraction) -> CoupledBody:
+    return body.replace(virtual_mass=Exact(mass))
+
+
+def _holds(device: Device, body: CoupledBody, mass: Fraction) -> bool:
+    return isinstance(decide_linear(linear_loop(device, _with(body, mass))), LinearProof)
+
+
+def _verdict(device: Device, body: CoupledBody) -> LinearVerdict:
+    verdict = check_by_closed_forms(device, body)
+    assert isinstance(verdict, LinearVerdict), "H(z) says all about it"
+    return verdict
+
+
+def _span(low: float, high: float, unit: str) -> str:
+    if high == inf:
+        return "for every mass" if low == 0 else f"from {low:.6g} {unit} on"
+    return f"up to {high:.6g} {unit}" if low == 0 else f"from {low:.6g} to {high:.6g} {unit}"
+
+
+def _stated(verdict: LinearVerdict, key: str) -> dict[str, Any]:
+    """What one mass is proved to be."""
+    return {
+        key: _mass(verdict),
+        "outcome": verdict.outcome,
+        "claim": verdict.claim,
+        "scope": verdict.scope.to_dict(),
+        **evidence_of(verdict),
+    }
+
+
+def _mass(verdict: LinearVerdict) -> float:
+    assert isinstance(verdict.environment, CoupledBody)
+    return float(verdict.environment.virtual_mass)
+
+
+def _between(low: Fraction, high: Fraction | None) -> Fraction:
+    """A mass with few digits well inside an interval."""
+    if high is None:
+        high = 3 * low or Fraction(3)
+    third = (high - low) / 3
+    return simplest_between(low + third, high - third)
+
+
+def _edge(device: Device, body: CoupledBody, root: Fraction, inward: float) -> float:
+    """The double next to a root, on the inner side, at which the loop is proved passive."""
+    mass = float(root)
+    while not _holds(device, body, Exact(mass).fraction):
+        mass = nextafter(mass, inward)
+    return mass

@@ -1,0 +1,74 @@
+"""What every answer about a pair takes for granted of clocks, forces, sensors and friction, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from zwidth.pairs import Pair
+from zwidth.passivity.pairs.compensation import assumed_of_forces
+from zwidth.passivity.pairs.criterion import PairCriterion
+from zwidth.quantity.exact import ends
+from zwidth.quantity.text import quantity_unit
+
+
+def assumed_of_timing(criterion: PairCriterion, any_age: bool) -> Iterator[str]:
+    """When the arms are read, how old what they use is, and how forces are given.
+
+    Parameters
+    ----------
+    criterion
+        Of the pair.
+    any_age
+        True of a proof that covers younger readings wherever springs alone are at work.
+    """
+    alike = len(set(criterion.pair.readings)) == 1
+    does = "are read" if alike else "send what they read"
+    yield f"both arms {does} at the same instants, and {_held(criterion.pair)}"
+    ages = [f"{arm.age} sample{'' if arm.age == 1 else 's'} old" for arm in criterion.arms]
+    used = f"the leader uses a reading of the follower {ages[0]}, the follower one of the leader {ages[1]}"
+    if any_age and criterion.ages_may_vary:
+        yield f"{used}, or any younger one, another in each sample; none comes later, also after a loss"
+    else:
+        yield f"{used}; none is lost, none comes later or sooner"
+    yield from assumed_of_forces(criterion)
+
+
+def assumed_of_arms(pair: Pair) -> Iterator[str]:
+    """Of both sensors, and what was not given."""
+    if any(side.resolution for side in pair.sides):
+        yield "encoder counts of each arm's own size, their phase unknown"
+    else:
+        yield "ideal position sensors: no quantization"
+    for name, device in (("leader", pair.leader), ("follower", pair.follower)):
+        if device.assumed:
+            yield f"{name}: {', '.join(device.assumed)} not given, taken as 0"
+
+
+def friction_goes_on(pair: Pair) -> str:
+    """The condition on friction beyond the speeds at which it was measured; "" where there is none."""
+    unit = quantity_unit("friction_speed", pair.motion)
+    told = ", ".join(
+        f"{name}: {float(ends(device.friction_speed)[0]):.6g} {unit}"
+        for name, device in (("leader", pair.leader), ("follower", pair.follower))
+        if device.friction_speed is not None
+    )
+    if not told:
+        return ""
+    return f", if friction beyond the speeds where it was measured ({told}) is no less than f_c + b |v|"
+
+
+def _held(pair: Pair) -> str:
+    often, its = pair.readings
+    if often == its == 1:
+        return "each force is held for a period"
+    if often != its:
+        name, times = ("leader", often) if often > its else ("follower", its)
+        return (
+            f"what comes of the other's reading is held for the longer period of the two; the {name} "
+            f"reads itself {times} times in it, at equal distances, and holds what comes of that until "
+            "it reads again"
+        )
+    return (
+        f"what comes of the other's reading is held for a period; each drive reads its own arm {often} "
+        "times in it, at equal distances, and holds what comes of that until it reads again"
+    )

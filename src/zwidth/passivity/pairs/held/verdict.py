@@ -1,0 +1,282 @@
+"""The verdict on a pair of which a known hand, or nobody, holds one arm: does the other hand gain?
+
+Only what the independent checker accepts makes it "passive" or "active".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+from zwidth.pairs import Pair
+from zwidth.passivity.advice import Advice
+from zwidth.passivity.outcome import Outcome
+from zwidth.passivity.pairs.advice import StiffnessAt
+from zwidth.passivity.pairs.assumed import assumed_of_arms, assumed_of_timing, friction_goes_on
+from zwidth.passivity.pairs.criterion import PairCriterion
+from zwidth.passivity.pairs.evidence import PairCertificate
+from zwidth.passivity.pairs.held.criterion import (
+    HeldCriterion,
+    largest_held_stiffness,
+    required_free_damping,
+)
+from zwidth.passivity.pairs.held.evidence import HeldCertificate, HeldViolation
+from zwidth.passivity.pairs.held.law import ANY, HeldPair, held_pair
+from zwidth.passivity.pairs.held.wave import HeldWitness, gaining_wave
+from zwidth.passivity.pairs.limits import largest_stiffness
+from zwidth.passivity.pairs.verdict import check_pair
+from zwidth.passivity.result import PassivityAnswer
+from zwidth.passivity.scope import Hands, Scope
+from zwidth.quantity.exact import ends
+from zwidth.quantity.text import shown
+
+
+def check_held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldVerdict:
+    """Decide whether the hand on one arm can take energy out while a known hand holds the other.
+
+    From rest, linear and computed once a sample, the free arm's hand feels one law H(z), with the held arm
+    behind it; so exactly if that arm comes to rest in its hand and
+
+        b ≥ (T/2) Re{(1 − e^{−jωT}) H(e^{jωT})}/(1 − cos ωT),  0 < ω ≤ π/T,
+
+    and Coulomb friction of the free arm covers the steps of both encoders; at equality it is undecided.
+    Where two hands that do what they like gain nothing although the held arm has but the hand's damping
+    more, it is passive with whatever else is in that hand.  Derivation: docs/theory/pairs.md.
+
+    Parameters
+    ----------
+    pair
+        The held arm with its mass.
+    leader, follower
+        What holds the arm, on one of them: None for nobody; a `HandImpedance`, whose numbers may be
+        intervals; or a linear operator, whose push is left out.  "any" on the other.
+
+    Raises
+    ------
+    InputError
+        If not just one arm is held, or the hand is none.
+    """
+    question = held_pair(pair, leader, follower)
+    damped = check_pair(question.damped)
+    if damped.passive:
+        return HeldVerdict(question, damped.certificate)
+    criterion = HeldCriterion(question)
+    found = HeldCertificate(question)
+    if criterion.holds and found.verify():
+        return HeldVerdict(question, found)
+    violation = criterion.violation
+    return HeldVerdict(question, violation=violation if violation and violation.verify() else None)
+
+
+@dataclass(frozen=True, repr=False)
+class HeldVerdict(PassivityAnswer):
+    """Whether the hand on one arm of a pair can take energy out while a known hand holds the other.
+
+    Attributes
+    ----------
+    question
+        The pair, which arm is held, and by what.
+    """
+
+    FORMAT: ClassVar[str] = "zwidth held pair 1"
+    PICTURE: ClassVar[str] = "plot_held_pair"
+
+    question: HeldPair
+    certificate: PairCertificate | HeldCertificate | None = None
+    violation: HeldViolation | None = None
+    advice: tuple[Advice, ...] = ()
+    stiffness_elsewhere: tuple[StiffnessAt, ...] = ()
+
+    @property
+    def pair(self) -> Pair:
+        """The two arms."""
+        return self.question.pair
+
+    @property
+    def outcome(self) -> Outcome:
+        """ "passive", "active" or "undecided"."""
+        if self.certificate is not None:
+            return "passive"
+        return "undecided" if self.violation is None else "active"
+
+    @cached_property
+    def witness(self) -> HeldWitness | None:
+        """A motion of the free arm that takes energy out; None where none that is short enough was found."""
+        return None if self.violation is None else gaining_wave(self.violation)
+
+    @property
+    def with_any_such_hand(self) -> bool:
+        """True where it is passive with whatever else is in the hand, so it damps as much."""
+        return isinstance(self.certificate, PairCertificate)
+
+    @property
+    def claim(self) -> str:
+        """The outcome in a sentence."""
+        free = self.question.free
+        if self.outcome == "passive":
+            goes_on = friction_goes_on(self.pair)
+            return f"No motion of the {free}'s hand takes energy out of this pair {self._while}{goes_on}."
+        if self.outcome == "active":
+            hand = "this hand" if self.question.motion.is_certain else "one of these hands"
+            by = "nobody" if self.question.hand.is_nobody else hand
+            return (
+                f"A hand on the {free} can take energy out of this pair, without end, while {by} holds the "
+                f"{self.question.held}."
+            )
+        return f"Neither a proof nor a motion of the {free} that takes energy out was found."
+
+    @property
+    def _hand(self) -> str:
+        return self.question.hand.describe(self.pair.motion)
+
+    @property
+    def _while(self) -> str:
+        held = self.question.held
+        if not self.with_any_such_hand:
+            by = "nobody" if self.question.hand.is_nobody else f"just this hand ({self._hand})"
+            return f"while {by} holds the {held}"
+        least = ends(self.question.hand.damping)[0]
+        if not least:
+            return f"whatever holds the {held}, if that is passive"
+        damps = shown(float(least), self.pair.leader.unit("damping"))
+        return f"whatever holds the {held}, if that is passive beside a damper of {damps} or more"
+
+    @property
+    def scope(self) -> Scope:
+        """One hand without limit, the other known."""
+        steps = any(side.resolution for side in self.pair.sides)
+        return Scope(
+            hands=Hands() if self.with_any_such_hand else Hands(impedance=self._hand),
+            contact="both sides",
+            encoder="counted" if steps else "ideal",
+            motion=self.pair.motion,
+        )
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim covers and takes for granted."""
+        return tuple(self._assumptions())
+
+    def _assumptions(self) -> Iterator[str]:
+        free, held = self.question.free, self.question.held
+        yield f"a hand on the {free} without limit on speed and force; its mass plays no part"
+        if self.with_any_such_hand:
+            yield f"what holds the {held} gives out no energy of its own"
+        else:
+            yield (
+                f"nobody holds the {held}"
+                if self.question.hand.is_nobody
+                else (
+                    f"the {held} is held by {self._hand}, fixed to the arm and to a place, which pushes with "
+                    "nothing of its own"
+                )
+            )
+            yield f"mass and damping of the {held} are just those given, and both arms start at rest"
+            if self.outcome == "active":
+                yield f"friction and encoders do not help against large motions of the {free}"
+            else:
+                yield f"no Coulomb friction in the {held}"
+                if self.scope.encoder == "counted":
+                    yield "what the springs hold at the start for half a count of each reading may come back"
+        yield from assumed_of_timing(PairCriterion(self.pair), self.with_any_such_hand)
+        yield from assumed_of_arms(self.pair)
+
+    @cached_property
+    def largest_stiffness(self) -> float | None:
+        """The largest K, both sides in proportion and all else as it is, that is passive; None if none is.
+
+        With intervals at each of their corners.
+        """
+        return largest_held_stiffness(self.question)
+
+    @cached_property
+    def largest_stiffness_of_any_such_hand(self) -> float | None:
+        """The same where the hand is anything passive that damps as much."""
+        return largest_stiffness(self.question.damped)
+
+    @cached_property
+    def largest_stiffness_of_two_hands(self) -> float | None:
+        """The same where both hands do what they like."""
+        return largest_stiffness(self.pair)
+
+    @cached_property
+    def required_damping(self) -> float | None:
+        """The least b of the free arm, encoders aside; None if none is enough, or none is known to be."""
+        return required_free_damping(self.question)
+
+    @cached_property
+    def required_friction(self) -> float | None:
+        """The least f_c of the free arm for both encoders; None if none is known to be enough."""
+        criterion = HeldCriterion(self.question)
+        if criterion.bends or not criterion.holds:
+            return None
+        need = criterion.required_friction
+        return None if need is None else float(need)
+
+    @property
+    def margin(self) -> float | None:
+        """How much stiffer the coupling may be [N/m; N·m/rad]; below 0 where it must be softer."""
+        largest = self.largest_stiffness
+        return None if largest is None else largest - float(self.pair.felt_stiffness)
+
+    @property
+    def limit(self) -> str:
+        """What binds."""
+        criterion, free = HeldCriterion(self.question), self.question.free
+        if self.passive:
+            return "nothing is violated"
+        if self.violation is not None:
+            return f"damping of the {free}: hold, delays and the {self.question.held} feed more than it takes"
+        if criterion.bends:
+            return f"{criterion.bends}: only what two hands gain is proved"
+        if not criterion.holds:
+            return f"the {self.question.held} may not come to rest by itself, or this is too near the limit"
+        return "Coulomb friction: the steps of the encoders may feed more energy than it takes"
+
+    def rows(self) -> Iterator[tuple[str, str]]:
+        """The main numbers."""
+        unit = {name: self.pair.leader.unit(name) for name in ("stiffness", "damping", "coulomb_friction")}
+        free = self.question.free
+        yield "coupling", self.pair.describe()
+        yield f"on the {self.question.held}", "nobody" if self.question.hand.is_nobody else self._hand
+        yield "limit", self.limit
+        for name, value in (
+            ("largest stiffness", self.largest_stiffness),
+            ("with anything that damps as much", self.largest_stiffness_of_any_such_hand),
+            ("with two hands that do anything", self.largest_stiffness_of_two_hands),
+        ):
+            yield name, "none is passive" if value is None else shown(value, unit["stiffness"])
+        device = getattr(self.pair, free)
+        for name, key, need in (
+            (f"damping of the {free}", "damping", self.required_damping),
+            (f"friction of the {free}", "coulomb_friction", self.required_friction),
+        ):
+            if need:
+                yield name, f"{shown(getattr(device, key), unit[key])}, {shown(need, unit[key])} needed"
+        if self.violation is not None:
+            yield "violated", self.violation.describe()
+        if self.witness is not None:
+            yield "motion", self.witness.describe()
+
+    def numbers(self) -> dict[str, Any]:
+        """The main numbers as plain data, a unit in every key of a physical quantity."""
+        key = self.pair.leader.key
+        stiffness = f"largest_{key('stiffness')}"
+        return {
+            "limit": self.limit,
+            "held": {
+                "arm": self.question.held,
+                "hand": "nobody" if self.question.hand.is_nobody else self._hand,
+            },
+            stiffness: self.largest_stiffness,
+            f"{stiffness}_with_any_such_hand": self.largest_stiffness_of_any_such_hand,
+            f"{stiffness}_with_two_hands": self.largest_stiffness_of_two_hands,
+            "required": {
+                self.question.free: {
+                    key("damping"): self.required_damping,
+                    key("coulomb_friction"): self.required_friction,
+                }
+            },
+        }

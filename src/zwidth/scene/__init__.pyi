@@ -1,0 +1,14 @@
+from zwidth.scene.cut import Cut as Cut
+from zwidth.scene.cut import best_parts as best_parts
+from zwidth.scene.cut import cut as cut_scene
+from zwidth.scene.element import Damper as Damper
+from zwidth.scene.element import Element as Element
+from zwidth.scene.element import Lever as Lever
+from zwidth.scene.element import Mass as Mass
+from zwidth.scene.element import Spring as Spring
+from zwidth.scene.line_end import LineEnd as LineEnd
+from zwidth.scene.nonlinear import Contact as Contact
+from zwidth.scene.nonlinear import CoulombFriction as CoulombFriction
+from zwidth.scene.nonlinear import NonlinearSpring as NonlinearSpring
+from zwidth.scene.run import SceneRun as SceneRun
+from zwidth.scene.scene import Scene as Scene

@@ -1,0 +1,188 @@
+"""`zwidth network`: what its file may say, and real processes over real sockets, one of them killed."""
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+
+import pytest
+
+from zwidth.cli.main import main
+from zwidth.cli.network_plan import load_plan
+from zwidth.quantity.exact import Exact
+
+SCENE = """
+[environment]
+type = "scene"
+port = ""
+
+[[environment.elements]]
+type = "line-end"
+node = "tool"
+impedance = "0.15 N*s/m"
+name = "paddle"
+
+[[environment.elements]]
+type = "mass"
+node = "tool"
+mass = "50 g"
+
+[[environment.elements]]
+type = "spring"
+first = "tool"
+second = "bed"
+stiffness = "100 N/m"
+
+[[environment.elements]]
+type = "mass"
+node = "bed"
+mass = "50 g"
+
+[[environment.elements]]
+type = "damper"
+first = "bed"
+second = "ground"
+damping = "2 N*s/m"
+"""
+
+NETWORK = """
+[network]
+sample_period = "5 ms"
+
+[[network.part]]
+name = "near"
+nodes = ["tool"]
+
+[[network.part]]
+name = "far"
+
+[[network.device]]
+name = "paddle"
+source = "haptic-paddle"
+"""
+
+
+def ports(n):
+    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(n)]
+    for s in sockets:
+        s.bind(("127.0.0.1", 0))
+    found = [s.getsockname()[1] for s in sockets]
+    for s in sockets:
+        s.close()
+    return found
+
+
+def line(name, first, second, more=""):
+    return (
+        f'\n[[network.line]]\nname = "{name}"\nchannel = "udp:127.0.0.1:{first},127.0.0.1:{second}"\n{more}\n'
+    )
+
+
+def file(tmp_path, text):
+    path = tmp_path / "room.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def test_a_plan_says_what_runs_where_and_what_a_line_adds(tmp_path, capsys):
+    assert main(["network", file(tmp_path, SCENE + NETWORK), "--plan"]) == 0
+    told = capsys.readouterr().out
+    for wanted in (
+        "near",
+        "far",
+        "spring tool–bed",
+        "0.5 N·s/m",
+        "2.5 g",
+        "paddle: haptic-paddle",
+        "memory:room-0",
+    ):
+        assert wanted in told
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (NETWORK, r"there is no \[environment\]"),
+        (SCENE, r"there is no \[network\]"),
+        ('[environment]\nstiffness = 3\ntype = "wall"\n' + NETWORK, "a network runs a scene"),
+        (SCENE + NETWORK.replace('name = "paddle"', 'name = "handle"'), "holds no line end of the scene"),
+        (SCENE + NETWORK.split("[[network.device]]")[0], 'nothing holds the line end "paddle"'),
+        (SCENE + NETWORK.replace('nodes = ["tool"]', 'nodes = ["tol"]'), '"tol" of part "near" is no node'),
+        (SCENE + NETWORK.replace('nodes = ["tool"]', 'nodes = "tool"'), "nodes is a list"),
+        (SCENE + NETWORK.replace('nodes = ["tool"]', ""), "have no nodes; one may have the rest"),
+        (SCENE + NETWORK.replace('sample_period = "5 ms"', ""), "sample_period is missing"),
+        (SCENE + NETWORK.replace('"5 ms"', '"-5 ms"'), "sample_period"),
+        (SCENE + NETWORK.replace('source = "haptic-paddle"', ""), "source is missing"),
+        (SCENE + NETWORK + line("no", 1, 2), 'there is no line "no"'),
+        (SCENE + NETWORK + line("paddle", 1, 2, "loss = 2"), "loss must be below 1"),
+        (SCENE + NETWORK + line("paddle", 1, 2, "los = 2"), 'did you mean "loss"'),
+        (SCENE + NETWORK + line("paddle", 1, 2, 'impedance = "1 N*s/m"'), "is not cut"),
+        (
+            SCENE + NETWORK.replace("[[network.part]]", "[network.part]", 1).split("[[network.part]]")[0],
+            "written as",
+        ),
+    ],
+)
+def test_what_is_no_network_is_refused_in_one_line(tmp_path, capsys, text, said):
+    assert main(["network", file(tmp_path, text), "--plan"]) == 2
+    told = capsys.readouterr().err
+    assert re.search(said, told), told
+    assert "Traceback" not in told
+
+
+def test_there_is_no_process_of_another_name(tmp_path, capsys):
+    assert main(["network", file(tmp_path, SCENE + NETWORK), "--run", "fare"]) == 2
+    assert 'no process is called "fare"; there are: near, far, paddle' in capsys.readouterr().err
+
+
+@pytest.fixture
+def compiled(tmp_path):
+    """What the processes need compiled, so that none of them waits for it."""
+    plan = load_plan(tmp_path / file(tmp_path, SCENE + NETWORK))
+    for name in plan.names:
+        plan.runs(name, Exact("0.01"))
+
+
+@pytest.mark.usefixtures("compiled")
+def test_a_bad_link_is_run_by_real_processes_and_one_that_is_killed_leaves_no_force(tmp_path):
+    p = ports(4)
+    text = SCENE + NETWORK + line("paddle", p[0], p[1], 'delay = "4 ms"\njitter = "4 ms"\nloss = 0.2')
+    path = file(tmp_path, text + line("spring tool–bed", p[2], p[3]))
+    command = [sys.executable, "-m", "zwidth", "network", path, "--duration", "4 s", "--json", "--run"]
+    children = {
+        name: subprocess.Popen(
+            [*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8"
+        )
+        for name in ("near", "far", "paddle")
+    }
+    for text in children["near"].stderr:  # a second in which all run
+        if "at 1 s" in text:
+            break
+    children["far"].send_signal(signal.SIGKILL if os.name == "posix" else signal.SIGTERM)
+    told = {
+        name: json.loads(children[name].communicate()[0])["processes"][name] for name in ("near", "paddle")
+    }
+    children["far"].communicate()
+    assert 0 < told["near"]["steps"] <= 800
+    assert 0 < told["paddle"]["steps"] <= 4000
+    far = told["near"]["links"]["spring tool–bed"]
+    paddle = told["near"]["links"]["paddle"]
+    assert far["silent_s"] > 0.2
+    assert far["last_force_N"] == 0
+    assert 0 < paddle["lost"] < paddle["received"]
+    assert paddle["round_trip_s"]["median"] > 0.008
+    assert paddle["energy_received_J"] > 0
+
+
+@pytest.mark.usefixtures("compiled")
+def test_all_processes_are_started_by_one_command(tmp_path, capfd):
+    assert main(["network", file(tmp_path, SCENE + NETWORK), "--duration", "0.3 s", "--json"]) == 0
+    told = json.loads(capfd.readouterr().out)
+    assert told["format"] == "zwidth network 1"
+    assert set(told["processes"]) == {"near", "far", "paddle"}
+    near, paddle = told["processes"]["near"], told["processes"]["paddle"]
+    assert near["links"]["paddle"]["energy_received_J"] <= paddle["links"]["paddle"]["energy_sent_J"]
+    assert 0 < near["steps"] <= 60

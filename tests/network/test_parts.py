@@ -1,0 +1,98 @@
+"""Parts of a scene that lines join: the whole again but for their mass, and no energy whatever is lost."""
+
+import random
+
+import numpy as np
+import pytest
+
+from zwidth.network import PartRun, run_parts
+from zwidth.scene import Contact, Damper, Mass, Scene, Spring
+from zwidth.scene.cut import best_parts, cut
+from zwidth.scene.run import SceneRun
+
+T = 1e-3
+
+
+def chain(n, soft, wall=False):
+    elements = [Spring("handle", "m0", 300), Damper("handle", "m0", 0.2)]
+    for i in range(n):
+        to = f"m{i + 1}" if i < n - 1 else "ground"
+        elements += [Mass(f"m{i}", 0.1), Spring(f"m{i}", to, 100 if i in soft else 500)]
+        elements += [Damper(f"m{i}", "ground", 0.3)]
+    if wall:
+        elements.append(Contact(f"m{n - 1}", "ground", 2000, gap=0.002))
+    return Scene(elements)
+
+
+def running(made, period=T):
+    return {part.name: PartRun(part, period) for part in made.parts}
+
+
+def swing(period, duration=1.0):
+    t = np.arange(1, round(duration / period) + 1) * period
+    return 0.01 * np.sin(2 * np.pi * 2 * t) * (1 - np.exp(-t / 0.05))
+
+
+def test_the_parts_are_the_whole_but_for_the_mass_of_the_lines():
+    """It is K τ²: a delay half as long leaves a quarter of the difference."""
+    scene = chain(5, {1, 3})
+    apart = []
+    for period in (T, T / 2, T / 4):
+        x = swing(period)
+        runs = running(cut(scene, best_parts(scene, 3), period), period)
+        felt = run_parts(runs, np.diff(x, prepend=0.0))
+        apart.append(np.abs(felt - SceneRun(scene, period).follow(x)).max())
+    assert apart[0] < 0.02
+    assert [a / b for a, b in zip(apart, apart[1:], strict=False)] == pytest.approx([4, 4], rel=0.25)
+
+
+def test_the_order_in_which_parts_are_stepped_changes_no_bit():
+    scene = chain(6, {1, 3}, wall=True)
+    made = cut(scene, best_parts(scene, 3), T)
+    moves = np.diff(swing(T, 0.5), prepend=0.0)
+    one = run_parts(running(made), moves)
+    other = run_parts(dict(reversed(running(made).items())), moves)
+    assert one == other
+
+
+@pytest.mark.parametrize("late", [1, 3, 17])
+def test_every_joule_is_in_a_part_or_on_its_way(late):
+    scene = chain(4, {1}, wall=True)
+    runs = running(cut(scene, best_parts(scene, 2), "1 ms"))
+    moves = np.diff(swing(T), prepend=0.0)
+    felt = np.array(run_parts(runs, moves, dict.fromkeys(["spring m1–m2"], late)))
+    put_in = float(felt @ moves)
+    taken = 0.0
+    for run in runs.values():
+        account = run.account()
+        taken += float(account["stored"].sum() + account["lost"].sum())
+    assert put_in == pytest.approx(taken, rel=1e-9)
+    line = sum(float(r.account()["lost"].sel(element="spring m1–m2")) for r in runs.values())
+    assert line > -1e-12
+
+
+def test_parts_of_different_rates_and_a_bad_link_make_no_energy():
+    """One part is five times slower; packets are lost, doubled and out of order."""
+    scene = chain(4, {1})
+    draw = random.Random(7)
+    for _ in range(20):
+        made = cut(scene, best_parts(scene, 2), "5 ms")
+        fast, slow = (PartRun(p, T if p.scene.port else 5 * T) for p in made.parts)
+        coming = {"fast": [], "slow": []}
+        put_in, x = 0.0, 0.0
+        name = made.lines[0].name
+        for k in range(600):
+            for run, own, other, due in ((fast, "fast", "slow", True), (slow, "slow", "fast", k % 5 == 4)):
+                if not due:
+                    continue
+                heard = [p for when, p in coming[own] if when <= k]
+                coming[own] = [(when, p) for when, p in coming[own] if when > k]
+                move = 0.0
+                if own == "fast":
+                    move = draw.gauss(0, 1e-3)
+                    x += move
+                packets = run.step({name: heard}, move)
+                put_in += run.felt * move
+                for _ in range(draw.choice([0, 0, 1, 1, 2])):
+                    coming[other].append((k + draw.randrange(1, 40), packets[name]))
+            assert put_in > -1e-12
