@@ -27,7 +27,7 @@ class Mail:
 
 
 def test_its_first_two_examples_run(capsys: pytest.CaptureFixture[str]) -> None:
-    """Two ports over a link that loses every other packet; and packets from a socket, broken ones left out."""
+    """Two ports over a link that loses every other packet; packets from a socket, broken ones left out."""
     names: dict[str, Any] = {}
     for block in re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[:2]:
         exec(block, names)
