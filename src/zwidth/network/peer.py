@@ -1,8 +1,8 @@
 """One process of many: a part of a scene, or a device, stepped at its rate, its lines over channels.
 
-What is late is made up for, so that every peer's time is that of the clock: of two ends whose times part the
-slower one could not keep up a force.  A step uses what has come by then and waits for nothing.  What has not come is a wave of zero: a peer that is
-gone is felt as a line that fell silent, whose force ends at zero.
+What is late is made up for, so that every peer's time is that of the clock: of two ends whose times part
+the slower one could not keep up a force.  A step uses what has come by then and waits for nothing.  What has
+not come is a wave of zero: a peer that is gone is felt as a line that fell silent, whose force ends at zero.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class PeerReport(Shown):
 
     steps: int
     late: int
-    """Steps that began more than a period late: they follow each other until what was missed is made up for."""
+    """Steps that began more than a period late; they follow at once, until the time is made up for."""
     lateness: tuple[float, float, float]
     """Median, 99 % and largest lateness of a step [s]."""
     links: Mapping[str, LinkReport]
