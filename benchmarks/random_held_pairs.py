@@ -2,10 +2,10 @@
 
 Delays of whole samples and of part of one, links of 0 to 6 samples each way, unequal arms, springs, dampers,
 forces that are sent, hands of mass, spring and damper, leader or follower held; ideal encoders, no Coulomb
-friction.  The largest stiffness with just this hand is found; a part in 10⁶ below it the checker must accept a
-certificate, a part in 10⁶ above it a violation.  Both are attacked in the simulator by a wave of the free arm at
-the worst frequency, swelling and dying away over some thousand samples: below the limit it must not gain, and it
-is counted how often it gains a fiftieth above.
+friction.  The largest stiffness with just this hand is found; a part in 10⁶ below it the checker must accept
+a certificate, a part in 10⁶ above it a violation.  Both are attacked in the simulator by a wave of the free
+arm at the worst frequency, swelling and dying away: below the limit it must not gain, and it is counted how
+often it gains a fiftieth above.
 
     python random_held_pairs.py [PAIRS] [FIRST SEED]
 """

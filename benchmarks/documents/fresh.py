@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from attack.referee import needed
 
+from .fresh_held_pairs import FRESH_HELD_PAIRS
 from .fresh_pairs import FRESH_PAIRS
 from .judges.arms import Chain
 from .judges.hands import held, radius
@@ -864,6 +865,7 @@ _FRESH: dict[str, Callable[[Random], Document]] = {
     "positive real": _positive_real,
     "extraction": _extraction,
     **FRESH_PAIRS,
+    **FRESH_HELD_PAIRS,
 }
 
 KINDS = tuple(_FRESH)

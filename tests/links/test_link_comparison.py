@@ -12,7 +12,7 @@ from zwidth.cli.main import main
 from zwidth.links import LinkComparison, Schedule
 
 NAMES = {
-    "waves with a ledger": "theorem",
+    "waves with a ledger": "passive",
     "waves without a ledger": "active",
     "textbook waves": "active",
     "positions, last one held": "undecided",

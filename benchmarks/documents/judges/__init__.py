@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..opinion import Opinion, cannot_say, first
-from . import arms, boards, closed, hands, loops, mixes, motions, pair_motions, pairs, ports
+from . import arms, boards, closed, hands, held_pairs, loops, mixes, motions, pair_motions, pairs, ports
 
 Judge = Callable[[dict[str, Any], np.random.Generator], Opinion]
 
@@ -22,6 +22,7 @@ JUDGES: dict[str, Judge] = {
     **arms.JUDGES,
     **pairs.JUDGES,
     **pair_motions.JUDGES,
+    **held_pairs.JUDGES,
 }
 
 

@@ -28,7 +28,9 @@ from .loop.motion import MOTION, motion_energy, stored_at_start
 from .loop.nonlinear_spring import NONLINEAR_SPRING, endless_pull, nonlinear_spring
 from .loop.spring import SPRING, spring
 from .loop.violation import VIOLATION, violation
+from .loop.wave_port import WAVE_PORT, wave_port
 from .pair.held import HELD_PAIR, HELD_VIOLATION, held_pair, held_violation
+from .pair.held_motion import HELD_MOTION, held_motion_energy
 from .pair.motion import PAIR_MOTION, pair_motion_energy, pair_stored_at_start
 from .pair.passive import PAIR_PROOF, PAIR_VIOLATION, pair, pair_violation
 from .port.index import POSITIVE_REAL, positive_real
@@ -139,6 +141,7 @@ KINDS: dict[str, Kind] = {
     "nonlinear spring": Kind(NONLINEAR_SPRING, _proof(nonlinear_spring), scope.of_points(PASSIVE)),
     "endless pull": Kind(NONLINEAR_SPRING, _proof(endless_pull), scope.of_points(ACTIVE)),
     "force bounding": Kind(FORCE_BOUNDING, _proof(force_bounding), scope.of_force_bounding),
+    "wave port": Kind(WAVE_PORT, _proof(wave_port), scope.of_a_wave_port),
     "slow hands": Kind(SLOW_HANDS, _proof(slow_hands), scope.of_slow_hands),
     "active hand": Kind(ACTIVE_HAND, _proof(active_hand), _activity),
     "storage": Kind(STORAGE, _proof(checked), _on_a_grid(PASSIVE)),
@@ -151,6 +154,9 @@ KINDS: dict[str, Kind] = {
     ),
     "held pair": Kind(HELD_PAIR, _proof(held_pair), scope.of_a_held_pair(PASSIVE)),
     "held pair violation": Kind(HELD_VIOLATION, _proof(held_violation), scope.of_a_held_pair(ACTIVE)),
+    "held pair motion": Kind(
+        HELD_MOTION, _motion(held_motion_energy, _nothing), scope.of_a_held_pair(ACTIVE)
+    ),
     "arm": Kind(ARM, _arm, scope.of_an_arm),
     "violation": Kind(VIOLATION, _proof(violation), _of_every_hand(KEPT, ACTIVE)),
     "motion": Kind(MOTION, _motion(motion_energy, stored_at_start), scope.of_a_motion),

@@ -107,6 +107,11 @@ def of_force_bounding(told: Read) -> Scope:
     return Scope(PASSIVE, "every", BROKEN, _encoder(told), True, stepped)
 
 
+def of_a_wave_port(told: Read) -> Scope:
+    """Any link; it asks for no more than the actuator gives, in its steps."""
+    return Scope(PASSIVE, encoder=_encoder(told), force_limit=True, force_steps=True)
+
+
 def on_a_grid(shows: str) -> Callable[[Read], Scope]:
     """Hands within the grid; a motion is one whatever they are."""
 

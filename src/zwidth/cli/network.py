@@ -7,7 +7,8 @@ import json
 import signal
 import subprocess
 import sys
-from collections.abc import Iterable
+import time
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 FORMAT = "zwidth network 1"
 
 _DURATION = "10 s"
+
+_LOOK = 0.1
+"""Between two looks at whether a process has ended [s]."""
 
 _OFTEN = 1.0
 """Between two lines of what is seen [s]."""
@@ -118,7 +122,7 @@ def _all(plan: Plan, file: str, typed: str, as_json: bool) -> int:
         name: subprocess.Popen([*command, *more, "--run", name], stdout=out, text=True) for name in plan.names
     }
     try:
-        told = {name: child.communicate()[0] for name, child in children.items()}
+        told = _ended(children)
     except KeyboardInterrupt:
         _end(children.values())
         raise
@@ -130,6 +134,16 @@ def _all(plan: Plan, file: str, typed: str, as_json: bool) -> int:
     if failed:
         print(f"did not run to the end: {', '.join(failed)}", file=sys.stderr)
     return int(bool(failed))
+
+
+def _ended(children: Mapping[str, subprocess.Popen[str]]) -> dict[str, str]:
+    """What each printed, once all have ended; if one fails the others are told to end."""
+    while any(child.poll() is None for child in children.values()):
+        if any(child.returncode for child in children.values()):
+            _end(children.values())
+            break
+        time.sleep(_LOOK)
+    return {name: child.communicate()[0] for name, child in children.items()}
 
 
 def _end(children: Iterable[subprocess.Popen[str]]) -> None:

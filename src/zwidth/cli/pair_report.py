@@ -15,7 +15,7 @@ from zwidth.device import Device
 from zwidth.pairs import Pair
 from zwidth.passivity.outcome import TOLD
 from zwidth.passivity.pairs import PairVerdict, PairWitness
-from zwidth.passivity.pairs.held import HeldVerdict
+from zwidth.passivity.pairs.held import HeldVerdict, HeldWitness
 from zwidth.quantity.text import quantity_unit, shown
 
 _SAMPLES_SHOWN = 48
@@ -36,7 +36,7 @@ def print_pair(verdict: PairVerdict | HeldVerdict) -> None:
         section(out, "assumes", items(verdict.small_print(), "dim"))
 
 
-def _claim(verdict: PairVerdict | HeldVerdict, witness: PairWitness | None) -> str:
+def _claim(verdict: PairVerdict | HeldVerdict, witness: PairWitness | HeldWitness | None) -> str:
     if verdict.outcome != "active" or witness is not None:
         return verdict.claim
     return f"{verdict.claim} No motion that shows it was found short enough to be written down."
@@ -62,16 +62,14 @@ def _numbers(verdict: PairVerdict | HeldVerdict) -> Iterator[tuple[str, str | Te
             yield name, Text(text, style="bold" if name == "limit" else "")
 
 
-def _motion(witness: PairWitness) -> Iterator[Text]:
+def _motion(witness: PairWitness | HeldWitness) -> Iterator[Text]:
     length, fancy = quantity_unit("position", witness.pair.motion), encodes(PICTURE)
-    yield Text(
-        f"{witness.samples:.6g} samples in {shown(witness.duration, 's')}, of both hands from rest at 0"
-    )
-    for part in witness.leader.repeats:
-        if part.times > 1:
-            yield Text(f"samples {part.first} to {part.last} are a round, done {part.times:.6g} times")
+    hands = "both hands" if len(witness.paths) > 1 else "one hand"
+    yield Text(f"{witness.samples:.6g} samples in {shown(witness.duration, 's')}, of {hands} from rest at 0")
+    for part in witness.repeats:
+        yield Text(f"samples {part.first} to {part.last} are a round, done {part.times:.6g} times")
     yield Text(f"extracts {shown(witness.energy, 'J')}", style="bold")
-    for role, path in zip(("leader", "follower"), witness.positions, strict=True):
+    for role, path in witness.paths.items():
         first = [float(x) for x in path[:_SAMPLES_SHOWN]]
         more = " …" if len(path) > len(first) else ""
         far = shown(float(path.max() - path.min()), length)

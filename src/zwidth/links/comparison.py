@@ -22,11 +22,13 @@ from zwidth.links.schedule import Schedule
 from zwidth.links.simulation import check_ends, simulate
 from zwidth.links.time_domain import TimeDomain
 from zwidth.links.two_layer import TwoLayer
+from zwidth.links.verdict import check
 from zwidth.links.wave_port import WavePort
 from zwidth.operator import PrescribedMotion, RecordedForce
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.parameter import parameters_of, read_number
 from zwidth.quantity.text import unit_text
 from zwidth.showing import Part, Table
 
@@ -39,6 +41,8 @@ _STROKE, _REST, _PRESS, _RISE = 2.0, 1.0, 4.0, 1.0
 """How long: to and fro, at rest after it; a push, its force rising for a part of it [s]."""
 _STILL = 0.1
 """How far a hand may swing that is said to be at rest, of its depth."""
+_WEAKEST_FIRST = ("undecided", "theorem", "passive")
+"""What two ports are together."""
 
 Ends = tuple[Port, Port]
 
@@ -111,7 +115,11 @@ _SCORES = {
 
 
 def standard_ports(
-    leader: Device, follower: Device, schedule: Schedule, impedance: RealLike | None = None
+    leader: Device,
+    follower: Device,
+    schedule: Schedule,
+    impedance: RealLike | None = None,
+    smoothing: RealLike = 0,
 ) -> dict[str, Ends]:
     """Every kind of port for two devices, leader first, as stiff as each other.
 
@@ -123,9 +131,11 @@ def standard_ports(
         The link, whose delay says how stiff waves feel; the springs are as stiff.
     impedance
         w of the waves; None: the smaller damping of the two.
+    smoothing
+        Of the port with a ledger [s].
     """
     least = min(ends(device.damping)[0] for device in (leader, follower))
-    w = least if impedance is None else Exact(impedance).fraction
+    w = least if impedance is None else _impedance(impedance, leader.motion)
     spring = Exact(stiffness_of(w, schedule, leader))
     level = Exact(spring.fraction * Fraction(_FAR[leader.motion]).limit_denominator(1000) ** 2 / 2)
     damping = Exact(least)
@@ -134,13 +144,19 @@ def standard_ports(
         return make(leader), make(follower)
 
     return {
-        "waves with a ledger": both(lambda d: WavePort(d, impedance=Exact(w))),
+        "waves with a ledger": both(lambda d: WavePort(d, impedance=Exact(w), smoothing=smoothing)),
         "waves without a ledger": both(lambda d: HeldWaves(d, impedance=Exact(w))),
         "textbook waves": both(lambda d: NaiveWaves(d, impedance=Exact(w))),
         "positions, last one held": both(lambda d: PositionHold(d, stiffness=spring)),
         "time-domain passivity": both(lambda d: TimeDomain(d, stiffness=spring, largest_damping=damping)),
         "two layers": both(lambda d: TwoLayer(d, stiffness=spring, level=level, filling_damping=damping)),
     }
+
+
+def _impedance(given: RealLike, motion: str) -> Fraction:
+    own = parameters_of(WavePort)["impedance"]
+    read = read_number(given, own.quantity, "impedance", bound=own.bound, why=own.why, motion=motion)
+    return Exact(read).fraction
 
 
 def stiffness_of(impedance: Fraction, schedule: Schedule, device: Device) -> Fraction:
@@ -156,6 +172,7 @@ def compare(
     schedule: Schedule | None = None,
     *,
     impedance: RealLike | None = None,
+    smoothing: RealLike = 0,
     ports: Mapping[str, Ends] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> LinkComparison:
@@ -169,6 +186,8 @@ def compare(
         What the link does to packets; None: no delay.
     impedance
         w of the waves; None: the smaller damping of the two.
+    smoothing
+        Of the port with a ledger [s].
     ports
         By name, leader's and follower's, in the place of `standard_ports`.
     progress
@@ -181,7 +200,7 @@ def compare(
     """
     link = Schedule() if schedule is None else schedule
     other = leader if follower is None else follower
-    kinds = standard_ports(leader, other, link, impedance) if ports is None else ports
+    kinds = standard_ports(leader, other, link, impedance, smoothing) if ports is None else ports
     rows: dict[str, dict[str, Any]] = {}
     traces = {}
     for done, (name, (near, far)) in enumerate(kinds.items()):
@@ -195,11 +214,12 @@ def compare(
 
 def _taken(near: Port, far: Port, link: Schedule) -> dict[str, Any]:
     """Over this link; that it is active may be seen over one without any delay alone."""
-    if near.theorem and far.theorem:
-        return {"outcome": "theorem", "taken": 0.0}
-    found = most_taken(near, far, link)
-    taken = 0.0 if found is None else found.energy
-    active = found is not None or most_taken(near, far, Schedule()) is not None
+    if all(port.has_ledger or port.theorem for port in (near, far)):
+        found = {check(port).outcome for port in (near, far)}
+        return {"outcome": next(word for word in _WEAKEST_FIRST if word in found), "taken": 0.0}
+    motion = most_taken(near, far, link)
+    taken = 0.0 if motion is None else motion.energy
+    active = motion is not None or most_taken(near, far, Schedule()) is not None
     return {"outcome": "active" if active else "undecided", "taken": taken}
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
-from math import isfinite
+from fractions import Fraction
+from math import inf, isfinite, nextafter
 from typing import ClassVar, TypeVar
 
 import numpy as np
@@ -59,9 +60,9 @@ class Port(Parametric):
     def _numbers(self) -> list[float]:
         own = [float(getattr(self, name)) for name in parameters_of(type(self))]
         told = [
-            float(self.device.exact("sample_period")),
-            float(ends(self.device.damping)[0]),
-            float(ends(self.device.coulomb_friction)[0]),
+            -rounded_down(-self.device.exact("sample_period")),
+            rounded_down(ends(self.device.damping)[0]),
+            rounded_down(ends(self.device.coulomb_friction)[0]),
             float(self.device.exact("resolution")),
             _lower(self.device, "force_limit"),
             0.0 if self.device.force_resolution is None else float(self.device.exact("force_resolution")),
@@ -79,9 +80,12 @@ class Port(Parametric):
         """The same port before its first packet."""
         return replace(self)
 
+    has_ledger: ClassVar[bool] = False
+    """True where a ledger pays for every force, which has a certificate."""
+
     @property
     def theorem(self) -> str:
-        """Why it is passive whatever the link does, in a sentence; "" where nothing proves it."""
+        """Why it is passive whatever the link does, by a proof on paper; "" where there is none."""
         return ""
 
     def telling_ways(self) -> list[float]:
@@ -102,14 +106,20 @@ class Port(Parametric):
         Raises
         ------
         InputError
-            If one of them is no `Packet`.
+            If one of them is no `Packet`, or ``send`` has not been called since the last time.
         """
+        if self.state[memory.MOVING]:
+            raise InputError(
+                "receive is called once in a period, got it twice without send between: two forces in one "
+                "period cannot be booked; give it all packets that have come, also none"
+            )
         for packet in packets:
             if not isinstance(packet, Packet):
                 raise InputError(
                     f"packets are Packet objects, got {packet!r}; bytes: Packet.from_bytes(data)"
                 )
             memory.hear(self.state, float(packet.number), packet.wave, packet.energy, packet.position)
+        self.state[memory.MOVING] = 1.0
         return float(self.steps[0](self.numbers, self.state))
 
     @property
@@ -129,7 +139,8 @@ class Port(Parametric):
         Raises
         ------
         InputError
-            If it is not finite, or no whole number of counts.
+            If it is not finite, or no whole number of counts; or ``receive`` has not been called since the
+            last time.
         """
         moved = float(displacement)
         if not isfinite(moved):
@@ -141,7 +152,13 @@ class Port(Parametric):
                 f"displacement is a whole number of counts of {step:g}, got {moved:g}: give the "
                 "difference of two readings as they are, not filtered"
             )
+        if not self.state[memory.MOVING]:
+            raise InputError(
+                "send is called once in a period, after receive, got it without: each force is booked once; "
+                "where nothing has come call receive() all the same"
+            )
         self.steps[1](self.numbers, self.state, counts * step if step > 0 else moved)
+        self.state[memory.MOVING] = 0.0
         s = self.state
         told = (float(s[i]) for i in (memory.WAVE, memory.ENERGY, memory.POSITION))
         return Packet(int(s[memory.NUMBER]), *told)
@@ -151,6 +168,12 @@ class Port(Parametric):
         own, motion = parameters_of(type(self)), self.device.motion
         told = [f"{own[name].quantity.symbol} = {self.with_unit(name, motion)}" for name in own]
         return ", ".join([self.title, *told])
+
+
+def rounded_down(value: Fraction) -> float:
+    """The largest double that is no larger: no more is counted on than there is."""
+    near = float(value)
+    return nextafter(near, -inf) if Fraction(near) > value else near
 
 
 def _samples_late(device: Device) -> int:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import zwidth.traces.accessor  # noqa: F401 - gives every trace its `.zwidth`
 from zwidth.errors import InputError
 from zwidth.links.kernel import End, run_link
 from zwidth.links.port import Port

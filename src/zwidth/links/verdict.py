@@ -9,7 +9,9 @@ from typing import Any, ClassVar
 from zwidth.links.attack import LinkWitness, most_taken
 from zwidth.links.memory import LATE
 from zwidth.links.port import Port
+from zwidth.links.proof import certificate_of, slow_actuator
 from zwidth.links.schedule import Schedule
+from zwidth.passivity.certificate import Certificate
 from zwidth.passivity.outcome import Outcome
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Scope
@@ -20,10 +22,10 @@ from zwidth.quantity.text import quantity_unit
 def check(port: Port, schedule: Schedule | None = None) -> PortVerdict:
     """Decide whether two hands can take energy out of two such ports, one at each end of a link.
 
-    Passive, as a theorem, means for every link that makes up no packets: Σ over both ends of ∫ f_h v dt is
-    never below 0 for devices that start at rest.  For waves without a ledger that is so exactly if w ≤ b and
-    the displacement is read without steps; waves with a ledger are always.  Of other laws a motion is looked
-    for that takes energy out.  Derivation: docs/theory/links.md.
+    Passive means for every link that makes up no packets: Σ over both ends of ∫ f_h v dt is never below 0 for
+    devices that start at rest.  For waves with a ledger that comes with a certificate.  For waves without one
+    it is so exactly if w ≤ b and the displacement is read without steps, a theorem on paper.  Of other laws a
+    motion is looked for that takes energy out.  Derivation: docs/theory/links.md.
 
     Parameters
     ----------
@@ -33,7 +35,9 @@ def check(port: Port, schedule: Schedule | None = None) -> PortVerdict:
         The link over which a motion is looked for; None: no delay.
     """
     link = Schedule() if schedule is None else schedule
-    return PortVerdict(port, link, None if port.theorem else most_taken(port, port, link))
+    certificate = certificate_of(port)
+    known = certificate is not None or port.theorem or slow_actuator(port)
+    return PortVerdict(port, link, certificate, None if known else most_taken(port, port, link))
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,6 +50,8 @@ class PortVerdict(PassivityAnswer):
         What was asked.
     schedule
         The link of the motion, where there is one.
+    certificate
+        The proof; None where there is none.
     witness
         The motion that takes energy out; None where none was found.
     """
@@ -54,25 +60,34 @@ class PortVerdict(PassivityAnswer):
 
     port: Port
     schedule: Schedule
+    certificate: Certificate | None
     witness: LinkWitness | None
 
     @property
     def outcome(self) -> Outcome:
-        """ "theorem", "active" or "undecided"."""
-        if self.port.theorem:
+        """ "passive", "theorem", "active" or "undecided"."""
+        if self.certificate is not None:
+            return "passive"
+        if self.port.theorem and not slow_actuator(self.port):
             return "theorem"
         return "undecided" if self.witness is None else "active"
 
     @property
     def claim(self) -> str:
         """The outcome in a sentence."""
-        if self.port.theorem:
+        if self.outcome in ("passive", "theorem"):
+            why = (
+                self.port.theorem or "its ledger pays for every force, from what came and what friction took"
+            )
             return (
                 "Over a link that delays, loses, repeats or reorders packets as it likes, two hands take no "
-                f"energy out: {self.port.theorem}."
+                f"energy out: {why}."
             )
         if self.witness is not None:
             return f"Over a link with {self.schedule.describe()}, {self.witness.describe()}."
+        slow = slow_actuator(self.port)
+        if slow:
+            return f"Not proved: a force is taken as instant, and it is not: {slow}."
         return "Neither a proof nor a motion that takes energy out was found."
 
     @property
@@ -99,6 +114,7 @@ class PortVerdict(PassivityAnswer):
         late = int(self.port.numbers[LATE])
         when = f"{late} sample{'' if late == 1 else 's'} after its reading" if late else "at once"
         yield f"the force is applied {when} and held for the period, by an actuator without a lag of its own"
+        yield "no period is longer than the sample period: in a longer one friction takes less"
         yield "friction is b and f_c of the device at least, at every speed and in every period"
         if device.friction_speed is not None:
             unit = quantity_unit("friction_speed", device.motion)
@@ -109,8 +125,8 @@ class PortVerdict(PassivityAnswer):
             yield "an ideal position sensor: the displacement is read without error"
         if device.assumed:
             yield f"{', '.join(device.assumed)} not given, taken as 0"
-        if self.port.theorem:
-            yield "a proof on paper: docs/theory/links.md; no certificate"
+        if self.outcome == "theorem":
+            yield "a proof on paper, of exact numbers: docs/theory/links.md; no certificate"
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """The port."""
@@ -124,5 +140,5 @@ class PortVerdict(PassivityAnswer):
         return found
 
     def evidence(self) -> dict[str, Any]:
-        """Nothing that `zwidth verify` reads: the proof is on paper, the motion runs the port itself."""
-        return {}
+        """The certificate; a motion runs the port itself, which `zwidth verify` does not know."""
+        return {} if self.certificate is None else {"certificate": self.certificate.saved()}

@@ -17,7 +17,7 @@ from zwidth.errors import InputError
 from zwidth.loop.kernel import run
 from zwidth.loop.law import PHASE, RESOLUTION, STEP
 from zwidth.loop.pair.setup import Holder
-from zwidth.loop.pair.simulate import simulate_pair
+from zwidth.loop.pair.simulate import Friction, simulate_pair
 from zwidth.loop.plain import run_plain
 from zwidth.loop.plant import FAULT, STOPS
 from zwidth.loop.setup import Setup, empty_record, prepare
@@ -63,6 +63,7 @@ def simulate(
     encoder_phase: tuple[float, float] | float = ...,
     amplifier: Amplifier | None = ...,
     points_per_sample: int = ...,
+    friction: Friction | tuple[Friction, Friction] = ...,
     progress: Progress | None = ...,
 ) -> xr.Dataset: ...
 def simulate(
@@ -77,6 +78,7 @@ def simulate(
     amplifier: Amplifier | None = None,
     timing: Timing | None = None,
     points_per_sample: int = 1,
+    friction: Friction | tuple[Friction, Friction] = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Simulate a hand on the device, ``m ẍ = f_h − f_a − f_c sgn ẋ − b ẋ``, exactly.
@@ -109,6 +111,8 @@ def simulate(
     points_per_sample
         Instants recorded per sample; more of them show the motion between samples. The motion
         itself does not depend on it.
+    friction
+        Of the arms of a `Pair` alone: a measured curve in the place of f_c and b.
     progress
         Called with (samples done, samples in all).
 
@@ -139,8 +143,11 @@ def simulate(
             encoder_phase=encoder_phase,
             amplifier=amplifier,
             points_per_sample=points_per_sample,
+            friction=friction,
             progress=progress,
         )
+    if friction is not None:
+        raise InputError("friction: a curve is simulated of the arms of a pair; give the device f_c and b")
     setup = prepare(
         device,
         environment,

@@ -80,28 +80,36 @@ class LinkReport(Shown):
 
     def row(self, name: str) -> list[str]:
         """One row of a table of links."""
-        p50, p99 = (f"{1e3 * t:.3g}" for t in self.round_trip[:2])
-        share = 100 * self.lost / max(self.lost + self.received, 1)
         energies = (f"{1e3 * e:.4g} mJ" for e in (self.energy_sent, self.energy_received))
-        return [name, str(self.sent), str(self.received), f"{share:.2g} %", f"{p50}, {p99} ms", *energies]
+        return [name, str(self.sent), str(self.received), self._share, self._trips, *energies]
+
+    @property
+    def _share(self) -> str:
+        return f"{100 * self.lost / max(self.lost + self.received, 1):.2g} %"
+
+    @property
+    def _trips(self) -> str:
+        if math.isnan(self.round_trip[0]):
+            return "—"
+        return ", ".join(f"{1e3 * t:.3g}" for t in self.round_trip[:2]) + " ms"
 
     @property
     def brief(self) -> str:
         """In a few words."""
-        trip, share = 1e3 * self.round_trip[0], 100 * self.lost / max(self.lost + self.received, 1)
+        if not self.received:
+            return "nothing has come"
         waiting = f", silent for {self.silent:.2g} s" if self.silent > _SILENT else ""
-        return f"{self.rate:.4g} per second, {share:.2g} % lost, {trip:.3g} ms there and back{waiting}"
+        trip = f"{1e3 * self.round_trip[0]:.3g} ms there and back"
+        return f"{self.rate:.4g} per second, {self._share} lost, {trip}{waiting}"
 
     def rows(self) -> list[list[str]]:
-        p50, p99, longest = (f"{1e3 * t:.3g}" for t in self.round_trip)
-        share = 100 * self.lost / max(self.lost + self.received, 1)
         return [
             ["packets", f"{self.sent} sent, {self.received} received, {self.rate:.4g} per second"],
-            ["lost", f"{self.lost} ({share:.2g} %), {self.doubled} twice, {self.late} late"],
+            ["lost", f"{self.lost} ({self._share}), {self.doubled} twice, {self.late} late"],
             ["foreign", f"{self.foreign} datagrams"],
-            ["round trip", f"{p50} ms median, {p99} ms in 99 %, {longest} ms longest"],
+            ["there and back", f"{self._trips}: median, 99 %"],
             ["energy", f"{self.energy_sent:.4g} J sent, {self.energy_received:.4g} J received"],
-            ["silent", f"for {self.silent:.3g} s"],
+            ["silent", f"for {self.silent:.3g} s" if self.received else "from the start"],
         ]
 
 

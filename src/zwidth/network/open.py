@@ -2,7 +2,7 @@
 
 udp:LOCAL,REMOTE       udp:127.0.0.1:7401,127.0.0.1:7402
 memory:NAME            on one machine; the first side makes it
-zenoh:NAME             found by multicast; zenoh:NAME,listen=ENDPOINT or ,connect=ENDPOINT
+zenoh:NAME             found by multicast; or zenoh:NAME,ENDPOINT, where the first side listens
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from zwidth.network.zenoh import Zenoh
 
 _FORMS = (
     "udp:LOCAL,REMOTE such as udp:127.0.0.1:7401,127.0.0.1:7402; memory:NAME; "
-    "or zenoh:NAME, with ,listen=ENDPOINT or ,connect=ENDPOINT behind it if need be"
+    "or zenoh:NAME, perhaps with ,udp/192.168.0.7:7447, where the first side listens"
 )
 
 
@@ -38,10 +38,9 @@ def open_channel(text: str, first: bool, *, wait: float = 0.0) -> Channel:
         return UDP(local, remote)
     if kind == "memory" and len(parts) == 1 and parts[0]:
         return _memory(parts[0], first, time.monotonic() + wait)
-    if kind == "zenoh" and parts[0]:
-        ends = {name: [e.partition("=")[2] for e in parts[1:] if e.startswith(f"{name}=")] for name in _ENDS}
-        if sum(map(len, ends.values())) == len(parts) - 1:
-            return Zenoh(parts[0], first, listen=ends["listen"], connect=ends["connect"])
+    if kind == "zenoh" and all(parts):
+        ends = parts[1:]
+        return Zenoh(parts[0], first, listen=ends if first else (), connect=() if first else ends)
     raise InputError(f"no channel is called {text!r}; give {_FORMS}")
 
 
@@ -53,6 +52,3 @@ def _memory(name: str, first: bool, until: float) -> SharedMemory:
             if first or time.monotonic() >= until:
                 raise
         time.sleep(0.05)
-
-
-_ENDS = ("listen", "connect")

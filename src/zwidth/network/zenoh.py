@@ -64,7 +64,7 @@ class Zenoh(Channel):
                 f"{name}/{back}", zenoh.handlers.RingChannel(_WAITING)
             )
         except zenoh.ZError as error:
-            raise InputError(f"Zenoh refuses {name!r}: {str(error).splitlines()[0]}") from None
+            raise InputError(f"Zenoh refuses {name!r}: {_reason(error)}") from None
 
     def send(self, datagram: bytes) -> None:
         """Publish it; dropped where the network is full."""
@@ -81,3 +81,8 @@ class Zenoh(Channel):
         """Leave the network."""
         if not self._session.is_closed():
             self._session.close()
+
+
+def _reason(error: Exception) -> str:
+    """What went wrong, without where in Zenoh's own sources."""
+    return str(error).splitlines()[0].partition(" at /")[0].partition(": [")[0]

@@ -3,14 +3,15 @@
 Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
 `witness`, `worst_case`, `storage`, `cycle`, `indices`, `check_figure`,
-`limit_figure`, `plot_links`, `plot_pair`, `plot_scene`, `workspace_figure` and `z_width_figure` return a
-`matplotlib.figure.Figure` that belongs to no window; the `draw_…`
+`limit_figure`, `plot_held_pair`, `plot_links`, `plot_pair`, `plot_scene`, `workspace_figure` and
+`z_width_figure` return a `matplotlib.figure.Figure` that belongs to no window; the `draw_…`
 functions draw on axes of your own, in the look of `LOOK` if your axes have it.
 """
 
 from zwidth.plots.budget import budget, draw_damping, draw_friction
 from zwidth.plots.criterion import criterion, draw_criterion
 from zwidth.plots.cycle import cycle, draw_cycle
+from zwidth.plots.held_pair import draw_held_damping, draw_held_stiffness, plot_held_pair
 from zwidth.plots.indices import draw_index, indices
 from zwidth.plots.limit import limit_figure
 from zwidth.plots.links import draw_links, plot_links
@@ -36,6 +37,8 @@ __all__ = [
     "draw_cycle",
     "draw_damping",
     "draw_friction",
+    "draw_held_damping",
+    "draw_held_stiffness",
     "draw_index",
     "draw_links",
     "draw_pair_damping",
@@ -52,6 +55,7 @@ __all__ = [
     "indices",
     "limit_figure",
     "plane",
+    "plot_held_pair",
     "plot_links",
     "plot_pair",
     "plot_scene",

@@ -15,8 +15,8 @@ _FOOT = 1e-6
 """Energy that is drawn at the foot of its axis, with all below it [J]."""
 _MOST = 1e4
 """The same at the other end [J]."""
-_MARKS = {"theorem": "s", "active": "X", "undecided": "D"}
-_LABELS = {"theorem": "passive over any link: a theorem"}
+_MARKS = {"passive": "o", "theorem": "s", "active": "X", "undecided": "D"}
+_LABELS = {"passive": "passive over any link", "theorem": "the same: a theorem, no certificate"}
 _GUIDE = "#dddddd"
 _BEYOND = 1.6
 """How far a position is drawn, in those of the leader."""

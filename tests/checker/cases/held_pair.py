@@ -2,14 +2,16 @@
 
 The need, and the friction for encoders, were computed in 40 digits by another road: the matrix exponential of
 arm and hand, the answers of both laws to a wave solved for, the largest need by golden section; ‖h‖₁ by
-running both arms.
+running both arms, and so the energy of the motions.
 """
 
 from __future__ import annotations
 
+from importlib import import_module
+from itertools import product
 from typing import Any
 
-from . import TINY, Fraction, accepted, put, refused, without
+from . import TINY, Case, Fraction, accepted, put, refused, without
 from .pair import arm, loop
 
 
@@ -27,6 +29,23 @@ def with_damping(document: Any, value: Any) -> Any:
     """Of the free arm."""
     free = "leader" if document["held"]["arm"] == "follower" else "follower"
     return put(document, {f"loop.{free}.damping_N_s_per_m": value})
+
+
+def twice_as_quick(document: Any) -> Any:
+    """In half the time: all damping by 2, masses by 4; forces and stiffness as they are."""
+
+    def quicker(told: Any) -> Any:
+        by = {"_s": 2, "_N_s_per_m": 2, "_kg": 4}
+        return {
+            key: quicker(value)
+            if isinstance(value, dict)
+            else Fraction(value) / next((n for end, n in by.items() if key.endswith(end)), 1)
+            if key not in ("arm", "cosine", "kind", "energy_J")
+            else value
+            for key, value in told.items()
+        }
+
+    return {**document, "loop": quicker(document["loop"]), "held": quicker(document["held"])}
 
 
 def other_way_round(document: Any) -> Any:
@@ -94,6 +113,80 @@ def counted(friction: Any) -> Any:
     )
 
 
+def moved(document: Any, damping: Any, friction: Any, path: Any, energy: Any) -> Any:
+    """The free arm along a path."""
+    told = put(with_damping(document, damping), {"loop.leader.coulomb_friction_N": friction})
+    return {**told, "kind": "held pair motion", "positions_m": path, "energy_J": energy}
+
+
+def polynomials_are_exact() -> str:
+    """In powers of w, of ζ and of u, of whole numbers without a radius; at a point of the circle."""
+    felt, circle = (import_module(f"zwidth.checker.{name}") for name in ("pair.felt", "exact.circle"))
+    enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
+
+    def known(*values: int, radius: int = 0) -> list[Any]:
+        return [enclosed(8, 256 * v, (), radius) for v in values]
+
+    def at(p: Any, x: Any) -> Any:
+        return sum((_read(c) * x**i for i, c in enumerate(p)), 0 * x)
+
+    def _read(c: Any) -> Fraction:
+        return Fraction(c) if isinstance(c, int) else Fraction(c.middle, 256)
+
+    a, b, row = known(3, -5, 2, 7), known(4, 1, -6), [2, 0, -1, 4]
+    zeta = Fraction(3, 7)
+    w = 1 - zeta
+    late = felt._delayed(known(5, -2, 3), 4)
+    pairs = {
+        "in w": (at(felt.in_w(row), w), at(row, zeta)),
+        "times": (at(felt.times(a, row), w), at(a, w) * at(row, w)),
+        "in ζ": (at(felt.in_zeta(a), zeta), at(a, w)),
+        "late": (at(late, w), zeta**4 * (5 * (1 / zeta - 1) ** 2 - 2 * (1 / zeta - 1) + 3)),
+        "sum": (at(felt._sum(b, a, known(0)[0]), w), at(a, w) + at(b, w)),
+        "sum turned": (at(felt._sum(a, b, known(0)[0]), w), at(a, w) + at(b, w)),
+    }
+    u = Fraction(2, 5)  # ζ = (3 + 4j)/5, w = (2 − 4j)/5
+    powers = [(Fraction(1), Fraction(0))]
+    for _ in range(3):
+        x, y = powers[-1]
+        powers.append(((2 * x + 4 * y) / 5, (2 * y - 4 * x) / 5))
+
+    def on_circle(p: Any) -> tuple[Fraction, Fraction]:
+        parts = [(_read(c) * x, _read(c) * y) for c, (x, y) in zip(p, powers, strict=False)]
+        return sum((x for x, _ in parts), Fraction(0)), sum((y for _, y in parts), Fraction(0))
+
+    for one, other in ((a, b), (b, a), (a, a)):
+        (x, y), (s, t) = on_circle(one), on_circle(other)
+        found = circle.real_part(one, other, 8)
+        pairs[f"real part {len(one)} {len(other)}"] = (at(found, u), x * s + y * t)
+        pairs[f"radius {len(one)} {len(other)}"] = (Fraction(sum(c.reach for c in found)), Fraction(0))
+        total = circle.at(found, 1 - u)
+        pairs[f"at {len(one)} {len(other)}"] = (Fraction(total.middle, 256), (x * s + y * t) * 5**7)
+    for sign, more in product((-1, 1), repeat=2):  # what is unknown is within the radius that is found
+        bounds = circle.real_part(known(3, -5, 2, 7, radius=8), known(4, 1, -6, radius=8), 8)
+        moved = [[c.middle + s * 8 for c in p] for p, s in ((a, sign), (b, more))]
+        (x, y), (s, t) = (on_circle([enclosed(8, m) for m in p]) for p in moved)
+        off = abs(x * s + y * t - at(bounds, u))
+        if off > sum((Fraction(c.radius, 256) * u**i for i, c in enumerate(bounds)), Fraction(0)):
+            return f"off by {off}"
+    return next((name for name, (found, right) in pairs.items() if found != right), "")
+
+
+def sums_of_impulse_responses() -> str:
+    """1/(1 − ζ/2) has 2, and 3 (1 + ζ)/(2 + ζ) has 3/2 + 3/4 + 3/8 + …"""
+    one_norm = import_module("zwidth.checker.exact.one_norm").one_norm
+    enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
+
+    def known(*values: Any) -> list[Any]:
+        return [enclosed(64, int(v * 2**64)) for v in values]
+
+    for top, bottom, right in (((1,), (1, Fraction(-1, 2)), 2), ((3, 3), (2, 1), 3)):
+        found = one_norm(known(*top), known(*bottom))
+        if not right <= found <= right * (1 + TINY):
+            return f"{float(found)} in the place of {right}"
+    return ""
+
+
 FRICTION = Fraction("0.3130708513820214770908369")
 BOX = put(
     with_damping(HAND, "0.3968"),
@@ -105,7 +198,43 @@ BOX = put(
 )
 """Of its corners the heavy one that damps least, with the softer spring, needs most: 0.39666344."""
 
+ROUND = [0, 3, 4, 1, -3, -4, -1, 3, 4, 1, -2, -2, 0]
+MOTIONS = {
+    "a hand": moved(HAND, "0.1", "0.01", [0, 1, -1, 2, -2, 1, 0], "10.7912174467386850853793611568"),
+    "late": moved(LATE, "0.02", 0, ROUND, "8.30598966240401990221771646198"),
+    "a force that is sent": moved(SENT, "0.02", "0.01", ROUND, "29.1679274015447923701730057924"),
+}
+MOVED = MOTIONS["a hand"]
+
 CASES = [
+    Case("polynomials are exact", polynomials_are_exact, ""),
+    Case("sums of impulse responses", sums_of_impulse_responses, ""),
+    *(
+        case
+        for name, told in MOTIONS.items()
+        for case in (
+            accepted(f"a motion, {name}", told, "the motion extracts", shows="active"),
+            accepted(f"a motion, {name}, turned", other_way_round(told), hands="beside a known one"),
+            accepted(f"a motion, {name}, twice as quick", twice_as_quick(told)),
+            refused(
+                f"a motion, {name}, more",
+                put(told, {"energy_J": Fraction(told["energy_J"]) * (1 + 2 * TINY)}),
+                "the energy is",
+            ),
+            refused(
+                f"a motion, {name}, less",
+                put(told, {"energy_J": Fraction(told["energy_J"]) * (1 - 2 * TINY)}),
+                "the energy is",
+            ),
+        )
+    ),
+    refused("a motion that takes nothing out", put(with_damping(MOVED, 2), {"energy_J": 0}), "no more than"),
+    refused("a motion from elsewhere", put(MOVED, {"positions_m.0": 1}), "at rest at 0"),
+    refused("a motion of a box", put(MOVED, {"held.mass_kg": [2, "2.5"]}), "single values"),
+    *(
+        refused(f"a motion, {key}", put(MOVED, {f"loop.{key}": TINY}), "re-run without encoders")
+        for key in ("follower.coulomb_friction_N", "follower.resolution_m", "leader.resolution_m")
+    ),
     *(
         case
         for name, (_, _, cosine) in NEEDS.items()
@@ -114,6 +243,8 @@ CASES = [
             refused(f"{name}, too little", SHORT[name], POSITIVE),
             accepted(f"{name}, too little and said so", gains(SHORT[name], cosine), "takes energy out"),
             refused(f"{name}, enough and said not", gains(ENOUGH[name], cosine), GAINS),
+            accepted(f"{name}, enough, twice as quick", twice_as_quick(ENOUGH[name])),
+            refused(f"{name}, too little, twice as quick", twice_as_quick(SHORT[name]), POSITIVE),
         )
     ),
     accepted(
@@ -134,7 +265,7 @@ CASES = [
     ),
     refused("the other one is held", put(ENOUGH["a hand"], {"held.arm": "leader"}), POSITIVE),
     refused("nobody's name", put(NOBODY, {"held.arm": "both"}), "must be leader or follower"),
-    accepted("encoders", counted(FRICTION * (1 + TINY)), "covers the steps of both", encoder="counted"),
+    accepted("encoders", counted(FRICTION * (1 + TINY)), "nowhere negative", encoder="counted"),
     refused("encoders, too little friction", counted(FRICTION * (1 - TINY)), "below the force error"),
     accepted(
         "a gain that friction does not stop",
@@ -161,6 +292,12 @@ CASES = [
     refused(
         "a hand that drives", put(ENOUGH["a hand"], {"held.damping_N_s_per_m": "0.29"}), "would drive it"
     ),
+    refused(
+        "a hand that may drive",
+        put(ENOUGH["a hand"], {"held.damping_N_s_per_m": ["0.29", "1.5"]}),
+        "would drive it",
+    ),
+    accepted("a hand that damps nothing", put(ENOUGH["nobody"], {"loop.follower.damping_N_s_per_m": "0.5"})),
     refused(
         "a held arm that does not come to rest",
         with_damping(held(loop(arm(0, 1), arm(0, 1)), 1, 0, 0), 100),

@@ -24,6 +24,7 @@ from .spring import spring
 from .storage import STORAGES
 from .touching_motion import QUARTER as TOUCHING
 from .vibration import HEAVY, hand
+from .wave_port import PORT
 
 _UNITS = {
     "m_per_s_N": "rad_per_s_N_m",
@@ -65,6 +66,7 @@ DOCUMENTS = {
     "an endless pull": RUNS_AWAY,
     "slow hands": SLOW,
     "force bounding": BOUND,
+    "wave port": PORT,
     "an active hand": REDUCED,
     "a known hand": RESTS,
     "any wall of a hand": TOUCHED,

@@ -10,8 +10,7 @@ from scipy.linalg import expm
 from strategies import seeds
 
 import zwidth as zw
-from zwidth.passivity.pairs.held import HeldPair
-from zwidth.passivity.pairs.held.criterion import HeldCriterion
+from zwidth.passivity.pairs.held import HeldPair, felt_law
 from zwidth.passivity.pairs.held.law import felt
 
 Hand = zw.stability.HandImpedance
@@ -197,6 +196,20 @@ def test_what_is_no_linear_law_is_decided_by_two_hands_alone(change: dict, phras
     assert phrase in zw.check(pair.replace(stiffness=5000), follower=HAND).limit
 
 
+def test_the_law_that_is_felt_is_one_for_every_tool() -> None:
+    """On both sides of the limit the verdict of one arm is that of the pair; at rest nobody pulls."""
+    for stiffness, outcome in ((100.5, "passive"), (102, "active")):
+        pair = PAIR.replace(stiffness=stiffness)
+        law = felt_law(pair, follower=None)
+        assert zw.check(pair.leader, law).outcome == zw.check(pair, follower=None).outcome == outcome
+        top, bottom = law.pulse_transfer_function(Fraction(1, 1000))
+        assert sum(top) == 0 < sum(bottom)
+    with pytest.raises(zw.InputError, match="single numbers"):
+        felt_law(PAIR, follower=Hand(mass=(0, 1)))
+    with pytest.raises(zw.InputError, match="without drives"):
+        felt_law(PAIR.replace(drive_rate="10 kHz"), follower=None)
+
+
 def test_bad_input() -> None:
     """One clear message each."""
     for arguments, phrase in (
@@ -229,14 +242,26 @@ def test_the_verdict_as_data_and_as_text() -> None:
 
 @pytest.mark.parametrize(("stiffness", "gains"), [(250, False), (300, True)])
 def test_in_the_simulator_the_wave_gains_beyond_the_limit_alone(stiffness: int, gains: bool) -> None:
-    """The leader goes to and fro at the worst frequency, swelling and dying away."""
-    pair = PAIR.replace(stiffness=stiffness)
-    law = HeldCriterion(HeldPair(PAIR.replace(stiffness=300), "follower", HAND))
-    k = np.arange(1501)
-    theta = np.arccos(float(law.violation.cosine))
-    path = 0.01 * np.sin(np.pi * k / 1500) ** 2 * np.sin(theta * k)
-    path[-1] = 0
+    """The leader goes to and fro at the worst frequency; what it takes out is what the checker found."""
+    pair = zw.Pair(ARM.replace(coulomb_friction="0.05"), ARM, stiffness=300, delay="2 ms")
+    wave = zw.check(pair, follower=HAND).witness
+    assert wave.verify()
     held = zw.operators.Finger(mass=0.05, stiffness=100, damping=2, force=0, start=0)
-    trace = zw.simulate(pair, zw.operators.PrescribedMotion(path), held, 1.5)
+    hand = zw.operators.PrescribedMotion(wave.positions)
+    trace = zw.simulate(pair.replace(stiffness=stiffness), hand, held, wave.duration)
     work = trace.sel(arm="leader")["hand_work"].values
-    assert bool(work.min() - work[0] < -1e-6) is gains
+    assert bool(work.min() < work[0]) is gains
+    if gains:
+        assert work[0] - work[-1] == pytest.approx(wave.energy, rel=1e-4)
+
+
+def test_a_wave_is_found_close_to_the_limit() -> None:
+    """Half a per cent beyond it, against Coulomb friction of the free arm; none where there are steps."""
+    pair = zw.Pair(ARM.replace(coulomb_friction="0.05"), ARM, stiffness=252, delay="2 ms")
+    found = zw.check(pair, follower=HAND)
+    assert found.outcome == "active"
+    assert found.witness.energy > 0
+    assert found.to_dict()["witness"]["kind"] == "held pair motion"
+    counted = pair.replace(leader=pair.leader.replace(resolution="1 um"))
+    assert zw.check(counted, follower=HAND).outcome == "active"
+    assert zw.check(counted, follower=HAND).witness is None

@@ -42,7 +42,7 @@ MOST_HALVINGS = 40
 BITS = 256
 """And four for each order: wʲ has coefficients of 2ʲ in powers of ζ, its real part of 4ʲ in those of u."""
 
-_HELD = Record(
+HELD = Record(
     {
         "arm": Choice("leader", "follower"),
         "mass": Between(MASS, above=0),
@@ -53,29 +53,27 @@ _HELD = Record(
 )
 """Which arm, and what moves there: arm and hand together."""
 
-HELD_PAIR = document({"loop": PAIR, "held": _HELD})
+HELD_PAIR = document({"loop": PAIR, "held": HELD})
 HELD_VIOLATION = document(
-    {"loop": PAIR, "held": _HELD, "proof": Record({"cosine": Number(least=-1, most=1)}, shown=False)}
+    {"loop": PAIR, "held": HELD, "proof": Record({"cosine": Number(least=-1, most=1)}, shown=False)}
 )
 
 
 def held_pair(told: Read) -> str:
     """The free arm's hand takes nothing out."""
-    held = _read(told)
+    held = held_of(told)
     if held.arm.coulomb_friction:
         raise Invalid("Coulomb friction of the held arm bends its law, and such a proof is of a linear one")
     if not comes_to_rest(_alone(held)):
         raise Invalid("that the held arm comes to rest in its hand could not be confirmed")
     boxes = _covered(held)
     hands = "the hand on the other arm" if boxes == 1 else f"every such hand, in {boxes} boxes, the other one"
-    counted = held.free.resolution or held.arm.resolution
-    more = ", and Coulomb friction covers the steps of both encoders" if counted else ""
-    return f"with the {told.held.arm} held, the work of {hands} is nowhere negative{more}"
+    return f"with the {told.held.arm} held, the work of {hands} is nowhere negative"
 
 
 def held_violation(told: Read) -> str:
     """A frequency at which it does; large motions do not know of friction and steps on either arm."""
-    held = _read(told)
+    held = held_of(told)
     if held.motion.middle != held.motion:
         raise Invalid("that a hand takes energy out is shown with single values, not with intervals")
     if at(_criterion(held, port_of(held)), told.proof.cosine).sign != -1:
@@ -83,7 +81,8 @@ def held_violation(told: Read) -> str:
     return f"with the {told.held.arm} held, at one frequency a motion of the other arm takes energy out"
 
 
-def _read(told: Read) -> Held:
+def held_of(told: Read) -> Held:
+    """What a document says of both arms and the hand."""
     sides, place = sides_of(told.loop), ("leader", "follower").index(told.held.arm)
     arm, free = sides[place], sides[1 - place]
     if told.loop.own_readings > 1 or any(side.law is not None for side in sides):
@@ -121,8 +120,6 @@ def _covered(held: Held) -> int:
             _require(held._replace(motion=box))
             shown += 1
         except Invalid:
-            if held.motion.middle == held.motion:
-                raise
             _require(held._replace(motion=box.middle))
             if tried > MOST_BOXES or halved > MOST_HALVINGS:
                 raise Invalid(

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import ceil, sqrt
 
 from zwidth.compiled import Array, compiled
+from zwidth.loop.pair.curve import advance_on
 from zwidth.loop.plant import POSITION, VELOCITY, Plant
-from zwidth.loop.step import advance
 
 _LOOKS = 8
 """How often in a stretch it is looked whether the arm has met or left the wall, at least."""
@@ -15,7 +15,7 @@ _BISECTIONS = 60
 
 
 @compiled
-def advance_against(state: Array, free: Plant, inside: Plant, h: float, work: Array) -> None:
+def advance_against(state: Array, free: Plant, inside: Plant, curve: Array, h: float, work: Array) -> None:
     """Move by h seconds under a constant actuator force; as `inside` where x > 0, as `free` elsewhere.
 
     The instant at which x passes 0 is found to the last bits, so that the wall gives back no more than it
@@ -30,7 +30,7 @@ def advance_against(state: Array, free: Plant, inside: Plant, h: float, work: Ar
         within = x > 0.0 or (x == 0.0 and state[VELOCITY] > 0.0)
         for _ in range(4):  # it passes 0 once, or not at all; more often only by rounding
             before = state.copy()
-            advance(state, inside if within else free, 0.0, 0.0, 0.0, left, work)
+            advance_on(state, inside if within else free, curve, 0.0, 0.0, 0.0, left, work)
             if (state[POSITION] > 0.0) == within or state[POSITION] == 0.0:
                 break
             low, high = 0.0, left
@@ -39,12 +39,12 @@ def advance_against(state: Array, free: Plant, inside: Plant, h: float, work: Ar
                 if middle <= low or middle >= high:
                     break
                 state[:] = before
-                advance(state, inside if within else free, 0.0, 0.0, 0.0, middle, work)
+                advance_on(state, inside if within else free, curve, 0.0, 0.0, 0.0, middle, work)
                 if (state[POSITION] > 0.0) == within:
                     low = middle
                 else:
                     high = middle
             state[:] = before
-            advance(state, inside if within else free, 0.0, 0.0, 0.0, low, work)
+            advance_on(state, inside if within else free, curve, 0.0, 0.0, 0.0, low, work)
             left -= low
             within = not within

@@ -11,6 +11,7 @@ from math import tanh
 from typing import NamedTuple
 
 from zwidth.compiled import Array, compiled
+from zwidth.loop.carry import carry
 from zwidth.loop.kernel import (
     R_COMMAND,
     R_READING,
@@ -20,10 +21,12 @@ from zwidth.loop.kernel import (
     first_due,
     in_interval,
     note,
+    on_the_way,
     travel,
 )
 from zwidth.loop.law import measured, rounded
 from zwidth.loop.pair.contact import advance_against
+from zwidth.loop.pair.curve import advance_on, line_of, on_line
 from zwidth.loop.plant import POSITION, SATURATED, Plant
 
 
@@ -57,12 +60,14 @@ class Arm(NamedTuple):
     """One side in arrays: what is changed, and what its hand does.
 
     `told` holds what the newest readings of T make of the force; `wall` is 1 where a real wall stands at
-    x = 0, and the plant inside it is `inside`.
+    x = 0, and the plant inside it is `inside`; `curve` has the lines of its friction, none where that is the
+    plant's own.
     """
 
     plant: Plant
     inside: Plant
     wall: int
+    curve: Array
     law: Law
     late: int
     offset: float
@@ -168,7 +173,7 @@ def through(arm: Arm, due: int, k: int, points: int, h: float, final: bool, work
 def go(arm: Arm, hand: Hand, start: float, end: float, h: float, due: int, k: int, work: Array) -> int:
     """Move from `start` to `end` of tick k, with a hand or against a wall; returns the next command due."""
     nothing = work[:0].reshape((2, 0))
-    if arm.wall == 0:
+    if arm.wall == 0 and arm.curve.shape[0] == 0:
         return travel(
             arm.state, arm.plant, hand, start, end, h, due, k, arm.late, arm.offset, nothing,
             arm.commands, work,
@@ -176,7 +181,17 @@ def go(arm: Arm, hand: Hand, start: float, end: float, h: float, due: int, k: in
     now = start
     while now < end:
         until = min(arrival(due, k, arm.late, arm.offset, nothing), end)
-        advance_against(arm.state, arm.plant, arm.inside, until - now, work)
+        if arm.wall == 1:
+            advance_against(arm.state, arm.plant, arm.inside, arm.curve, until - now, work)
+        elif hand.kinematic:
+            if hand.bent and now < arm.offset:
+                until = min(until, arm.offset)
+            there = on_the_way(hand, arm.offset, until, h)
+            fast = abs(there - arm.state[POSITION]) / (until - now)
+            carry(arm.state, on_line(arm.plant, arm.curve, line_of(arm.curve, fast)), there, until - now)
+        else:
+            here = hand.anchor + hand.speed * now
+            advance_on(arm.state, arm.plant, arm.curve, hand.push, here, hand.speed, until - now, work)
         now = until
         if now < end:
             due = apply_due(arm.state, arm.plant, due, k, now, arm.late, arm.offset, nothing, arm.commands)

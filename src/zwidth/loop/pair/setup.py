@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from zwidth.device import FrictionCurve
 from zwidth.device.amplifier import Amplifier
 from zwidth.environment import Wall
 from zwidth.environment.environment import certain
@@ -15,6 +17,7 @@ from zwidth.environment.velocity import BackwardDifference
 from zwidth.errors import InputError
 from zwidth.loop.kernel import RECORDED
 from zwidth.loop.law import measured, rounded
+from zwidth.loop.pair.curve import COULOMB_PART
 from zwidth.loop.pair.kernel import Arm, Law
 from zwidth.loop.plant import FORCE, GOAL, POSITION, STATE_SIZE, Plant
 from zwidth.loop.setup import Frame, frame_of
@@ -92,6 +95,7 @@ def prepare_pair(
     encoder_phase: tuple[float, float],
     amplifier: Amplifier | None,
     points_per_sample: int,
+    friction: tuple[FrictionCurve | None, FrictionCurve | None] = (None, None),
 ) -> PairSetup:
     """Check everything and lay it out; arguments as of `simulate_pair`.
 
@@ -115,8 +119,10 @@ def prepare_pair(
     ]
     starts = _starts(frames, holders)
     arms = [
-        _arm(pair, here, frame, wall, starts[here], phase)
-        for here, (frame, wall, phase) in enumerate(zip(frames, walls, encoder_phase, strict=True))
+        _arm(pair, here, frame, wall, starts[here], phase, curve)
+        for here, (frame, wall, phase, curve) in enumerate(
+            zip(frames, walls, encoder_phase, friction, strict=True)
+        )
     ]
     for arm, other in zip(arms, arms[::-1], strict=True):
         _settle(arm, other)
@@ -161,12 +167,21 @@ def _starts(frames: list[Frame], holders: tuple[Holder, Holder]) -> list[float]:
     return [there if start is None else start for start in given]
 
 
-def _arm(pair: Pair, here: int, frame: Frame, wall: Wall | None, start: float, phase: float) -> Arm:
+def _arm(
+    pair: Pair,
+    here: int,
+    frame: Frame,
+    wall: Wall | None,
+    start: float,
+    phase: float,
+    friction: FrictionCurve | None,
+) -> Arm:
     if not 0 <= phase < 1:
         raise InputError(f"encoder_phase is a part of one count, 0 ≤ phase < 1, got {phase:g}")
     state = np.zeros(STATE_SIZE)
     state[POSITION] = start
-    free = frame.plant
+    curve = lines_of(friction)
+    free = frame.plant if friction is None else frame.plant._replace(stiction=float(curve[0, COULOMB_PART]))
     samples, often = frame.samples, pair.own_readings
     s = frame.signals
     force, anchor, target, switch = (
@@ -176,6 +191,7 @@ def _arm(pair: Pair, here: int, frame: Frame, wall: Wall | None, start: float, p
         plant=free,
         inside=free if wall is None else _inside(free, wall),
         wall=int(wall is not None),
+        curve=curve,
         law=_law(pair, here, frame, phase),
         late=frame.late,
         offset=frame.offset,
@@ -190,6 +206,20 @@ def _arm(pair: Pair, here: int, frame: Frame, wall: Wall | None, start: float, p
         target=target,
         switch=switch,
     )
+
+
+def lines_of(friction: FrictionCurve | None) -> Array:
+    """From where, f_i and b_i of the lines of a curve, as far as it says anything; none without one."""
+    if friction is None:
+        return np.empty((0, 3))
+    points = [(float(v), float(f)) for v, f in zip(friction.speeds, friction.forces, strict=True)]
+    rows = [(0.0, points[0][1], 0.0)] if points[0][0] > 0 else []
+    for (v, f), (w, g) in pairwise(points):
+        slope = (g - f) / (w - v)
+        rows.append((v, f - slope * v, slope))
+    if rows[-1][2] < 0:  # a last chord that falls is not continued
+        rows.append((*points[-1], 0.0))
+    return np.array(rows)
 
 
 def _inside(free: Plant, wall: Wall) -> Plant:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from zwidth.device import FrictionCurve
 from zwidth.device.amplifier import Amplifier
 from zwidth.errors import InputError
 from zwidth.loop.pair.kernel import run_pair
@@ -19,6 +20,8 @@ from zwidth.quantity.exact import RealLike
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Friction = FrictionCurve | None
 
 _STRIDE = 100_000
 """Ticks between two looks at progress and Ctrl-C."""
@@ -33,6 +36,7 @@ def simulate_pair(
     encoder_phase: tuple[float, float] | float = 0.0,
     amplifier: Amplifier | None = None,
     points_per_sample: int = 1,
+    friction: Friction | tuple[Friction, Friction] = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> xr.Dataset:
     """Simulate both arms, each ``m ẍ = f_h − f_a − f_c sgn ẋ − b ẋ``, exactly, and the link between them.
@@ -54,6 +58,10 @@ def simulate_pair(
         Of both arms, see `zwidth.amplifiers`; by default what each device knows of its own.
     points_per_sample
         Instants recorded between two readings of an arm's own.
+    friction
+        The measured curve in the place of f_c and b of both devices, or those of leader and follower; None
+        for the device's own.  Between two points it is straight, below the first the first force, beyond the
+        last the last chord, or the last force where that chord falls; f(0) is the stiction.
     progress
         Called with (readings done, readings in all).
 
@@ -76,6 +84,7 @@ def simulate_pair(
         encoder_phase=_both(encoder_phase),
         amplifier=amplifier,
         points_per_sample=points_per_sample,
+        friction=_curves(friction),
     )
     done = _run(setup, progress)
     if any(arm.state[FAULT] for arm in setup.arms):
@@ -94,6 +103,14 @@ def _both(phase: tuple[float, float] | float) -> tuple[float, float]:
         raise InputError(
             f"encoder_phase is a number, or one for the leader and one for the follower, got {phase!r}"
         ) from None
+
+
+def _curves(given: Friction | tuple[Friction, Friction]) -> tuple[Friction, Friction]:
+    leader, follower = given if isinstance(given, tuple) and len(given) == 2 else (given, given)
+    for name, curve in (("leader", leader), ("follower", follower)):
+        if not isinstance(curve, FrictionCurve | None):
+            raise InputError(f"friction of the {name} is a FrictionCurve or None, got {type(curve).__name__}")
+    return leader, follower
 
 
 def _run(setup: PairSetup, progress: Callable[[int, int], None] | None) -> int:

@@ -16,7 +16,7 @@ from zwidth.passivity.document import unit_key
 from zwidth.passivity.linear.positivity import Positivity
 from zwidth.passivity.linear.supremum import frequency
 from zwidth.passivity.result import Evidence
-from zwidth.passivity.witness.motion import Motion
+from zwidth.passivity.witness.motion import Motion, Repeat
 from zwidth.quantity.text import exact_text, quantity_unit
 
 CERTIFICATE = "zwidth certificate 1"
@@ -205,6 +205,16 @@ class PairWitness(Evidence):
         """Of leader and follower at the samples [m; rad]; each repeated part once."""
         first, second = (np.array([float(v) for v in m.positions]) for m in (self.leader, self.follower))
         return first, second
+
+    @property
+    def paths(self) -> dict[str, NDArray[np.float64]]:
+        """The same by the name of the arm."""
+        return dict(zip(("leader", "follower"), self.positions, strict=True))
+
+    @property
+    def repeats(self) -> tuple[Repeat, ...]:
+        """What both hands do more than once."""
+        return tuple(part for part in self.leader.repeats if part.times > 1)
 
     def to_dict(self) -> dict[str, Any]:
         """The motion as plain data."""

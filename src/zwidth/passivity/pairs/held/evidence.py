@@ -31,7 +31,11 @@ class HeldCertificate(Evidence):
 
     def to_dict(self) -> dict[str, Any]:
         """The proof as plain data."""
-        return {"format": CERTIFICATE, "kind": "held pair", **_document(self.question, self.question.motion)}
+        return {
+            "format": CERTIFICATE,
+            "kind": "held pair",
+            **held_document(self.question, self.question.motion),
+        }
 
     def describe(self) -> str:
         """What was proved, in words."""
@@ -66,7 +70,7 @@ class HeldViolation(Evidence):
         return {
             "format": VIOLATION,
             "kind": "held pair violation",
-            **_document(self.question, self.motion),
+            **held_document(self.question, self.motion),
             "proof": {"cosine": exact_text(self.cosine)},
         }
 
@@ -75,7 +79,8 @@ class HeldViolation(Evidence):
         return f"at {self.frequency:.6g} Hz some motion of the {self.question.free} gains in every round"
 
 
-def _document(question: HeldPair, motion: Motion) -> dict[str, Any]:
+def held_document(question: HeldPair, motion: Motion) -> dict[str, Any]:
+    """The pair, and arm and hand together."""
     return {
         "loop": pair_document(question.pair),
         "held": {"arm": question.held, **motion.told(question.pair.motion)},

@@ -16,9 +16,10 @@ from typing import Any, Literal
 import flint
 
 from zwidth.environment.environment import RationalFunction
+from zwidth.environment.transfer_function import PulseTransferFunction
 from zwidth.errors import InputError
 from zwidth.loop.sampled_plant import Motion, sampled, times
-from zwidth.operator.hand_impedance import HandImpedance
+from zwidth.operator.hand_impedance import HandImpedance, as_hand
 from zwidth.pairs import Pair
 from zwidth.passivity.linear.loop import LinearLoop, loop_from
 from zwidth.passivity.pairs.arm import Arm
@@ -27,6 +28,9 @@ from zwidth.quantity import balls
 from zwidth.quantity.exact import Exact, ends
 
 ArmName = Literal["leader", "follower"]
+
+ANY = "any"
+"""What holds an arm if nothing is said: a hand that does what it likes."""
 
 _BITS = 192
 
@@ -102,6 +106,59 @@ class HeldPair:
         """With another damping of the leader or the follower."""
         device = getattr(self.pair, name).replace(damping=Exact(damping))
         return replace(self, pair=self.pair.replace(**{name: device}))
+
+
+def held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldPair:
+    """What holds which arm, as `check_held_pair` is asked.
+
+    Raises
+    ------
+    InputError
+        If not just one arm is held, or the hand is none.
+    """
+    given = {
+        name: hand
+        for name, hand in (("leader", leader), ("follower", follower))
+        if not (isinstance(hand, str) and hand == ANY)
+    }
+    if len(given) != 1:
+        raise InputError(
+            "one arm is held by a known hand and the other by any: with both known nobody is left who could "
+            "take energy out; leave leader or follower out"
+        )
+    held: ArmName = "leader" if "leader" in given else "follower"
+    return HeldPair(pair, held, as_hand(given[held]))
+
+
+def felt_law(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> PulseTransferFunction:
+    """The law H(z) that the hand on one arm feels while a known hand, or nobody, holds the other.
+
+    As an environment of that arm, for `zwidth.check`, `limit`, `simulate` and `compare`: its coefficients are
+    those of an arm and hand whose sampled motion is the given one to 50 digits.  It is linear:
+    Coulomb friction and encoder of the held arm are left out.
+
+    Parameters
+    ----------
+    pair, leader, follower
+        As of `check_held_pair`; no number of the hand is an interval.
+
+    Raises
+    ------
+    InputError
+        If it is not linear, or a number of arm or hand is uncertain.
+    """
+    question = held_pair(pair, leader, follower)
+    if pair.own_readings > 1 or any(pair.compensations):
+        raise InputError(
+            "no one law is felt where an arm reads itself more often than it sends, or friction is "
+            "compensated: give a pair without drives and without compensation"
+        )
+    if not question.motion.is_certain:
+        raise InputError("the law is of one hand: give single numbers for it and for the mass of the arm")
+    law, _ = felt(question, question.motion)
+    first = law.denominator[0]
+    top, bottom = ([Exact(c / first) for c in part] for part in law)
+    return PulseTransferFunction(top, bottom, sample_period=Exact(pair.sample_period))
 
 
 def felt(pair: HeldPair, motion: Motion) -> tuple[RationalFunction, RationalFunction]:

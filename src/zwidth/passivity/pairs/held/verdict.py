@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
-from zwidth.errors import InputError
-from zwidth.operator.hand_impedance import as_hand
 from zwidth.pairs import Pair
 from zwidth.passivity.advice import Advice
 from zwidth.passivity.outcome import Outcome
@@ -25,16 +23,14 @@ from zwidth.passivity.pairs.held.criterion import (
     required_free_damping,
 )
 from zwidth.passivity.pairs.held.evidence import HeldCertificate, HeldViolation
-from zwidth.passivity.pairs.held.law import ArmName, HeldPair
+from zwidth.passivity.pairs.held.law import ANY, HeldPair, held_pair
+from zwidth.passivity.pairs.held.wave import HeldWitness, gaining_wave
 from zwidth.passivity.pairs.limits import largest_stiffness
 from zwidth.passivity.pairs.verdict import check_pair
 from zwidth.passivity.result import PassivityAnswer
 from zwidth.passivity.scope import Hands, Scope
 from zwidth.quantity.exact import ends
 from zwidth.quantity.text import shown
-
-ANY = "any"
-"""What holds an arm if nothing is said: a hand that does what it likes."""
 
 
 def check_held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldVerdict:
@@ -62,14 +58,7 @@ def check_held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldV
     InputError
         If not just one arm is held, or the hand is none.
     """
-    given = {name: hand for name, hand in (("leader", leader), ("follower", follower)) if not _is_any(hand)}
-    if len(given) != 1:
-        raise InputError(
-            "one arm is held by a known hand and the other by any: with both known nobody is left who could "
-            "take energy out; leave leader or follower out"
-        )
-    held: ArmName = "leader" if "leader" in given else "follower"
-    question = HeldPair(pair, held, as_hand(given[held]))
+    question = held_pair(pair, leader, follower)
     damped = check_pair(question.damped)
     if damped.passive:
         return HeldVerdict(question, damped.certificate)
@@ -79,10 +68,6 @@ def check_held_pair(pair: Pair, leader: Any = ANY, follower: Any = ANY) -> HeldV
         return HeldVerdict(question, found)
     violation = criterion.violation
     return HeldVerdict(question, violation=violation if violation and violation.verify() else None)
-
-
-def _is_any(hand: Any) -> bool:
-    return isinstance(hand, str) and hand == ANY
 
 
 @dataclass(frozen=True, repr=False)
@@ -96,11 +81,11 @@ class HeldVerdict(PassivityAnswer):
     """
 
     FORMAT: ClassVar[str] = "zwidth held pair 1"
+    PICTURE: ClassVar[str] = "plot_held_pair"
 
     question: HeldPair
     certificate: PairCertificate | HeldCertificate | None = None
     violation: HeldViolation | None = None
-    witness: None = None
     advice: tuple[Advice, ...] = ()
     stiffness_elsewhere: tuple[StiffnessAt, ...] = ()
 
@@ -115,6 +100,11 @@ class HeldVerdict(PassivityAnswer):
         if self.certificate is not None:
             return "passive"
         return "undecided" if self.violation is None else "active"
+
+    @cached_property
+    def witness(self) -> HeldWitness | None:
+        """A motion of the free arm that takes energy out; None where none that is short enough was found."""
+        return None if self.violation is None else gaining_wave(self.violation)
 
     @property
     def with_any_such_hand(self) -> bool:
@@ -188,6 +178,8 @@ class HeldVerdict(PassivityAnswer):
                 yield f"friction and encoders do not help against large motions of the {free}"
             else:
                 yield f"no Coulomb friction in the {held}"
+                if self.scope.encoder == "counted":
+                    yield "what the springs hold at the start for half a count of each reading may come back"
         yield from assumed_of_timing(PairCriterion(self.pair), self.with_any_such_hand)
         yield from assumed_of_arms(self.pair)
 
@@ -240,7 +232,7 @@ class HeldVerdict(PassivityAnswer):
         if criterion.bends:
             return f"{criterion.bends}: only what two hands gain is proved"
         if not criterion.holds:
-            return f"the {self.question.held} does not come to rest by itself"
+            return f"the {self.question.held} may not come to rest by itself, or this is too near the limit"
         return "Coulomb friction: the steps of the encoders may feed more energy than it takes"
 
     def rows(self) -> Iterator[tuple[str, str]]:
@@ -265,6 +257,8 @@ class HeldVerdict(PassivityAnswer):
                 yield name, f"{shown(getattr(device, key), unit[key])}, {shown(need, unit[key])} needed"
         if self.violation is not None:
             yield "violated", self.violation.describe()
+        if self.witness is not None:
+            yield "motion", self.witness.describe()
 
     def numbers(self) -> dict[str, Any]:
         """The main numbers as plain data, a unit in every key of a physical quantity."""
