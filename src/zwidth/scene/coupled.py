@@ -7,10 +7,10 @@ convex P(q) = ½ qᵀ G q − rᵀ q + Σ Φ_i(N_i q).  On the iterates q = q° 
 
     (I + S M) δ = φ(w) − λ,   S = diag φ_i'      always solvable: S M has no eigenvalue below 0
 
-and along it the slope of P, Δw·(φ(w + t Δw) − λ − t δ) with Δw = −M δ, rises with t: the step ends where it
-is about 0, or is a whole one.  So P falls in every step, to its least.  Coulomb friction is no function at
-w = 0: it is taken as clip(c + w/ε, ±F) and c as the force that was found last, ε less each time, the method
-of multipliers, until what sticks has w = 0 (Rockafellar 1976).
+and along it the slope of P, Δw·(φ(w + t Δw) − λ − t δ) with Δw = −M δ, rises with t: the step ends where that
+is 0.  So P falls in every step, to its least.  Coulomb friction is no function at w = 0: it is taken as
+clip(c + w/ε, ±F) and c as the force that was found last, the method of multipliers, until what sticks has
+w = 0 (Rockafellar 1976).
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from zwidth.scene.nonlinear import COULOMB
 STEPS = 40
 """Of Newton, and of the multipliers; what is left then is booked."""
 
-FIRMER, FIRMEST = 30.0, 1e7
-"""How much less ε is each time, and at most: beyond that it is rounding that creeps."""
-
 CLOSE = 1e-15
-"""Of the numbers that a difference is made of: rounding."""
+"""Of a force, and of the terms of its velocity: rounding."""
+
+_ROUNDING = 1e-12
+"""Of the terms of a sum: what is less may be rounding alone."""
 
 
 @compiled
@@ -44,26 +44,38 @@ def coupled_forces(
     period: float,
 ) -> None:
     """f in its place in `m`, begun with that of the step before; w° stands at `free`, then there is room."""
-    w, noise = free + count, free + 5 * count
+    w = free + count
     for i in range(count):
         own = p[compliance + i * count + i]
         if p[rows + ROW * i] == COULOMB and own > 0.0:  # alone it is found at once
             most = p[at + int(p[rows + ROW * i + 1])]
             m[states + i] = min(max(m[free + i] / own, -most), most)
             m[forces + i] = m[states + i]
-    firm = 1.0
     for _ in range(STEPS):
-        least_of(p, at, rows, compliance, count, m, states, forces, free, period, firm)
-        creeps = False
+        least_of(p, at, rows, compliance, count, m, states, forces, free, period)
+        sticks = True
         for i in range(count):
             if p[rows + ROW * i] == COULOMB:
                 number = at + int(p[rows + ROW * i + 1])
-                f, _slope = mean_force(p, COULOMB, number, m[states + i], m[w + i], period, firm)
-                creeps |= abs(f - m[states + i]) > firm * p[number + 1] * m[noise + i]
+                f, _slope = mean_force(p, COULOMB, number, m[states + i], m[w + i], period)
+                _w, terms = velocity(p, compliance, count, m, forces, free, i)
+                sticks = sticks and abs(f - m[states + i]) <= 10.0 * CLOSE * p[number + 1] * terms
                 m[states + i] = f
-        if not creeps:
+        if sticks:
             return
-        firm = min(FIRMER * firm, FIRMEST)
+
+
+@compiled
+def velocity(
+    p: Array, compliance: int, count: int, m: Array, forces: int, free: int, i: int
+) -> tuple[float, float]:
+    """w = w° − M f of one element, and how large what is added up there is."""
+    taken, terms = 0.0, abs(m[free + i])
+    for j in range(count):
+        term = p[compliance + i * count + j] * m[forces + j]
+        taken += term
+        terms += abs(term)
+    return m[free + i] - taken, terms
 
 
 @compiled
@@ -78,39 +90,40 @@ def least_of(
     forces: int,
     free: int,
     period: float,
-    firm: float,
 ) -> None:
     """λ of the least P for the frictions' c as they are, in the place of f; w of it behind w°."""
     w, gap, step, moved = free + count, free + 2 * count, free + 3 * count, free + 4 * count
-    noise, matrix = free + 5 * count, free + 6 * count
+    matrix = free + 5 * count
     wide = count + 1
     for _ in range(STEPS):
-        solved = True
+        found = True
         for i in range(count):
-            taken, size = 0.0, abs(m[free + i])
-            for j in range(count):
-                part = p[compliance + i * count + j] * m[forces + j]
-                taken, size = taken + part, size + abs(part)
-            m[w + i], m[noise + i] = m[free + i] - taken, CLOSE * size
+            m[w + i], terms = velocity(p, compliance, count, m, forces, free, i)
             row = rows + ROW * i
-            f, slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], m[w + i], period, firm)
+            f, slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], m[w + i], period)
             if p[compliance + i * count + i] == 0.0:  # the port alone moves it
                 m[forces + i] = f
             m[gap + i] = f - m[forces + i]
-            solved &= abs(m[gap + i]) <= CLOSE * abs(f) + slope * m[noise + i]
+            found = found and abs(m[gap + i]) <= CLOSE * (abs(f) + slope * terms)
             for j in range(count):
                 m[matrix + i * wide + j] = slope * p[compliance + i * count + j]
             m[matrix + i * wide + i] += 1.0
             m[matrix + i * wide + count] = m[gap + i]
-        if solved:
+        if found:
             return
         eliminated(m, matrix, count, step)
+        falls, terms = 0.0, 0.0
         for i in range(count):
             taken = 0.0
             for j in range(count):
-                taken += p[compliance + i * count + j] * m[step + j]
+                term = p[compliance + i * count + j] * m[step + j]
+                taken += term
+                terms += abs(term * m[gap + i])
             m[moved + i] = -taken
-        t = how_far(p, at, rows, count, m, states, forces, w, step, moved, period, firm)
+            falls += taken * m[gap + i]
+        t = 1.0  # where forces hold each other and nothing moves, the slope of P is rounding, of any sign
+        if falls > _ROUNDING * terms:
+            t = how_far(p, at, rows, count, m, states, forces, w, step, moved, period)
         for i in range(count):
             m[forces + i] += t * m[step + i]
 
@@ -128,7 +141,6 @@ def slope_at(
     step: int,
     moved: int,
     period: float,
-    firm: float,
     t: float,
 ) -> float:
     """The slope of P along a step, at the part t of it."""
@@ -136,7 +148,7 @@ def slope_at(
     for i in range(count):
         row = rows + ROW * i
         there = m[w + i] + t * m[moved + i]
-        f, _slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], there, period, firm)
+        f, _slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], there, period)
         total += m[moved + i] * (f - m[forces + i] - t * m[step + i])
     return total
 
@@ -154,23 +166,26 @@ def how_far(
     step: int,
     moved: int,
     period: float,
-    firm: float,
 ) -> float:
-    """The whole step where P still falls or its slope is half of what it was; else where that is about 0."""
-    first = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, firm, 0.0)
+    """The whole step where the slope has fallen to half there; else where it is about 0."""
+    first = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, 0.0)
     low, high = 0.0, 1.0
-    if slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, firm, high) <= -0.5 * first:
+    last = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, 1.0)
+    while last < 0.5 * first and high < 1e6:
+        low, high = high, 2.0 * high
+        last = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, high)
+    if last <= -0.5 * first:
         return high
     for _ in range(STEPS):
         t = 0.5 * (low + high)
-        here = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, firm, t)
+        here = slope_at(p, at, rows, count, m, states, forces, w, step, moved, period, t)
         if abs(here) <= 0.1 * abs(first):
             return t
         if here < 0.0:
             low = t
         else:
             high = t
-    return low
+    return 0.5 * (low + high)
 
 
 @compiled

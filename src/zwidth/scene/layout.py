@@ -31,7 +31,7 @@ WAVES = 4
 def scene_at_rest(p: Array, at: int, reading: float) -> Array:
     """What a scene remembers at rest, its port at a reading; contacts are as far apart as their gaps say."""
     n, linear, k = (int(p[at + i]) for i in (NODES, LINEAR, OTHERS))
-    m = np.zeros(WAVES + linear + 2 * k + 2 * n + 2 * (linear + k) + n + k * (k + 7) + 1)
+    m = np.zeros(WAVES + linear + 2 * k + 2 * n + 2 * (linear + k) + n + k * (k + 6) + 1)
     m[READING] = reading
     for i in range(k):
         code, number = p[at + int(p[at + OTHER_ROWS]) + ROW * i :][:2]

@@ -16,14 +16,14 @@ from zwidth.scene.nonlinear import CONTACT, COULOMB
 
 @compiled
 def mean_force(
-    p: Array, code: float, number: int, state: float, w: float, period: float, firm: float
+    p: Array, code: float, number: int, state: float, w: float, period: float
 ) -> tuple[float, float]:
-    """f̄ and its slope over v̄ at w; `firm` is by how much less ε of friction is than at first."""
+    """f̄ and its slope over v̄ at w."""
     if code == CONTACT:
         return contact_force(p, number, state, w, period)
     if code == COULOMB:
-        most, f = p[number], state + w * firm * p[number + 1]
-        return (f, firm * p[number + 1]) if abs(f) < most else (min(max(f, -most), most), 0.0)
+        most, f = p[number], state + w * p[number + 1]
+        return (f, p[number + 1]) if abs(f) < most else (min(max(f, -most), most), 0.0)
     return spring_force(p, number, state, w, period)
 
 

@@ -116,7 +116,7 @@ def scene_force(p: Array, at: int, m: Array, slot: int, reading: float) -> float
         w = across(p, row, m, nodes, v)
         state, number = m[states + e], at + int(p[row + 1])
         felt += p[row + 6] * m[forces + e]
-        own, _slope = mean_force(p, p[row], number, state, w, period, 1.0)
+        own, _slope = mean_force(p, p[row], number, state, w, period)
         given += own * w * period
         m[work + linear + e] += own * w * period
         m[loss + linear + e] += lost(p, p[row], number, state, w, own, period)
