@@ -26,6 +26,9 @@ STEPS = 40
 CLOSE = 1e-15
 """Of a force, and of the terms of its velocity: rounding."""
 
+_BESIDE = 1e-19
+"""Of the largest force: no joule that is booked knows of it."""
+
 _ROUNDING = 1e-12
 """Of the terms of a sum: what is less may be rounding alone."""
 
@@ -96,7 +99,9 @@ def least_of(
     matrix = free + 5 * count
     wide = count + 1
     for _ in range(STEPS):
-        found = True
+        found, least = True, 0.0
+        for i in range(count):  # a contact in the air need not come to 0 beside forces of others
+            least = max(least, _BESIDE * abs(m[forces + i]))
         for i in range(count):
             m[w + i], terms = velocity(p, compliance, count, m, forces, free, i)
             row = rows + ROW * i
@@ -104,7 +109,7 @@ def least_of(
             if p[compliance + i * count + i] == 0.0:  # the port alone moves it
                 m[forces + i] = f
             m[gap + i] = f - m[forces + i]
-            found = found and abs(m[gap + i]) <= CLOSE * (abs(f) + slope * terms)
+            found = found and abs(m[gap + i]) <= CLOSE * (abs(f) + slope * terms) + least
             for j in range(count):
                 m[matrix + i * wide + j] = slope * p[compliance + i * count + j]
             m[matrix + i * wide + i] += 1.0
