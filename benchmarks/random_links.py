@@ -1,9 +1,9 @@
 """Random links against ports: do two hands ever put in less than nothing?
 
 Devices of any damping, friction, encoder and delay; links of 0 to 100 samples each way, with jitter, with
-losses of up to half of all packets in bursts, with duplicates, and links that keep all back and let it go in
-reverse order; hands that go to and fro, hover over an edge of the encoder, move at random, rest, and take what
-there is to take.  What both hands put in is added up; its least value is compared with the work that was done.
+losses of up to half of all packets in bursts, with duplicates, and links that keep all back and let it go
+in reverse order; hands that go to and fro, hover over an edge of the encoder, move at random, rest, and take
+what there is to take.  What both hands put in is added up; its least value is compared with all work done.
 
     python random_links.py [SCHEDULES] [FIRST SEED]
 """
@@ -131,6 +131,8 @@ def attack(
             p = end.numbers
             p[OWN_NUMBERS] = w if code <= NAIVE_WAVES else w / p[PERIOD] / random.integers(1, 100)
             p[OWN_NUMBERS + 1] = p[DAMPING] if code == TIME_DOMAIN else 0.5 * p[OWN_NUMBERS] * 1e-4
+            if code == WAVE_PORT:
+                p[OWN_NUMBERS + 1] = between(random, 0.1, 30.0) * p[PERIOD] if random.random() < 0.5 else 0.0
             p[OWN_NUMBERS + 2] = p[DAMPING]
             end.state[:] = 0.0
             end.state[HEARD_NUMBER] = end.state[NUMBER] = -1.0

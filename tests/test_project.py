@@ -258,7 +258,14 @@ def test_the_quickstart_example_says_what_comes_out(tmp_path: Path, monkeypatch:
 
 
 @pytest.mark.parametrize(
-    "page", ["docs/quickstart.md", "docs/specification.md", "docs/laws.md", "docs/identification.md"]
+    "page",
+    [
+        "docs/quickstart.md",
+        "docs/scenes.md",
+        "docs/specification.md",
+        "docs/laws.md",
+        "docs/identification.md",
+    ],
 )
 def test_the_specifications_of_a_page_can_be_read(page: str, tmp_path: Path) -> None:
     """Every TOML block with tables in the docs is a valid specification; one without is a velocity filter."""

@@ -31,6 +31,14 @@ def test_waves_are_passive_up_to_the_damping_of_the_device(delay: object, fricti
     assert beyond.witness.exact_energy > 0
 
 
+@pytest.mark.parametrize("damping", ["0.1", "0.3", "0.7", "1e-3"])
+def test_the_limit_is_that_of_the_decimal_that_was_typed(damping: str) -> None:
+    """w = b, whichever way its double is rounded."""
+    device = arm(damping=damping)
+    assert zw.links.check(HeldWaves(device, impedance=damping)).outcome == "theorem"
+    assert zw.links.check(WavePort(device)).outcome == "passive"
+
+
 def test_the_motion_gains_what_the_theory_says() -> None:
     """(w − b) s²/T − f_c s in a period, in the mean of a round there and back of 2 n periods."""
     w, friction, s, n, period = Fraction(1, 5), Fraction(1, 50), Fraction(1, 10), 3, Fraction(1, 1000)
@@ -64,16 +72,16 @@ def test_waves_of_the_textbook_diverge_in_samples(late: int) -> None:
     assert np.abs(calm["velocity"].values).max() < 0.1
 
 
-@pytest.mark.parametrize("late", [0, 4, 20])
-def test_a_clamped_follower_feels_as_w_over_tau(late: int) -> None:
-    """Force over depth of the leader at rest."""
+@pytest.mark.parametrize(("late", "smoothed"), [(0, 0), (4, 0), (20, 0), (20, 5)])
+def test_a_clamped_follower_feels_as_w_over_tau(late: int, smoothed: int) -> None:
+    """Force over depth of the leader at rest; what smooths the force is so much more delay."""
     device = arm(coulomb_friction="0.001")
-    port = WavePort(device)
+    port = WavePort(device, smoothing=Fraction(smoothed, 1000))
     push = zw.operators.RecordedForce(0.05 * np.minimum(np.arange(4000) / 1000, 1.0))
     clamp = zw.operators.PrescribedMotion(lambda t: 0.0)
     trace = zw.links.simulate(port, port, Schedule(delay=Fraction(late, 1000)), push, clamp, 4)
     felt = trace.zwidth.felt_stiffness
-    assert felt == pytest.approx(float(felt_stiffness(DAMPING, late, Fraction(1, 1000))), rel=2e-3)
+    assert felt == pytest.approx(float(felt_stiffness(DAMPING, late + smoothed, Fraction(1, 1000))), rel=2e-3)
 
 
 def test_a_free_follower_adds_its_mass_and_w_tau() -> None:
@@ -101,3 +109,16 @@ def test_arms_do_not_drift_apart_when_half_is_lost() -> None:
         apart[kind] = float(abs(np.diff(trace["position"].values[:, -500:], axis=0)).mean())
     assert apart[WavePort] < 1e-4
     assert apart[HeldWaves] > 5e-3
+
+
+def test_smoothing_takes_the_chatter_of_jitter() -> None:
+    """Two milliseconds: a fifth of the steps of the force from sample to sample, or less."""
+    device = arm(coulomb_friction="0.05", resolution="22.4 um")
+    link = Schedule(delay="20 ms", jitter="10 ms", loss=0.5, burst=4)
+    path = zw.operators.PrescribedMotion(lambda t: 0.02 * np.sin(np.pi * min(t, 1.0)) ** 2)
+    steps = []
+    for smoothing in (0, "2 ms"):
+        port = WavePort(device, smoothing=smoothing)
+        trace = zw.links.simulate(port, port, link, path, None, 1.5)
+        steps.append(float(np.diff(trace["actuator_force"].values[1]).std()))
+    assert steps[1] < 0.5 * steps[0]

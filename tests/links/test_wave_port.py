@@ -11,6 +11,7 @@ import pytest
 from strategies import seeds
 
 import zwidth as zw
+from zwidth.errors import InputError
 from zwidth.links import Packet, WavePort
 from zwidth.links.memory import ACTING
 from zwidth.links.wave_port import RESERVE
@@ -119,12 +120,18 @@ def test_a_hand_inside_one_count_gains_nothing() -> None:
     assert seen > 2 * 0.15 * height / 0.001
 
 
+def moved(port: WavePort, way: float) -> Packet:
+    """The packet of a period in which nothing has come."""
+    port.receive()
+    return port.send(way)
+
+
 def test_what_a_packet_tells_is_used_once() -> None:
     """The same again, and what is older, change nothing."""
     port, other = WavePort(arm()), WavePort(arm())
-    other.receive()
-    port.receive([other.send(0.0)])
-    first, second = other.send(2e-4), other.send(1e-4)
+    port.receive([moved(other, 0.0)])
+    port.send(0.0)
+    first, second = moved(other, 2e-4), moved(other, 1e-4)
     assert port.receive([second, first, second, first]) > 0
     for _ in range(5):
         port.send(0.0)
@@ -135,8 +142,7 @@ def test_what_a_packet_tells_is_used_once() -> None:
 def test_an_older_packet_changes_nothing() -> None:
     """Neither where it sends the port to, nor what it may spend."""
     other = WavePort(arm())
-    other.receive()
-    packets = [other.send(1e-4) for _ in range(4)]
+    packets = [moved(other, 1e-4) for _ in range(4)]
     ports = WavePort(arm()), WavePort(arm())
     forces: list[list[float]] = [[], []]
     for k, old in ((0, 0), (3, 1), (3, 2), (3, 0)):
@@ -150,12 +156,10 @@ def test_an_older_packet_changes_nothing() -> None:
 def test_what_is_lost_comes_with_the_next_packet() -> None:
     """The sums of lost packets are those of the ones that arrive, so the forces are the same later."""
     sender, whole, lossy = (WavePort(arm()) for _ in range(3))
-    sender.receive()
     for port in (whole, lossy):
         port.receive([Packet(0, 0.0, 0.0, 0.0)])
-    packets = [sender.send(0.0)]
-    for _ in range(3):
-        packets.append(sender.send(1e-4))
+        port.send(0.0)
+    packets = [moved(sender, way) for way in (0.0, 1e-4, 1e-4, 1e-4)]
     every, some = [], []
     for arriving in ([1], [2], [3], [], []):
         every.append(whole.receive([packets[k] for k in arriving]))
@@ -171,8 +175,7 @@ def test_what_is_lost_comes_with_the_next_packet() -> None:
 def test_a_port_that_starts_anew_counts_nothing_of_before() -> None:
     """The sums of its first packet may have been used by another: only what is added to them counts."""
     other = WavePort(arm())
-    other.receive()
-    packets = [other.send(1e-4) for _ in range(3)]
+    packets = [moved(other, 1e-4) for _ in range(3)]
     port = WavePort(arm())
     assert port.receive([packets[1]]) == 0
     port.send(0.0)
@@ -198,7 +201,7 @@ def test_unlike_ends_take_nothing_out_of_each_other(seed: int) -> None:
     draw = random.Random(seed)
     leader = arm(damping="0.5", friction="0.05", resolution="5e-5")
     follower = arm(damping="0.03", delay="1 ms")
-    ends = Ends([leader, follower], draw)
+    ends = Ends([leader, follower], draw, smoothing="3 ms")
     move = greedy(ends)
     for _ in range(PERIODS):
         ends.period(move)
@@ -225,3 +228,15 @@ def test_ends_of_two_rates_come_to_the_same_place() -> None:
         gone += step
         there = [slow.send(step)]
     assert followed == pytest.approx(gone, rel=1e-9)
+
+
+def test_receive_and_send_are_called_in_turn() -> None:
+    """A force that is booked twice would bring energy back twice, and a way under two forces has no work."""
+    port, other = WavePort(arm()), WavePort(arm())
+    port.receive([moved(other, 0.0)])
+    with pytest.raises(InputError, match="receive is called once in a period"):
+        port.receive()
+    port.send(0.0)
+    with pytest.raises(InputError, match="send is called once in a period"):
+        port.send(0.0)
+    assert port.receive([moved(other, 1e-3)]) > 0

@@ -143,3 +143,39 @@ def test_forces_of_several_contacts_and_frictions_answer_their_laws(seed: int) -
     run.follow(x)
     account = run.account()
     assert abs(account.attrs["left_over_J"]) <= 1e-12 * float(np.abs(account.work).sum())
+
+
+def test_frictions_in_a_row_slide_where_the_weakest_gives_way() -> None:
+    """A drag of some micrometres against 2 kN: the force is the weakest one's, at once and to rounding."""
+    scene = zw.Scene(
+        [
+            Mass("a", "0.1"),
+            Mass("b", "0.1"),
+            CoulombFriction("handle", "a", 2000),
+            CoulombFriction("a", "b", 3000),
+            CoulombFriction("b", "ground", 3100),
+        ]
+    )
+    run = SceneRun(scene, 0.001)
+    assert run.follow(3e-6 * np.arange(1, 200)) == pytest.approx(np.full(199, 2000.0), rel=1e-9)
+    assert abs(run.account().attrs["left_over_J"]) <= 1e-12 * run.account().attrs["port_work_J"]
+
+
+def test_frictions_that_hold_each_other_leave_the_weakest_to_slide() -> None:
+    """Round a loop forces may grow while nothing moves; they end where one gives way, at some 2.44 N here."""
+    scene = zw.Scene(
+        [
+            Mass("m", "0.005"),
+            Damper("n", "ground", "0.013"),
+            Spring("m", "handle", 1110),
+            Contact("n", "m", 7456, 56),
+            CoulombFriction("ground", "n", 420),
+            CoulombFriction("handle", "m", 2280),
+            CoulombFriction("m", "n", "2.44"),
+        ]
+    )
+    run = SceneRun(scene, 0.1)
+    y = 1e-4 * np.sin(0.6 * np.arange(1, 200))
+    forces = run.follow(y)
+    assert 2.4 < np.abs(forces).max() < 4
+    assert abs(run.account().attrs["left_over_J"]) <= 1e-10 * float(np.abs(run.account().work).sum())

@@ -15,7 +15,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth links`."""
     parser.usage = (
         "%(prog)s SOURCE [SOURCE] [--delay TIME] [--jitter TIME] [--loss SHARE] [--burst N] "
-        "[--duplicates SHARE] [--seed N] [--impedance W] [--json] [--plot FILE] [-o FILE] [--force]"
+        "[--duplicates SHARE] [--seed N] [--impedance w] [--smoothing s] [--json] [--plot FILE] "
+        "[-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",
@@ -30,6 +31,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="w",
         action=Once,
         help="of the waves [N*s/m; rotary N*m*s/rad] (default: the smaller damping of both devices)",
+    )
+    parser.add_argument(
+        "--smoothing",
+        metavar="s",
+        action=Once,
+        help="time constant that smooths the force of the port with a ledger [s] (default: 0)",
     )
     add_output(parser, "the scores", "the plot", "the scores as JSON")
 
@@ -58,10 +65,10 @@ def run(arguments: argparse.Namespace) -> int:
     plot, save = targets(arguments.plot, arguments.save, arguments.force)
     devices = [load_device([source], {}) for source in arguments.sources]
     link = Schedule(**given(arguments, [p.key for p in link_parameters()]))
-    impedance = arguments.impedance
+    more = {"impedance": arguments.impedance, "smoothing": arguments.smoothing or 0}
     warn_of_compiling_the_links()
     with progress_bar("ports") as progress:
-        found = compare(devices[0], devices[-1], link, impedance=impedance, progress=progress)
+        found = compare(devices[0], devices[-1], link, **more, progress=progress)
     if save is not None:
         found.save(save)
     if plot is not None:

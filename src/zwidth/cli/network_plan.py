@@ -35,7 +35,7 @@ from zwidth.operator.operator import Operator
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of, read_number
-from zwidth.scene.cut import Cut, best_parts, cut
+from zwidth.scene.parts import Cut, best_parts, cut_scene
 from zwidth.scene.scene import Scene
 from zwidth.specification.environments import build_environment
 from zwidth.specification.read import load_device, read_tables
@@ -140,7 +140,7 @@ def load_plan(path: Path) -> Plan:
     names, periods = _parts(scene, table, rows["part"])
     delay = _number(table, "delay", "delay") if "delay" in table.values else max(periods.values())
     with located(table.label):
-        made = cut(scene, names, delay, dict(_impedances(rows["line"])))
+        made = cut_scene(scene, names, delay, dict(_impedances(rows["line"])))
     return Plan(made, periods, devices, _lines(made, devices, rows["line"], path.stem))
 
 

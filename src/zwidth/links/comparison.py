@@ -28,6 +28,7 @@ from zwidth.operator import PrescribedMotion, RecordedForce
 from zwidth.passivity.result import Documented
 from zwidth.quantity.exact import Exact, RealLike, ends
 from zwidth.quantity.glossary import GLOSSARY, unit_suffix
+from zwidth.quantity.parameter import parameters_of, read_number
 from zwidth.quantity.text import unit_text
 from zwidth.showing import Part, Table
 
@@ -114,7 +115,11 @@ _SCORES = {
 
 
 def standard_ports(
-    leader: Device, follower: Device, schedule: Schedule, impedance: RealLike | None = None
+    leader: Device,
+    follower: Device,
+    schedule: Schedule,
+    impedance: RealLike | None = None,
+    smoothing: RealLike = 0,
 ) -> dict[str, Ends]:
     """Every kind of port for two devices, leader first, as stiff as each other.
 
@@ -126,9 +131,11 @@ def standard_ports(
         The link, whose delay says how stiff waves feel; the springs are as stiff.
     impedance
         w of the waves; None: the smaller damping of the two.
+    smoothing
+        Of the port with a ledger [s].
     """
     least = min(ends(device.damping)[0] for device in (leader, follower))
-    w = least if impedance is None else Exact(impedance).fraction
+    w = least if impedance is None else _impedance(impedance, leader.motion)
     spring = Exact(stiffness_of(w, schedule, leader))
     level = Exact(spring.fraction * Fraction(_FAR[leader.motion]).limit_denominator(1000) ** 2 / 2)
     damping = Exact(least)
@@ -137,13 +144,19 @@ def standard_ports(
         return make(leader), make(follower)
 
     return {
-        "waves with a ledger": both(lambda d: WavePort(d, impedance=Exact(w))),
+        "waves with a ledger": both(lambda d: WavePort(d, impedance=Exact(w), smoothing=smoothing)),
         "waves without a ledger": both(lambda d: HeldWaves(d, impedance=Exact(w))),
         "textbook waves": both(lambda d: NaiveWaves(d, impedance=Exact(w))),
         "positions, last one held": both(lambda d: PositionHold(d, stiffness=spring)),
         "time-domain passivity": both(lambda d: TimeDomain(d, stiffness=spring, largest_damping=damping)),
         "two layers": both(lambda d: TwoLayer(d, stiffness=spring, level=level, filling_damping=damping)),
     }
+
+
+def _impedance(given: RealLike, motion: str) -> Fraction:
+    own = parameters_of(WavePort)["impedance"]
+    read = read_number(given, own.quantity, "impedance", bound=own.bound, why=own.why, motion=motion)
+    return Exact(read).fraction
 
 
 def stiffness_of(impedance: Fraction, schedule: Schedule, device: Device) -> Fraction:
@@ -159,6 +172,7 @@ def compare(
     schedule: Schedule | None = None,
     *,
     impedance: RealLike | None = None,
+    smoothing: RealLike = 0,
     ports: Mapping[str, Ends] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> LinkComparison:
@@ -172,6 +186,8 @@ def compare(
         What the link does to packets; None: no delay.
     impedance
         w of the waves; None: the smaller damping of the two.
+    smoothing
+        Of the port with a ledger [s].
     ports
         By name, leader's and follower's, in the place of `standard_ports`.
     progress
@@ -184,7 +200,7 @@ def compare(
     """
     link = Schedule() if schedule is None else schedule
     other = leader if follower is None else follower
-    kinds = standard_ports(leader, other, link, impedance) if ports is None else ports
+    kinds = standard_ports(leader, other, link, impedance, smoothing) if ports is None else ports
     rows: dict[str, dict[str, Any]] = {}
     traces = {}
     for done, (name, (near, far)) in enumerate(kinds.items()):

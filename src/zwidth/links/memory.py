@@ -26,6 +26,8 @@ _FORCES = 13
 OWN_STATE = _FORCES + MOST_LATE + 1
 LOSSES = 48
 """Where what friction has taken is kept."""
+MOVING = 179
+"""1 between receive and send, which are called in turn."""
 STATE_SIZE = 180
 
 

@@ -106,14 +106,20 @@ class Port(Parametric):
         Raises
         ------
         InputError
-            If one of them is no `Packet`.
+            If one of them is no `Packet`, or ``send`` has not been called since the last time.
         """
+        if self.state[memory.MOVING]:
+            raise InputError(
+                "receive is called once in a period, got it twice without send between: two forces in one "
+                "period cannot be booked; give it all packets that have come, also none"
+            )
         for packet in packets:
             if not isinstance(packet, Packet):
                 raise InputError(
                     f"packets are Packet objects, got {packet!r}; bytes: Packet.from_bytes(data)"
                 )
             memory.hear(self.state, float(packet.number), packet.wave, packet.energy, packet.position)
+        self.state[memory.MOVING] = 1.0
         return float(self.steps[0](self.numbers, self.state))
 
     @property
@@ -133,7 +139,8 @@ class Port(Parametric):
         Raises
         ------
         InputError
-            If it is not finite, or no whole number of counts.
+            If it is not finite, or no whole number of counts; or ``receive`` has not been called since the
+            last time.
         """
         moved = float(displacement)
         if not isfinite(moved):
@@ -145,7 +152,13 @@ class Port(Parametric):
                 f"displacement is a whole number of counts of {step:g}, got {moved:g}: give the "
                 "difference of two readings as they are, not filtered"
             )
+        if not self.state[memory.MOVING]:
+            raise InputError(
+                "send is called once in a period, after receive, got it without: each force is booked once; "
+                "where nothing has come call receive() all the same"
+            )
         self.steps[1](self.numbers, self.state, counts * step if step > 0 else moved)
+        self.state[memory.MOVING] = 0.0
         s = self.state
         told = (float(s[i]) for i in (memory.WAVE, memory.ENERGY, memory.POSITION))
         return Packet(int(s[memory.NUMBER]), *told)

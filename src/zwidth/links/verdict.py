@@ -114,6 +114,7 @@ class PortVerdict(PassivityAnswer):
         late = int(self.port.numbers[LATE])
         when = f"{late} sample{'' if late == 1 else 's'} after its reading" if late else "at once"
         yield f"the force is applied {when} and held for the period, by an actuator without a lag of its own"
+        yield "no period is longer than the sample period: in a longer one friction takes less"
         yield "friction is b and f_c of the device at least, at every speed and in every period"
         if device.friction_speed is not None:
             unit = quantity_unit("friction_speed", device.motion)

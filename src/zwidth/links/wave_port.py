@@ -11,7 +11,8 @@ yet used, d [m] and R [J], is used as
 
     a = min(|d|, R/(r |d|)) sgn d
 
-which is the wave of a link that loses nothing.  An encoder of resolution Δ reads Δx no better than ± Δ, so
+which is the wave of a link that loses nothing; or T/(T + τ_s) of d at most, to smooth the force over τ_s.
+An encoder of resolution Δ reads Δx no better than ± Δ, so
 
     R ← R − f Δx − c + b s²/T + f_c s,   s = max(0, |Δx| − Δ),   c = ½ Δ (|f| − |f⁻| + |f − f⁻|)
 
@@ -49,10 +50,13 @@ from zwidth.links.memory import (
 )
 from zwidth.links.sure_losses import ROUNDING, newly_lost
 from zwidth.links.waves import Waves
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import Quantity
+from zwidth.quantity.parameter import Certain, parameter
 
 WAVE_PORT = 1.0
 
-IMPEDANCE = OWN_NUMBERS
+IMPEDANCE, SMOOTHING = OWN_NUMBERS, OWN_NUMBERS + 1
 RESERVE, COUNTED, USED, OWED, HELD, CHARGE = range(OWN_STATE, OWN_STATE + 6)
 """R [J]; energy and position of the other end that are used; energy still to be sent [J]; of the force that
 acts in this period what is held back for it and c [J]."""
@@ -61,6 +65,7 @@ _CHARGES = _HELD + MOST_LATE + 1
 
 _DOWN = 1.0 - ROUNDING
 MARGIN = 1.0 - 1e-12
+_SMOOTHING = Quantity("smoothing", "τ_s", "s", "s", "time constant that smooths the force")
 
 
 @compiled
@@ -77,7 +82,8 @@ def force(p: Array, s: Array) -> float:
     size = abs(missing)
     wanted = 0.0
     if reserve > 0.0 and size > 0.0:
-        wanted = 2.0 * r * min(size, reserve / (r * size))
+        share = p[PERIOD] / (p[PERIOD] + p[SMOOTHING])
+        wanted = 2.0 * r * min(share * size, reserve / (r * size))
     if missing < 0.0:
         wanted = -wanted
     before = s[FORCE]
@@ -167,6 +173,8 @@ class WavePort(Waves):
     impedance
         w > 0 [N·s/m; N·m·s/rad]; None: the device's damping. The same at both ends, at most the smaller
         damping for waves that are never cut; larger is passive too, and cut at high speeds.
+    smoothing
+        τ_s ≥ 0, a time constant: against the chatter that jitter and encoder counts make, as much delay [s].
 
     Raises
     ------
@@ -178,3 +186,7 @@ class WavePort(Waves):
     code: ClassVar[float] = WAVE_PORT
     has_ledger: ClassVar[bool] = True
     steps: ClassVar = (force, send)
+
+    smoothing: Certain = parameter(
+        _SMOOTHING, 0, kept=Exact, bound="≥ 0", why="a force cannot be smoothed over what is still to come"
+    )

@@ -42,7 +42,9 @@ def decide_behind_coupling(open_still: Verdict, closed: Closed) -> Verdict:
     if proved.outcome != "passive" or proved.certificate is None:
         return verdict
     stepped = bool(ends(device.resolution)[1])
-    scope = verdict.scope.replace(law=("behind a coupling",), encoder="not counted" if stepped else "ideal")
+    scope = verdict.scope.replace(
+        contact="made and broken", law=("behind a coupling",), encoder="not counted" if stepped else "ideal"
+    )
     return replace(
         verdict,
         outcome="passive without encoder steps" if stepped else "passive",

@@ -44,7 +44,8 @@ _LAW = {
     "doubles": "the law computes with doubles: every rounding is paid for, numbers below 1e-300 aside",
     "behind a coupling": (
         "the scene gives out no energy of its own, by the way it is stepped, its rounding aside; "
-        "the coupling is proved passive before every such environment"
+        "the coupling is proved passive before every such environment; "
+        "what scene and coupling hold at first may come back"
     ),
     "covered by a wall": "the laws add no more than the virtual damping of a wall, and that wall is proved",
     "covered with less friction": (

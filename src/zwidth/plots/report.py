@@ -17,9 +17,12 @@ from zwidth.passivity.verdict import Verdict
 from zwidth.plots.budget import draw_damping, draw_friction, has_friction
 from zwidth.plots.criterion import draw_criterion
 from zwidth.plots.plane import draw_plane, has_plane
+from zwidth.plots.scene import draw_scene
 from zwidth.plots.storage import draw_storage
 from zwidth.plots.style import LOOK, OUTCOME, new_figure, shown_name
 from zwidth.plots.witness import draw_witness
+from zwidth.rendering import VirtualCoupling
+from zwidth.scene import Scene
 
 _WIDTH = 125
 """Characters of the heading on one line."""
@@ -29,7 +32,7 @@ _Draw = Callable[[Figure, SubplotSpec, Any], None]
 
 @rc_context(LOOK)
 def check_figure(verdict: Verdict) -> Figure:
-    """The criterion, the budget, and where they apply the plane and the witness, in one figure."""
+    """The criterion, the budget, and where they apply the plane, the witness and the scene, in one figure."""
     panels = _panels(verdict)
     if not panels:
         raise InputError("there is nothing to draw of this verdict: it has neither H(z) nor a motion")
@@ -62,7 +65,23 @@ def _panels(verdict: Verdict) -> list[_Draw]:
         panels.append(_witness)
     elif verdict.available_storage is not None and verdict.available_storage.storage is not None:
         panels.append(_storage)
+    if _scene_of(verdict) is not None:
+        panels.append(_scene)
     return panels
+
+
+def _scene_of(verdict: Verdict) -> Scene | None:
+    """The scene that is rendered, behind whatever couplings, if it is one."""
+    met = verdict.environment.met
+    while isinstance(met, VirtualCoupling):
+        met = met.environment
+    return met if isinstance(met, Scene) else None
+
+
+def _scene(figure: Figure, place: SubplotSpec, verdict: Verdict) -> None:
+    scene = _scene_of(verdict)
+    assert scene is not None
+    draw_scene(figure.add_subplot(place), scene, verdict.device.motion)
 
 
 def _criterion(figure: Figure, place: SubplotSpec, verdict: LinearVerdict) -> None:

@@ -23,8 +23,11 @@ from zwidth.scene.nonlinear import COULOMB
 STEPS = 40
 """Of Newton, and of the multipliers; what is left then is booked."""
 
-CLOSE = 4e-16
-"""Of the largest force: rounding."""
+CLOSE = 1e-15
+"""Of a force, and of the terms of its velocity: rounding."""
+
+_ROUNDING = 1e-12
+"""Of the terms of a sum: what is less may be rounding alone."""
 
 
 @compiled
@@ -42,9 +45,7 @@ def coupled_forces(
 ) -> None:
     """f in its place in `m`, begun with that of the step before; w° stands at `free`, then there is room."""
     w = free + count
-    largest = 0.0
     for i in range(count):
-        largest = max(largest, abs(m[free + i]))
         own = p[compliance + i * count + i]
         if p[rows + ROW * i] == COULOMB and own > 0.0:  # alone it is found at once
             most = p[at + int(p[rows + ROW * i + 1])]
@@ -52,15 +53,29 @@ def coupled_forces(
             m[forces + i] = m[states + i]
     for _ in range(STEPS):
         least_of(p, at, rows, compliance, count, m, states, forces, free, period)
-        creeps = 0.0
+        sticks = True
         for i in range(count):
             if p[rows + ROW * i] == COULOMB:
                 number = at + int(p[rows + ROW * i + 1])
                 f, _slope = mean_force(p, COULOMB, number, m[states + i], m[w + i], period)
-                creeps = max(creeps, abs(f - m[states + i]) / p[number + 1])
+                _w, terms = velocity(p, compliance, count, m, forces, free, i)
+                sticks = sticks and abs(f - m[states + i]) <= 10.0 * CLOSE * p[number + 1] * terms
                 m[states + i] = f
-        if creeps <= 1e-14 * largest:
+        if sticks:
             return
+
+
+@compiled
+def velocity(
+    p: Array, compliance: int, count: int, m: Array, forces: int, free: int, i: int
+) -> tuple[float, float]:
+    """w = w° − M f of one element, and how large what is added up there is."""
+    taken, terms = 0.0, abs(m[free + i])
+    for j in range(count):
+        term = p[compliance + i * count + j] * m[forces + j]
+        taken += term
+        terms += abs(term)
+    return m[free + i] - taken, terms
 
 
 @compiled
@@ -80,34 +95,35 @@ def least_of(
     w, gap, step, moved = free + count, free + 2 * count, free + 3 * count, free + 4 * count
     matrix = free + 5 * count
     wide = count + 1
-    before = -1.0
     for _ in range(STEPS):
-        error, size = 0.0, 0.0
+        found = True
         for i in range(count):
-            taken = 0.0
-            for j in range(count):
-                taken += p[compliance + i * count + j] * m[forces + j]
-            m[w + i] = m[free + i] - taken
+            m[w + i], terms = velocity(p, compliance, count, m, forces, free, i)
             row = rows + ROW * i
             f, slope = mean_force(p, p[row], at + int(p[row + 1]), m[states + i], m[w + i], period)
             if p[compliance + i * count + i] == 0.0:  # the port alone moves it
                 m[forces + i] = f
             m[gap + i] = f - m[forces + i]
-            error, size = max(error, abs(m[gap + i])), max(size, abs(f))
+            found = found and abs(m[gap + i]) <= CLOSE * (abs(f) + slope * terms)
             for j in range(count):
                 m[matrix + i * wide + j] = slope * p[compliance + i * count + j]
             m[matrix + i * wide + i] += 1.0
             m[matrix + i * wide + count] = m[gap + i]
-        if error <= CLOSE * size or (error <= 1e-13 * size and before >= 0.0 and error >= before):
+        if found:
             return
-        before = error
         eliminated(m, matrix, count, step)
+        falls, terms = 0.0, 0.0
         for i in range(count):
             taken = 0.0
             for j in range(count):
-                taken += p[compliance + i * count + j] * m[step + j]
+                term = p[compliance + i * count + j] * m[step + j]
+                taken += term
+                terms += abs(term * m[gap + i])
             m[moved + i] = -taken
-        t = how_far(p, at, rows, count, m, states, forces, w, step, moved, period)
+            falls += taken * m[gap + i]
+        t = 1.0  # where forces hold each other and nothing moves, the slope of P is rounding, of any sign
+        if falls > _ROUNDING * terms:
+            t = how_far(p, at, rows, count, m, states, forces, w, step, moved, period)
         for i in range(count):
             m[forces + i] += t * m[step + i]
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_STICKS = 1e3
+_STICKS = 1e8
 """M/ε of friction: each round of the multipliers leaves about ε/M of the creep of the round before."""
 
 _HELD = 1e12

@@ -80,7 +80,7 @@ def _energies_are_rounded_down(law: Read) -> None:
 
 
 def _forces_are_rounded_down(law: Read) -> None:
-    """κ (|f| − φ)₊² + |f| δ + c is convex in |f| and 0 at 0: a part μ less of |f|, at least as much less of it.
+    """κ (|f| − φ)₊² + |f| δ + c is convex in |f| and 0 at 0: a part μ less of |f| costs that much less.
 
     |f| = φ + 2 S/(σ + √(σ² + 4 κ S)) with S = R + δ |f⁻| − σ φ, σ = δ or 2 δ: rounded at most 24 times, as
     is what it costs.
