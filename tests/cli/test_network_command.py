@@ -65,6 +65,23 @@ source = "haptic-paddle"
 """
 
 
+SECOND_END = """
+[[environment.elements]]
+type = "line-end"
+node = "bed"
+impedance = "0.15 N*s/m"
+name = "paddle"
+"""
+
+ROTARY = """
+[device]
+motion = "rotary"
+inertia = "1e-4 kg*m^2"
+damping = "1 mN*m*s/rad"
+rate = "1 kHz"
+"""
+
+
 def ports(n):
     sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(n)]
     for s in sockets:
@@ -112,7 +129,19 @@ def test_a_plan_says_what_runs_where_and_what_a_line_adds(tmp_path, capsys):
         (SCENE + NETWORK.split("[[network.device]]")[0], 'nothing holds the line end "paddle"'),
         (SCENE + NETWORK.replace('nodes = ["tool"]', 'nodes = ["tol"]'), '"tol" of part "near" is no node'),
         (SCENE + NETWORK.replace('nodes = ["tool"]', 'nodes = "tool"'), "nodes is a list"),
+        (SCENE + NETWORK.replace('nodes = ["tool"]', "nodes = 3"), "nodes is a list"),
         (SCENE + NETWORK.replace('nodes = ["tool"]', ""), "have no nodes; one may have the rest"),
+        (SCENE + NETWORK.replace('"far"', '"near"'), 'part 2].*two of the name "near"'),
+        (SCENE + NETWORK.replace('"far"', '""'), "name is empty"),
+        (SCENE + NETWORK.replace('"far"', '"paddle"'), '"paddle" is a part and a device'),
+        (
+            SCENE + NETWORK.replace("[network]", '[network]\ndelay = "4 ms"', 1),
+            "delay must be ≥ 5 ms, got 4 ms",
+        ),
+        (SCENE.replace('port = ""', 'port = "bed"') + NETWORK, 'nobody would move the port "bed"'),
+        (SCENE + SECOND_END + NETWORK, 'two line ends are called "paddle"'),
+        (SCENE + NETWORK.replace("haptic-paddle", "rotary.toml"), "a network's scene moves along an axis"),
+        (SCENE + NETWORK + line("paddle", 1, 2) + line("paddle", 3, 4), 'line 2].*two of the name "paddle"'),
         (SCENE + NETWORK.replace('sample_period = "5 ms"', ""), "sample_period is missing"),
         (SCENE + NETWORK.replace('"5 ms"', '"-5 ms"'), "sample_period"),
         (SCENE + NETWORK.replace('source = "haptic-paddle"', ""), "source is missing"),
@@ -126,7 +155,9 @@ def test_a_plan_says_what_runs_where_and_what_a_line_adds(tmp_path, capsys):
         ),
     ],
 )
-def test_what_is_no_network_is_refused_in_one_line(tmp_path, capsys, text, said):
+def test_what_is_no_network_is_refused_in_one_line(tmp_path, capsys, monkeypatch, text, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rotary.toml").write_text(ROTARY, encoding="utf-8")
     assert main(["network", file(tmp_path, text), "--plan"]) == 2
     told = capsys.readouterr().err
     assert re.search(said, told), told
