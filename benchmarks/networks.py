@@ -3,7 +3,7 @@
     python benchmarks/networks.py [--seconds 6]
 
 Each line is UDP on this machine, made worse by 4 ms, up to 4 ms of jitter and a tenth of the packets lost.
-Of those that live on are printed the steps that were missed, the packets lost, the way there and back; of the
+Of those that live on are printed the steps that were late, the packets lost, the way there and back; of the
 line to the dead one what it carried and its force at the end; and by how much any side has heard of more
 energy than the other has sent, which must not be above 0.
 """
@@ -122,11 +122,11 @@ def run(parts: int, seconds: float, folder: Path) -> None:
         if line in other
     )
     trips = sorted(1e3 * link["round_trip_s"]["median"] for link in every)
-    missed, steps = (sum(report[key] for report in told.values()) for key in ("missed", "steps"))
+    late, steps = (sum(report[key] for report in told.values()) for key in ("late", "steps"))
     lost, came = (sum(link[key] for link in every) for key in ("lost", "received"))
     last = links[f"part{parts - 2}"][dead]
     print(
-        f"{parts} parts: {missed / steps:.1%} of steps missed, {lost / (lost + came):.1%} lost, "
+        f"{parts} parts: {late / steps:.1%} of steps late, {lost / (lost + came):.1%} lost, "
         f"{trips[0]:.1f} to {trips[-1]:.1f} ms there and back; "
         f"dead line {1e3 * last['energy_received_J']:.3g} mJ, then {last['last_force_N']:g} N; "
         f"energy from nothing {beyond:.2g} J",

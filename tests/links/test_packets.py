@@ -92,6 +92,9 @@ def test_a_schedule_is_the_same_again_and_another_on_the_way_back() -> None:
     assert np.array_equal(there, same)
     assert not np.array_equal(there, back)
     assert not np.array_equal(there, other)
+    link = Schedule(jitter="9 ms", loss=0.3, duplicates=0.5)
+    few, more = link.arrivals(50, MS, 0), link.arrivals(300, MS, 0)
+    assert all(np.array_equal(a, b[:50]) for a, b in zip(few, more, strict=True))
 
 
 @pytest.mark.parametrize(

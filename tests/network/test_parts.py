@@ -7,7 +7,7 @@ import pytest
 
 from zwidth.network import PartRun, run_parts
 from zwidth.scene import Contact, Damper, Mass, Scene, Spring
-from zwidth.scene.cut import best_parts, cut
+from zwidth.scene.parts import best_parts, cut_scene
 from zwidth.scene.run import SceneRun
 
 T = 1e-3
@@ -39,7 +39,7 @@ def test_the_parts_are_the_whole_but_for_the_mass_of_the_lines():
     apart = []
     for period in (T, T / 2, T / 4):
         x = swing(period)
-        runs = running(cut(scene, best_parts(scene, 3), period), period)
+        runs = running(cut_scene(scene, best_parts(scene, 3), period), period)
         felt = run_parts(runs, np.diff(x, prepend=0.0))
         apart.append(np.abs(felt - SceneRun(scene, period).follow(x)).max())
     assert apart[0] < 0.02
@@ -48,7 +48,7 @@ def test_the_parts_are_the_whole_but_for_the_mass_of_the_lines():
 
 def test_the_order_in_which_parts_are_stepped_changes_no_bit():
     scene = chain(6, {1, 3}, wall=True)
-    made = cut(scene, best_parts(scene, 3), T)
+    made = cut_scene(scene, best_parts(scene, 3), T)
     moves = np.diff(swing(T, 0.5), prepend=0.0)
     one = run_parts(running(made), moves)
     other = run_parts(dict(reversed(running(made).items())), moves)
@@ -58,7 +58,7 @@ def test_the_order_in_which_parts_are_stepped_changes_no_bit():
 @pytest.mark.parametrize("late", [1, 3, 17])
 def test_every_joule_is_in_a_part_or_on_its_way(late):
     scene = chain(4, {1}, wall=True)
-    runs = running(cut(scene, best_parts(scene, 2), "1 ms"))
+    runs = running(cut_scene(scene, best_parts(scene, 2), "1 ms"))
     moves = np.diff(swing(T), prepend=0.0)
     felt = np.array(run_parts(runs, moves, dict.fromkeys(["spring m1–m2"], late)))
     put_in = float(felt @ moves)
@@ -76,7 +76,7 @@ def test_parts_of_different_rates_and_a_bad_link_make_no_energy():
     scene = chain(4, {1})
     draw = random.Random(7)
     for _ in range(20):
-        made = cut(scene, best_parts(scene, 2), "5 ms")
+        made = cut_scene(scene, best_parts(scene, 2), "5 ms")
         fast, slow = (PartRun(p, T if p.scene.port else 5 * T) for p in made.parts)
         coming = {"fast": [], "slow": []}
         put_in, x = 0.0, 0.0

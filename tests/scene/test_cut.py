@@ -9,7 +9,7 @@ import pytest
 
 from zwidth.errors import InputError
 from zwidth.scene import Contact, CoulombFriction, Damper, Lever, Mass, Scene, SceneRun, Spring
-from zwidth.scene.cut import best_parts, cut
+from zwidth.scene.parts import best_parts, cut_scene
 
 
 def chain(stiffnesses, handle=300):
@@ -20,7 +20,7 @@ def chain(stiffnesses, handle=300):
 
 
 def test_a_spring_becomes_a_line_as_stiff_that_brings_its_mass():
-    made = cut(chain([500, 100]), {"near": ["handle", "m0", "m1"], "far": ["m2"]}, "2 ms")
+    made = cut_scene(chain([500, 100]), {"near": ["handle", "m0", "m1"], "far": ["m2"]}, "2 ms")
     (line,) = made.lines
     assert (line.parts, line.nodes, line.in_place_of) == (("near", "far"), ("m1", "m2"), "spring m1–m2")
     assert line.stiffness == pytest.approx(100)
@@ -34,7 +34,7 @@ def test_a_spring_becomes_a_line_as_stiff_that_brings_its_mass():
 
 
 def test_a_body_in_two_parts_becomes_a_line_as_heavy_that_gives_way():
-    made = cut(chain([500, 100]), {"near": ["handle", "m0", "m1"], "far": ["m1", "m2"]}, "2 ms")
+    made = cut_scene(chain([500, 100]), {"near": ["handle", "m0", "m1"], "far": ["m1", "m2"]}, "2 ms")
     (line,) = made.lines
     assert (line.parts, line.nodes, line.in_place_of) == (("near", "far"), ("m1", "m1 in far"), "mass m1")
     assert line.mass == pytest.approx(0.1)
@@ -88,7 +88,7 @@ def test_parts_are_near_to_the_whole_and_nearer_with_shorter_steps(parts):
         x = 0.01 * np.sin(np.arange(1, 800 * n + 1) * 0.004 / n)
         period = Fraction(1, 1000 * n)
         whole = SceneRun(scene, period).follow(x)
-        apart = np.abs(together(cut(scene, parts, period), x, float(period)) - whole).max()
+        apart = np.abs(together(cut_scene(scene, parts, period), x, float(period)) - whole).max()
         errors.append(apart / np.abs(whole).max())
     assert errors[0] < 0.1
     assert errors[1] < 0.4 * errors[0]
@@ -106,7 +106,7 @@ def test_what_is_no_spring_stays_whole_and_a_line_leads_to_its_far_end():
             Mass("c", 0.1),
         ]
     )
-    made = cut(scene, {"near": ["handle", "a", "c"], "far": ["b"]}, 0.001, {"bump": 3})
+    made = cut_scene(scene, {"near": ["handle", "a", "c"], "far": ["b"]}, 0.001, {"bump": 3})
     assert [(line.name, float(line.impedance), line.in_place_of) for line in made.lines] == [
         ("damper a–b", 0.5, ""),
         ("bump", 3.0, ""),
@@ -115,7 +115,7 @@ def test_what_is_no_spring_stays_whole_and_a_line_leads_to_its_far_end():
     assert "b of bump" in near.nodes
     assert sum(e.title == "bump" for e in near.elements) == 2  # the contact, and the end of its line
     with pytest.raises(InputError, match="give impedances="):
-        cut(scene, {"near": ["handle", "a", "c"], "far": ["b"]}, 0.001)
+        cut_scene(scene, {"near": ["handle", "a", "c"], "far": ["b"]}, 0.001)
 
 
 def test_the_best_parts_cut_no_stiffer_spring_than_any_others_do():
@@ -166,7 +166,7 @@ def test_a_node_without_mass_stays_with_its_stiffest_neighbour():
 )
 def test_what_is_no_cut_is_refused(parts, more, said):
     with pytest.raises(InputError, match=said):
-        cut(chain([500]), parts, **{"delay": "1 ms", **more})
+        cut_scene(chain([500]), parts, **{"delay": "1 ms", **more})
 
 
 def test_as_many_parts_as_springs_join():

@@ -15,7 +15,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """The arguments of `zwidth links`."""
     parser.usage = (
         "%(prog)s SOURCE [SOURCE] [--delay TIME] [--jitter TIME] [--loss SHARE] [--burst N] "
-        "[--duplicates SHARE] [--seed N] [--impedance w] [--smoothing s] [--json] [--plot FILE] [-o FILE] [--force]"
+        "[--duplicates SHARE] [--seed N] [--impedance w] [--smoothing s] [--json] [--plot FILE] "
+        "[-o FILE] [--force]"
     )
     parser.add_argument(
         "sources",

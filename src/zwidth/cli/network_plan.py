@@ -36,7 +36,7 @@ from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of, read_number
 from zwidth.quantity.text import shown
-from zwidth.scene.cut import Cut, best_parts, cut
+from zwidth.scene.parts import Cut, best_parts, cut_scene
 from zwidth.scene.scene import Scene
 from zwidth.specification.environments import build_environment
 from zwidth.specification.read import load_device, read_tables
@@ -151,7 +151,7 @@ def load_plan(path: Path) -> Plan:
         )
     delay = _number(table, "delay", "delay") if "delay" in table.values else max(periods.values())
     with located(table.label):
-        made = cut(scene, names, delay, dict(_impedances(rows["line"])))
+        made = cut_scene(scene, names, delay, dict(_impedances(rows["line"])))
     for line in made.lines:
         one, other = (periods[part].fraction for part in line.parts)
         if line.delay < (one + other) / 2:

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 SPEEDS = (1e-3, 1e-2, 0.1, 1.0, 10.0)
 """Of the hands that are tried [m/s; rad/s]."""
-_SAMPLES = 1000
+_SAMPLES, _ROUNDS = 400, 4
+"""How long each motion is at least, also in times that a wave goes there and back."""
 _ROUNDING = 1e-9
 """Of all work that is done: what comes out beyond that is not of rounding."""
 
@@ -115,7 +116,7 @@ def _read(port: Port, x: Fraction) -> Fraction:
 
 
 def most_taken(
-    leader: Port, follower: Port, schedule: Schedule, samples: int = _SAMPLES
+    leader: Port, follower: Port, schedule: Schedule, samples: int | None = None
 ) -> LinkWitness | None:
     """The motion of those tried that takes most out; None where none takes any.
 
@@ -126,17 +127,19 @@ def most_taken(
     schedule
         What the link does.
     samples
-        How long each motion is.
+        How long each motion is; None: four times there and back, and 400 at least.
     """
     period = leader.device.exact("sample_period")
-    times = [schedule.arrivals(samples, period, way) for way in (0, 1)]
+    there_and_back = 2 * (1 + schedule.samples_late(period) + int(leader.numbers[LATE]))
+    count = max(_SAMPLES, _ROUNDS * there_and_back) if samples is None else samples
+    times = [schedule.arrivals(count, period, way) for way in (0, 1)]
     best, least = None, 0.0
-    for one, other in _hands(leader, schedule, period, samples):
+    for one, other in _hands(leader, there_and_back, schedule.seed, count):
         ends = [
-            End(port.code, port.numbers, port.fresh_state(), wire_of(*times[1 - end], samples))
+            End(port.code, port.numbers, port.fresh_state(), wire_of(*times[1 - end], count))
             for end, port in enumerate((leader, follower))
         ]
-        positions, forces = np.zeros((2, samples + 1)), np.zeros((2, samples))
+        positions, forces = np.zeros((2, count + 1)), np.zeros((2, count))
         positions[:, 0] = [-_start(one), -_start(other)]
         out = try_hands(ends[0], one, ends[1], other, positions, forces)
         if out < least and np.isfinite(forces).all():
@@ -161,12 +164,11 @@ def _cut(positions: Array, forces: Array, leader: Port, follower: Port) -> Array
     return positions[:, : int(np.argmax(np.cumsum(out))) + 2]
 
 
-def _hands(port: Port, schedule: Schedule, period: Fraction, samples: int) -> Iterator[tuple[Hand, Hand]]:
+def _hands(port: Port, round_trip: int, seed: int, samples: int) -> Iterator[tuple[Hand, Hand]]:
     """To and fro in time with the link, at many speeds, or over one edge; the other held, or moving too."""
-    round_trip = 2 * (1 + schedule.samples_late(period) + int(port.numbers[LATE]))
     none = np.empty(0)
-    draws = np.random.default_rng(schedule.seed).normal(size=samples)
-    sizes = [speed * float(period) for speed in SPEEDS] + port.telling_ways()
+    draws = np.random.default_rng(seed).normal(size=samples)
+    sizes = [speed * float(port.numbers[PERIOD]) for speed in SPEEDS] + port.telling_ways()
     most = max(sizes)
     still, greedy = Hand(0.0, 1, samples, most, none), Hand(0.0, 1, 0, most, none)
     for size in sizes:

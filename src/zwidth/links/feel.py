@@ -3,7 +3,8 @@
     K = w/τ    against a follower that is clamped,        τ = (1 + d) T,
     M = w τ    with one that is free, besides both devices; their dampings are felt as b − w each.
 
-A port that smooths its force over s has s more in τ.  (Niemeyer and Slotine 1991 have w/τ and w τ for a continuous link; docs/theory/links.md derives these.)
+A port that smooths its force over τ_s has τ_s more in τ.  (Niemeyer and Slotine 1991 have w/τ and w τ for a
+continuous link; docs/theory/links.md derives these.)
 """
 
 from __future__ import annotations

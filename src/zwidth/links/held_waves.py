@@ -27,7 +27,7 @@ from zwidth.links.memory import (
     apply,
 )
 from zwidth.links.waves import Waves
-from zwidth.quantity.exact import ends
+from zwidth.quantity.exact import Exact, ends
 
 HELD_WAVES = 2.0
 
@@ -78,7 +78,7 @@ class HeldWaves(Waves):
     @property
     def theorem(self) -> str:
         """w ≤ b, and nothing is rounded off the displacement."""
-        assert self.impedance is not None  # it is the damping where none was given
-        if ends(self.impedance)[0] > ends(self.device.damping)[0] or self.numbers[RESOLUTION] > 0:
+        w = self.impedance  # the damping where none was given
+        if w is None or Exact(w).fraction > ends(self.device.damping)[0] or self.numbers[RESOLUTION] > 0:
             return ""
         return "w ≤ b: in every period the device's damping takes what the hold feeds"

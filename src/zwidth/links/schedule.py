@@ -95,13 +95,13 @@ class Schedule(Parametric):
         period
             T [s].
         way
-            0 or 1: there or back; each is drawn by itself.
+            0 or 1: there or back; each is drawn by itself, the same for the first packets of more.
         """
-        draws = np.random.default_rng((self.seed, way))
+        first, second, bursts, doubled = (np.random.default_rng((self.seed, way, k)) for k in range(4))
         sent = np.arange(1, count + 1)
-        times = [self._late(draws, count, period) + sent for _ in range(2)]
-        kept = ~self._lost(draws, count)
-        twice = kept & (draws.random(count) < float(self.duplicates))
+        times = [self._late(draws, count, period) + sent for draws in (first, second)]
+        kept = ~self._lost(bursts, count)
+        twice = kept & (doubled.random(count) < float(self.duplicates))
         return np.where(kept, times[0], LOST), np.where(twice, times[1], LOST)
 
     def _late(self, draws: np.random.Generator, count: int, period: Fraction) -> Ticks:

@@ -11,7 +11,8 @@ yet used, d [m] and R [J], is used as
 
     a = min(|d|, R/(r |d|)) sgn d
 
-which is the wave of a link that loses nothing; or T/(T + s) of d at most, where the force is smoothed over s.  An encoder of resolution Δ reads Δx no better than ± Δ, so
+which is the wave of a link that loses nothing; or T/(T + τ_s) of d at most, to smooth the force over τ_s.
+An encoder of resolution Δ reads Δx no better than ± Δ, so
 
     R ← R − f Δx − c + b s²/T + f_c s,   s = max(0, |Δx| − Δ),   c = ½ Δ (|f| − |f⁻| + |f − f⁻|)
 
@@ -64,7 +65,7 @@ _CHARGES = _HELD + MOST_LATE + 1
 
 _DOWN = 1.0 - ROUNDING
 MARGIN = 1.0 - 1e-12
-_SMOOTHING = Quantity("smoothing", "s", "s", "s", "time constant that smooths the force")
+_SMOOTHING = Quantity("smoothing", "τ_s", "s", "s", "time constant that smooths the force")
 
 
 @compiled
@@ -173,7 +174,7 @@ class WavePort(Waves):
         w > 0 [N·s/m; N·m·s/rad]; None: the device's damping. The same at both ends, at most the smaller
         damping for waves that are never cut; larger is passive too, and cut at high speeds.
     smoothing
-        s ≥ 0, a time constant: against the chatter that jitter and encoder counts make, as much delay [s].
+        τ_s ≥ 0, a time constant: against the chatter that jitter and encoder counts make, as much delay [s].
 
     Raises
     ------

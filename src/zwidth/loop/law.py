@@ -80,8 +80,6 @@ def contact_force(law: Array, memory: Array, reading: float) -> float:
 def law_force(law: Array, memory: Array, reading: float) -> float:
     """The force that the law commands at a measured position; its memory moves on."""
     gate = law[GATE]
-    if law[CONTACT] == SCENE:
-        return scene_force(law, HEADER, memory, 0, reading)
     x = max(reading, 0.0) if gate == PENETRATION else reading
     points = int(law[POINTS])
     f = table_force(law, points, x) if points > 0 else 0.0
@@ -108,9 +106,8 @@ def law_force(law: Array, memory: Array, reading: float) -> float:
 @compiled
 def rendered_force(law: Array, memory: Array, reading: float) -> float:
     """The same through the laws that render it, if there are any."""
-    chain = int(law[CHAIN])
-    if chain == 0:
-        return law_force(law, memory, reading)
-    row, slot = int(law[ROW]), int(law[REMEMBERED])
-    f = law_force(law, memory, before(law, row, chain, memory, slot, reading))
-    return after(law, row, chain, memory, slot, reading, f)
+    chain, row, slot = int(law[CHAIN]), int(law[ROW]), int(law[REMEMBERED])
+    seen = before(law, row, chain, memory, slot, reading) if chain > 0 else reading
+    # one call of each: what is called is compiled into its caller every time
+    f = scene_force(law, HEADER, memory, 0, seen) if law[CONTACT] == SCENE else law_force(law, memory, seen)
+    return after(law, row, chain, memory, slot, reading, f) if chain > 0 else f

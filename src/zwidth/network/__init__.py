@@ -1,4 +1,4 @@
-"""Scenes and devices in several processes: what each runs, what carries their waves, and what is seen of it."""
+"""Scenes and devices in several processes: what each runs, what carries the waves, what is seen of it."""
 
 from zwidth.lazy import attach
 

@@ -2,7 +2,7 @@
 
 udp:LOCAL,REMOTE       udp:127.0.0.1:7401,127.0.0.1:7402
 memory:NAME            on one machine; the first side makes it
-zenoh:NAME             found by multicast; zenoh:NAME,ENDPOINT where the first side listens and the other connects
+zenoh:NAME             found by multicast; or zenoh:NAME,ENDPOINT, where the first side listens
 """
 
 from __future__ import annotations

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from zwidth.device import Device
 from zwidth.links import Packet, WavePort
 from zwidth.quantity.exact import RealLike
-from zwidth.scene.cut import Part
 from zwidth.scene.element import Element
+from zwidth.scene.parts import Part
 from zwidth.scene.run import SceneRun
 
 if TYPE_CHECKING:

@@ -1,7 +1,8 @@
 """One process of many: a part of a scene, or a device, stepped at its rate, its lines over channels.
 
-A step uses what has come by then and waits for nothing.  What has not come is a wave of zero: a peer that is
-gone is felt as a line that fell silent, whose force ends at zero.
+What is late is made up for, so that every peer's time is that of the clock: of two ends whose times part
+the slower one could not keep up a force.  A step uses what has come by then and waits for nothing.  What has
+not come is a wave of zero: a peer that is gone is felt as a line that fell silent, whose force ends at zero.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class PeerReport(Shown):
 
     steps: int
     late: int
-    """Steps that began more than a period late; what was missed is not made up for."""
+    """Steps that began more than a period late; they follow at once, until the time is made up for."""
     lateness: tuple[float, float, float]
     """Median, 99 % and largest lateness of a step [s]."""
     links: Mapping[str, LinkReport]
@@ -60,7 +61,7 @@ class PeerReport(Shown):
         p50, p99, most = self.lateness
         return {
             "steps": self.steps,
-            "missed": self.late,
+            "late": self.late,
             "lateness_s": {"median": p50, "of_99_percent": p99, "largest": most},
             "links": {
                 name: {**link.to_dict(), "last_force_N": self.forces[name]}
@@ -72,7 +73,7 @@ class PeerReport(Shown):
         """The steps, then line by line."""
         p50, p99, most = (f"{1e3 * t:.2g}" for t in self.lateness)
         late = f"late by {p50} ms median, {p99} ms in 99 %, {most} ms at most"
-        yield f"{self.steps} steps, {self.late} missed; {late}"
+        yield f"{self.steps} steps, {self.late} by more than a period too late; {late}"
         rows = [link.row(name) for name, link in self.links.items()]
         yield Table(heads=[LinkReport.HEADS], rows=rows, lefts=1)
 
@@ -140,18 +141,15 @@ class Peer:
             duration, GLOSSARY["sample_period"], "duration", bound="> 0", why="0 has no step"
         ).fraction
         lateness: list[float] = []
-        missed = 0
+        late = 0
         deadline = self._clock()
-        end = deadline + float(seconds) - 0.5 * self.period
         for k in range(int(seconds / self._exactly)):
-            if deadline > end or (stop is not None and stop()):
+            if stop is not None and stop():
                 break
             self._until(deadline)
             behind = self._clock() - deadline
             lateness.append(behind)
-            if behind > self.period:
-                missed += 1
-                deadline += behind
+            late += behind > self.period
             deadline += self.period
             self.step()
             if each is not None:
@@ -159,7 +157,7 @@ class Peer:
         ordered = sorted(lateness) or [0.0]
         at = [ordered[min(int(q * len(ordered)), len(ordered) - 1)] for q in (0.5, 0.99, 1)]
         links = {name: link.report() for name, link in self.links.items()}
-        return PeerReport(len(lateness), missed, (at[0], at[1], at[2]), links, dict(self.runs.forces))
+        return PeerReport(len(lateness), late, (at[0], at[1], at[2]), links, dict(self.runs.forces))
 
     def meet(self, wait: float) -> tuple[str, ...]:
         """Call the other ends until all have been heard of; the lines where nobody was in that time [s]."""

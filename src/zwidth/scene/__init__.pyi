@@ -1,6 +1,3 @@
-from zwidth.scene.cut import Cut as Cut
-from zwidth.scene.cut import best_parts as best_parts
-from zwidth.scene.cut import cut as cut_scene
 from zwidth.scene.element import Damper as Damper
 from zwidth.scene.element import Element as Element
 from zwidth.scene.element import Lever as Lever
@@ -10,5 +7,8 @@ from zwidth.scene.line_end import LineEnd as LineEnd
 from zwidth.scene.nonlinear import Contact as Contact
 from zwidth.scene.nonlinear import CoulombFriction as CoulombFriction
 from zwidth.scene.nonlinear import NonlinearSpring as NonlinearSpring
+from zwidth.scene.parts import Cut as Cut
+from zwidth.scene.parts import best_parts as best_parts
+from zwidth.scene.parts import cut_scene as cut_scene
 from zwidth.scene.run import SceneRun as SceneRun
 from zwidth.scene.scene import Scene as Scene

@@ -7,9 +7,11 @@ running both arms, and so the energy of the motions.
 
 from __future__ import annotations
 
+from importlib import import_module
+from itertools import product
 from typing import Any
 
-from . import TINY, Fraction, accepted, put, refused, without
+from . import TINY, Case, Fraction, accepted, put, refused, without
 from .pair import arm, loop
 
 
@@ -117,6 +119,74 @@ def moved(document: Any, damping: Any, friction: Any, path: Any, energy: Any) ->
     return {**told, "kind": "held pair motion", "positions_m": path, "energy_J": energy}
 
 
+def polynomials_are_exact() -> str:
+    """In powers of w, of ζ and of u, of whole numbers without a radius; at a point of the circle."""
+    felt, circle = (import_module(f"zwidth.checker.{name}") for name in ("pair.felt", "exact.circle"))
+    enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
+
+    def known(*values: int, radius: int = 0) -> list[Any]:
+        return [enclosed(8, 256 * v, (), radius) for v in values]
+
+    def at(p: Any, x: Any) -> Any:
+        return sum((_read(c) * x**i for i, c in enumerate(p)), 0 * x)
+
+    def _read(c: Any) -> Fraction:
+        return Fraction(c) if isinstance(c, int) else Fraction(c.middle, 256)
+
+    a, b, row = known(3, -5, 2, 7), known(4, 1, -6), [2, 0, -1, 4]
+    zeta = Fraction(3, 7)
+    w = 1 - zeta
+    late = felt._delayed(known(5, -2, 3), 4)
+    pairs = {
+        "in w": (at(felt.in_w(row), w), at(row, zeta)),
+        "times": (at(felt.times(a, row), w), at(a, w) * at(row, w)),
+        "in ζ": (at(felt.in_zeta(a), zeta), at(a, w)),
+        "late": (at(late, w), zeta**4 * (5 * (1 / zeta - 1) ** 2 - 2 * (1 / zeta - 1) + 3)),
+        "sum": (at(felt._sum(b, a, known(0)[0]), w), at(a, w) + at(b, w)),
+        "sum turned": (at(felt._sum(a, b, known(0)[0]), w), at(a, w) + at(b, w)),
+    }
+    u = Fraction(2, 5)  # ζ = (3 + 4j)/5, w = (2 − 4j)/5
+    powers = [(Fraction(1), Fraction(0))]
+    for _ in range(3):
+        x, y = powers[-1]
+        powers.append(((2 * x + 4 * y) / 5, (2 * y - 4 * x) / 5))
+
+    def on_circle(p: Any) -> tuple[Fraction, Fraction]:
+        parts = [(_read(c) * x, _read(c) * y) for c, (x, y) in zip(p, powers, strict=False)]
+        return sum((x for x, _ in parts), Fraction(0)), sum((y for _, y in parts), Fraction(0))
+
+    for one, other in ((a, b), (b, a), (a, a)):
+        (x, y), (s, t) = on_circle(one), on_circle(other)
+        found = circle.real_part(one, other, 8)
+        pairs[f"real part {len(one)} {len(other)}"] = (at(found, u), x * s + y * t)
+        pairs[f"radius {len(one)} {len(other)}"] = (Fraction(sum(c.reach for c in found)), Fraction(0))
+        total = circle.at(found, 1 - u)
+        pairs[f"at {len(one)} {len(other)}"] = (Fraction(total.middle, 256), (x * s + y * t) * 5**7)
+    for sign, more in product((-1, 1), repeat=2):  # what is unknown is within the radius that is found
+        bounds = circle.real_part(known(3, -5, 2, 7, radius=8), known(4, 1, -6, radius=8), 8)
+        moved = [[c.middle + s * 8 for c in p] for p, s in ((a, sign), (b, more))]
+        (x, y), (s, t) = (on_circle([enclosed(8, m) for m in p]) for p in moved)
+        off = abs(x * s + y * t - at(bounds, u))
+        if off > sum((Fraction(c.radius, 256) * u**i for i, c in enumerate(bounds)), Fraction(0)):
+            return f"off by {off}"
+    return next((name for name, (found, right) in pairs.items() if found != right), "")
+
+
+def sums_of_impulse_responses() -> str:
+    """1/(1 − ζ/2) has 2, and 3 (1 + ζ)/(2 + ζ) has 3/2 + 3/4 + 3/8 + …"""
+    one_norm = import_module("zwidth.checker.exact.one_norm").one_norm
+    enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
+
+    def known(*values: Any) -> list[Any]:
+        return [enclosed(64, int(v * 2**64)) for v in values]
+
+    for top, bottom, right in (((1,), (1, Fraction(-1, 2)), 2), ((3, 3), (2, 1), 3)):
+        found = one_norm(known(*top), known(*bottom))
+        if not right <= found <= right * (1 + TINY):
+            return f"{float(found)} in the place of {right}"
+    return ""
+
+
 FRICTION = Fraction("0.3130708513820214770908369")
 BOX = put(
     with_damping(HAND, "0.3968"),
@@ -137,6 +207,8 @@ MOTIONS = {
 MOVED = MOTIONS["a hand"]
 
 CASES = [
+    Case("polynomials are exact", polynomials_are_exact, ""),
+    Case("sums of impulse responses", sums_of_impulse_responses, ""),
     *(
         case
         for name, told in MOTIONS.items()

@@ -112,7 +112,7 @@ class Cut(Shown):
             )
 
 
-def cut(
+def cut_scene(
     scene: Scene,
     parts: Mapping[str, Iterable[str]],
     delay: RealLike,
