@@ -11,7 +11,11 @@ import sys
 import pytest
 
 from zwidth.cli.main import main
+from zwidth.cli.network import _Watch
 from zwidth.cli.network_plan import load_plan
+from zwidth.errors import InputError
+from zwidth.network import Peer, SharedMemory
+from zwidth.network.channel import Channel
 from zwidth.quantity.exact import Exact
 
 SCENE = """
@@ -96,6 +100,19 @@ def line(name, first, second, more=""):
     return (
         f'\n[[network.line]]\nname = "{name}"\nchannel = "udp:127.0.0.1:{first},127.0.0.1:{second}"\n{more}\n'
     )
+
+
+class Nobody(Channel):
+    """Where nobody is."""
+
+    def send(self, datagram):
+        pass
+
+    def receive(self):
+        return []
+
+    def close(self):
+        pass
 
 
 def file(tmp_path, text):
@@ -217,3 +234,25 @@ def test_all_processes_are_started_by_one_command(tmp_path, capfd):
     near, paddle = told["processes"]["near"], told["processes"]["paddle"]
     assert near["links"]["paddle"]["energy_received_J"] <= paddle["links"]["paddle"]["energy_sent_J"]
     assert 0 < near["steps"] <= 60
+
+
+def test_a_channel_that_cannot_be_opened_leaves_no_other_open(tmp_path):
+    """The first side's memory is there to be made again."""
+    own = f"test-{os.getpid()}"
+    lines = f'\n[[network.line]]\nname = "spring tool–bed"\nchannel = "memory:{own}"\n'
+    bad = '\n[[network.line]]\nname = "paddle"\nchannel = "tcp:1"\n'
+    plan = load_plan(tmp_path / file(tmp_path, SCENE + NETWORK + lines + bad))
+    assert list(plan.runs("near", Exact(1)).lines) == ["paddle", "spring tool–bed"]
+    for _ in range(2):
+        with pytest.raises(InputError, match="no channel is called 'tcp:1'"):
+            plan.peer("near", Exact(1))
+    with pytest.raises(InputError, match="there is no shared memory"):
+        SharedMemory(own, first=False)
+
+
+def test_steps_longer_than_a_report_are_told_one_by_one(tmp_path, capsys):
+    """A part that steps every three seconds has a line for each step."""
+    plan = load_plan(tmp_path / file(tmp_path, SCENE + NETWORK.replace('"5 ms"', '"3 s"')))
+    peer = Peer(plan.runs("far", Exact(3)), {"spring tool–bed": Nobody()}, 3)
+    _Watch(peer, "far")(0)
+    assert "far at 3 s, spring tool–bed: nothing has come" in capsys.readouterr().err

@@ -17,6 +17,7 @@ without nodes has all that are in no other; a line without a channel goes throug
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -112,7 +113,11 @@ class Plan:
             As `runs`, or if a channel cannot be opened.
         """
         runs = self.runs(name, duration)
-        channels = {line: self.lines[line].opened(line, name) for line in runs.lines}
+        with ExitStack() as opened:  # closed again if one cannot be opened
+            channels = {
+                line: opened.enter_context(self.lines[line].opened(line, name)) for line in runs.lines
+            }
+            opened.pop_all()
         own = self.devices.get(name)
         return Peer(runs, channels, Exact(own[0].exact("sample_period")) if own else self.periods[name])
 
