@@ -11,7 +11,11 @@ import sys
 import pytest
 
 from zwidth.cli.main import main
+from zwidth.cli.network import _Watch
 from zwidth.cli.network_plan import load_plan
+from zwidth.errors import InputError
+from zwidth.network import Peer, SharedMemory
+from zwidth.network.channel import Channel
 from zwidth.quantity.exact import Exact
 
 SCENE = """
@@ -65,6 +69,23 @@ source = "haptic-paddle"
 """
 
 
+SECOND_END = """
+[[environment.elements]]
+type = "line-end"
+node = "bed"
+impedance = "0.15 N*s/m"
+name = "paddle"
+"""
+
+ROTARY = """
+[device]
+motion = "rotary"
+inertia = "1e-4 kg*m^2"
+damping = "1 mN*m*s/rad"
+rate = "1 kHz"
+"""
+
+
 def ports(n):
     sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(n)]
     for s in sockets:
@@ -79,6 +100,19 @@ def line(name, first, second, more=""):
     return (
         f'\n[[network.line]]\nname = "{name}"\nchannel = "udp:127.0.0.1:{first},127.0.0.1:{second}"\n{more}\n'
     )
+
+
+class Nobody(Channel):
+    """Where nobody is."""
+
+    def send(self, datagram):
+        pass
+
+    def receive(self):
+        return []
+
+    def close(self):
+        pass
 
 
 def file(tmp_path, text):
@@ -112,7 +146,19 @@ def test_a_plan_says_what_runs_where_and_what_a_line_adds(tmp_path, capsys):
         (SCENE + NETWORK.split("[[network.device]]")[0], 'nothing holds the line end "paddle"'),
         (SCENE + NETWORK.replace('nodes = ["tool"]', 'nodes = ["tol"]'), '"tol" of part "near" is no node'),
         (SCENE + NETWORK.replace('nodes = ["tool"]', 'nodes = "tool"'), "nodes is a list"),
+        (SCENE + NETWORK.replace('nodes = ["tool"]', "nodes = 3"), "nodes is a list"),
         (SCENE + NETWORK.replace('nodes = ["tool"]', ""), "have no nodes; one may have the rest"),
+        (SCENE + NETWORK.replace('"far"', '"near"'), 'part 2].*two of the name "near"'),
+        (SCENE + NETWORK.replace('"far"', '""'), "name is empty"),
+        (SCENE + NETWORK.replace('"far"', '"paddle"'), '"paddle" is a part and a device'),
+        (
+            SCENE + NETWORK.replace("[network]", '[network]\ndelay = "4 ms"', 1),
+            "delay must be ≥ 5 ms, got 4 ms",
+        ),
+        (SCENE.replace('port = ""', 'port = "bed"') + NETWORK, 'nobody would move the port "bed"'),
+        (SCENE + SECOND_END + NETWORK, 'two line ends are called "paddle"'),
+        (SCENE + NETWORK.replace("haptic-paddle", "rotary.toml"), "a network's scene moves along an axis"),
+        (SCENE + NETWORK + line("paddle", 1, 2) + line("paddle", 3, 4), 'line 2].*two of the name "paddle"'),
         (SCENE + NETWORK.replace('sample_period = "5 ms"', ""), "sample_period is missing"),
         (SCENE + NETWORK.replace('"5 ms"', '"-5 ms"'), "sample_period"),
         (SCENE + NETWORK.replace('source = "haptic-paddle"', ""), "source is missing"),
@@ -126,7 +172,9 @@ def test_a_plan_says_what_runs_where_and_what_a_line_adds(tmp_path, capsys):
         ),
     ],
 )
-def test_what_is_no_network_is_refused_in_one_line(tmp_path, capsys, text, said):
+def test_what_is_no_network_is_refused_in_one_line(tmp_path, capsys, monkeypatch, text, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rotary.toml").write_text(ROTARY, encoding="utf-8")
     assert main(["network", file(tmp_path, text), "--plan"]) == 2
     told = capsys.readouterr().err
     assert re.search(said, told), told
@@ -186,3 +234,25 @@ def test_all_processes_are_started_by_one_command(tmp_path, capfd):
     near, paddle = told["processes"]["near"], told["processes"]["paddle"]
     assert near["links"]["paddle"]["energy_received_J"] <= paddle["links"]["paddle"]["energy_sent_J"]
     assert 0 < near["steps"] <= 60
+
+
+def test_a_channel_that_cannot_be_opened_leaves_no_other_open(tmp_path):
+    """The first side's memory is there to be made again."""
+    own = f"test-{os.getpid()}"
+    lines = f'\n[[network.line]]\nname = "spring tool–bed"\nchannel = "memory:{own}"\n'
+    bad = '\n[[network.line]]\nname = "paddle"\nchannel = "tcp:1"\n'
+    plan = load_plan(tmp_path / file(tmp_path, SCENE + NETWORK + lines + bad))
+    assert list(plan.runs("near", Exact(1)).lines) == ["paddle", "spring tool–bed"]
+    for _ in range(2):
+        with pytest.raises(InputError, match="no channel is called 'tcp:1'"):
+            plan.peer("near", Exact(1))
+    with pytest.raises(InputError, match="there is no shared memory"):
+        SharedMemory(own, first=False)
+
+
+def test_steps_longer_than_a_report_are_told_one_by_one(tmp_path, capsys):
+    """A part that steps every three seconds has a line for each step."""
+    plan = load_plan(tmp_path / file(tmp_path, SCENE + NETWORK.replace('"5 ms"', '"3 s"')))
+    peer = Peer(plan.runs("far", Exact(3)), {"spring tool–bed": Nobody()}, 3)
+    _Watch(peer, "far")(0)
+    assert "far at 3 s, spring tool–bed: nothing has come" in capsys.readouterr().err

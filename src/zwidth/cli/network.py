@@ -76,13 +76,14 @@ def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
     from zwidth.cli.compile_notice import warn_of_compiling
 
     warn_of_compiling()
+    signal.signal(signal.SIGTERM, _interrupted)
     peer = plan.peer(name, duration)
-    for line in peer.meet(_MEETING):
-        print(f"{name}: nobody is at the other end of {line} yet; running all the same", file=sys.stderr)
-    ended: list[int] = []
-    for told in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(told, lambda *_: ended.append(1))
     try:
+        for line in peer.meet(_MEETING):
+            print(f"{name}: nobody is at the other end of {line} yet; running all the same", file=sys.stderr)
+        ended: list[int] = []
+        for told in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(told, lambda *_: ended.append(1))
         report = peer.run(duration, _Watch(peer, name), stop=lambda: bool(ended))
     finally:
         peer.close()
@@ -93,12 +94,17 @@ def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
     return 0
 
 
+def _interrupted(*_: object) -> None:
+    """Told to end, as by Ctrl-C: what was opened is closed on the way."""
+    raise KeyboardInterrupt
+
+
 class _Watch:
     """A line a second of what a peer sees."""
 
     def __init__(self, peer: Peer, name: str) -> None:
         self._peer, self._name = peer, name
-        self._next = round(_OFTEN / peer.period)
+        self._next = max(1, round(_OFTEN / peer.period))
 
     def __call__(self, k: int) -> None:
         """After step k."""
@@ -115,6 +121,7 @@ def _all(plan: Plan, file: str, typed: str, as_json: bool) -> int:
     warn_of_compiling()
     for name in plan.names:  # what has to be compiled is compiled once, not by all of them together
         plan.runs(name, Exact(1))
+    signal.signal(signal.SIGTERM, _interrupted)
     command = [sys.executable, "-m", "zwidth", "network", file, "--duration", typed]
     more = ["--json"] if as_json else []
     out = subprocess.PIPE if as_json else None

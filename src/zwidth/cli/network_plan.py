@@ -17,6 +17,7 @@ without nodes has all that are in no other; a line without a channel goes throug
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,7 @@ from zwidth.operator.operator import Operator
 from zwidth.quantity.exact import Exact
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import parameters_of, read_number
+from zwidth.quantity.text import shown
 from zwidth.scene.parts import Cut, best_parts, cut_scene
 from zwidth.scene.scene import Scene
 from zwidth.specification.environments import build_environment
@@ -111,7 +113,11 @@ class Plan:
             As `runs`, or if a channel cannot be opened.
         """
         runs = self.runs(name, duration)
-        channels = {line: self.lines[line].opened(line, name) for line in runs.lines}
+        with ExitStack() as opened:  # closed again if one cannot be opened
+            channels = {
+                line: opened.enter_context(self.lines[line].opened(line, name)) for line in runs.lines
+            }
+            opened.pop_all()
         own = self.devices.get(name)
         return Peer(runs, channels, Exact(own[0].exact("sample_period")) if own else self.periods[name])
 
@@ -134,13 +140,31 @@ def load_plan(path: Path) -> Plan:
     scene = build_environment(tables["environment"], "linear")
     if not isinstance(scene, Scene):
         raise InputError(f'{tables["environment"].label}: a network runs a scene, type = "scene"')
+    if scene.port:
+        raise InputError(
+            f'{tables["environment"].label}: nobody would move the port "{scene.port}": '
+            'write port = "", and a line-end where a device comes in'
+        )
     table.check_keys(_KEYS, "a network")
     rows = {kind: list(_rows(table, kind)) for kind in _KINDS}
     devices = dict(map(_device, rows["device"]))
     names, periods = _parts(scene, table, rows["part"])
+    both = next((name for name in devices if name in names), None)
+    if both is not None:
+        raise InputError(
+            f'{table.label}: "{both}" is a part and a device; each process has a name of its own'
+        )
     delay = _number(table, "delay", "delay") if "delay" in table.values else max(periods.values())
     with located(table.label):
         made = cut_scene(scene, names, delay, dict(_impedances(rows["line"])))
+    for line in made.lines:
+        one, other = (periods[part].fraction for part in line.parts)
+        if line.delay < (one + other) / 2:
+            least, got = (shown(Exact(t), "s") for t in ((one + other) / 2, line.delay))
+            raise InputError(
+                f"{table.label}: delay must be ≥ {least}, got {got}: the steps of its parts make line "
+                f'"{line.name}" as late'
+            )
     return Plan(made, periods, devices, _lines(made, devices, rows["line"], path.stem))
 
 
@@ -148,12 +172,17 @@ def _rows(table: Table, kind: str) -> Iterator[Table]:
     given = table.values.get(kind, [])
     if not isinstance(given, list) or not all(isinstance(row, Mapping) for row in given):
         raise InputError(f"{table.label}: {kind} is written as [[network.{kind}]] tables")
+    names = set()
     for i, row in enumerate(given):
         one = Table(f"{table.label.removesuffix(']')}.{kind} {i + 1}]", row)
         one.check_keys(_KINDS[kind], f"a {kind} of a network")
         if "name" not in one.values:
             raise InputError(f"{one.label}: name is missing")
-        one.text("name")
+        name = one.text("name")
+        if not name or name in names:
+            told = f'there are two of the name "{name}"' if name else "name is empty"
+            raise InputError(f"{one.label}: {told}; each {kind} has a name of its own")
+        names.add(name)
         yield one
 
 
@@ -181,13 +210,10 @@ def _parts(
         raise InputError(f"{table.label}: say how many parts, or which nodes are in each [[network.part]]")
     names, periods = {}, {}
     for row in rows:
-        name = row.text("name")
-        if name in names:
-            raise InputError(f'{row.label}: there are two parts "{name}"')
-        nodes = row.values.get("nodes", ())
-        if isinstance(nodes, str) or not all(isinstance(n, str) for n in nodes):  # type: ignore[attr-defined]
+        name, nodes = row.text("name"), row.values.get("nodes", [])
+        if not isinstance(nodes, list) or not all(isinstance(n, str) for n in nodes):
             raise InputError(f'{row.label}: nodes is a list of names, such as ["tool", "bed"]')
-        names[name], periods[name] = tuple(nodes), _period(row, table)  # type: ignore[arg-type]
+        names[name], periods[name] = tuple(nodes), _period(row, table)
     open_ones = [name for name, nodes in names.items() if not nodes]
     if len(open_ones) > 1:
         raise InputError(
@@ -215,6 +241,8 @@ def _device(row: Table) -> tuple[str, tuple[Device, Operator]]:
     if not isinstance(hand, Mapping):
         raise InputError(f'{row.label}: operator is a table, such as {{ type = "finger" }}')
     device = load_device([row.text("source")], {})
+    if device.motion != "linear":
+        raise InputError(f"{row.label}: the device is {device.motion}; a network's scene moves along an axis")
     return row.text("name"), (device, build_hand(Table(f"{row.label} operator", hand), device.motion))
 
 
@@ -227,8 +255,11 @@ def _impedances(rows: list[Table]) -> Iterator[tuple[str, Exact]]:
 
 def _lines(made: Cut, devices: Mapping[str, Any], rows: list[Table], stem: str) -> dict[str, Line]:
     ends: dict[str, str] = {line.name: line.parts[0] for line in made.lines}
-    for part in made.parts:
-        ends |= {end.title: part.name for end in part.ends if end.title not in ends}
+    inner = set(ends)
+    for end, home in ((end.title, part.name) for part in made.parts for end in part.ends):
+        if end not in inner and end in ends:
+            raise InputError(f'two line ends are called "{end}"; give each a name of its own')
+        ends.setdefault(end, home)
     for name in devices:
         if name not in ends:
             raise InputError(
@@ -252,9 +283,9 @@ def _lines(made: Cut, devices: Mapping[str, Any], rows: list[Table], stem: str) 
 def _line(row: Table | None, channel: str, first: str) -> Line:
     if row is None:
         return Line(channel, first)
-    told = {
-        key: read(row.values[key], key, own, "linear") for key, own in _WORSE.items() if key in row.values
-    }
     with located(row.label):
+        told = {
+            key: read(row.values[key], key, own, "linear") for key, own in _WORSE.items() if key in row.values
+        }
         worse = Schedule(**told) if told else None
     return Line(row.text("channel") if "channel" in row.values else channel, first, worse)

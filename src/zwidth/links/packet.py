@@ -83,3 +83,7 @@ class Packet:
         if _CHECKSUM.unpack(check)[0] != zlib.crc32(body):
             raise InputError("the checksum of a packet is wrong; leave it out, as if it were lost")
         return cls(*_LAYOUT.unpack(body))
+
+
+FIRST = Packet(0, 0.0, 0.0, 0.0)
+"""Of a port that has neither moved nor been pushed."""

@@ -99,8 +99,9 @@ class LinkReport(Shown):
         if not self.received:
             return "nothing has come"
         waiting = f", silent for {self.silent:.2g} s" if self.silent > _SILENT else ""
-        trip = f"{1e3 * self.round_trip[0]:.3g} ms there and back"
-        return f"{self.rate:.4g} per second, {self._share} lost, {trip}{waiting}"
+        echoed = math.isfinite(self.round_trip[0])
+        trip = f", {1e3 * self.round_trip[0]:.3g} ms there and back" if echoed else ""
+        return f"{self.rate:.4g} per second, {self._share} lost{trip}{waiting}"
 
     def rows(self) -> list[list[str]]:
         return [

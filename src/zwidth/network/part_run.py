@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from zwidth.device import Device
 from zwidth.links import Packet, WavePort
+from zwidth.links.packet import FIRST
 from zwidth.quantity.exact import RealLike
 from zwidth.scene.element import Element
 from zwidth.scene.parts import Part
@@ -48,7 +49,7 @@ class PartRun:
         self.ports = {end.title: _port(end, sample_period) for end in part.ends}
         for end in part.ends:
             ready = _port(end, sample_period)
-            ready.receive()
+            ready.receive([FIRST])
             ready.send(0.0)
 
     def step(
