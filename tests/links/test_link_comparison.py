@@ -132,3 +132,19 @@ def test_ports_that_do_not_fit_are_refused() -> None:
         zw.links.compare(one, one.replace(rate=500))
     with pytest.raises(zw.InputError, match=r"a port of zwidth\.links"):
         zw.links.simulate(one, one, Schedule(), None, None, 1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_hands_of_flesh_take_nothing_out_either(seed: int) -> None:
+    """A push on both, in continuous time with masses and stiction: their work never falls below 0."""
+    leader = zw.Device(
+        mass=0.03, damping=0.2, coulomb_friction=0.05, resolution="22.4 um", rate=1000, delay="1 ms"
+    )
+    follower = leader.replace(mass=0.2, damping=0.1, coulomb_friction=0, resolution=0, delay=0)
+    ports = zw.links.WavePort(leader, impedance=0.5), zw.links.WavePort(follower, impedance=0.5)
+    link = Schedule(delay="3 ms", jitter="8 ms", loss=0.4, burst=5, duplicates=0.2, seed=seed)
+    hands = zw.operators.ConstantForce(0.3), zw.operators.ConstantForce(-0.2)
+    trace = zw.links.simulate(*ports, link, *hands, 1, encoder_phase=(0.3, 0.0))
+    work = trace["hand_work"].values.sum(axis=0)
+    assert work.min() >= -1e-12
+    assert work[-1] > 1e-3

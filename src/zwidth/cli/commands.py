@@ -147,7 +147,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "what two hands take out of the others, how the follower follows, what the leader feels.",
             "exit status: 0, or 2 on bad input\n\n"
             "examples:\n"
-            "  zwidth links touch --mass '45 g' --delay '20 ms' --loss 0.5\n"
+            "  zwidth links haptic-paddle --delay '20 ms' --loss 0.5\n"
             "  zwidth links leader.toml follower.toml --delay '20 ms' --jitter '10 ms' --loss 0.5 --burst 4 "
             "--plot links.png",
         ),

@@ -142,8 +142,8 @@ def polynomials_are_exact() -> str:
         "times": (at(felt.times(a, row), w), at(a, w) * at(row, w)),
         "in ζ": (at(felt.in_zeta(a), zeta), at(a, w)),
         "late": (at(late, w), zeta**4 * (5 * (1 / zeta - 1) ** 2 - 2 * (1 / zeta - 1) + 3)),
-        "sum": (at(felt._sum(b, a, known(0)[0]), w), at(a, w) + at(b, w)),
-        "sum turned": (at(felt._sum(a, b, known(0)[0]), w), at(a, w) + at(b, w)),
+        "sum": (at(felt._sum(b, a), w), at(a, w) + at(b, w)),
+        "sum turned": (at(felt._sum(a, b), w), at(a, w) + at(b, w)),
     }
     u = Fraction(2, 5)  # ζ = (3 + 4j)/5, w = (2 − 4j)/5
     powers = [(Fraction(1), Fraction(0))]
@@ -170,6 +170,53 @@ def polynomials_are_exact() -> str:
         if off > sum((Fraction(c.radius, 256) * u**i for i, c in enumerate(bounds)), Fraction(0)):
             return f"off by {off}"
     return next((name for name, (found, right) in pairs.items() if found != right), "")
+
+
+def radii_are_those_of_powers() -> str:
+    """Of one power of w and another: |Re wⁱ w̄ᵏ| ≤ (2u)ⁿ, or |i − k| 2ⁿ uⁿ⁺¹ where i + k is odd."""
+    circle = import_module("zwidth.checker.exact.circle")
+    enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
+    for i, k in product(range(4), repeat=2):
+        a, b = ([enclosed(8, 0)] * n + [enclosed(8, 256, (), r)] for n, r in ((i, 3), (k, 0)))
+        half, odd = divmod(i + k, 2)
+        right = [0] * 8
+        right[half + odd] = 3 * 2**half * (abs(i - k) if odd else 1)
+        found = [c.radius for c in circle.real_part(a, b, 8)]
+        if found != right:
+            return f"w^{i}, w^{k}: {found}"
+    return ""
+
+
+def a_polynomial_stays_above_zero_at_every_end() -> str:
+    """Where slopes cancel they count together, a radius by itself; for 0 ≤ u ≤ 2 and no further."""
+    circle = import_module("zwidth.checker.exact.circle")
+    enclosed = import_module("zwidth.checker.exact.enclosed").Enclosed
+    refusal = import_module("zwidth.checker.document.refusal").Invalid
+
+    def holds(*depth: tuple[int, tuple[int, ...], int]) -> bool:
+        try:
+            circle.require_above_zero([enclosed(8, *parts) for parts in depth])
+        except refusal:
+            return False
+        return True
+
+    rows = [
+        (((210, (), 0), (-100, (), 0)), True),  # > 0 up to u = 2
+        (((190, (), 0), (-100, (), 0)), False),
+        (((1, (), 0), (100, (), 0), (0, (), 0), (0, (), 0)), True),
+        (((-1, (), 0), (100, (), 0)), False),
+        (((6, (), 0), (-20, (), 0), (20, (), 0)), True),  # least at u = 1/2, where it is 1
+        (((4, (), 0), (-20, (), 0), (20, (), 0)), False),
+        (((100, (99,), 0), (0, (-99,), 0)), True),  # 100 + 99 ε (1 − u)
+        (((100, (101,), 0), (0, (-101,), 0)), False),
+        (((100, (40, 40), 0), (0, (), 9)), True),
+        (((100, (40, 40), 0), (0, (), 10)), False),
+        (((100, (-40, 61), 0),), False),
+        (((100, (40, -61), 0),), False),
+        (((100, (), 99),), True),
+        (((100, (), 100),), False),
+    ]
+    return next((str(depth) for depth, right in rows if holds(*depth) is not right), "")
 
 
 def sums_of_impulse_responses() -> str:
@@ -208,6 +255,8 @@ MOVED = MOTIONS["a hand"]
 
 CASES = [
     Case("polynomials are exact", polynomials_are_exact, ""),
+    Case("radii are those of powers", radii_are_those_of_powers, ""),
+    Case("above zero at every end", a_polynomial_stays_above_zero_at_every_end, ""),
     Case("sums of impulse responses", sums_of_impulse_responses, ""),
     *(
         case

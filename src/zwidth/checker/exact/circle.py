@@ -23,7 +23,7 @@ def real_part(a: Sequence[Enclosed], b: Sequence[Enclosed], size: int) -> list[E
     spend(60 * len(a) * len(b), max(x.middle.bit_length() for x in (*a, *b)))
     spend(len(a) * len(b) * (len(a) + len(b)), a[0].bits, size)
     bits = a[0].bits
-    out, loose = [Enclosed(bits, 0)] * size, [0] * (size + 1)
+    out, loose = [Enclosed(bits, 0)] * size, [0] * size
     powers = _powers(max(len(a), len(b)))
     for i, x in enumerate(a):
         for k, y in enumerate(b):
@@ -34,7 +34,7 @@ def real_part(a: Sequence[Enclosed], b: Sequence[Enclosed], size: int) -> list[E
                     out[j] = out[j] + known.times(c)
             odd = (i + k) % 2
             loose[half + odd] += (abs(i - k) if odd else 1) * found.radius << half
-    return [x + Enclosed(bits, 0, (), radius) for x, radius in zip(out, loose, strict=False)]
+    return [x + Enclosed(bits, 0, (), radius) for x, radius in zip(out, loose, strict=True)]
 
 
 def _powers(most: int) -> list[list[int]]:
@@ -65,6 +65,4 @@ def require_above_zero(depth: Sequence[Enclosed]) -> None:
             in_cosine = [p - q for p, q in zip([*in_cosine, 0], [0, *in_cosine], strict=True)]
             in_cosine[0] += x.middle - x.radius
             in_cosine[0] += sum(sign * s for sign, s in zip(signs, x.slopes, strict=bool(x.slopes)))
-        while len(in_cosine) > 1 and in_cosine[-1] == 0:
-            in_cosine.pop()
         require_positive([Fraction(c) for c in in_cosine])

@@ -41,13 +41,13 @@ class Port(NamedTuple):
 
 
 def port_of(held: Held) -> Port:
-    found, zero = sampled(held.motion, held.bits), Enclosed(held.bits, 0)
+    found = sampled(held.motion, held.bits)
     last = len(found.denominator) - 1
     a, g = _delayed(found.denominator, last), _delayed(found.numerator, found.late + last)
     own, other, its_own, its_other = (in_w(row) for row in held.taps)
-    below = _sum([x.times(held.scale) for x in a], times(g, its_own), zero)
+    below = _sum([x.times(held.scale) for x in a], times(g, its_own))
     through = times(times(g, other), [-c for c in its_other])
-    return Port(_sum(times(below, own), through, zero), below, times(a, other), held.scale)
+    return Port(_sum(times(below, own), through), below, times(a, other), held.scale)
 
 
 def _delayed(descending: Sequence[Enclosed], power: int) -> list[Enclosed]:
@@ -74,8 +74,8 @@ def times(a: Sequence[Enclosed], whole: Sequence[int]) -> list[Enclosed]:
     return out
 
 
-def _sum(a: list[Enclosed], b: list[Enclosed], zero: Enclosed) -> list[Enclosed]:
-    size = max(len(a), len(b))
+def _sum(a: list[Enclosed], b: list[Enclosed]) -> list[Enclosed]:
+    size, zero = max(len(a), len(b)), Enclosed(a[0].bits, 0)
     return [x + y for x, y in zip(*([*p, *[zero] * (size - len(p))] for p in (a, b)), strict=True)]
 
 
