@@ -38,8 +38,8 @@ def _behind(given: Any, name: str) -> Environment:
     environment = as_environment(given)
     if not (environment.linear or environment.starts_at_rest):
         raise InputError(
-            f"the {name} behind a coupling must be linear, or a zwidth.Scene with a port, which this is not: "
-            f"{environment.describe()}"
+            f"the {name} behind a coupling must be linear, or a zwidth.Scene with a port and no line "
+            f"ends, which this is not: {environment.describe()}"
         )
     return environment
 

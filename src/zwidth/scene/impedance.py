@@ -16,7 +16,7 @@ import flint
 
 from zwidth.environment.environment import RationalFunction
 from zwidth.scene.element import Element
-from zwidth.scene.network import Network
+from zwidth.scene.network import Network, unheld
 
 _S = flint.fmpq_poly([0, 1])
 _POWER = {1: 0, 0: 1, -1: 2}
@@ -24,7 +24,13 @@ _POWER = {1: 0, 0: 1, -1: 2}
 
 
 def impedance(elements: Sequence[Element], net: Network, period: Fraction) -> RationalFunction:
-    """Z(z) [N·s/m], common factors cancelled; the elements are linear and none is a lever."""
+    """Z(z) [N·s/m], common factors cancelled; the elements are linear and none is a lever.
+
+    Raises
+    ------
+    InputError
+        If nothing holds a node.
+    """
     size = len(net.roots) + 1  # the port last
     y = [[flint.fmpq_poly([0]) for _ in range(size)] for _ in range(size)]
     for element, across in zip(elements, net.across, strict=True):
@@ -34,16 +40,18 @@ def impedance(elements: Sequence[Element], net: Network, period: Fraction) -> Ra
         for i, a in weights:
             for j, b in weights:
                 y[i][j] += own * _q(a * b)
-    below, above = _minors(y)
+    below, above = _minors(y, net.roots)
     top, bottom = above, below * _S  # Z(s) = det(s Y)/(s det(s Y_ff))
     common = top.gcd(bottom)
     return _in_z(top // common, bottom // common)
 
 
-def _minors(y: list[list[flint.fmpq_poly]]) -> tuple[flint.fmpq_poly, flint.fmpq_poly]:
-    """The last two leading minors; 1 before the first."""
+def _minors(y: list[list[flint.fmpq_poly]], roots: Sequence[str]) -> tuple[flint.fmpq_poly, flint.fmpq_poly]:
+    """The last two leading minors; 1 before the first.  Before the last none is 0 where all is held."""
     before = flint.fmpq_poly([1])
     for k in range(len(y) - 1):
+        if not y[k][k]:
+            raise unheld(roots[k])
         for i in range(k + 1, len(y)):
             for j in range(k + 1, len(y)):
                 y[i][j] = (y[i][j] * y[k][k] - y[i][k] * y[k][j]) // before

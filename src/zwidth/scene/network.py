@@ -45,6 +45,14 @@ class Network:
     across: tuple[Across, ...]
 
 
+def unheld(node: str) -> InputError:
+    """That a node has more than one velocity that answers its laws."""
+    return InputError(
+        f'nothing holds the node "{node}" but what may let go of it, or numbers too far apart: '
+        "its velocity has more than one answer; give it a mass, or a damper to a node that has one"
+    )
+
+
 def network(elements: Sequence[Element], port: str) -> Network:
     """Nodes and ties of the elements; `port` is "" for none.
 

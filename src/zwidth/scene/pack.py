@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from zwidth.errors import InputError
 from zwidth.scene import layout as at
 from zwidth.scene.element import Element
 from zwidth.scene.factor import Factor, factorised
-from zwidth.scene.network import Across, Network
+from zwidth.scene.network import Across, Network, unheld
 from zwidth.scene.nonlinear import COULOMB
 from zwidth.scene.potential import stored_in
 
@@ -139,10 +138,7 @@ def _factor(
                 rows[i][j] = rows[i].get(j, 0.0) + r * float(a) * float(b)
     found = factorised(rows)
     if isinstance(found, int):
-        raise InputError(
-            f'nothing holds the node "{roots[found]}" but what may let go of it, or numbers too far apart: '
-            "its velocity has more than one answer; give it a mass, or a damper to a node that has one"
-        )
+        raise unheld(roots[found])
     return found
 
 

@@ -239,7 +239,7 @@ def _homes(scene: Scene, parts: Mapping[str, Iterable[str]]) -> dict[str, tuple[
 
 
 def _damping_of(element: Element, title: str) -> Exact:
-    if element.reflection or element.law is not None:
+    if element.reflection or element.law is not None or element.ratio is not None:
         raise InputError(
             f"{title} lies between two parts: give impedances={{{title!r}: w}}, the wave impedance of its "
             "line; K = w/τ should be well above the stiffness there, and M = w τ well below the masses"
@@ -269,6 +269,8 @@ def best_parts(scene: Scene, count: int) -> dict[str, tuple[str, ...]]:
     InputError
         If its springs do not join as many parts.
     """
+    if not isinstance(count, int) or count < 1:
+        raise InputError(f"count is how many parts, a whole number from 1 on, got {count!r}")
     group = {n: n for n in scene.nodes}
 
     def root(node: str) -> str:
@@ -287,7 +289,7 @@ def best_parts(scene: Scene, count: int) -> dict[str, tuple[str, ...]]:
         if a != b and (left > count or element in firm or element in light):
             group[b] = a
             left -= 1
-    if left < count or count < 1:
+    if left < count:
         raise InputError(
             f"count must be from 1 to {left}, the parts that springs join in this scene, got {count}"
         )

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
 from zwidth.compiled import compiled
+from zwidth.errors import InputError
 from zwidth.quantity.exact import RealLike
 from zwidth.quantity.glossary import GLOSSARY
 from zwidth.quantity.parameter import read_number
@@ -69,8 +71,18 @@ class SceneRun:
         forces
             Of lines that end here, by their names, the force that each gives its node over the step
             [N; N·m]; of a line that is left out 0.
+
+        Raises
+        ------
+        InputError
+            If no line of such a name ends here, or a number is not finite.
         """
         for name, force in (forces or {}).items():
+            if name not in self._lines or not isfinite(force):
+                raise InputError(
+                    f"forces are finite and of the lines that end here, {', '.join(self._lines) or 'none'}; "
+                    f"got {force!r} of {name!r}"
+                )
             self._memory[self._packed.waves + self._lines[name]] = -force
         return float(self.follow([self._memory[at.READING] + move])[0])
 
@@ -81,8 +93,21 @@ class SceneRun:
         return float(numbers[at.PERIOD] * across(numbers, row, self._memory, velocities, self._speed))
 
     def follow(self, positions: ArrayLike) -> Array:
-        """The mean forces of steps that end with the port at these positions [m; rad]."""
-        readings = np.atleast_1d(np.asarray(positions, dtype=np.float64))
+        """The mean forces of steps that end with the port at these positions [m; rad].
+
+        Raises
+        ------
+        InputError
+            If there is no position, or one is not finite.
+        """
+        try:
+            readings = np.atleast_1d(np.asarray(positions, dtype=np.float64))
+        except (TypeError, ValueError):
+            readings = np.empty(0)
+        if readings.ndim != 1 or not readings.size or not np.isfinite(readings).all():
+            raise InputError(
+                f"positions of the port are finite numbers, one at least, in a row, got {positions!r}"
+            )
         forces = np.empty_like(readings)
         before = self._memory[at.READING] if len(readings) < 2 else readings[-2]
         _follow(self._packed.numbers, self._memory, readings, forces)

@@ -120,7 +120,7 @@ class Scene(Environment, Shown):
     def has_transfer_function(self) -> bool:
         """True without contact, friction and springs through points, of at most 60 masses and springs."""
         small = self._states <= MOST_STATES
-        return bool(self.port) and small and all(e.law is None for e in self.elements)
+        return self._whole and small and all(e.law is None for e in self.elements)
 
     @property
     def _states(self) -> int:
@@ -133,8 +133,12 @@ class Scene(Environment, Shown):
 
     @property
     def starts_at_rest(self) -> bool:
-        """True of a scene that can be held."""
-        return bool(self.port)
+        """True of a scene that can be held, and into which nobody else feeds energy by a line."""
+        return self._whole
+
+    @property
+    def _whole(self) -> bool:
+        return bool(self.port) and not any(e.leads_elsewhere for e in self.elements)
 
     def pulse_transfer_function(self, sample_period: Fraction) -> RationalFunction:
         """E(z), from the position of the port to the mean force of the step before [N/m].
