@@ -240,3 +240,15 @@ def test_receive_and_send_are_called_in_turn() -> None:
     with pytest.raises(InputError, match="send is called once in a period"):
         port.send(0.0)
     assert port.receive([moved(other, 1e-3)]) > 0
+
+
+def test_the_force_of_a_period_is_the_one_that_acts_in_it() -> None:
+    """Of a device with a delay of two samples, the one that was computed two receives before."""
+    port, other = WavePort(arm(delay=Fraction(2, 1000))), WavePort(arm())
+    computed, acted = [], []
+    for _ in range(6):
+        computed.append(port.receive([moved(other, 1e-4)]))
+        acted.append(port.force)
+        port.send(0.0)
+    assert acted == [0.0, 0.0, *computed[:4]]
+    assert max(map(abs, acted)) > 0

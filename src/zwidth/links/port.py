@@ -124,8 +124,8 @@ class Port(Parametric):
 
     @property
     def force(self) -> float:
-        """The force of this period, positive along x [N; N·m]."""
-        return float(self.state[memory.FORCE])
+        """The force that acts in this period, positive along x [N; N·m]."""
+        return float(self.state[memory.ACTING])
 
     def send(self, displacement: float) -> Packet:
         """The packet for the other end, after the device has moved.
