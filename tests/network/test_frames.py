@@ -52,7 +52,7 @@ def test_nothing_else_is_a_frame():
     for bad in (math.nan, math.inf):
         assert Frame.from_bytes(Frame(0, (bad,)).to_bytes()) is None
         assert Frame.from_bytes(Frame(0, (), bad).to_bytes()) is None
-    wrong = whole[:36] + struct.pack("<I", 3) + whole[40:-4]
+    wrong = whole[:44] + struct.pack("<I", 3) + whole[48:-4]
     assert Frame.from_bytes(wrong + struct.pack("<I", zlib.crc32(wrong))) is None
 
 
@@ -122,3 +122,31 @@ def test_what_is_too_old_to_be_remembered_is_not_taken():
     wire.coming = [told(5), told(3 * WINDOW - 1)]
     assert link.receive() == []
     assert link.report().doubled == 2
+
+
+def test_nothing_is_taken_for_what_an_earlier_run_sent():
+    a, b = Wire(), Wire()
+    one, other = Link(a), Link(b)
+    one.call()
+    other.call()
+    a.coming, b.coming = list(b.sent), list(a.sent)
+    assert one.call()
+    assert other.call()
+    a.sent.clear()
+    for k in range(3):
+        one.send(packet(k, 1.0 + k))
+    late, b.coming = list(a.sent), list(a.sent)
+    assert len(other.receive()) == 3
+    third, fresh = Wire(), Wire()  # both start again, and what was on its way comes now
+    again, new = Link(third), Link(fresh)
+    again.call()
+    new.call()
+    third.coming, fresh.coming = list(fresh.sent), [*late, *third.sent]
+    assert again.call()
+    new.receive()
+    again.send(packet(0, 0.5))
+    fresh.coming = [*late, third.sent[-1]]
+    new.call()
+    fresh.coming = [*late, *third.sent]
+    new.receive()
+    assert new.report().energy_received == 0.5

@@ -7,6 +7,7 @@ what the other has sent, or the link is no link.
 from __future__ import annotations
 
 import math
+import secrets
 import time
 from collections import deque
 from collections.abc import Callable, Iterable
@@ -127,6 +128,7 @@ class Link:
 
     def __init__(self, channel: Channel, clock: Callable[[], float] = time.monotonic) -> None:
         self.channel, self._clock = channel, clock
+        self._run, self._other = secrets.randbelow(2**32 - 1) + 1, 0
         self._sent = 0
         self._called = False
         self._newest = -1
@@ -142,9 +144,9 @@ class Link:
         """Send a packet of a port."""
         now = self._clock()
         echo, held = (self._came[0], now - self._came[1]) if self._came else (math.nan, 0.0)
-        self.channel.send(
-            Frame(packet.number, (packet.wave, packet.energy, packet.position), now, echo, held).to_bytes()
-        )
+        values = (packet.wave, packet.energy, packet.position)
+        frame = Frame(packet.number, values, now, echo, held, self._run, self._other)
+        self.channel.send(frame.to_bytes())
         self._sent += 1
         self._out = packet.energy
 
@@ -152,7 +154,7 @@ class Link:
         """Call the other side, with a frame that holds nothing; True once it was heard of."""
         if self.receive():
             self._called = True
-        self.channel.send(Frame(0, (), self._clock()).to_bytes())
+        self.channel.send(Frame(0, (), self._clock(), run=self._run, to=self._other).to_bytes())
         return self._called
 
     def receive(self) -> list[Packet]:
@@ -160,8 +162,17 @@ class Link:
         now = self._clock()
         return [packet for datagram in self.channel.receive() if (packet := self._taken(datagram, now))]
 
+    def _is_meant(self, frame: Frame) -> bool:
+        """False of what was sent to an earlier run of this side, or by one of the other side."""
+        if frame.to == self._run or (frame.to == 0 and self._other == 0):
+            self._other = frame.run
+        return frame.to in (0, self._run) and frame.run == self._other
+
     def _taken(self, datagram: bytes, now: float) -> Packet | None:
         frame = Frame.from_bytes(datagram)
+        if frame is not None and not self._is_meant(frame):
+            self._foreign += 1
+            return None
         if frame is not None and not frame.values:
             self._called = True
             return None
