@@ -92,8 +92,8 @@ def verifications(document: object) -> list[Part]:
         If the document contains no evidence.
     """
     told = document if isinstance(document, Mapping) else {}
-    if told.get("format") in _ONE_BY_ONE:
-        return [part for one in _listed(told, _ONE_BY_ONE[told["format"]]) for part in verifications(one)]
+    if inside := _ONE_BY_ONE.get(str(told.get("format"))):
+        return [part for one in _listed(told, inside) for part in verifications(one)]
     found = [_with_law(Part(part, verify_document(part))) for part in evidence(document)]
     outcome = told.get("outcome")
     if outcome not in ("passive", "passive in contact", "active"):
