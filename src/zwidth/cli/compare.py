@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from zwidth.cli.options import Once, add_law_option, add_output, add_parameters, overrides
-from zwidth.cli.output import print_json, print_text, say_written, targets, writing
+from zwidth.cli.output import give_out, print_json, print_text, say_written, targets
 from zwidth.errors import InputError
 from zwidth.quantity.units import parse_number
 from zwidth.specification.laws import with_laws
@@ -69,16 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     yours = {} if own is loop.environment else {YOURS: own}
     laws = _chosen(arguments.laws, standard_laws(loop.device, loop.environment), yours)
     found = compare(loop.device, loop.environment, laws, fastest=_speed(arguments.fastest))
-    if save is not None:
-        found.save(save)
-    if plot is not None:
-        with writing(plot):
-            found.plot(plot)
-    if arguments.json:
-        print_json(found.to_json())
-    else:
-        print_text(found)
-        say_written(save, plot)
+    give_out(found, save, plot, arguments.json)
     return 0
 
 

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator
 
 from zwidth.cli.options import Once, Parameter, add_all, add_output, given
-from zwidth.cli.output import print_json, print_text, say_written, targets, writing
+from zwidth.cli.output import give_out, targets
 from zwidth.errors import InputError
 from zwidth.specification.read import load_device
 
@@ -69,14 +69,5 @@ def run(arguments: argparse.Namespace) -> int:
     warn_of_compiling_the_links()
     with progress_bar("ports") as progress:
         found = compare(devices[0], devices[-1], link, **more, progress=progress)
-    if save is not None:
-        found.save(save)
-    if plot is not None:
-        with writing(plot):
-            found.plot(plot)
-    if arguments.json:
-        print_json(found.to_json())
-    else:
-        print_text(found)
-        say_written(save, plot)
+    give_out(found, save, plot, arguments.json)
     return 0

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from zwidth.errors import InputError
 from zwidth.showing import OBEYED, printable
@@ -154,6 +154,20 @@ def say_written(*paths: Path | None) -> None:
         for path in paths:
             if path is not None:
                 print(f"written: {plain(str(path), 200)}")
+
+
+def give_out(found: Any, save: Path | None, plot: Path | None, as_json: bool) -> None:
+    """Save a result and its picture where that was asked for, and print it."""
+    if save is not None:
+        found.save(save)
+    if plot is not None:
+        with writing(plot):
+            found.plot(plot)
+    if as_json:
+        print_json(found.to_json())
+    else:
+        print_text(found)
+        say_written(save, plot)
 
 
 @contextmanager

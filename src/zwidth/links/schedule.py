@@ -5,6 +5,7 @@ Packet j is sent at the end of period j, at (j + 1) T, and heard at the first sa
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
@@ -100,7 +101,7 @@ class Schedule(Parametric):
         first, second, bursts, doubled = (np.random.default_rng((self.seed, way, k)) for k in range(4))
         sent = np.arange(1, count + 1)
         times = [self._late(draws, count, period) + sent for draws in (first, second)]
-        kept = ~self._lost(bursts, count)
+        kept = ~np.fromiter(self.losses(iter(bursts.random(count + 1))), np.bool_, count)
         twice = kept & (doubled.random(count) < float(self.duplicates))
         return np.where(kept, times[0], LOST), np.where(twice, times[1], LOST)
 
@@ -109,17 +110,21 @@ class Schedule(Parametric):
         late: Ticks = np.ceil(float(self.delay.fraction / period) + spread - 1e-9).astype(np.int64)
         return late
 
-    def _lost(self, draws: np.random.Generator, count: int) -> NDArray[np.bool_]:
-        """Gilbert's two states: in the one all are lost, in the other none."""
+    def losses(self, draws: Iterator[float]) -> Iterator[bool]:
+        """Of each packet whether it is lost: Gilbert's two states, in the one all are, in the other none.
+
+        Parameters
+        ----------
+        draws
+            Numbers drawn evenly from 0 to 1, one more than packets.
+        """
         share = float(self.loss)
         back = 1.0 / max(float(self.burst), 1.0 / (1.0 - share))
         there = share * back / (1.0 - share)
-        lost = np.zeros(count, dtype=np.bool_)
-        bad = draws.random() < share
-        for k, draw in enumerate(draws.random(count)):
-            lost[k] = bad
+        bad = next(draws) < share
+        for draw in draws:
+            yield bad
             bad = draw >= back if bad else draw < there
-        return lost
 
     def describe(self) -> str:
         """The link on one line."""

@@ -39,20 +39,16 @@ class Lossy(Channel):
         self._random = random.Random(2 * schedule.seed + way)
         self._delay, self._jitter = float(schedule.delay), float(schedule.jitter)
         self._twice = float(schedule.duplicates)
-        share = float(schedule.loss)
-        self._back = 1.0 / max(float(schedule.burst), 1.0 / (1.0 - share))
-        self._there = share * self._back / (1.0 - share)
-        self._bad = self._random.random() < share
+        self._lost = schedule.losses(iter(self._random.random, None))
         self._waiting: list[tuple[float, int, bytes]] = []
 
     def send(self, datagram: bytes) -> None:
         """Lose it, or keep it until its time has come."""
-        draw = self._random.random
-        if not self._bad:
+        if not next(self._lost):
+            draw = self._random.random
             for _ in range(2 if draw() < self._twice else 1):
                 due = self._clock() + self._delay + self._jitter * draw()
                 heapq.heappush(self._waiting, (due, next(self._order), datagram))
-        self._bad = draw() >= self._back if self._bad else draw() < self._there
         self._forward()
 
     def receive(self) -> list[bytes]:

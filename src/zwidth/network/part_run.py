@@ -40,9 +40,8 @@ class PartRun:
 
     def __init__(self, part: Part, sample_period: RealLike) -> None:
         self.part = part
-        SceneRun(
-            part.scene, sample_period
-        ).step()  # what has to be compiled is compiled before the clock runs
+        # what has to be compiled is compiled before the clock runs
+        SceneRun(part.scene, sample_period).step()
         self._run = SceneRun(part.scene, sample_period)
         self.felt = 0.0
         """The mean force at the port of the scene over the last step, 0 without one [N; N·m]."""

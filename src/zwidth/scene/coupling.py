@@ -46,6 +46,10 @@ class CouplingPart(Element):
         """K T/2, or the damping."""
         return self.number
 
+    def describe(self, motion: str = "linear") -> str:
+        """What it is; the coupling itself says its numbers."""
+        return self.title
+
 
 def coupled(
     elements: Sequence[Element], port: str, couplings: Sequence[CouplingLaw], period: Fraction

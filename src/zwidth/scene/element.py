@@ -15,6 +15,7 @@ is lost: it is the implicit midpoint rule, with nothing added and nothing left o
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, NamedTuple
@@ -62,7 +63,7 @@ class NonlinearLaw(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Element(Parametric):
+class Element(Parametric, ABC):
     """What joins nodes of a scene."""
 
     symbol: ClassVar[str]
@@ -75,9 +76,9 @@ class Element(Parametric):
     """True of the end of a line, whose wave comes from another part of a scene."""
 
     @property
+    @abstractmethod
     def nodes(self) -> tuple[str, str]:
         """Its two ends; a force that it gives acts against the motion of the first."""
-        raise NotImplementedError
 
     @property
     def title(self) -> str:
@@ -96,12 +97,12 @@ class Element(Parametric):
         return None
 
     def resistance(self, period: Fraction) -> Fraction:
-        """R of a linear element at the step T [s]."""
-        raise NotImplementedError
+        """R of a linear element at the step T [s]; 0 of any other."""
+        return Fraction(0)
 
+    @abstractmethod
     def describe(self, motion: str = "linear") -> str:
         """The element with its number."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True)

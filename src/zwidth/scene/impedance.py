@@ -16,14 +16,14 @@ import flint
 
 from zwidth.environment.environment import RationalFunction
 from zwidth.scene.element import Element
-from zwidth.scene.network import Network, unheld
+from zwidth.scene.ties import Ties, unheld
 
 _S = flint.fmpq_poly([0, 1])
 _POWER = {1: 0, 0: 1, -1: 2}
 """The power of s that an element has in s Y, by how it reflects."""
 
 
-def impedance(elements: Sequence[Element], net: Network, period: Fraction) -> RationalFunction:
+def impedance(elements: Sequence[Element], net: Ties, period: Fraction) -> RationalFunction:
     """Z(z) [N·s/m], common factors cancelled; the elements are linear and none is a lever.
 
     Raises

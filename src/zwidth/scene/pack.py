@@ -12,9 +12,9 @@ import numpy as np
 from zwidth.scene import layout as at
 from zwidth.scene.element import Element
 from zwidth.scene.factor import Factor, factorised
-from zwidth.scene.network import Across, Network, unheld
 from zwidth.scene.nonlinear import COULOMB
 from zwidth.scene.potential import stored_in
+from zwidth.scene.ties import Across, Ties, unheld
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -82,7 +82,7 @@ class Packed:
         return np.array([*linear, *others])
 
 
-def pack(elements: Sequence[Element], net: Network, period: Fraction) -> Packed:
+def pack(elements: Sequence[Element], net: Ties, period: Fraction) -> Packed:
     """The arrays; the elements are those that `net` has, without levers.
 
     Raises

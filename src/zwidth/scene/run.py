@@ -55,7 +55,7 @@ class SceneRun:
         ).fraction
         self.scene = scene
         self._packed = scene.packed(period)
-        self._places = scene.network.places
+        self._places = scene.ties.places
         self._memory = self._packed.memory.copy()
         self._stored_at_first = self._packed.stored(self._memory)
         self._lines = {e.title: i for i, e in enumerate(self._packed.linear) if e.leads_elsewhere}

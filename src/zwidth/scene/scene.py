@@ -25,7 +25,7 @@ from zwidth.errors import InputError
 from zwidth.quantity.parameter import part
 from zwidth.scene.coupling import coupled
 from zwidth.scene.element import GROUND, Element, read_node
-from zwidth.scene.network import Network, network
+from zwidth.scene.ties import Ties, ties
 from zwidth.showing import Part, Shown, Table
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class Scene(Environment, Shown):
             raise InputError(
                 f'the port "{self.port}" is no node of the scene, whose nodes are: {", ".join(nodes)}'
             )
-        network(self.elements, self.port)
+        ties(self.elements, self.port)
 
     @property
     def nodes(self) -> tuple[str, ...]:
@@ -107,9 +107,9 @@ class Scene(Environment, Shown):
         return tuple(e for e in self.elements if e.ratio is None)
 
     @property
-    def network(self) -> Network:
+    def ties(self) -> Ties:
         """Free nodes, ties, and what each element is between."""
-        return network(self.elements, self.port)
+        return ties(self.elements, self.port)
 
     @property
     def linear(self) -> bool:
@@ -170,7 +170,7 @@ class Scene(Environment, Shown):
             )
         from zwidth.scene.impedance import impedance
 
-        return impedance(self.joined, self.network, sample_period)
+        return impedance(self.joined, self.ties, sample_period)
 
     def stepped(self, sample_period: Fraction, couplings: tuple[CouplingLaw, ...] = ()) -> Stepped:
         """The arrays of the compiled step, the port behind couplings, the hand's first."""
@@ -182,7 +182,7 @@ class Scene(Environment, Shown):
         from zwidth.scene.pack import pack
 
         elements, port = coupled(self.elements, self.port, couplings, sample_period)
-        return pack([e for e in elements if e.ratio is None], network(elements, port), sample_period)
+        return pack([e for e in elements if e.ratio is None], ties(elements, port), sample_period)
 
     def plot(self, path: str | Path | None = None) -> Any:
         """Its drawing, a matplotlib figure that belongs to no window; saved where a path is given.

@@ -260,6 +260,7 @@ def test_the_encoder_is_left_out_and_said_to_be():
     assert stepped.intervals == masses(100, "0.05").intervals
     assert any("encoder steps are left out" in line for line in stepped.assumptions)
     assert not any("left out" in line for line in masses(100, "0.05").assumptions)
+    assert any("certificates are of the ends" in line for line in stepped.assumptions)
 
 
 @pytest.mark.parametrize(

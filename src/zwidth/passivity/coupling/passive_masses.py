@@ -36,6 +36,11 @@ from zwidth.quantity.text import quantity_unit
 _BESIDE = Fraction(1, 10**6)
 """How far beyond an end, relatively, a motion is looked for."""
 
+_BETWEEN_ENDS = (
+    "certificates are of the ends and of the body's own mass; that nothing changes between two ends is exact "
+    "algebra of this program alone"
+)
+
 
 @dataclass(frozen=True)
 class MassLimit:
@@ -103,7 +108,7 @@ class PassiveMasses(Result):
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What is taken for granted, line by line."""
-        return lines(self.scope)
+        return (*lines(self.scope), _BETWEEN_ENDS)
 
     def describe(self) -> str:
         """The masses in a sentence."""

@@ -27,7 +27,7 @@ class Across:
 
 
 @dataclass(frozen=True)
-class Network:
+class Ties:
     """A scene as its step sees it.
 
     Attributes
@@ -53,7 +53,7 @@ def unheld(node: str) -> InputError:
     )
 
 
-def network(elements: Sequence[Element], port: str) -> Network:
+def ties(elements: Sequence[Element], port: str) -> Ties:
     """Nodes and ties of the elements; `port` is "" for none.
 
     Raises
@@ -68,7 +68,7 @@ def network(elements: Sequence[Element], port: str) -> Network:
     roots = tuple(dict.fromkeys(places[n][0] for e in joined for n in e.nodes))
     free = tuple(r for r in roots if r not in (GROUND, port))
     number = {root: i for i, root in enumerate(free)}
-    return Network(free, places, tuple(_across(e.nodes, places, number, port) for e in joined))
+    return Ties(free, places, tuple(_across(e.nodes, places, number, port) for e in joined))
 
 
 def _across(
