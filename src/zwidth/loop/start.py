@@ -129,6 +129,35 @@ def rest_position(law: Environment, period: Fraction, start: float) -> float:
     return start if stiffness == 0 else 0.0
 
 
+def unloaded_range(law: Environment, force: float, here: float) -> tuple[float, float]:
+    """Where a law holds no more than ``force`` over the way to where it is at rest [m; rad].
+
+    The places around its rest, the nearest to `here`, up to where it first pushes with `force`.  Everywhere
+    for a law that is no list of points: it holds little wherever it pushes little.  Nowhere, from ∞ to −∞,
+    for one without a rest.
+
+    Parameters
+    ----------
+    force
+        ≥ 0 [N; N·m].
+    here
+        [m; rad].
+    """
+    met = law.met
+    if not met.points:
+        return -inf, inf
+    x, f = _columns(met.points)
+    if f[0] > 0.0 or f[-1] < 0.0:
+        return inf, -inf
+    rest = _lowest(x, f, here)
+    grid, forces = _grid(x, f, rest, force)
+    beyond = np.abs(forces) >= force if force > 0.0 else np.abs(forces) > 0.0
+    left, right = grid[beyond & (grid < rest)], grid[beyond & (grid > rest)]
+    low = float(left[-1]) if left.size else -inf
+    high = float(right[0]) if right.size else inf
+    return low, high
+
+
 def held_at_start(at: Start, deepest: float) -> Held:
     """What the loop holds at the start; `deepest` is the largest reading of the touch."""
     met = at.law.met
