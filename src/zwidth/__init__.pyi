@@ -8,6 +8,7 @@ from zwidth import operator as operators
 from zwidth import plots as plots
 from zwidth import rendering as rendering
 from zwidth import scene as scene
+from zwidth import servo as servo
 from zwidth import stability as stability
 from zwidth import traces as traces
 from zwidth.checker import verify as verify
@@ -48,6 +49,7 @@ from zwidth.rendering import FrictionCompensation as FrictionCompensation
 from zwidth.rendering import VirtualCoupling as VirtualCoupling
 from zwidth.rendering import render as render
 from zwidth.scene import Scene as Scene
+from zwidth.servo.serving import serve as serve
 from zwidth.specification.load import load as load
 from zwidth.traces import available_storage as available_storage
 from zwidth.traces import compare as compare

@@ -3,9 +3,10 @@
 Import it by name, `import zwidth.plots`: nothing else in the package does, so
 that a verdict never waits for matplotlib.  `criterion`, `plane`, `budget`,
 `witness`, `worst_case`, `storage`, `cycle`, `indices`, `check_figure`,
-`limit_figure`, `plot_held_pair`, `plot_links`, `plot_pair`, `plot_scene`, `workspace_figure` and
-`z_width_figure` return a `matplotlib.figure.Figure` that belongs to no window; the `draw_…`
-functions draw on axes of your own, in the look of `LOOK` if your axes have it.
+`limit_figure`, `plot_held_pair`, `plot_lateness`, `plot_links`, `plot_pair`, `plot_scene`,
+`workspace_figure` and `z_width_figure` return a `matplotlib.figure.Figure` that
+belongs to no window; the `draw_…` functions draw on axes of your own, in the look
+of `LOOK` if your axes have it.
 """
 
 from zwidth.plots.budget import budget, draw_damping, draw_friction
@@ -13,6 +14,7 @@ from zwidth.plots.criterion import criterion, draw_criterion
 from zwidth.plots.cycle import cycle, draw_cycle
 from zwidth.plots.held_pair import draw_held_damping, draw_held_stiffness, plot_held_pair
 from zwidth.plots.indices import draw_index, indices
+from zwidth.plots.lateness import draw_lateness, plot_lateness
 from zwidth.plots.limit import limit_figure
 from zwidth.plots.links import draw_links, plot_links
 from zwidth.plots.pair import draw_pair_damping, draw_pair_link, plot_pair
@@ -40,6 +42,7 @@ __all__ = [
     "draw_held_damping",
     "draw_held_stiffness",
     "draw_index",
+    "draw_lateness",
     "draw_links",
     "draw_pair_damping",
     "draw_pair_energy",
@@ -56,6 +59,7 @@ __all__ = [
     "limit_figure",
     "plane",
     "plot_held_pair",
+    "plot_lateness",
     "plot_links",
     "plot_pair",
     "plot_scene",

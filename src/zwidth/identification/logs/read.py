@@ -27,12 +27,12 @@ def read_log(
     counts_per_turn: object = None,
     motion: Motion | None = None,
 ) -> Log:
-    """A log from a file: text, Parquet, NetCDF, HDF5, MATLAB, MCAP, ROS bags, traces of zwidth.
+    """A log from a file: text, Parquet, NetCDF, HDF5, MATLAB, MCAP, ROS bags, what zwidth wrote.
 
     Parameters
     ----------
     path
-        The file, or the directory of a rosbag2.
+        The file, or the directory of a rosbag2 or of a recording.
     columns
         The column of each of time, position, hand_force and actuator_force, where its name is not recognised:
         {"position": "enc_left"}; None leaves one out: {"hand_force": None}.
@@ -58,7 +58,7 @@ def read_log(
     period = stated_period(sample_rate, sample_period)
     with readable(str(source)):
         table = _table(source)
-        names = recognise(table.units, columns, table.source)
+        names = recognise(table.units, {**table.means, **(columns or {})}, table.source)
         meaning = meaning_of(
             table,
             names,
@@ -74,8 +74,11 @@ def read_log(
 def _table(path: Path) -> Table:
     """The table of a file, by its first bytes: the libraries take their time to load."""
     if path.is_dir() and not (path / "metadata.yaml").is_file():
+        if (table := _recorded(path)) is not None:
+            return table
         raise InputError(
-            f"{path} is a directory, and no rosbag2: there is no metadata.yaml in it; name a file"
+            f"{path} is a directory, and no rosbag2 or recording: there is no metadata.yaml and no "
+            "part-000000.parquet in it; name a file"
         )
     if not path.exists():
         raise InputError(f"{path} cannot be read: there is no such file")
@@ -92,6 +95,8 @@ def _table(path: Path) -> Table:
         from zwidth.identification.logs.matlab import matlab_table
 
         return matlab_table(path)
+    if start.startswith(b"\x89MCAP") and (table := _recorded(path)) is not None:
+        return table
     if path.is_dir() or start.startswith((b"\x89MCAP", b"#ROSBAG V", b"SQLite format")):
         from zwidth.identification.logs.bags import bag_table
 
@@ -103,6 +108,14 @@ def _table(path: Path) -> Table:
     from zwidth.identification.logs.text import text_table
 
     return text_table(path)
+
+
+def _recorded(path: Path) -> Table | None:
+    """The table of a recording of a served loop; None if it is none."""
+    from zwidth.identification.logs.served.table import head_of, served_table
+
+    head = head_of(path)
+    return None if head is None else served_table(path, head)
 
 
 def _first_bytes(path: Path) -> bytes:

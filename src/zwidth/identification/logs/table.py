@@ -37,6 +37,8 @@ class Table:
         What the file says of itself.
     notes
         What was odd in the file; complete after `read` came to its end.
+    means
+        The column of each quantity, None where there is none, if the format says which: nobody guesses then.
     """
 
     source: str
@@ -44,6 +46,7 @@ class Table:
     read: Callable[[tuple[str, ...]], Iterator[tuple[Values, ...]]]
     attributes: Mapping[str, Any] = field(default_factory=dict)
     notes: dict[str, Finding] = field(default_factory=dict)
+    means: Mapping[str, str | None] = field(default_factory=dict)
 
 
 def in_pieces(

@@ -1,0 +1,11 @@
+from zwidth.servo.devices.dynamixel import Dynamixel as Dynamixel
+from zwidth.servo.devices.feetech import Feetech as Feetech
+from zwidth.servo.devices.force_dimension import ForceDimension as ForceDimension
+from zwidth.servo.devices.hapkit import Hapkit as Hapkit
+from zwidth.servo.devices.haply import HaplyJoint as HaplyJoint
+from zwidth.servo.devices.haply import HaplyMotor as HaplyMotor
+from zwidth.servo.devices.haply import HaplyPantograph as HaplyPantograph
+from zwidth.servo.devices.inverse import Inverse as Inverse
+from zwidth.servo.devices.moteus import Moteus as Moteus
+from zwidth.servo.devices.odrive import ODrive as ODrive
+from zwidth.servo.devices.simulated import Simulated as Simulated

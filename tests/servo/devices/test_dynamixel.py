@@ -1,0 +1,220 @@
+"""A Dynamixel servo, emulated at a pseudo-terminal."""
+
+import math
+
+import pytest
+from servo.bad_answers import ANSWERS, NO_FAULTS, changing
+from servo.drive import drive
+from servo.emulators.dynamixel import DynamixelEmulator
+from servo.emulators.faults import Fault
+
+from zwidth.errors import InputError
+from zwidth.servo.connection import GOOD, READING, REFUSED, UNTIL
+from zwidth.servo.devices.dynamixel import Dynamixel
+
+OPENING = 1
+"""Exchanges that opening makes."""
+
+BEFORE = 1
+"""Commands that opening gives, all 0."""
+
+AT = 31
+K = 1.8
+"""Torque per current of these tests [N·m/A]."""
+
+COUNTS = [round(2048 + 900 * math.sin(0.017 * k)) for k in range(10_100)]
+
+
+def wall(reading):
+    """A wall at 3.5 rad, in the way of greater angles."""
+    return -1.5 * max(0.0, reading - 3.5)
+
+
+def in_radians(counts, periods):
+    """What the first measurements should have read."""
+    return [2 * math.pi * x / 4096 for x in counts[OPENING : OPENING + periods]]
+
+
+def servo(other, **options):
+    """The adapter to it."""
+    return Dynamixel(other.port, torque_per_current=K, **options)
+
+
+def test_ten_thousand_exchanges_of_a_dynamixel():
+    """Each position is that of its own exchange; each torque arrives to half a count of current."""
+    with DynamixelEmulator(COUNTS) as other:
+        run = drive(servo(other), 10_000, wall)
+    assert run.statuses == [GOOD] * 10_000
+    assert run.readings == pytest.approx(in_radians(COUNTS, 10_000), rel=1e-14)
+    given = [command.force for command in other.commands[BEFORE:]]
+    assert given[-1] == 0
+    counts = [force / K / 2.69e-3 for force in run.forces]
+    assert given[: len(counts)] == pytest.approx(counts, abs=0.5 + 1e-9)
+    assert min(given) < -100
+
+
+def test_a_dynamixel_is_left_as_it_was_found():
+    """Mode and delay as before, torque off; no current before the loop, although a new mode sets one."""
+    with DynamixelEmulator(COUNTS) as other:
+        run = drive(servo(other, watchdog=0.05), 20, lambda reading: 0.5)
+        table = other.table
+    assert run.statuses == [GOOD] * 20
+    assert [command.force for command in other.commands[:BEFORE]] == [0]
+    assert (table[64], table[11], table[9], table[98]) == (0, 3, 250, 0)
+
+
+def test_the_watchdog_of_a_dynamixel_begins_with_the_first_torque():
+    """In steps of 20 ms, the next longer one."""
+    with DynamixelEmulator(COUNTS) as other:
+        device = servo(other, watchdog=0.05)
+        memory, inbox, outbox = device.open(1e-3)
+        before = other.table[98]
+        memory[UNTIL] = 2.0**62
+        assert Dynamixel.apply(memory, inbox, outbox) == GOOD
+        assert Dynamixel.measure(memory, inbox, outbox) == GOOD
+        during = other.table[98]
+        device.close()
+    assert (before, during) == (0, 3)
+    assert "0.06 s" in device.on_silence
+
+
+def test_a_dynamixel_whose_watchdog_has_expired_is_served_again():
+    """As a host that died has left it; and one shorter than two sample periods opens no port."""
+    with DynamixelEmulator(COUNTS) as other:
+        other.put(98, 1, -1)
+        run = drive(servo(other), 10, lambda reading: 0.5)
+    assert run.statuses == [GOOD] * 10
+    assert other.table[98] == 0
+    with pytest.raises(InputError, match="two sample periods"):
+        Dynamixel("/dev/null", torque_per_current=K).open(0.021)
+
+
+@pytest.mark.parametrize("fault", list(ANSWERS))
+def test_a_fault_of_a_dynamixel_bus_ends_the_torque(fault):
+    """It is known at its first exchange; a torque is held for one period at most, then 0 arrives."""
+    with DynamixelEmulator(COUNTS, fault, AT) as other:
+        run = drive(servo(other), 100, lambda reading: 0.3, wait=0.2)
+    good = AT - OPENING
+    assert run.statuses == [GOOD] * good + ANSWERS[fault]
+    assert run.forces[-1] == 0.0
+    assert run.zeroed_after == len(ANSWERS[fault]) - 1
+    if fault is not Fault.CLOSED:
+        assert other.commands[-1].force == 0
+        assert other.table[64] == 0
+
+
+@pytest.mark.parametrize("fault", NO_FAULTS)
+def test_every_sample_of_a_dynamixel_is_of_its_own_question(fault):
+    """Answers that come twice, or in pieces."""
+    with DynamixelEmulator(COUNTS, fault, AT) as other:
+        run = drive(servo(other), 300, wall)
+    assert run.statuses == [GOOD] * 300
+    assert run.readings == pytest.approx(in_radians(COUNTS, 300), rel=1e-14)
+
+
+def test_positions_that_look_like_a_header():
+    """FF FF FD in the answer is told from a header by the FD put in behind it, and taken out again."""
+    counts = [-131073, -131073, -131072, -131074, -131073, -1, -65793]
+    counts = [count + 0 for count in counts]
+    with DynamixelEmulator(counts) as other:
+        memory, inbox, outbox = (device := servo(other)).open(1e-3)
+        readings = []
+        for _ in range(4):
+            memory[UNTIL] = 2.0**62
+            assert Dynamixel.measure(memory, inbox, outbox) == GOOD
+            readings.append(memory[READING] * 4096 / (2 * math.pi))
+        device.close()
+    assert readings == pytest.approx([-131073, -131072, -131074, -131073])
+
+
+def test_a_dynamixel_is_counted_on_over_its_turns():
+    """In either sense, where the counts jump by almost a turn."""
+    with DynamixelEmulator([4000, 4000, 4090, 5, 100, 4091, 3990]) as other:
+        run = drive(servo(other), 6)
+    counts = [reading * 4096 / (2 * math.pi) for reading in run.readings]
+    assert counts == pytest.approx([4000, 4090, 4101, 4196, 4091, 3990])
+
+
+@pytest.mark.parametrize("what", ["watchdog", "torque off", "hardware"])
+def test_a_dynamixel_that_gives_no_torque_any_more_is_refused(what):
+    """Its watchdog has expired, it has switched its torque off, its hardware has a problem: at once."""
+    with DynamixelEmulator(COUNTS) as other:
+
+        def change():
+            if what == "watchdog":
+                other.put(98, 1, -1)
+            elif what == "torque off":
+                other.put(64, 1, 0)
+            else:
+                other.alert = True
+
+        run = drive(servo(other), 100, changing(AT - OPENING, change))
+    assert run.statuses == [GOOD] * (AT - OPENING) + [REFUSED]
+    assert run.forces[-1] == 0.0
+    assert (other.table[64], other.table[11], other.table[98]) == (0, 3, 0)
+
+
+def test_a_torque_beyond_the_current_limit_is_given_as_the_limit():
+    """Without that the servo would refuse it, unseen, and keep the current before."""
+    with DynamixelEmulator(COUNTS) as other:
+        other.put(38, 2, 200)
+        drive(servo(other), 3, lambda reading: -50.0)
+        drive_commands = {command.force for command in other.commands}
+    assert drive_commands == {0, -200}
+
+
+def test_a_model_of_the_small_size():
+    """Its unit is another, and its indirect data stand elsewhere; an unknown model needs its unit given."""
+    with DynamixelEmulator(COUNTS, model=1200, indirect_data=208) as other:
+        run = drive(servo(other, current_unit=1e-3), 10, lambda reading: 0.36)
+    assert run.statuses == [GOOD] * 10
+    assert other.commands[3].force == 200
+    with DynamixelEmulator(COUNTS, model=999) as other:
+        with pytest.raises(InputError, match=r"current unit of .*999.*current_unit"):
+            servo(other).open(1e-3)
+        assert other.table[64] == 0
+    with DynamixelEmulator(COUNTS, model=999) as other:
+        drive(servo(other, current_unit=2e-3), 5, lambda reading: 0.36)
+    assert other.commands[3].force == 100
+
+
+def test_a_dynamixel_that_is_not_to_be_served_is_left_alone():
+    """Old firmware: nothing is written, for the servo may be holding something up."""
+    with DynamixelEmulator(COUNTS, firmware=37) as other:
+        other.put(64, 1, 1)
+        before = bytes(other.table)
+        with pytest.raises(InputError, match=r"firmware 37.*watchdog"):
+            servo(other).open(1e-3)
+        other.put(132, 4, int.from_bytes(before[132:136], "little"))
+        assert bytes(other.table) == before
+
+
+def test_what_is_wrong_with_a_dynamixel_is_said_when_it_is_opened():
+    """Nobody with this identifier; a hardware error, by its name."""
+    nobody = pytest.raises(InputError, match=r"Dynamixel servo 1 .* does not answer")
+    with DynamixelEmulator(COUNTS, identifier=7) as other, nobody:
+        servo(other).open(1e-3)
+    with DynamixelEmulator(COUNTS) as other:
+        other.alert = True
+        other.put(70, 1, 0b100100)
+        with pytest.raises(InputError, match="overheating, overload"):
+            servo(other).open(1e-3)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"torque_per_current": 0.0}, "torque per current must be > 0"),
+        ({"torque_per_current": math.nan}, "torque per current must be > 0"),
+        ({"torque_per_current": 1.0, "identifier": 253}, "identifier must be 0 to 252"),
+        ({"torque_per_current": 1.0, "identifier": 1.5}, "identifier must be 0 to 252"),
+        ({"torque_per_current": 1.0, "watchdog": 0.0}, "watchdog must be 20 ms"),
+        ({"torque_per_current": 1.0, "watchdog": 2.56}, "watchdog must be 20 ms"),
+        ({"torque_per_current": 1.0, "watchdog": math.inf}, "watchdog must be 20 ms"),
+        ({"torque_per_current": 1.0, "current_unit": -1.0}, "current unit must be > 0"),
+    ],
+)
+def test_numbers_of_a_dynamixel_out_of_bounds(options, message):
+    """Said with the bound and its reason."""
+    with pytest.raises(InputError, match=message):
+        Dynamixel("/dev/null", **options)

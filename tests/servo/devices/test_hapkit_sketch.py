@@ -1,0 +1,198 @@
+"""The sketch of examples/hapkit, compiled here: frames, sensor, motor, and how it cuts its force."""
+
+from __future__ import annotations
+
+import binascii
+import math
+import struct
+from pathlib import Path
+
+import pytest
+from servo.drive import drive
+from servo.emulators.sketch import COMPILER, Sketch, SketchEmulator, compiled
+
+from zwidth.servo.connection import GOOD, REFUSED
+from zwidth.servo.devices.hapkit import Hapkit
+
+pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C++ compiler is on this machine")
+
+SPAN = 980
+START, ASK, FORCE = 1, 2, 3
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Compiled once."""
+    return compiled(tmp_path_factory.mktemp("sketch"))
+
+
+def frame(kind: int, number: int = 0, millinewtons: int = 0) -> bytes:
+    """To the board, as docs/devices/hapkit.md has it."""
+    body = struct.pack("<BBBh", 0xA5, kind, number, millinewtons)
+    return body + struct.pack("<H", binascii.crc_hqx(body, 0xFFFF))
+
+
+def asked(sketch: Sketch, data: bytes) -> tuple[int, int, int]:
+    """The number, the state and the counts of its one answer."""
+    sketch.hear(data)
+    sketch.turn()
+    answer = sketch.told()
+    mark, number, state, counts, total = struct.unpack("<BBBiH", answer)
+    assert (mark, total) == (0x5A, binascii.crc_hqx(answer[:7], 0xFFFF))
+    return number, state, counts
+
+
+def test_the_board_is_made_ready(library: Path) -> None:
+    """Motor off, its pins driven, a rate that 16 MHz divides; no force before a start."""
+    sketch = Sketch(library)
+    assert sketch.motor[0] == 0
+    assert sketch.board.board_is_output(5)
+    assert sketch.board.board_is_output(8)
+    assert sketch.board.board_baud() == 1_000_000
+    sketch.hear(frame(FORCE, 1, 5000))
+    sketch.turn()
+    assert sketch.motor[0] == 0
+    assert asked(sketch, frame(ASK, 7)) == (7, 1, 0)
+
+
+def test_it_answers_by_number(library: Path) -> None:
+    """A start and a question are answered with their own; a force is not answered."""
+    sketch = Sketch(library)
+    assert asked(sketch, frame(START, 200)) == (200, 0, 0)
+    assert asked(sketch, frame(ASK, 201)) == (201, 0, 0)
+    sketch.hear(frame(FORCE, 202, 100))
+    sketch.turn()
+    assert sketch.told() == b""
+
+
+def test_a_start_begins_anew(library: Path) -> None:
+    """The position is 0 there, and the force that acted is gone."""
+    sketch = Sketch(library)
+    asked(sketch, frame(START))
+    sketch.hear(frame(FORCE, 1, 2000))
+    sketch.sense(530)
+    assert asked(sketch, frame(ASK))[2] == 30
+    assert asked(sketch, frame(START))[2] == 0
+    assert sketch.motor[0] == 0
+
+
+def test_a_wrong_frame_is_passed_over_and_the_right_one_in_it_found(library: Path) -> None:
+    """Every single wrong bit is seen; what follows is not lost."""
+    sketch = Sketch(library)
+    asked(sketch, frame(START))
+    right = frame(FORCE, 3, 1234)
+    for bit in range(8 * len(right)):
+        wrong = bytearray(right)
+        wrong[bit // 8] ^= 1 << bit % 8
+        sketch.hear(bytes(wrong))
+        sketch.turn()
+        assert sketch.motor[0] == 0
+    sketch.hear(b"\xa5\xa5\x02" + frame(ASK, 9))
+    sketch.turn()
+    assert sketch.told()[1] == 9
+
+
+@pytest.mark.parametrize(("millinewtons", "level"), [(500, 1), (-500, 0), (3000, 1)])
+def test_the_pulse_width_is_that_of_the_torque(library: Path, millinewtons: int, level: int) -> None:
+    """By hand: the motor's torque τ = F r_h r_p/r_s, width √(τ/0.03 N·m) of 255."""
+    sketch = Sketch(library)
+    asked(sketch, frame(START))
+    sketch.hear(frame(FORCE, 1, millinewtons))
+    sketch.turn()
+    torque = abs(millinewtons) / 1000 * 0.07 * 0.004191 / 0.075
+    assert sketch.motor == (round(255 * math.sqrt(torque / 0.03)), level)
+
+
+def test_the_largest_force_is_full_width(library: Path) -> None:
+    """No more than the motor has."""
+    sketch = Sketch(library)
+    asked(sketch, frame(START))
+    sketch.hear(frame(FORCE, 1, -32767))
+    sketch.turn()
+    assert sketch.motor == (255, 0)
+
+
+@pytest.mark.parametrize("step", [7, -7])
+def test_counts_go_on_over_the_jumps_of_the_sensor(library: Path, step: int) -> None:
+    """Many turns of the magnet, either way; a reading within a jump is left out."""
+    sketch = Sketch(library, 500)
+    asked(sketch, frame(START))
+    before = 500
+    for k in range(1, 1000):
+        position = 500 + step * k
+        if position // SPAN != before // SPAN:
+            sketch.sense(SPAN // 2)
+            sketch.turn()
+        sketch.sense(position % SPAN)
+        sketch.turn()
+        assert asked(sketch, frame(ASK)) == (0, 0, step * k)
+        before = position
+
+
+def test_force_is_cut_when_nothing_has_come_for_20_ms(library: Path) -> None:
+    """5000 ticks of 4 µs, whatever the timer's count is when they begin; and it stays cut until a start."""
+    sketch = Sketch(library)
+    for _ in range(20):  # the timer has 65536: some of these rounds pass over its end
+        asked(sketch, frame(START))
+        sketch.hear(frame(FORCE, 1, 2000))
+        sketch.turn(0)
+        assert sketch.motor[0] > 0
+        for _ in range(50):
+            sketch.turn(100)
+        assert sketch.motor[0] > 0
+        sketch.turn(1)
+        assert sketch.motor[0] == 0
+        sketch.hear(frame(FORCE, 2, 2000))
+        sketch.turn(0)
+        assert sketch.motor[0] == 0
+        assert asked(sketch, frame(ASK, 3))[1] == 1
+
+
+def test_a_silence_without_force_cuts_nothing(library: Path) -> None:
+    """The host may be long in proving its law."""
+    sketch = Sketch(library)
+    asked(sketch, frame(START))
+    for _ in range(10):
+        sketch.turn(60_000)
+    sketch.hear(frame(FORCE, 1, 2000))
+    sketch.turn(0)
+    assert sketch.motor[0] > 0
+    assert asked(sketch, frame(ASK))[1] == 0
+
+
+def test_a_question_keeps_the_force(library: Path) -> None:
+    """Any right frame tells that the host lives."""
+    sketch = Sketch(library)
+    asked(sketch, frame(START))
+    sketch.hear(frame(FORCE, 1, 2000))
+    for _ in range(10):
+        sketch.turn(4000)
+        asked(sketch, frame(ASK))
+    assert sketch.motor[0] > 0
+
+
+def test_sketch_and_adapter_understand_each_other(library: Path) -> None:
+    """A handle that moves by 5 counts each exchange, for 2000 of them, over the jumps; force 0 at the end."""
+    sketch = Sketch(library, 0)
+    with SketchEmulator(sketch, lambda exchange: 5 * exchange % SPAN) as board:
+        run = drive(Hapkit(board.port, 1e-5), 2000, lambda x: 1.0)
+    assert run.statuses == [GOOD] * 2000
+    assert run.readings == pytest.approx([5e-5 * (1 + period) for period in range(2000)])
+    full = round(255 * math.sqrt(0.07 * 0.004191 / 0.075 / 0.03))
+    assert {command.force for command in board.commands[5:-2]} == {full}
+    assert sketch.motor[0] == 0
+
+
+def test_the_adapter_hears_that_the_sketch_has_cut(library: Path) -> None:
+    """After a silence of the host."""
+    sketch = Sketch(library, 0)
+
+    def reading(exchange: int) -> int:
+        if exchange == 30:
+            sketch.turn(5001)
+        return 0
+
+    with SketchEmulator(sketch, reading) as board:
+        run = drive(Hapkit(board.port, 1e-5), 100)
+    assert run.statuses == [GOOD] * (len(run.statuses) - 1) + [REFUSED]
+    assert 25 < len(run.statuses) < 35

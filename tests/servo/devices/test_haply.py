@@ -1,0 +1,217 @@
+"""A Haply board, reached over a pseudo-terminal: its frames, its kinematics, and what goes wrong."""
+
+from __future__ import annotations
+
+import math
+import random
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from servo.drive import drive
+from servo.emulators.faults import Fault
+from servo.emulators.haply import BASE, INNER, OUTER, HaplyEmulator, angles_of
+
+from zwidth.errors import InputError
+from zwidth.servo.connection import CLOSED, GARBLED, GOOD, SILENT
+from zwidth.servo.devices.haply import HaplyJoint, HaplyMotor, HaplyPantograph
+from zwidth.servo.devices.pantograph import locate
+
+ARMS = np.array([INNER, OUTER, BASE])
+
+COUNT = 2e-4
+"""No count of an encoder is more at the tip, where these tests have it [m]."""
+
+places = st.tuples(st.floats(-0.03, 0.07), st.floats(0.06, 0.12))
+
+
+def jumping(exchange: int) -> tuple[float, float]:
+    """Somewhere else at every exchange: an answer to another question is seen at once."""
+    draw = random.Random(exchange)
+    return draw.uniform(-0.02, 0.06), draw.uniform(0.07, 0.11)
+
+
+@given(place=places)
+def test_the_tip_is_where_the_angles_of_the_other_road_put_it(place: tuple[float, float]) -> None:
+    """The law of cosines gives the angles of a place; they give the place again."""
+    first, second = map(math.radians, angles_of(*place))
+    found = np.zeros(6)
+    assert locate(first, second, ARMS, found)
+    assert found[:2] == pytest.approx(place, abs=1e-12)
+
+
+@given(place=places)
+def test_the_change_with_the_angles_is_that_of_differences(place: tuple[float, float]) -> None:
+    """Central ones."""
+    angles = np.radians(angles_of(*place))
+    found, ahead, back = np.zeros(6), np.zeros(6), np.zeros(6)
+    locate(*angles, ARMS, found)
+    for joint in range(2):
+        step = np.eye(2)[joint] * 1e-6
+        locate(*(angles + step), ARMS, ahead)
+        locate(*(angles - step), ARMS, back)
+        expected = (ahead[:2] - back[:2]) / 2e-6
+        assert found[2 + 2 * joint : 4 + 2 * joint] == pytest.approx(expected, rel=1e-5, abs=1e-8)
+
+
+@pytest.mark.parametrize("angles", [(math.pi, 0.0), (0.0, math.pi / 2), (math.nan, 1.0), (math.inf, 1.0)])
+def test_arms_that_cannot_meet_are_told(angles: tuple[float, float]) -> None:
+    """Too far apart; or no angles at all."""
+    far = np.array([0.07, 0.03, 0.038])
+    assert not locate(*angles, far, np.zeros(6))
+
+
+def test_the_setup_is_what_the_firmware_reads() -> None:
+    """Ports, directions, offsets and counts of the 2DIY, by port; the axis asked for; no force yet."""
+    with HaplyEmulator() as board:
+        drive(HaplyPantograph(board.port), 1, lambda x: 0.0)
+    assert board.resets == 1
+    assert (board.motors, board.encoders) == (b"\1\1", b"\1\1")
+    assert board.setup == (12.0, 4880.0, 168.0, 4880.0)
+    assert {command.force for command in board.commands} == {0.0}
+
+
+@pytest.mark.parametrize(("axis", "periods"), [("x", 5000), ("y", 500)])
+def test_ten_thousand_exchanges(axis: str, periods: int) -> None:
+    """Each position is that of its own exchange; two exchanges a period, since to give a force is one too."""
+    with HaplyEmulator(jumping) as board:
+        run = drive(HaplyPantograph(board.port, axis), periods, lambda x: 0.0)
+    assert run.statuses == [GOOD] * periods
+    assert board.exchange == 2 * periods + 3
+    expected = [jumping(1 + 2 * period)["xy".index(axis)] for period in range(periods)]
+    assert run.readings == pytest.approx(expected, abs=COUNT)
+
+
+@pytest.mark.parametrize("of", ["x", "y"])
+@pytest.mark.parametrize("axis", ["x", "y"])
+@pytest.mark.parametrize(("place", "force"), [((0.01, 0.08), 1.5), ((0.04, 0.1), -0.7)])
+def test_the_torques_are_those_of_a_force_along_the_axis(
+    place: tuple[float, float], force: float, axis: str, of: str
+) -> None:
+    """As the board's side finds it from its own kinematics; along the other axis there is none."""
+    with HaplyEmulator(lambda exchange: place, axis=of) as board:
+        drive(HaplyPantograph(board.port, axis), 3, lambda x: force)
+    given = [command.force for command in board.commands]
+    if of != axis:
+        assert given == pytest.approx([0.0] * len(given), abs=1e-2)
+        return
+    assert given[:2] == [0.0, 0.0]  # of opening, and of the first question
+    assert given[2] == pytest.approx(force, rel=5e-3)  # the angles are in whole counts
+    assert given[-1] == 0.0
+
+
+def test_a_question_repeats_the_force() -> None:
+    """To read is to give torques as well: those that act already."""
+    forces = iter([1.0, 2.0, 3.0, 4.0])
+    with HaplyEmulator() as board:
+        drive(HaplyPantograph(board.port), 4, lambda x: next(forces))
+    given = [round(command.force, 1) for command in board.commands]
+    assert given == [0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("fault", "status"),
+    [
+        (Fault.CLOSED, CLOSED),
+        (Fault.HALF_FRAME, GARBLED),
+        (Fault.GARBAGE, GARBLED),
+        (Fault.SILENCE, SILENT),
+        (Fault.LATE_ANSWERS, SILENT),
+    ],
+)
+@pytest.mark.parametrize("of_force", [False, True])
+def test_a_fault_is_told_and_ends_in_no_force(fault: Fault, status: int, of_force: bool) -> None:
+    """Whether it begins with the answer to a question, or with that to a force."""
+    period = 50
+    with HaplyEmulator(jumping, fault, at=1 + 2 * period + of_force) as board:
+        run = drive(HaplyPantograph(board.port), 200, wait=0.2)
+    assert run.statuses[: period + of_force] == [GOOD] * (period + of_force)
+    assert run.statuses[period + of_force] == status
+    assert run.zeroed_after is not None
+    assert run.zeroed_after <= 1
+    if fault is not Fault.CLOSED:
+        assert board.commands[-1].force == 0.0
+
+
+@pytest.mark.parametrize("fault", [Fault.DUPLICATE, Fault.SLOW])
+def test_answers_that_come_twice_or_in_pieces_are_no_fault(fault: Fault) -> None:
+    """No later sample is old by them."""
+    with HaplyEmulator(jumping, fault, at=100) as board:
+        run = drive(HaplyPantograph(board.port), 500)
+    assert set(run.statuses) == {GOOD}
+    expected = [jumping(1 + 2 * period)[0] for period in range(500)]
+    assert run.readings == pytest.approx(expected, abs=COUNT)
+
+
+def test_an_answer_that_comes_late_once_is_no_later_sample() -> None:
+    """The next question waits for it, and is answered by its own."""
+    with HaplyEmulator(jumping, Fault.LATE_ANSWERS, at=101) as board:
+        board.until = 102
+        run = drive(HaplyPantograph(board.port), 60, wait=0.2)
+    assert [period for period, status in enumerate(run.statuses) if status != GOOD] == [50]
+    assert run.statuses[50] == SILENT
+    expected = [jumping(1 + 2 * period)[0] for period in range(60)]
+    del run.readings[50], expected[50]
+    assert run.readings == pytest.approx(expected, abs=COUNT)
+
+
+@pytest.mark.parametrize("fault", [Fault.HALF_FRAME, Fault.GARBAGE])
+def test_one_answer_that_means_nothing_costs_one_sample(fault: Fault) -> None:
+    """Where the next one begins is known again."""
+    with HaplyEmulator(jumping, fault, at=101) as board:
+        board.until = 102
+        run = drive(HaplyPantograph(board.port), 60, wait=0.2)
+    assert [period for period, status in enumerate(run.statuses) if status != GOOD] == [50]
+    assert run.statuses[50] == GARBLED
+    expected = [jumping(1 + 2 * period)[0] for period in range(60)]
+    del run.readings[50], expected[50]
+    assert run.readings == pytest.approx(expected, abs=COUNT)
+
+
+def test_one_motor_has_its_angle_and_its_torque() -> None:
+    """In radians and newton metres; port 1 of the board."""
+    with HaplyEmulator(lambda exchange: (0.02, 0.1)) as board:
+        motor = HaplyMotor(board.port, 36000.0, offset=math.pi / 2, rotation="cw", motor="ccw")
+        run = drive(motor, 5, lambda angle: 0.25)
+    assert run.readings == pytest.approx([math.radians(angles_of(0.02, 0.1)[0])] * 5, abs=2 * math.pi / 36000)
+    assert (board.motors, board.encoders, board.setup) == (b"\1", b"\0", (90.0, 36000.0))
+    assert board.commands[-3].force == 0.25
+    assert motor.motion == "rotary"
+
+
+def test_nobody_at_the_port() -> None:
+    """A board that does not answer is refused when it is opened, with what to look at."""
+    with (
+        HaplyEmulator(fault=Fault.SILENCE) as board,
+        pytest.raises(InputError, match=r"no answer in time.*firmware"),
+    ):
+        HaplyPantograph(board.port).open(1e-3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"axis": "z"}, "axis is one of"),
+        ({"version": 1}, "version is one of"),
+        ({"number": 0}, "from 1 to 255"),
+        ({"joints": [HaplyJoint(1, "ccw", 0.0, 4880.0)]}, "2 joints"),
+        ({"joints": [HaplyJoint(1, "ccw", 0.0, 4880.0)] * 2}, "ports 1, 1"),
+        ({"links": (0.07, -0.09, 0.0)}, "links must be > 0"),
+        ({"links": (0.07, 0.09)}, "three lengths"),
+    ],
+)
+def test_what_is_no_such_board_is_refused(arguments: dict[str, object], message: str) -> None:
+    """One message, before anything is opened."""
+    with pytest.raises(InputError, match=message):
+        HaplyPantograph("/dev/null", **arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [(3, "ccw", 0.0, 4880.0), (1, "left", 0.0, 4880.0), (1, "cw", 0.0, 0.0), (1, "cw", math.nan, 1.0)],
+)
+def test_what_is_no_joint_is_refused(arguments: tuple[int, str, float, float]) -> None:
+    """A port that the firmware does not have, a direction, counts."""
+    with pytest.raises(InputError):
+        HaplyJoint(*arguments)

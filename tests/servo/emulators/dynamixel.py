@@ -1,0 +1,136 @@
+"""A Dynamixel of the X series on a bus, written from the e-Manual: control table, packets, odd habits."""
+
+from __future__ import annotations
+
+import struct
+
+from servo.emulators.faults import Fault
+from servo.emulators.terminal import TerminalEmulator
+
+HEADER = b"\xff\xff\xfd\x00"
+_TORQUE, _WATCHDOG, _GOAL, _LIMIT, _MODE = 64, 98, 102, 38, 11
+
+
+def remainder(packet: bytes) -> bytes:
+    """CRC-16 of polynomial 8005 hex: the rest of a long division of the packet as one number."""
+    rest = int.from_bytes(packet, "big") << 16
+    for bit in range(rest.bit_length() - 1, 15, -1):
+        if rest >> bit & 1:
+            rest ^= 0x18005 << (bit - 16)
+    return struct.pack("<H", rest)
+
+
+def packet(identifier: int, body: bytes) -> bytes:
+    """Instruction and parameters with what stands around them."""
+    stuffed = body.replace(b"\xff\xff\xfd", b"\xff\xff\xfd\xfd")
+    whole = HEADER + bytes([identifier]) + struct.pack("<H", len(stuffed) + 2) + stuffed
+    return whole + remainder(whole)
+
+
+class DynamixelEmulator(TerminalEmulator):
+    """Its position is scripted.
+
+    Parameters
+    ----------
+    positions
+        Counts of present position, at each exchange; the last one stays.
+    model, firmware
+        Of the control table.
+    indirect_data
+        Address of the first register of indirect data.
+    identifier
+        On the bus.
+    """
+
+    def __init__(
+        self,
+        positions: list[int],
+        fault: Fault | None = None,
+        at: int = 0,
+        *,
+        model: int = 1020,
+        firmware: int = 45,
+        indirect_data: int = 224,
+        identifier: int = 1,
+    ) -> None:
+        super().__init__(fault, at)
+        self.positions = positions
+        self.identifier = identifier
+        self.indirect_data = indirect_data
+        self.table = bytearray(700)
+        self.alert = False
+        self._heard = b""
+        self._room = 28 if indirect_data == 224 else 20
+        self.put(0, 2, model)
+        self.put(6, 1, firmware)
+        self.put(9, 1, 250)
+        self.put(_MODE, 1, 3)
+        self.put(_LIMIT, 2, 1193)
+        for i in range(self._room):
+            self.put(168 + 2 * i, 2, indirect_data + i)
+
+    def put(self, address: int, count: int, value: int) -> None:
+        """Into the control table."""
+        self.table[address : address + count] = (value & (1 << 8 * count) - 1).to_bytes(count, "little")
+
+    def value(self, address: int, count: int) -> int:
+        """Of the control table."""
+        return int.from_bytes(self.table[address : address + count], "little")
+
+    def hear(self, data: bytes) -> None:
+        """Take bytes that came, however they were cut."""
+        self._heard += data
+        while True:
+            start = self._heard.find(HEADER)
+            if start < 0 or len(self._heard) < start + 7:
+                return
+            size = 7 + struct.unpack_from("<H", self._heard, start + 5)[0]
+            if len(self._heard) < start + size:
+                return
+            whole = self._heard[start : start + size]
+            self._heard = self._heard[start + size :]
+            if remainder(whole[:-2]) == whole[-2:]:
+                body = whole[7:-2].replace(b"\xff\xff\xfd\xfd", b"\xff\xff\xfd")
+                self._obey(whole[4], body[0], body[1:])
+
+    def with_wrong_checksum(self, frame: bytes) -> bytes:
+        """The same frame with the checksum of another one."""
+        return frame[:-2] + bytes([frame[-2] ^ 1, frame[-1]])
+
+    def _obey(self, identifier: int, instruction: int, parameters: bytes) -> None:
+        if instruction == 0x83 and identifier == 0xFE:
+            address, count = struct.unpack_from("<HH", parameters)
+            for at in range(4, len(parameters), 1 + count):
+                if parameters[at] == self.identifier:
+                    self._write(address, parameters[at + 1 : at + 1 + count])
+        elif instruction == 0x02 and identifier == self.identifier:
+            self._read(*struct.unpack("<HH", parameters))
+
+    def _write(self, address: int, data: bytes) -> None:
+        value = int.from_bytes(data, "little", signed=True)
+        torque, limit = self.table[_TORQUE], self.value(_LIMIT, 2)
+        if address < 64 and torque:
+            return
+        if address == _GOAL and (self.table[_WATCHDOG] == 0xFF or abs(value) > limit):
+            return
+        if address == _MODE and value != self.table[_MODE]:
+            self.put(_GOAL, 2, limit)  # what a change of the operating mode does
+        self.put(address, len(data), value)
+        if address in (_GOAL, _TORQUE) and self.table[_TORQUE] and self.table[_MODE] == 0:
+            self.command(int.from_bytes(self.table[_GOAL : _GOAL + 2], "little", signed=True))
+
+    def _read(self, address: int, count: int) -> None:
+        counted = address == self.indirect_data and count >= 6
+        index = min(self.exchange, len(self.positions) - 1)
+        self.put(132, 4, self.positions[index])
+        values = bytes(self.table[self._behind(i)] for i in range(address, address + count))
+        frame = packet(self.identifier, bytes([0x55, 0x80 if self.alert else 0]) + values)
+        if counted:
+            self.answer(frame)
+        else:
+            self.write(frame)
+
+    def _behind(self, address: int) -> int:
+        """Where a register of indirect data leads to."""
+        i = address - self.indirect_data
+        return self.value(168 + 2 * i, 2) if 0 <= i < self._room else address

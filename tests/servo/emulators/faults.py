@@ -1,0 +1,122 @@
+"""What the other side of a connection can do wrong, the same for every device that is emulated.
+
+An emulator counts the positions that it is asked for: the first is exchange 0.  Up to exchange `at` it
+answers as it should; from there on its fault decides what becomes of every answer.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from enum import StrEnum
+from random import Random
+
+
+class Fault(StrEnum):
+    """From the exchange `at` on, at every exchange."""
+
+    CLOSED = "closed"
+    """The other side closes the line instead of answering."""
+    HALF_FRAME = "half frame"
+    """The first half of the answer comes, and no more."""
+    GARBAGE = "garbage"
+    """As many bytes as the answer has come, and mean nothing."""
+    SILENCE = "silence"
+    """Nothing comes."""
+    DUPLICATE = "duplicate"
+    """The answer comes twice, in one piece: no fault to the loop, and no later sample may be old by it."""
+    SLOW = "slow"
+    """The answer comes a few bytes at a time, in time: no fault to the loop."""
+    WRONG_CHECKSUM = "wrong checksum"
+    """The answer comes whole, and its checksum is that of another."""
+    LATE_ANSWERS = "late answers"
+    """To every question comes the answer to the question before, to the first of them nothing."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """A force [N; N·m] that the emulator was told to give, after so many positions were asked for."""
+
+    exchange: int
+    force: float
+
+
+class Emulator(ABC):
+    """The other side of a line; it calls `answer` for every position asked, `command` for every force.
+
+    Parameters
+    ----------
+    fault, at
+        What goes wrong, and from which exchange on; None for a device that does everything right.
+
+    Attributes
+    ----------
+    until
+        The exchange from which everything is right again; None for never.
+    """
+
+    def __init__(self, fault: Fault | None = None, at: int = 0) -> None:
+        self.fault = fault
+        self.at = at
+        self.until: int | None = None
+        self.exchange = 0
+        self.commands: list[Command] = []
+        self._held = b""
+        self._random = Random(7)
+
+    @abstractmethod
+    def write(self, data: bytes) -> None:
+        """Put bytes on the line at once."""
+
+    @abstractmethod
+    def hang_up(self) -> None:
+        """Close the line."""
+
+    def with_wrong_checksum(self, frame: bytes) -> bytes:
+        """The same frame with the checksum of another one."""
+        raise NotImplementedError(f"the frames of {type(self).__name__} have no checksum")
+
+    def nonsense(self, count: int) -> bytes:
+        """Bytes that mean nothing."""
+        return self._random.randbytes(count)
+
+    def pieces(self, frame: bytes) -> list[bytes]:
+        """The frame in three."""
+        third = max(1, len(frame) // 3)
+        return [frame[:third], frame[third : 2 * third], frame[2 * third :]]
+
+    def command(self, force: float) -> None:
+        """Remember a force that was asked for."""
+        self.commands.append(Command(self.exchange, force))
+
+    def answer(self, frame: bytes) -> None:
+        """Answer the exchange with a right frame, or with what the fault makes of it; count it."""
+        self.disturb(frame)
+        self.exchange += 1
+
+    def disturb(self, frame: bytes) -> None:
+        """Send a right frame, or what the fault makes of it at this exchange, which is not counted."""
+        over = self.exchange < self.at or (self.until is not None and self.exchange >= self.until)
+        match None if over else self.fault:
+            case None:
+                self.write(self._held + frame)
+                self._held = b""
+            case Fault.CLOSED:
+                self.hang_up()
+            case Fault.HALF_FRAME:
+                self.write(frame[: len(frame) // 2])
+            case Fault.GARBAGE:
+                self.write(self.nonsense(len(frame)))
+            case Fault.SILENCE:
+                pass
+            case Fault.DUPLICATE:
+                self.write(frame + frame)
+            case Fault.SLOW:
+                for piece in self.pieces(frame):
+                    self.write(piece)
+            case Fault.WRONG_CHECKSUM:
+                self.write(self.with_wrong_checksum(frame))
+            case Fault.LATE_ANSWERS:
+                if self._held:
+                    self.write(self._held)
+                self._held = frame

@@ -1,0 +1,85 @@
+"""A Feetech servo of the STS series on a bus, written from its memory table and protocol manual."""
+
+from __future__ import annotations
+
+from servo.emulators.faults import Fault
+from servo.emulators.terminal import TerminalEmulator
+
+_MODE, _TORQUE, _DUTY, _LOCK, _POSITION = 33, 40, 44, 55, 56
+
+
+def packet(identifier: int, body: bytes) -> bytes:
+    """Instruction (or state) and parameters with what stands around them."""
+    inner = bytes([identifier, len(body) + 1]) + body
+    return b"\xff\xff" + inner + bytes([255 - sum(inner) % 256])
+
+
+class FeetechEmulator(TerminalEmulator):
+    """Its position is scripted; what is written where it stays after switching off is kept in `saved`.
+
+    Parameters
+    ----------
+    positions
+        Counts of the present position, at each exchange; the last one stays.
+    identifier
+        On the bus.
+    """
+
+    def __init__(
+        self, positions: list[int], fault: Fault | None = None, at: int = 0, *, identifier: int = 1
+    ) -> None:
+        super().__init__(fault, at)
+        self.positions = positions
+        self.identifier = identifier
+        self.state = 0
+        self.table = bytearray(90)
+        self.table[7], self.table[30], self.table[_TORQUE] = 250, 1, 1
+        self.table[48:50] = (1000).to_bytes(2, "little")
+        self.saved: list[int] = []
+        self._heard = b""
+
+    def hear(self, data: bytes) -> None:
+        """Take bytes that came, however they were cut."""
+        self._heard += data
+        while True:
+            start = self._heard.find(b"\xff\xff")
+            if start < 0 or len(self._heard) < start + 4:
+                return
+            size = 4 + self._heard[start + 3]
+            if len(self._heard) < start + size:
+                return
+            whole = self._heard[start : start + size]
+            self._heard = self._heard[start + size :]
+            if sum(whole[2:]) % 256 == 255:
+                self._obey(whole[2], whole[4], whole[5:-1])
+
+    def with_wrong_checksum(self, frame: bytes) -> bytes:
+        """The same frame with the checksum of another one."""
+        return frame[:-1] + bytes([frame[-1] ^ 1])
+
+    def _obey(self, identifier: int, instruction: int, parameters: bytes) -> None:
+        if instruction == 0x83 and identifier == 0xFE:
+            address, count = parameters[:2]
+            for at in range(2, len(parameters), 1 + count):
+                if parameters[at] == self.identifier:
+                    self._write(address, parameters[at + 1 : at + 1 + count])
+        elif instruction == 0x02 and identifier == self.identifier:
+            self._read(*parameters)
+
+    def _write(self, address: int, data: bytes) -> None:
+        self.table[address : address + len(data)] = data
+        if address < _TORQUE and not self.table[_LOCK]:
+            self.saved.append(address)
+        if address in (_DUTY, _TORQUE) and self.table[_TORQUE] and self.table[_MODE] == 2:
+            word = int.from_bytes(self.table[_DUTY : _DUTY + 2], "little")
+            self.command((-1 if word & 1024 else 1) * (word % 1024) / 1000)
+
+    def _read(self, address: int, count: int) -> None:
+        position = self.positions[min(self.exchange, len(self.positions) - 1)]
+        word = abs(position) | (0x8000 if position < 0 else 0)
+        self.table[_POSITION : _POSITION + 2] = word.to_bytes(2, "little")
+        frame = packet(self.identifier, bytes([self.state]) + bytes(self.table[address : address + count]))
+        if address == _POSITION:
+            self.answer(frame)
+        else:
+            self.write(frame)

@@ -1,0 +1,149 @@
+"""A moteus controller behind an adapter that speaks fdcanusb's lines, written from mjbots' documentation."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+from servo.emulators.faults import Fault
+from servo.emulators.terminal import TerminalEmulator
+
+_TYPES = "bhif"
+_SPECIAL = {"b": -(2**7), "h": -(2**15), "i": -(2**31)}
+_TIME = {"b": 1e-2, "h": 1e-3, "i": 1e-6, "f": 1.0}
+
+
+def checksum(line: bytes) -> int:
+    """CRC-8 of polynomial 97 hex: the rest of a long division of the line as one number."""
+    rest = int.from_bytes(line, "big") << 8
+    for bit in range(rest.bit_length() - 1, 7, -1):
+        if rest >> bit & 1:
+            rest ^= 0x197 << (bit - 8)
+    return rest
+
+
+class MoteusEmulator(TerminalEmulator):
+    """Operates one answer after it was told to; its position is scripted, turn by turn.
+
+    Parameters
+    ----------
+    positions
+        [turns], at each exchange; the last one stays.
+    identifier
+        Its id.id.
+    checksums
+        True for lines with a checksum, as of a UART.
+    """
+
+    def __init__(
+        self,
+        positions: list[float],
+        fault: Fault | None = None,
+        at: int = 0,
+        *,
+        identifier: int = 1,
+        checksums: bool = False,
+    ) -> None:
+        super().__init__(fault, at)
+        self.positions = positions
+        self.identifier = identifier
+        self.checksums = checksums
+        self.mode = 11
+        self.fault_code = 0
+        self.bus_is_off = False
+        self.complaints: list[str] = []
+        self.watchdogs: list[float] = []
+        self._heard = b""
+
+    def hear(self, data: bytes) -> None:
+        """Take bytes that came, however they were cut."""
+        *lines, self._heard = (self._heard + data).split(b"\n")
+        for line in lines:
+            self._obey(line)
+
+    def with_wrong_checksum(self, frame: bytes) -> bytes:
+        """The same frame with the checksum of another one."""
+        body, _, digits = frame.rstrip(b"\r\n").rpartition(b"*")
+        return body + b"*%02X\r\n" % (int(digits, 16) ^ 1)
+
+    def nonsense(self, count: int) -> bytes:
+        """A line that means nothing."""
+        return super().nonsense(count - 1).replace(b"\n", b" ").replace(b"\r", b" ") + b"\n"
+
+    def line(self, text: bytes) -> bytes:
+        """As it goes over the wire."""
+        return text + (b" *%02X" % checksum(text + b" ") if self.checksums else b"") + b"\r\n"
+
+    def _obey(self, line: bytes) -> None:
+        if self.checksums:
+            body, star, digits = line.rpartition(b"*")
+            if not star or int(digits, 16) != checksum(body):
+                self.write(self.line(b"ERR checksum"))
+                return
+            line = body.rstrip()
+        words = line.split()
+        if words[:2] != [b"can", b"send"] or self.bus_is_off:
+            self.write(self.line(b"ERR unknown command"))
+            return
+        address, data = int(words[2], 16), bytes.fromhex(words[3].decode())
+        self.write(self.line(b"OK"))
+        if len(data) not in (*range(9), 12, 16, 20, 24, 32, 48, 64):
+            self.complaints.append(f"a CAN FD frame cannot have {len(data)} bytes")
+        if address & 0x7F != self.identifier:
+            return
+        answer = self._registers(data)
+        if address & 0x8000:
+            to = self.identifier << 8 | (address >> 8 & 0x7F)
+            self.answer(self.line(b"rcv %x %s E B F" % (to, answer.hex().encode())))
+
+    def _registers(self, data: bytes) -> bytes:
+        """Write what is written, and the answer to what is read."""
+        answer = b""
+        written: dict[int, tuple[str, float]] = {}
+        at = 0
+        while at < len(data):
+            what, kind, count = data[at] & 0xF0, _TYPES[data[at] >> 2 & 3], data[at] & 3
+            at += 1
+            if data[at - 1] == 0x50:
+                continue
+            if count == 0:
+                count, at = data[at], at + 1
+            first, at = data[at], at + 1
+            if what == 0x00:
+                size = struct.calcsize(kind)
+                for i in range(count):
+                    written[first + i] = (kind, struct.unpack_from(f"<{kind}", data, at)[0])
+                    at += size
+            else:
+                values = [self._value(first + i) for i in range(count)]
+                answer += bytes([0x20 | _TYPES.index(kind) << 2 | count, first])
+                answer += struct.pack(f"<{count}{kind}", *values)
+        if 0x000 in written:
+            self._command({register: self._meaning(*value) for register, value in written.items()}, written)
+        return answer
+
+    def _meaning(self, kind: str, value: float) -> float:
+        return math.nan if value == _SPECIAL.get(kind) else value
+
+    def _command(self, values: dict[int, float], written: dict[int, tuple[str, float]]) -> None:
+        if values[0x000] == 0:
+            self.mode, self.fault_code = 0, 0
+            return
+        if self.mode == 0:
+            self.mode = 2
+        if values[0x000] != 10 or not math.isnan(values[0x020]):
+            self.complaints.append("no torque mode")
+        if any(values.get(register, 1.0) != 0.0 for register in (0x021, 0x023, 0x024, 0x02B)):
+            self.complaints.append("a loop inside is not off")
+        kind, _ = written[0x027]
+        self.watchdogs.append(values[0x027] * _TIME[kind])
+        self.command(values[0x022])
+
+    def _value(self, register: int) -> float:
+        if register == 0x000:
+            mode = self.mode
+            self.mode = 10 if mode == 2 else mode
+            return mode
+        if register == 0x001:
+            return self.positions[min(self.exchange, len(self.positions) - 1)]
+        return self.fault_code

@@ -1,0 +1,115 @@
+"""An ODrive's text protocol as documentation and firmware have it, one axis on a hand that is a spring.
+
+Written from docs.odriverobotics.com ("ASCII Protocol") and the behaviour of firmware 0.5.6.
+"""
+
+from __future__ import annotations
+
+from math import tau
+
+from servo.emulators.faults import Fault
+from servo.emulators.handle import Handle
+from servo.emulators.terminal import TerminalEmulator
+
+
+class ODriveEmulator(TerminalEmulator):
+    """Its properties are those of axis 0 that matter here.
+
+    Parameters
+    ----------
+    fault, at
+        See `Emulator`; a fault is one of all answers, those to other questions as well.
+    starts
+        False for an axis that stays idle.
+    """
+
+    def __init__(self, fault: Fault | None = None, at: int = 0, *, starts: bool = True) -> None:
+        super().__init__(fault, at)
+        self.handle = Handle(mass=1e-4, stiffness=0.05, damping=4e-4, hand=1.5, position=1.1)
+        self.positions: list[float] = []
+        self.lines: list[str] = []
+        self.watchdog_on: list[bool] = []
+        self.disarm_at: int | None = None
+        self.lose_states = 0
+        self.frozen: set[str] = set()
+        self.properties = {
+            "axis0.current_state": "1",
+            "axis0.requested_state": "0",
+            "axis0.error": "0",
+            "axis0.config.enable_watchdog": "0",
+            "axis0.config.watchdog_timeout": "0.000000",
+            "axis0.controller.config.control_mode": "3",
+            "axis0.controller.config.input_mode": "5",
+        }
+        self._starts = starts
+        self._data = b""
+
+    def hear(self, data: bytes) -> None:
+        """Take bytes that came, however they were cut."""
+        *lines, self._data = (self._data + data).split(b"\n")
+        for line in lines:
+            self._command(line.decode())
+
+    def with_wrong_checksum(self, frame: bytes) -> bytes:
+        """One more than it should be."""
+        text, asterisk, checksum = frame.strip().partition(b"*")
+        return text + b"*" + str((int(checksum) + 1) % 256).encode() + b"\r\n" if asterisk else frame
+
+    def _command(self, line: str) -> None:
+        text, asterisk, checksum = line.partition("*")
+        total = 0
+        for byte in text.encode():
+            total ^= byte
+        if asterisk and int(checksum) != total:
+            return
+        self.lines.append(text)
+        answer = self._answer(text.split())
+        if answer is None:
+            return
+        if asterisk:
+            total = 0
+            for byte in answer.encode():
+                total ^= byte
+            answer += f"*{total}"
+        frame = f"{answer}\r\n".encode()
+        if text.startswith("f"):
+            self.answer(frame)
+        elif self.exchange > 0 and self.lose_states > 0 and text.endswith("current_state"):
+            self.lose_states -= 1
+        else:
+            self.disturb(frame)
+
+    def _answer(self, words: list[str]) -> str | None:
+        match words:
+            case ["c", "0", torque]:
+                self.command(float(torque))
+                self.watchdog_on.append(self.properties["axis0.config.enable_watchdog"] == "1")
+                return None
+            case ["f", "0"]:
+                return self._feedback()
+            case ["r", name]:
+                return self.properties.get(name, "invalid property")
+            case ["w", name, value] if name in self.properties:
+                self._set(name, value)
+                return None
+            case ["w", *_]:
+                return "invalid property"
+            case ["f" | "c", *_]:
+                return "invalid motor 1"
+            case _:
+                return "unknown command"
+
+    def _feedback(self) -> str:
+        if self.exchange == self.disarm_at:
+            self.properties["axis0.current_state"] = "1"
+        idle = self.properties["axis0.current_state"] != "8"
+        self.handle.step(0.0 if idle else self.commands[-1].force)
+        turns = f"{self.handle.position / tau:f}"
+        self.positions.append(float(turns) * tau)
+        return f"{turns} {self.handle.speed / tau:f}"
+
+    def _set(self, name: str, value: str) -> None:
+        if name not in self.frozen:
+            self.properties[name] = value
+        if name == "axis0.requested_state" and (value != "8" or self._starts):
+            self.properties["axis0.current_state"] = value

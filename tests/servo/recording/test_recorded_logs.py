@@ -1,0 +1,126 @@
+"""A recording is a log as it stands: `zwidth identify` knows its columns, units and signs by themselves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from known_motion import COULOMB, DAMPING, MASS, PERIOD, STEP, paddle
+from written_rows import COLUMNS, WrittenRows, drawn
+
+import zwidth as zw
+from zwidth.servo.recording.recorder import Recorder
+from zwidth.servo.recording.recording import read_recording
+
+SUFFIXES = pytest.mark.parametrize("suffix", [".mcap", ".parquet"])
+
+
+def moved(kept: int = 1 << 20) -> WrittenRows:
+    """A device that its own actuator moves to and fro: nobody holds it."""
+    recording = paddle()
+    table = drawn(len(recording.time))
+    table[:, COLUMNS.index("time_s")] = recording.time
+    table[:, COLUMNS.index("position_m")] = recording.position
+    table[:, COLUMNS.index("force_N")] = -recording.force
+    return WrittenRows(table, kept=kept, period=PERIOD)
+
+
+def written(rows: WrittenRows, path: Path) -> Path:
+    """All the rows in a file."""
+    with Recorder(rows, path):
+        rows.written = len(rows.after(0)[1]) or 20_000
+    return path
+
+
+@SUFFIXES
+def test_a_recording_is_identified(tmp_path: Path, suffix: str) -> None:
+    """As from arrays, number for number; the signs are those that make the mass positive and right."""
+    path = written(moved(), tmp_path / f"run{suffix}")
+    known = paddle()
+    found = zw.identify(path)
+    same = zw.identify(
+        zw.Log.from_arrays(time=known.time, position=known.position, actuator_force=-known.force)
+    )
+    truth = {"mass": MASS, "damping": DAMPING, "coulomb_friction": COULOMB}
+    for name, true in truth.items():
+        assert found.estimates[name].value == same.estimates[name].value
+        assert found.estimates[name].value == pytest.approx(true, rel=0.05)
+
+
+@SUFFIXES
+def test_a_log_of_a_recording(tmp_path: Path, suffix: str) -> None:
+    """Time, position as read and force as given, of every sample; the step of the encoder is seen."""
+    log = zw.read_log(written(moved(), tmp_path / f"run{suffix}"))
+    known = paddle()
+    assert (log.motion, log.sample_period, log.channels) == ("linear", PERIOD, ("actuator_force",))
+    assert log.resolution == pytest.approx(STEP, rel=1e-9)
+    blocks = list(log.blocks())
+    assert np.concatenate([b.position for b in blocks]) == pytest.approx(known.position, abs=1e-12)
+    assert np.array_equal(np.concatenate([b.actuator_force for b in blocks]), -known.force)
+
+
+def test_a_sample_without_an_answer_has_no_position(tmp_path: Path) -> None:
+    """What stands in the row then is an older reading: the log begins a new run behind it."""
+    rows = moved()
+    rows._table[4000:4003, COLUMNS.index("status")] = 1.0
+    log = zw.read_log(written(rows, tmp_path / "run.mcap"))
+    assert log.runs == 2
+    assert log.samples == 20_000 - 3
+
+
+def test_what_was_lost_or_cut_is_said(tmp_path: Path) -> None:
+    """Among the findings of the log."""
+    path = written(moved(kept=15_000), tmp_path / "run.mcap")
+    lost = {finding.kind: finding.samples for finding in zw.read_log(path).findings}
+    assert lost["rows lost"] == 5000
+    assert "cut off" not in lost
+    path.write_bytes(path.read_bytes()[:-100])
+    assert "cut off" not in {finding.kind for finding in zw.read_log(path).findings}  # the index alone is cut
+    data = path.read_bytes()
+    path.write_bytes(data[: data.index(b"zwidth end")])
+    assert "cut off" in {finding.kind for finding in zw.read_log(path).findings}
+
+
+def test_another_column_can_be_chosen(tmp_path: Path) -> None:
+    """Names and units as they stand in the file; None leaves a quantity out."""
+    path = written(moved(), tmp_path / "run.mcap")
+    log = zw.read_log(path, columns={"actuator_force": "wished_force_N"})
+    assert log.channels == ("actuator_force",)
+    assert zw.read_log(path, columns={"actuator_force": None}).channels == ()
+    assert read_recording(path).log(sample_rate=1000).samples == 20_000
+
+
+def test_a_rotary_recording(tmp_path: Path) -> None:
+    """Its columns are in rad and N·m."""
+    rows = moved()
+    rows.motion = "rotary"
+    rows.COLUMNS = tuple(name.replace("_N", "_N_m") if name.endswith("_N") else name for name in COLUMNS)
+    rows.COLUMNS = tuple("position_rad" if name == "position_m" else name for name in rows.COLUMNS)
+    log = zw.read_log(written(rows, tmp_path / "run.parquet"))
+    assert log.motion == "rotary"
+    assert log.channels == ("actuator_force",)
+
+
+def test_a_recording_as_a_dataset(tmp_path: Path) -> None:
+    """Names as in a trace where it has them, units in the attributes; a log can be made of that as well."""
+    recording = read_recording(written(moved(), tmp_path / "run.mcap"))
+    data = recording.dataset()
+    units = {name: variable.attrs["units"] for name, variable in data.data_vars.items()}
+    assert units == {
+        "sample": "1",
+        "late": "s",
+        "measured_position": "m",
+        "wished_force": "N",
+        "commanded_force": "N",
+        "energy_out": "J",
+        "friction_loss": "J",
+        "status": "1",
+        "phase": "1",
+        "law": "1",
+        "limited": "1",
+        "exchange": "s",
+    }
+    assert np.array_equal(data["commanded_force"].values, -paddle().force)
+    assert zw.Log.from_arrays(data).channels == ("actuator_force",)
+    data.to_netcdf(tmp_path / "run.nc", engine="h5netcdf")

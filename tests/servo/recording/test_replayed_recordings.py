@@ -1,0 +1,211 @@
+"""A recording simulated again gives the recorded forces to the last bit, and says so where it does not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from recordings import paddle
+from written_rows import COLUMNS, WrittenRows, drawn
+
+import zwidth as zw
+from zwidth import InputError
+from zwidth.loop import Timing
+from zwidth.rendering import Damper, ForceBounding, PassivityController, TickTime, Window, render
+from zwidth.servo import Placement
+from zwidth.servo.devices import Simulated
+from zwidth.servo.recording import Recorder, Recording, read_recording, replay, touch_of
+from zwidth.servo.session import Servo
+from zwidth.specification.write import written
+
+SAMPLES = 1500
+WALL = zw.Wall(stiffness=300, damping="0.2 N*s/m")
+Save = Callable[[np.ndarray, zw.Device, Any], Recording]
+
+
+@pytest.fixture
+def save(tmp_path: Path) -> Save:
+    """Writes rows into a file that says what was served, and reads it back."""
+
+    def through_a_file(table: np.ndarray, device: zw.Device, *laws: Any, **others: Any) -> Recording:
+        rows = WrittenRows(table, **others)
+        rows.events += [{"specification": written(device, law)} for law in laws]
+        with Recorder(rows, tmp_path / "run.mcap", force=True):
+            rows.written = len(table)
+        return read_recording(tmp_path / "run.mcap")
+
+    return through_a_file
+
+
+def column(table: np.ndarray, name: str) -> np.ndarray:
+    """One column, to be read or written."""
+    return table[:, COLUMNS.index(name)]
+
+
+def touched(device: zw.Device, law: object, seed: int) -> np.ndarray:
+    """A hand goes in and out of the wall; the clock is late and misses samples: a loop would write this."""
+    timing = Timing(lateness=6e-4, missed=0.04, seed=seed)
+    times = 1e-3 * np.arange(SAMPLES + 1)
+    hand = zw.operators.PrescribedMotion(-1e-3 * np.cos(20 * times) + 3e-3 * np.sin(7.1 * times))
+    trace = zw.simulate(device, law, hand, SAMPLES * device.exact("sample_period"), timing=timing)
+    taken = np.flatnonzero(timing.skipped(SAMPLES) == 0)
+    table = drawn(len(taken))
+    column(table, "sample")[:] = taken
+    column(table, "late_s")[:] = timing.late(SAMPLES, 1e-3)[taken]
+    column(table, "time_s")[:] = trace["time"].values[taken]
+    column(table, "position_m")[:] = trace["measured_position"].values[taken]
+    column(table, "force_N")[:] = trace["commanded_force"].values[taken]
+    return table
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        WALL,
+        zw.Wall(stiffness=300, damping="0.2 N*s/m", velocity_filter=Window(samples=5)),
+        render(WALL, PassivityController()),
+        render(WALL, Damper(damping="0.1 N*s/m", velocity=TickTime())),
+        render(zw.Wall(stiffness=3000), ForceBounding()),
+    ],
+    ids=["wall", "window", "passivity controller", "time between ticks", "force bounding"],
+)
+def test_a_touch_is_replayed(save: Save, law: Any) -> None:
+    """Walls, estimators and laws with a memory; late and missed samples; a saturated, stepped converter."""
+    device = paddle(force_limit=0.5, force_resolution="1 mN")
+    table = touched(device, law, seed=4)
+    found = replay(save(table, device, law))
+    assert found.different == 0
+    assert found.samples == len(table) < SAMPLES
+    assert np.unique(column(table, "force_N")).size > 10
+    assert np.abs(column(table, "force_N")).max() == 0.5
+    assert "to the last bit" in found.describe()
+
+
+def test_forces_by_another_road(save: Save) -> None:
+    """K max(x, 0) at readings that jump and lie between the encoder's counts: nothing is rounded."""
+    table = drawn(400)
+    position = column(table, "position_m")
+    position *= 1e-3
+    position[17] = np.nextafter(22.4e-6, 0.0)
+    column(table, "force_N")[:] = 300.0 * np.maximum(position, 0.0)
+    found = replay(save(table, paddle(), zw.Wall(stiffness=300)))
+    assert (found.samples, found.different) == (400, 0)
+
+
+def test_a_force_that_is_not_the_laws_is_found(save: Save) -> None:
+    """By how much, and in how many samples; not where the safety cut it, and says so."""
+    device = paddle()
+    table = touched(device, WALL, seed=2)
+    deep = int(np.argmax(column(table, "force_N")))
+    column(table, "force_N")[deep] += 0.25
+    found = replay(save(table, device, WALL))
+    assert (found.samples, found.different) == (len(table), 1)
+    assert found.largest == pytest.approx(0.25)
+    assert "another force in 1 of" in found.describe()
+    column(table, "limited")[deep] = 1.0
+    found = replay(save(table, device, WALL))
+    assert (found.samples, found.different) == (len(table) - 1, 0)
+
+
+def test_another_law_gives_other_forces(save: Save) -> None:
+    """Device and environment can be given in the place of what the recording says."""
+    table = touched(paddle(), WALL, seed=2)
+    assert replay(save(table, paddle(), WALL), environment=zw.Wall(stiffness=299)).different > 100
+
+
+def test_a_sample_without_an_answer_is_missed(save: Save) -> None:
+    """Its row has an old reading and the force held: the law did not run."""
+    device = paddle()
+    table = touched(device, WALL, seed=9)
+    whole = len(table)
+    added = np.repeat(table[700:701], 2, axis=0)
+    gap = int(column(table, "sample")[701] - column(table, "sample")[700])
+    column(table, "sample")[701:] += 2
+    column(added, "sample")[:] += gap + np.arange(2)
+    column(added, "status")[:] = 1.0
+    table = np.insert(table, 701, added, axis=0)
+    found = replay(save(table, device, WALL))
+    assert (found.samples, found.different) == (whole, 0)
+
+
+def test_the_second_law_begins_at_rest(save: Save) -> None:
+    """What the first one remembered is gone; each is replayed by its own number."""
+    device, soft = paddle(), zw.Wall(stiffness=100, damping="0.1 N*s/m")
+    first, second = touched(device, WALL, seed=1), touched(device, soft, seed=3)
+    column(second, "sample")[:] += column(first, "sample")[-1] + 1
+    column(second, "law")[:] = 1.0
+    recording = save(np.concatenate([first, second]), device, WALL, soft)
+    for law, rows in enumerate((first, second)):
+        found = replay(recording, law=law)
+        assert (found.samples, found.different) == (len(rows), 0)
+    with pytest.raises(InputError, match="law 2"):
+        replay(recording, law=2)
+
+
+def test_what_cannot_be_replayed_is_refused(save: Save) -> None:
+    """Lost rows, another rate, a law of one's own, one that needs the step of an encoder without steps."""
+    device, law = paddle(), render(WALL, Damper(damping="0.1 N*s/m", velocity=TickTime()))
+    table = touched(device, law, seed=5)
+    with pytest.raises(InputError, match="rows were lost"):
+        replay(save(table, device, law, kept=len(table) - 30))
+    with pytest.raises(InputError, match="the device that was served"):
+        replay(save(table, device, law, period=2e-3))
+    with pytest.raises(InputError, match="give device and environment"):
+        replay(save(table, device))
+    column(table, "position_m")[:] += 1e-6
+    with pytest.raises(InputError, match="whole multiples"):
+        replay(save(table, device, law))
+
+
+def test_rows_that_were_lost_behind_a_law_do_not_matter(save: Save) -> None:
+    """The ring wrote over rows of the time before: the law began later."""
+    device = paddle()
+    table = touched(device, WALL, seed=5)
+    before = drawn(200)
+    for name in ("phase", "law"):
+        column(before, name)[:] = 0.0
+    column(table, "sample")[:] += 200
+    recording = save(np.concatenate([before, table]), device, WALL, kept=len(table) + 60)
+    assert recording.rows_lost == 140
+    assert replay(recording).different == 0
+
+
+def test_the_clock_of_a_recording(save: Save) -> None:
+    """Lateness and missed samples are those that were recorded, counted from where the law began."""
+    device = paddle()
+    touch = touch_of(save(touched(device, WALL, seed=8), device, WALL))
+    timing = Timing(lateness=6e-4, missed=0.04, seed=8)
+    skipped = timing.skipped(SAMPLES)
+    last = int(np.flatnonzero(skipped == 0)[-1])
+    assert np.array_equal(touch.timing.skipped(last), skipped[: last + 1])
+    expected = np.where(skipped == 0, timing.late(SAMPLES, 1e-3), 0.0)
+    assert np.array_equal(touch.timing.late(last, 1e-3), expected[: last + 1])
+    assert touch.duration == last * device.exact("sample_period")
+
+
+@pytest.mark.parametrize(
+    ("suffix", "placement"),
+    [(".mcap", Placement()), (".parquet", Placement(origin=-3.3e-6, sense=-1))],
+    ids=["at a count", "between counts"],
+)
+def test_a_served_touch_is_replayed(tmp_path: Path, suffix: str, placement: Placement) -> None:
+    """A loop in real time, whatever this machine made it miss: the same forces, and nothing lost."""
+    device = paddle(rate="500 Hz", sample_period=None)
+    hand = zw.operators.Finger(force=1.5, speed=0.3, start=-2e-3)
+    simulated = Simulated(device=device, hand=hand, duration="300 ms")
+    with Servo(device, WALL, simulated, placement=placement) as servo:
+        servo.measure("20 ms")
+        with Recorder(servo.rows, tmp_path / f"run{suffix}") as recorder:
+            servo.start(anyway=True)
+            servo.wait()
+    recording = read_recording(tmp_path / f"run{suffix}")
+    assert recording.whole
+    assert recording.samples == servo.rows.count == recorder.close().rows
+    assert replay(recording).different == 0
+    data = recording.dataset()  # its true position is told in the device's own coordinates
+    answered = data["status"].values == 0
+    away = np.abs(data["position"].values - data["measured_position"].values)[answered]
+    assert away.max() < 22.4e-6 * (1 + 1e-9)

@@ -1,0 +1,78 @@
+"""A touch served on a simulated device becomes a whole trace, equal to what the loop wrote down."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from recordings import paddle
+from written_rows import WrittenRows, drawn
+
+import zwidth as zw
+from zwidth import InputError
+from zwidth.energy import ledger
+from zwidth.operator import Operator
+from zwidth.servo.devices import Simulated
+from zwidth.servo.recording import Recorder, Recording, read_recording, trace_of
+from zwidth.servo.session import Servo
+
+WALL = zw.Wall(stiffness=300, damping="0.2 N*s/m")
+
+
+def tracking(size: float) -> Operator:
+    """A hand that follows a path in and out of the wall."""
+    times = 2e-3 * np.arange(151)
+    return zw.operators.Tracking(
+        -size * np.cos(30 * times) + 2e-3 * np.sin(61 * times), stiffness=300.0, damping=1.0
+    )
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Recording:
+    """In real time, with whatever lateness this machine has; a delay, and friction at rest."""
+    path = tmp_path_factory.mktemp("served") / "run.mcap"
+    device = paddle(rate="500 Hz", sample_period=None, stiction=0.2, delay="0.7 ms")
+    simulated = Simulated(device=device, hand=tracking(2e-3), duration="300 ms")
+    with Servo(device, WALL, simulated) as servo:
+        servo.measure("20 ms")
+        with Recorder(servo.rows, path):
+            servo.start(anyway=True)
+            servo.wait()
+    return read_recording(path)
+
+
+def test_the_trace_is_what_was_served(served: Recording) -> None:
+    """Positions, velocities, forces and energies at the samples, bit by bit; and its energies add up."""
+    trace = trace_of(served, tracking(2e-3))
+    good = served.columns["phase"] == 2.0
+    at = served.columns["sample"][good].astype(int)
+    pairs = {
+        "time": "time_s",
+        "measured_position": "position_m",
+        "commanded_force": "force_N",
+        "position": "true_position_m",
+        "velocity": "true_velocity_m_per_s",
+        "hand_work": "hand_work_J",
+        "viscous_loss": "viscous_loss_J",
+        "coulomb_loss": "coulomb_loss_J",
+    }
+    for name, column in pairs.items():
+        assert np.array_equal(trace[name].values[at], served.columns[column][good]), name
+    assert trace.attrs["format"] == "zwidth trace 1"
+    assert ledger(trace).closes
+
+
+def test_another_hand_is_refused(served: Recording) -> None:
+    """Its touch was another one."""
+    with pytest.raises(InputError, match="with this hand the position is another"):
+        trace_of(served, tracking(2.001e-3))
+
+
+def test_a_real_device_has_no_such_trace(tmp_path: Path) -> None:
+    """Nobody knows what its hand did."""
+    rows = WrittenRows(drawn(10))
+    with Recorder(rows, tmp_path / "run.mcap"):
+        rows.written = 10
+    with pytest.raises(InputError, match="of a real device"):
+        trace_of(read_recording(tmp_path / "run.mcap"), tracking(2e-3))

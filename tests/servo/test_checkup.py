@@ -1,0 +1,128 @@
+"""`zw.servo.doctor`: lateness, its cost and what to change, in one report."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.errors import InputError
+from zwidth.servo import checkup as module
+from zwidth.servo.checkup import doctor
+from zwidth.servo.lateness import Lateness, Measured
+from zwidth.servo.priority import Answer, Granted
+
+YES = Granted((Answer("priority", True, "SCHED_FIFO 40"), Answer("memory", True, "all")))
+NO = Granted((Answer("priority", False, "SCHED_FIFO 40: not permitted"), Answer("memory", False, "8 MiB")))
+SLOW = np.full(1000, 80e-6)
+FAST = np.concatenate([np.full(997, 2e-7), np.full(3, 30e-6)])
+
+
+@pytest.fixture
+def machine(monkeypatch):
+    """A machine that is as late as the test says; what was asked of it."""
+    asked = {}
+
+    def put(real_time=True):
+        ordinary = Lateness(SLOW, 4, 0.0, NO)
+        best = Lateness(FAST, 0, 5e-5, YES) if real_time else None
+
+        def measure(period, duration, **more):
+            asked.update(period=period, duration=duration, **more)
+            return Measured(ordinary, best, YES if real_time else NO)
+
+        monkeypatch.setattr(module, "measure_lateness", measure)
+        return asked
+
+    return put
+
+
+def test_the_cost_is_that_of_the_loop_as_it_would_be_served(machine):
+    """With real-time priority where it is granted, else without; K = 2 b/T of a spring."""
+    device = zw.Device(damping="0.35", rate="2 kHz", name="wheel")
+    machine()
+    found = doctor(device, duration=2)
+    assert found.cost.lateness == 30e-6
+    assert found.cost.longer_period == pytest.approx(0.7 / 530e-6)
+    machine(real_time=False)
+    found = doctor(device, duration=2)
+    assert found.cost.lateness == 80e-6
+    assert found.cost.longer_period == pytest.approx(0.7 / 580e-6)
+    assert "real-time priority was not granted: SCHED_FIFO 40: not permitted" in repr(found)
+
+
+def test_the_period_is_given_or_of_the_device_or_a_millisecond(machine):
+    """In this order; and what is given is that of the device as well."""
+    asked = machine()
+    device = zw.Device(damping="0.35", rate="2 kHz")
+    doctor(duration=3)
+    assert (asked["period"], asked["duration"]) == (1e-3, 3)
+    doctor(device, duration=1)
+    assert asked["period"] == 5e-4
+    found = doctor(device, zw.Wall(stiffness=7), sample_period="4 ms", duration=4)
+    assert asked["period"] == 4e-3
+    assert found.cost.nominal == pytest.approx(0.7 / 4e-3)
+
+
+def test_what_is_saved_has_a_unit_in_every_key(machine, tmp_path):
+    """And says the same as the report; without a device there is no cost."""
+    machine()
+    found = doctor(duration=1)
+    found.save(tmp_path / "found.json")
+    told = json.loads((tmp_path / "found.json").read_text())
+    assert told["format"] == "zwidth doctor 1"
+    assert told["ordinary"]["lateness_s"]["of_99_percent"] == 80e-6
+    assert told["real_time"]["lateness_s"]["of_99_9_percent"] == 30e-6
+    assert told["real_time"]["missed"] == 0
+    assert told["cost"] is None
+    assert {finding["about"] for finding in told["findings"]} >= {"kernel", "load", "clock"}
+    assert "99.9 %" in repr(found)
+
+
+def test_the_picture_shows_every_step_of_both(machine, tmp_path):
+    """A histogram each, over powers of ten."""
+    machine()
+    found = doctor(duration=1)
+    figure = found.plot(tmp_path / "late.png")
+    (axes,) = figure.axes
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    steps = [patch.get_path().vertices[:, 1].max() for patch in axes.patches]
+    assert max(steps) == 1000
+    assert (tmp_path / "late.png").stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"sample_period": "10 us"}, "sample_period must be ≥ 20 µs"),
+        ({"duration": "0.9 s"}, "duration must be ≥ 1 s, got 900 ms"),
+        ({"environment": zw.Wall(stiffness=1)}, "give one as well"),
+        (
+            {
+                "device": zw.Device(damping=1, rate=1000),
+                "environment": zw.PulseTransferFunction(numerator=[1], denominator=[1]),
+            },
+            "name a wall",
+        ),
+    ],
+)
+def test_what_cannot_be_told_is_refused_before_the_wait(arguments, said, monkeypatch):
+    """Nothing is measured."""
+
+    def never(*_, **__):
+        raise AssertionError
+
+    monkeypatch.setattr(module, "measure_lateness", never)
+    with pytest.raises(InputError, match=said):
+        doctor(**arguments)
+
+
+def test_it_measures_this_machine():
+    """Not all of its steps were missed, and none was early."""
+    found = doctor(sample_period="1 ms", duration="1 s")
+    for lateness in (found.ordinary, found.real_time):
+        if lateness is not None:
+            assert 0 < len(lateness.late) <= 1000
+            assert (lateness.late >= 0).all()

@@ -1,0 +1,117 @@
+"""What a loop asks of the system: it is told what it was granted, and gives everything back."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+import threading
+
+import pytest
+
+from zwidth.errors import InputError
+from zwidth.servo import priority
+from zwidth.servo.priority import RealTime
+
+linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asked for on Linux only")
+
+
+def _state():
+    """Policy, priority, cores and timer slack of this thread, and how much of the process is locked."""
+    with open("/proc/self/status", encoding="utf-8") as told:
+        locked = next(line for line in told if line.startswith("VmLck"))
+    slack = ctypes.CDLL(None).prctl(30, 0, 0, 0, 0)
+    policy = os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK
+    return policy, os.sched_getparam(0).sched_priority, os.sched_getaffinity(0), slack, locked
+
+
+def _in_a_thread(work):
+    """What work() gives in a thread of its own, whose state nobody else needs."""
+    found = []
+    thread = threading.Thread(target=lambda: found.append(work()))
+    thread.start()
+    thread.join()
+    return found[0]
+
+
+@linux
+def test_all_is_as_it_was_afterwards():
+    """Priority, core, timers and memory; and while it lasts they are as the answers say."""
+    core = max(os.sched_getaffinity(0))
+
+    def work():
+        before = _state()
+        with RealTime(priority=11, core=core) as granted:
+            inside = _state()
+        return before, granted, inside, _state()
+
+    before, granted, inside, after = _in_a_thread(work)
+    assert after == before
+    assert ("priority" in granted) == (inside[:2] == (os.SCHED_FIFO, 11))
+    assert ("one core" in granted) == (inside[2] == {core})
+    assert ("timers" in granted) == (inside[3] in (0, 1))  # 0 of a real-time thread, in newer kernels
+    assert ("memory" in granted) == (inside[4] != before[4])
+
+
+@linux
+def test_a_refusal_says_what_would_help(monkeypatch):
+    """A user without the limits is told which to ask for; the rest is granted all the same."""
+
+    def refuse(*_):
+        raise PermissionError(1, "not permitted")
+
+    monkeypatch.setattr(os, "sched_setscheduler", refuse)
+    monkeypatch.setattr(priority, "memory_limit", lambda: 8 * 2**20)
+    granted = _in_a_thread(lambda: RealTime(priority=40).__enter__())
+    assert "priority" not in granted
+    assert "memory" not in granted
+    assert '"rtprio 40"' in granted["priority"].told
+    assert "8 MiB" in granted["memory"].told
+    assert "memlock unlimited" in granted["memory"].told
+    assert "timers" in granted
+    told = granted.to_dict()
+    assert told["priority"]["granted"] is False
+    assert told["timers"]["granted"] is True
+    assert "priority: not granted: SCHED_FIFO 40" in repr(granted)
+
+
+@linux
+def test_memory_of_a_limited_user_is_never_locked(monkeypatch):
+    """What came after the limit would be refused, in the middle of a touch."""
+    import resource
+
+    monkeypatch.setattr(priority, "_may", lambda capability: False)
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (64 * 2**20, 64 * 2**20))
+    assert priority.memory_limit() == 64 * 2**20
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (resource.RLIM_INFINITY, 0))
+    assert priority.memory_limit() is None
+
+
+def test_an_ordinary_thread_asks_for_no_priority():
+    """What is not asked for is not in the answers."""
+    with RealTime(priority=0, memory=False) as granted:
+        assert {answer.wish for answer in granted.answers} == {"timers", "awake cores"}
+
+
+def test_elsewhere_than_on_linux_nothing_is_granted(monkeypatch):
+    """And that is said of every wish."""
+    monkeypatch.setattr(priority, "_LINUX", False)
+    with RealTime() as granted:
+        assert len(granted.answers) == 4
+        assert not any(answer.granted for answer in granted.answers)
+        assert all("Linux" in answer.told for answer in granted.answers)
+
+
+@pytest.mark.parametrize("wrong", [100, -1, True, 2.5])
+def test_a_priority_outside_its_range_is_refused(wrong):
+    """1 to 99, or 0 for none."""
+    with pytest.raises(InputError, match="from 1 to 99"):
+        RealTime(priority=wrong)
+
+
+@linux
+def test_a_core_that_is_not_there_is_refused():
+    """With those that are."""
+    most = max(os.sched_getaffinity(0))
+    with pytest.raises(InputError, match=f"core {most + 1} .*{most}"):
+        RealTime(core=most + 1)
