@@ -112,6 +112,39 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             "  zwidth simulate my-arms.toml --operator finger --follower-operator wall "
             "--follower-operator.stiffness '2 kN/m' --duration 1",
         ),
+        "serve": Command(
+            "render a wall on a device, in real time",
+            "Reach the device, measure this machine and the link with force 0, prove the wall passive with\n"
+            "what was measured, and render it until the time is over, Ctrl-C, or a fault. The force is 0\n"
+            "before, after, and whenever something is wrong.",
+            "Without --connection the device is simulated, in the hand of --operator (default: a finger).\n"
+            "A plain number is SI; others carry a unit. What is not proved passive is refused.\n\n"
+            "exit status: 0 served to the end; 2 bad input; 5 a fault ended the force or the recording;\n"
+            "not served: 1 active, 3 undecided, 4 passive while contact is kept\n\n"
+            "examples:\n"
+            "  zwidth serve haptic-paddle --stiffness 250 --watch terminal\n"
+            "  zwidth serve my-knob.toml --connection odrive --connection.port /dev/ttyACM0 "
+            "--safety.force '0.1 N*m' -o session.mcap\n"
+            "  zwidth serve my-inverse.toml --connection inverse --stiffness 200 --watch browser",
+        ),
+        "replay": Command(
+            "what a recording of a served loop holds, and whether its law gives those forces again",
+            "Read a recording, whole or cut off; compute its laws again from the readings, and compare the\n"
+            "forces with those that were given, bit by bit.",
+            "exit status: 0 the same forces, 1 others, 2 bad input\n\n"
+            "examples:\n"
+            "  zwidth replay session.mcap --plot session.png\n"
+            "  zwidth replay session.parquet -o session.nc",
+        ),
+        "doctor": Command(
+            "is this machine fit to run the loop?",
+            "Run an empty loop at the device's rate, and say how late it comes, what that costs the device\n"
+            "in stiffness, and what of this machine to change.",
+            "exit status: 0, or 2 on bad input\n\n"
+            "examples:\n"
+            "  zwidth doctor\n"
+            "  zwidth doctor haptic-paddle --stiffness 250 --duration '10 s' --plot lateness.png",
+        ),
         "network": Command(
             "run a scene in several processes, with the devices that hold it",
             "Start a process for each part of a scene and for each device, join them by lines over shared\n"

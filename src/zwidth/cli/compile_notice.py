@@ -45,6 +45,14 @@ def warn_of_compiling_the_links() -> None:
         _say("compiling the ports")
 
 
+def warn_of_compiling_the_servo() -> None:
+    """Say that the served loop is being compiled, where it has not been yet."""
+    from zwidth.compiled import is_compiled
+
+    if not is_compiled("servo"):
+        _say("compiling the loop")
+
+
 def _say(what: str) -> None:
     if sys.stderr is not None:
         print(f"zwidth: {what}, once; this takes some seconds", file=sys.stderr)

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ from zwidth.quantity.parameter import read_number
 if TYPE_CHECKING:
     from zwidth.cli.network_plan import Plan
     from zwidth.network.peer import Peer
+    from zwidth.servo.port_run import PortRun
 
 FORMAT = "zwidth network 1"
 
@@ -67,31 +69,53 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _described(plan: Plan) -> str:
-    devices = (f"{name}: {device.name or 'device'}" for name, (device, _) in plan.devices.items())
+    devices = (f"{name}: {held.describe()}" for name, held in plan.devices.items())
     lines = (f"{name}: {line.channel}" for name, line in plan.lines.items())
     return "\n".join([repr(plan.cut), "", *devices, *lines])
 
 
 def _one(plan: Plan, name: str, duration: Exact, as_json: bool) -> int:
     from zwidth.cli.compile_notice import warn_of_compiling
+    from zwidth.servo.port_run import PortRun
+    from zwidth.servo.priority import RealTime
+    from zwidth.servo.safety import ASKED, DONE
 
     warn_of_compiling()
     signal.signal(signal.SIGTERM, _interrupted)
     peer = plan.peer(name, duration)
+    real = peer.runs if isinstance(peer.runs, PortRun) else None
     try:
         for line in peer.meet(_MEETING):
             print(f"{name}: nobody is at the other end of {line} yet; running all the same", file=sys.stderr)
+        if real is not None:  # after the meeting: its own watchdog counts from here on
+            real.reach()
+            print(f"{name}: {_about(real)}", file=sys.stderr)
         ended: list[int] = []
         for told in (signal.SIGTERM, signal.SIGINT):
             signal.signal(told, lambda *_: ended.append(1))
-        report = peer.run(duration, _Watch(peer, name), stop=lambda: bool(ended))
+        with nullcontext() if real is None else RealTime() as granted:
+            if granted is not None:
+                print(f"{name}: {granted}", file=sys.stderr)
+            report = peer.run(duration, _Watch(peer, name), stop=lambda: bool(ended or (real and real.ended)))
+        if real is not None:
+            real.end(ASKED if ended else DONE)
     finally:
+        if real is not None:
+            real.close()
         peer.close()
+    failed = real is not None and real.failed
     if as_json:
-        print_json(json.dumps({"format": FORMAT, "processes": {name: report.to_dict()}}, allow_nan=False))
+        seen = report.to_dict() | ({} if real is None else {"device": real.report().to_dict()})
+        print_json(json.dumps({"format": FORMAT, "processes": {name: seen}}, allow_nan=False))
     else:
-        print_text(f"{name}: {report!r}")
-    return 0
+        print_text("\n".join([f"{name}: {report!r}", *([] if real is None else [repr(real.report())])]))
+    return int(failed)
+
+
+def _about(real: PortRun) -> str:
+    """What the person at the device has to know."""
+    connection = real.connection
+    return f"{connection.describe()}; if nothing comes any more: {connection.on_silence}"
 
 
 def _interrupted(*_: object) -> None:

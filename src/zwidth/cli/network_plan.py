@@ -10,8 +10,9 @@
     source = "haptic-paddle"             channel = "udp:127.0.0.1:7401,127.0.0.1:7402"
     operator = { type = "finger" }       loss = 0.1
 
-A device holds the line end of its name; its source is of the catalogue, or a file with a [device].  A part
-without nodes has all that are in no other; a line without a channel goes through shared memory.
+A device holds the line end of its name; its source is of the catalogue, or a file with a [device].  Where
+it has a `connection` in the place of an operator it is a real one, and may have a `safety`.  A part without
+nodes has all that are in no other; a line without a channel goes through shared memory.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from zwidth.cli.simulation_tables import build_hand
 from zwidth.device import Device
@@ -44,15 +45,24 @@ from zwidth.specification.read import load_device, read_tables
 from zwidth.specification.table import Table, located
 from zwidth.specification.values import read
 
+if TYPE_CHECKING:
+    from zwidth.servo.connection import Placement
+    from zwidth.servo.port_run import PortRun
+    from zwidth.servo.safety import Safety
+
 _LONGEST_WAIT = 20.0
 """How long a process waits for the one that makes their shared memory [s]."""
 
 _WORSE = parameters_of(Schedule)
 _KINDS = {
     "part": ("name", "nodes", "sample_period"),
-    "device": ("name", "source", "operator"),
+    "device": ("name", "source", "operator", "connection", "safety"),
     "line": ("name", "channel", "impedance", *_WORSE),
 }
+_LONGEST = "longest_period"
+_PLACED = ("origin", "sense", _LONGEST)
+"""Keys of a connection that are not the device's own."""
+
 _KEYS = ("delay", "parts", "sample_period", *_KINDS)
 
 
@@ -74,12 +84,45 @@ class Line:
 
 
 @dataclass(frozen=True)
+class Held:
+    """A simulated device in a scripted hand, or, with a connection, a real one in a person's."""
+
+    device: Device
+    hand: Operator | None
+    reached: Reached | None = None
+
+    def describe(self) -> str:
+        """Which device, and how it is reached."""
+        name = self.device.name or "device"
+        return name if self.reached is None else f"{name}, {self.reached.connection.describe()}"
+
+    def runs(self, port: WavePort, duration: Exact, line: str) -> DeviceRun | PortRun:
+        """What its process steps; a real device is not reached yet."""
+        if self.reached is None:
+            assert self.hand is not None
+            return DeviceRun(port, self.hand, duration, line)
+        from zwidth.servo.port_run import PortRun
+
+        return PortRun(port, line=line, **vars(self.reached))
+
+
+@dataclass(frozen=True)
+class Reached:
+    """How a real device is reached, and the limits of what its hand is given."""
+
+    connection: Any
+    placement: Placement
+    safety: Safety
+    longest_period: Exact | None
+
+
+@dataclass(frozen=True)
 class Plan:
     """A scene, its parts and its devices, each to be run by a process of its name."""
 
     cut: Cut
     periods: Mapping[str, Exact]
-    devices: Mapping[str, tuple[Device, Operator]]
+    devices: Mapping[str, Held]
     lines: Mapping[str, Line]
 
     @property
@@ -87,7 +130,7 @@ class Plan:
         """The processes: parts, then devices."""
         return (*self.periods, *self.devices)
 
-    def runs(self, name: str, duration: Exact) -> PartRun | DeviceRun:
+    def runs(self, name: str, duration: Exact) -> PartRun | DeviceRun | PortRun:
         """What the process of a name steps.
 
         Raises
@@ -99,10 +142,10 @@ class Plan:
             raise InputError(f'no process is called "{name}"; there are: {", ".join(self.names)}')
         if name not in self.devices:
             return PartRun(next(p for p in self.cut.parts if p.name == name), self.periods[name])
-        device, hand = self.devices[name]
+        held = self.devices[name]
         ends = (end for part in self.cut.parts for end in part.ends if end.title == name)
-        w = next(ends).resistance(device.exact("sample_period"))
-        return DeviceRun(WavePort(device, impedance=w), hand, duration, name)
+        w = next(ends).resistance(held.device.exact("sample_period"))
+        return held.runs(WavePort(held.device, impedance=w), duration, name)
 
     def peer(self, name: str, duration: Exact) -> Peer:
         """The same with its channels open.
@@ -119,7 +162,7 @@ class Plan:
             }
             opened.pop_all()
         own = self.devices.get(name)
-        return Peer(runs, channels, Exact(own[0].exact("sample_period")) if own else self.periods[name])
+        return Peer(runs, channels, Exact(own.device.exact("sample_period")) if own else self.periods[name])
 
 
 def load_plan(path: Path) -> Plan:
@@ -232,18 +275,50 @@ def _period(row: Table, table: Table) -> Exact:
     return _number(owner, "sample_period", "sample_period")
 
 
-def _device(row: Table) -> tuple[str, tuple[Device, Operator]]:
+def _device(row: Table) -> tuple[str, Held]:
     if "source" not in row.values:
         raise InputError(
             f"{row.label}: source is missing: a device of the catalogue, or a file with a [device]"
         )
-    hand = row.values.get("operator", {"type": "finger"})
-    if not isinstance(hand, Mapping):
-        raise InputError(f'{row.label}: operator is a table, such as {{ type = "finger" }}')
     device = load_device([row.text("source")], {})
     if device.motion != "linear":
         raise InputError(f"{row.label}: the device is {device.motion}; a network's scene moves along an axis")
-    return row.text("name"), (device, build_hand(Table(f"{row.label} operator", hand), device.motion))
+    if "connection" in row.values:
+        return row.text("name"), _real(row, device)
+    if "safety" in row.values:
+        raise InputError(f"{row.label}: safety is of a real device, and this one has no connection")
+    hand = _inner(row, "operator", '{ type = "finger" }', {"type": "finger"})
+    return row.text("name"), Held(device, build_hand(hand, device.motion))
+
+
+def _real(row: Table, device: Device) -> Held:
+    """A device with a connection."""
+    from zwidth.servo.connection import Placement
+    from zwidth.servo.devices.registry import build_connection
+    from zwidth.servo.safety import read_safety
+
+    if "operator" in row.values:
+        raise InputError(
+            f"{row.label}: an operator holds a simulated device, and a connection is of a real one, which a "
+            "person holds: leave out one of the two"
+        )
+    table = _inner(row, "connection", '{ type = "hapkit", port = "/dev/ttyUSB0", count = "13 um" }')
+    place = Table(table.label, {key: table.values.pop(key) for key in _PLACED if key in table.values})
+    longest = _number(place, _LONGEST, "sample_period") if _LONGEST in place.values else None
+    connection = build_connection(table)
+    if "delay" in device.assumed:  # not told: what the port makes of it, the shortest that it can have
+        waits = max(connection.late, 1)
+        device = device.replace(delay=Exact(waits * device.exact("sample_period")))
+    safety = read_safety(_inner(row, "safety", '{ force = "2 N" }', {}), device.motion)
+    return Held(device, None, Reached(connection, Placement.read(place, device.motion), safety, longest))
+
+
+def _inner(row: Table, key: str, example: str, default: Mapping[str, Any] | None = None) -> Table:
+    """A table in a table."""
+    given = row.values.get(key, default)
+    if not isinstance(given, Mapping):
+        raise InputError(f"{row.label}: {key} is a table, such as {example}")
+    return Table(f"{row.label} {key}", dict(given))
 
 
 def _impedances(rows: list[Table]) -> Iterator[tuple[str, Exact]]:

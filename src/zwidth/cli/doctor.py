@@ -1,0 +1,97 @@
+"""The command `doctor`: is this machine fit to run the loop?"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from zwidth.cli.options import Once, add_law_option, add_output, add_parameters, overrides
+from zwidth.cli.output import give_out, targets
+from zwidth.errors import InputError
+from zwidth.quantity.exact import Exact
+from zwidth.quantity.glossary import GLOSSARY
+from zwidth.quantity.parameter import read_number
+from zwidth.specification.table import quoted
+
+if TYPE_CHECKING:
+    from zwidth.device import Device
+    from zwidth.environment.environment import Environment
+
+_DURATION = "60 s"
+_TIMING = ("rate", "sample_period")
+"""What may be given without a device."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `zwidth doctor`."""
+    parser.usage = (
+        "%(prog)s [SOURCE ...] [--law NAMES] [--duration TIME] [--core N] [--PARAMETER VALUE ...] [--json] "
+        "[--plot FILE] [-o FILE] [--force]"
+    )
+    parser.add_argument(
+        "sources",
+        metavar="SOURCE",
+        nargs="*",
+        help="of which to say what it costs: device of the catalogue, or TOML file with a [device] table, an "
+        "[environment] table or both (default: none, at 1 kHz)",
+    )
+    add_law_option(parser)
+    loop = parser.add_argument_group("loop")
+    for option, metavar, meaning in (
+        ("--duration", "TIME", f"how long the loop runs [s] (default: {_DURATION})"),
+        ("--core", "N", "number of the core that the loop keeps to (default: any)"),
+    ):
+        loop.add_argument(option, metavar=metavar, action=Once, help=meaning)
+    add_output(parser, "what was found", "a histogram of the lateness", "the same as --json prints")
+    add_parameters(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """`zwidth doctor`: 0."""
+    from zwidth.quantity.units import parse_number
+    from zwidth.servo.checkup import doctor
+
+    plot, save = targets(arguments.plot, arguments.save, arguments.force)
+    core = _core(arguments.core)
+    duration = parse_number(arguments.duration or _DURATION, "s", "duration")
+    device, environment, period = _loop(arguments)
+    found = doctor(device, environment, duration=duration, sample_period=period, core=core)
+    give_out(found, save, plot, arguments.json)
+    return 0
+
+
+def _core(typed: str | None) -> int | None:
+    if typed is None:
+        return None
+    if not (typed.isascii() and typed.isdigit()):
+        raise InputError(f"--core is the number of a core, such as 1, got {quoted(typed)}")
+    return int(typed)
+
+
+def _loop(arguments: argparse.Namespace) -> tuple[Device | None, Environment | None, Exact | None]:
+    """Device, environment and period; None for what was not given, and for a period that the device has."""
+    from zwidth.specification.laws import with_laws
+    from zwidth.specification.read import DEVICE_KEYS, WITH_LAWS, read_tables, specified, specified_device
+
+    tables, typed = read_tables(arguments.sources, WITH_LAWS), overrides(arguments)
+    laws = tables.get("law") or arguments.law
+    if not tables and not laws and set(typed) <= set(_TIMING):
+        return None, None, _period(typed)
+    if "environment" not in tables and not laws and set(typed) <= set(DEVICE_KEYS):
+        return specified_device(tables, typed), None, None
+    given = specified(tables, typed)
+    rendered = with_laws(given.environment, tables.get("law"), arguments.law, given.device.motion)
+    return given.device, rendered, None
+
+
+def _period(typed: Mapping[str, str]) -> Exact | None:
+    """What --rate or --sample-period says."""
+    if not typed:
+        return None
+    if len(typed) == 2:
+        raise InputError("give either --rate or --sample-period: each says how often the loop runs")
+    ((name, text),) = typed.items()
+    why = "the loop has to run to be late"
+    number = read_number(text, GLOSSARY[name], name, bound="> 0", why=why)
+    return Exact(1 / number.fraction) if name == "rate" else number

@@ -1,0 +1,111 @@
+"""`zwidth doctor`: what is asked about, and what is printed and saved."""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+import numpy as np
+import pytest
+
+import zwidth as zw
+from zwidth.cli.doctor import configure, run
+from zwidth.errors import InputError
+from zwidth.servo import checkup
+from zwidth.servo.lateness import Lateness, Measured
+from zwidth.servo.priority import Answer, Granted
+
+NO = Granted((Answer("priority", False, "not permitted"), Answer("memory", False, "8 MiB")))
+
+
+@pytest.fixture
+def doctor(monkeypatch, capsys):
+    """Runs the command on a machine that is 40 µs late, and gives (what was measured, what was printed)."""
+    measured = {}
+
+    def measure(period, duration, **more):
+        measured.update(period=period, duration=duration, core=more["core"])
+        return Measured(Lateness(np.full(1000, 40e-6), 0, 0.0, NO), None, NO)
+
+    monkeypatch.setattr(checkup, "measure_lateness", measure)
+
+    def command(*argv):
+        parser = argparse.ArgumentParser()
+        configure(parser)
+        assert run(parser.parse_args(argv)) == 0
+        return dict(measured), capsys.readouterr().out
+
+    return command
+
+
+def test_without_a_device_a_minute_at_a_kilohertz(doctor):
+    """Or as often and as long as is typed, with a unit."""
+    asked, told = doctor()
+    assert asked == {"period": 1e-3, "duration": 60, "core": None}
+    assert "a loop at 1 kHz" in told
+    assert "stiffness" not in told
+    assert doctor("--rate", "4 kHz", "--duration", "2 s", "--core", "1")[0] == {
+        "period": 25e-5,
+        "duration": 2,
+        "core": 1,
+    }
+    assert doctor("--sample-period", "2 ms")[0]["period"] == 2e-3
+
+
+def test_a_device_alone_has_a_spring(doctor):
+    """At its own rate, and the cost is that of K = 2 b/T; --rate overrides it."""
+    device = ["--damping", "0.35", "--rate", "2 kHz"]
+    asked, told = doctor(*device, "--json")
+    cost = json.loads(told)["cost"]["max_stiffness_N_per_m"]
+    assert asked["period"] == 5e-4
+    assert cost["nominal"] == pytest.approx(1400)
+    assert cost["longer_period"] == pytest.approx(0.7 / 540e-6)
+
+
+def test_an_environment_comes_from_options_or_a_file(doctor, tmp_path):
+    """The same wall by both roads costs the same, and another than a spring does."""
+    (tmp_path / "wall.toml").write_text(
+        '[environment]\ntype = "wall"\nstiffness = 10\nvirtual_damping = 0.04\n'
+    )
+    typed = doctor("haptic-paddle", "--stiffness", "10", "--virtual-damping", "0.04", "--json")[1]
+    read = doctor("haptic-paddle", str(tmp_path / "wall.toml"), "--json")[1]
+    spring = doctor("haptic-paddle", "--json")[1]
+    costs = [json.loads(text)["cost"] for text in (typed, read, spring)]
+    assert costs[0] == costs[1]
+    assert costs[0] != costs[2]
+    device = zw.catalogue.device("haptic-paddle")
+    assert (
+        costs[2]["max_stiffness_N_per_m"]["nominal"] == zw.check(device, zw.Wall(stiffness=1)).max_stiffness
+    )
+
+
+def test_what_is_saved_is_what_is_printed(doctor, tmp_path):
+    """As JSON and as a picture; neither is replaced unasked."""
+    saved, drawn = tmp_path / "found.json", tmp_path / "late.svg"
+    told = doctor("--duration", "1", "-o", str(saved), "--plot", str(drawn))[1]
+    assert f"written: {saved}" in told
+    assert json.loads(saved.read_text())["format"] == "zwidth doctor 1"
+    assert drawn.read_text().startswith("<?xml")
+    with pytest.raises(InputError, match="exists"):
+        doctor("-o", str(saved))
+
+
+@pytest.mark.parametrize(
+    ("argv", "said"),
+    [
+        (["--rate", "0"], "rate must be > 0"),
+        (["--rate", "1 kHz", "--sample-period", "1 ms"], "either --rate or --sample-period"),
+        (["--core", "first"], "--core is the number of a core"),
+        (["--duration", "1 m"], "duration"),
+        (["--stiffness", "10"], "no device is given"),
+        (["--law", "passivity-controller"], "no device is given"),
+        (
+            ["haptic-paddle", "--type", "pulse-transfer-function", "--numerator", "1", "--denominator", "1"],
+            "none",
+        ),
+    ],
+)
+def test_bad_input_says_what_is_wrong(argv, said, doctor):
+    """Before anything is measured."""
+    with pytest.raises(InputError, match=said):
+        doctor(*argv)

@@ -1,0 +1,217 @@
+"""`zwidth network` with a real device at a line: an emulated board, in processes joined by real sockets."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import signal
+import socket
+import subprocess
+import sys
+import uuid
+
+import pytest
+from servo.emulators.faults import Fault
+from servo.emulators.hapkit import HapkitEmulator
+
+from zwidth.cli.main import main
+from zwidth.cli.network_plan import load_plan
+from zwidth.quantity.exact import Exact
+from zwidth.servo.port_run import PortRun
+
+SCENE = """
+[environment]
+type = "scene"
+port = ""
+
+[[environment.elements]]
+type = "line-end"
+node = "tool"
+impedance = "0.5 N*s/m"
+name = "paddle"
+
+[[environment.elements]]
+type = "mass"
+node = "tool"
+mass = "50 g"
+
+[[environment.elements]]
+type = "spring"
+first = "tool"
+second = "ground"
+stiffness = "40 N/m"
+"""
+
+NETWORK = """
+[network]
+sample_period = "8 ms"
+
+[[network.part]]
+name = "room"
+
+[[network.device]]
+name = "paddle"
+source = "real.toml"
+CONNECTION
+"""
+
+REAL = """
+[device]
+damping = "0.5 N*s/m"
+coulomb_friction = "0.1 N"
+resolution = "20 um"
+sample_period = "8 ms"
+force_limit = "3 N"
+force_resolution = "1 mN"
+"""
+
+KIT = 'connection = { type = "hapkit", port = "PORT", count = "20 um" }\n'
+SLOW = 'safety = { force = "1.5 N", bad_answers = 200, longest_gap = "30 s" }\n'
+"""This machine may be busy."""
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """A file of a network names that of its device from where it is run."""
+    monkeypatch.chdir(tmp_path)
+
+
+def file(tmp_path, connection, port="/dev/null", line=""):
+    """The file of a network, with its device beside it."""
+    (tmp_path / "real.toml").write_text(REAL, encoding="utf-8")
+    path = tmp_path / "room.toml"
+    text = SCENE + NETWORK.replace("CONNECTION", connection.replace("PORT", port)) + line
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def free_ports(count):
+    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(count)]
+    for one in sockets:
+        one.bind(("127.0.0.1", 0))
+    found = [one.getsockname()[1] for one in sockets]
+    for one in sockets:
+        one.close()
+    return found
+
+
+def udp():
+    one, other = free_ports(2)
+    return f"udp:127.0.0.1:{one},127.0.0.1:{other}"
+
+
+def zenoh():
+    pytest.importorskip("zenoh", reason="Eclipse Zenoh is not installed")
+    return f"zenoh:test/{uuid.uuid4().hex},udp/127.0.0.1:{free_ports(1)[0]}"
+
+
+def process(path, name):
+    command = [
+        sys.executable,
+        "-m",
+        "zwidth",
+        "network",
+        str(path),
+        "--json",
+        "--duration",
+        "3 s",
+        "--run",
+        name,
+    ]
+    return subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8"
+    )
+
+
+@pytest.mark.parametrize("channel", [udp, zenoh])
+def test_a_board_feels_the_scene_and_no_force_once_the_scene_is_killed(tmp_path, channel):
+    """Its handle goes to and fro by 4 mm; no side hears of more energy than the other sent."""
+    line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{channel()}"\n'
+    with HapkitEmulator(lambda exchange: round(200 * math.sin(0.05 * exchange))) as board:
+        path = file(tmp_path, KIT + SLOW, board.port, line)
+        load_plan(path).runs("room", Exact(1)).step()  # compiled once, not by both
+        load_plan(path).runs("paddle", Exact(1))
+        children = {name: process(path, name) for name in ("room", "paddle")}
+        seen = []
+        for text in children["paddle"].stderr:
+            seen.append(text)
+            if "at 1 s" in text:
+                break
+        felt = len(board.commands)
+        children["room"].send_signal(signal.SIGKILL)
+        children["room"].communicate()
+        told = json.loads(children["paddle"].communicate()[0])["processes"]["paddle"]
+    assert children["paddle"].returncode == 0
+    about = next(text for text in seen if "Hapkit at" in text)
+    assert "if nothing comes any more: sets its force to 0" in about
+    forces = [command.force for command in board.commands]
+    assert max(map(abs, forces[:felt])) > 0.01
+    assert max(map(abs, forces)) <= 1.5
+    assert not any(forces[-20:])
+    link = told["links"]["paddle"]
+    assert link["received"] > 10
+    assert link["silent_s"] > 0.2
+    assert link["last_force_N"] == 0
+    assert told["device"]["ended"] == "ended, since the time was over"
+    assert told["device"]["samples"] <= told["steps"]
+
+
+def test_a_board_that_fails_ends_its_process_with_force_0_and_status_1(tmp_path, capsys, monkeypatch):
+    """Two bad answers in a row; nobody is at the other end, and nothing was felt."""
+    monkeypatch.setattr("zwidth.cli.network._MEETING", 0.0)
+    line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{udp()}"\n'
+    with HapkitEmulator(lambda exchange: exchange, Fault.GARBAGE, at=20) as board:
+        path = file(tmp_path, KIT + 'safety = { longest_gap = "30 s" }\n', board.port, line)
+        assert main(["network", str(path), "--run", "paddle", "--duration", "30 s", "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)["processes"]["paddle"]
+    assert "no whole frame" in told["device"]["ended"] or "no answer in time" in told["device"]["ended"]
+    assert told["steps"] < 3000
+    assert board.commands[-1].force == 0.0
+
+
+def test_a_plan_says_how_a_device_is_reached_and_reaches_none(tmp_path, capsys, monkeypatch):
+    """No such port is there; the delay that was not given is the shortest that a port can have."""
+    monkeypatch.setattr("zwidth.cli.network._MEETING", 0.0)
+    line = f'\n[[network.line]]\nname = "paddle"\nchannel = "{udp()}"\n'
+    path = file(tmp_path, KIT + SLOW, "/dev/no-such-port", line)
+    assert main(["network", str(path), "--plan"]) == 0
+    assert "paddle: real, Hapkit at /dev/no-such-port" in capsys.readouterr().out
+    run = load_plan(path).runs("paddle", Exact(1))
+    assert isinstance(run, PortRun)
+    assert run.port.device.exact("delay") == run.port.device.exact("sample_period")
+    assert run.port.device.force_limit == 1.5
+    assert main(["network", str(path), "--run", "paddle"]) == 2
+    assert "/dev/no-such-port" in capsys.readouterr().err
+
+
+def test_a_place_and_a_longest_period_stand_with_the_connection(tmp_path):
+    """And are of the run; the port keeps account of that period."""
+    kit = KIT.replace("count", 'origin = "1 mm", sense = -1, longest_period = "9 ms", count')
+    run = load_plan(file(tmp_path, kit)).runs("paddle", Exact(1))
+    assert isinstance(run, PortRun)
+    assert (run.placement.origin, run.placement.sense) == (1e-3, -1)
+    assert run.port.device.sample_period == 9e-3
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (KIT + 'operator = { type = "finger" }', "leave out one of the two"),
+        ('safety = { force = "2 N" }', "this one has no connection"),
+        ('connection = "hapkit"', "connection is a table, such as"),
+        (KIT + 'safety = "2 N"', "safety is a table, such as"),
+        (KIT.replace("count", "counts"), "counts"),
+        (KIT.replace('type = "hapkit"', 'type = "hapkid"'), 'did you mean "hapkit"'),
+        (KIT + 'safety = { forces = "2 N" }', "forces"),
+        (KIT + 'safety = { slew = "2 N/s" }', "leave out slew"),
+        (KIT.replace("count", 'longest_period = "7 ms", count'), "longest_period must be ≥ 8 ms"),
+    ],
+)
+def test_what_is_no_real_device_is_refused_in_one_line(tmp_path, capsys, more, said):
+    """Before anything is reached."""
+    path = file(tmp_path, more)
+    assert main(["network", str(path), "--run", "paddle"]) == 2
+    told = capsys.readouterr().err
+    assert re.search(said, told), told
+    assert told.count("\n") == 1
