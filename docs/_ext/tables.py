@@ -65,6 +65,31 @@ def follower_options() -> str:
     return _options(follower_parameters())
 
 
+def connection_options() -> str:
+    """How a device is reached, as options of the command line."""
+    from zwidth.cli.serve_tables import connection_parameters
+
+    return _options(connection_parameters())
+
+
+def connection_keys() -> str:
+    """Every connection, with the keys of its table."""
+    from zwidth.servo.devices.registry import CONNECTIONS
+
+    rows = []
+    for name, way in CONNECTIONS.items():
+        optional = ", ".join(f"`{key}`" for key in way.keys if key not in way.needed)
+        rows.append((f"`{name}`", way.meaning, ", ".join(f"`{key}`" for key in way.needed), optional))
+    return markdown(("type", "what it reaches", "needs", "may have"), rows)
+
+
+def safety_options() -> str:
+    """The limits of what a hand is given, as options of the command line."""
+    from zwidth.cli.serve_tables import safety_parameters
+
+    return _options(safety_parameters())
+
+
 def simulation_options() -> str:
     """How a simulation is run, as options of the command line."""
     from zwidth.cli.simulation_tables import simulation_parameters
@@ -198,6 +223,9 @@ def lines_to_trust() -> str:
 
 
 TABLES: dict[str, Callable[[], str]] = {
+    "connection_keys": connection_keys,
+    "connection_options": connection_options,
+    "safety_options": safety_options,
     "coupling_keys": coupling_keys,
     "coupling_options": coupling_options,
     "device_keys": device_keys,
