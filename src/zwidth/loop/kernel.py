@@ -13,13 +13,12 @@ from zwidth.compiled import Array, compiled
 from zwidth.loop.carry import carry
 from zwidth.loop.law import (
     BILATERAL,
-    CHAIN,
     GATE,
     LIMIT,
     PHASE,
-    REMEMBERED,
     RESOLUTION,
     STEP,
+    limited,
     measured,
     rendered_force,
     rounded,
@@ -239,10 +238,7 @@ def commanded(state: Array, law: Array, memory: Array, reading: float) -> float:
     f = rounded(wish, law[STEP])
     if law[LIMIT] > 0.0 and abs(f) > law[LIMIT]:
         state[SATURATED] += 1.0
-        f = law[LIMIT] if f > 0.0 else -law[LIMIT]
-    if law[CHAIN] > 0.0:
-        memory[int(law[REMEMBERED])] = f
-    return f
+    return limited(law, memory, f)
 
 
 @compiled

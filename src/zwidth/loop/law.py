@@ -8,7 +8,7 @@
     f   = step of a scene               or a scene, moved to x_m
     f   = max(f, 0)                     where the law never pulls
     f   = law(x_m, f)                   one after the other, where laws render the environment
-    f   = ΔF round(f/ΔF)                what the converter makes of it
+    f   = ΔF round(f/ΔF), |f| ≤ F_max   what the converter makes of it
 
 A wall's velocity estimator runs on every measured position; a viscoelastic
 solid, which can be left, on the penetration max(x_m, 0).  Neither pushes where
@@ -111,3 +111,26 @@ def rendered_force(law: Array, memory: Array, reading: float) -> float:
     # one call of each: what is called is compiled into its caller every time
     f = scene_force(law, HEADER, memory, 0, seen) if law[CONTACT] == SCENE else law_force(law, memory, seen)
     return after(law, row, chain, memory, slot, reading, f) if chain > 0 else f
+
+
+@compiled
+def limited(law: Array, memory: Array, force: float) -> float:
+    """The same within the force limit; the laws in the chain remember what is applied."""
+    f = force
+    if law[LIMIT] > 0.0 and abs(f) > law[LIMIT]:
+        f = law[LIMIT] if f > 0.0 else -law[LIMIT]
+    if law[CHAIN] > 0.0:
+        memory[int(law[REMEMBERED])] = f
+    return f
+
+
+@compiled
+def sampled_force(law: Array, memory: Array, counts: int) -> float:
+    """One sample, from the encoder's counts to the force that the converter is told to give."""
+    return limited(law, memory, rounded(rendered_force(law, memory, law[RESOLUTION] * counts), law[STEP]))
+
+
+@compiled
+def sampled_force_at(law: Array, memory: Array, reading: float) -> float:
+    """The same from a position, where the encoder's resolution is not known."""
+    return limited(law, memory, rounded(rendered_force(law, memory, reading), law[STEP]))

@@ -1,0 +1,163 @@
+"""A program as C99."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from zwidth.firmware.printer import Printer
+from zwidth.firmware.program import Cells, Constant, Table, Variable
+
+Real = Literal["double", "float"]
+
+_LIBRARY = {"abs": "fabs", "floor": "floor", "ceil": "ceil", "sqrt": "sqrt"}
+
+KEYWORDS = frozenset(
+    [
+        "auto",
+        "break",
+        "case",
+        "char",
+        "const",
+        "continue",
+        "default",
+        "do",
+        "double",
+        "else",
+        "enum",
+        "extern",
+        "float",
+        "for",
+        "goto",
+        "if",
+        "inline",
+        "int",
+        "long",
+        "register",
+        "restrict",
+        "return",
+        "short",
+        "signed",
+        "sizeof",
+        "static",
+        "struct",
+        "switch",
+        "typedef",
+        "union",
+        "unsigned",
+        "void",
+        "volatile",
+        "while",
+        "abs",
+        "fabs",
+        "floor",
+        "ceil",
+        "sqrt",
+        "s",
+        "counts",
+        "table",
+        "true",
+        "false",
+        "bool",
+    ]
+)
+
+HELPERS = {
+    "least": "static inline {real} {prefix}_least({real} a, {real} b) {{ return b < a ? b : a; }}",
+    "most": "static inline {real} {prefix}_most({real} a, {real} b) {{ return b > a ? b : a; }}",
+    "rest": "static inline int32_t {prefix}_rest(int32_t a, int32_t b) "
+    "{{ int32_t r = a % b; return r < 0 ? r + b : r; }}",
+    "whole": "static inline int32_t {prefix}_whole(int32_t a, int32_t b) "
+    "{{ return (a - {prefix}_rest(a, b)) / b; }}",
+    "remainder": "static inline {real} {prefix}_remainder({real} a, {real} b) "
+    "{{ {real} r = fmod{suffix}(a, b); return r < 0 ? r + b : r; }}",
+}
+"""Functions that a text may need; divisors are positive."""
+
+
+@dataclass
+class C99(Printer):
+    """Writes C99; `real` is the type of its real numbers."""
+
+    real: Real = "double"
+    prefix: str = "law"
+
+    @property
+    def suffix(self) -> str:
+        """Of the functions and the constants."""
+        return "f" if self.real == "float" else ""
+
+    def constant(self, constant: Constant) -> str:
+        return real_text(constant.value, self.real) if constant.kind == "real" else str(int(constant.value))
+
+    def operation(self, operator: str, kind: str, read: list[str]) -> str:
+        if operator in _LIBRARY:
+            return f"{_LIBRARY[operator]}{self.suffix}({read[0]})"
+        if operator in ("and", "or"):
+            return f"{read[0]} {'&&' if operator == 'and' else '||'} {read[1]}"
+        if operator == "not":
+            return f"!{read[0]}"
+        if operator == "select":
+            return f"{read[0]} ? {read[1]} : {read[2]}"
+        if operator == "real":
+            return f"({self.real})({read[0]})"
+        if operator == "integer":
+            return f"(int32_t)({read[0]})"
+        helper = {"min": "least", "max": "most", "//": "whole", "%": "rest"}[operator]
+        if operator == "%" and kind == "real":
+            helper = "remainder"
+        if operator in ("min", "max") and kind == "integer":
+            sign = "<" if operator == "min" else ">"
+            return f"({read[1]}) {sign} ({read[0]}) ? ({read[1]}) : ({read[0]})"
+        self.helpers |= {helper, "rest"} if helper == "whole" else {helper}
+        return f"{self.prefix}_{helper}({', '.join(read)})"
+
+    def declared(self, variable: Variable, name: str) -> str:
+        return f"    {self.type_of(variable)} {name} = 0;"
+
+    def given(self, variable: Variable, name: str, text: str) -> str:
+        return f"const {self.type_of(variable)} {name} = {text};"
+
+    def place(self, source: Cells | Table, name: str, index: str) -> str:
+        return f"s->{name}[{index}]" if isinstance(source, Cells) else f"{self.prefix}_{name}[{index}]"
+
+    def counter(self) -> str:
+        return "int32_t"
+
+    def type_of(self, variable: Variable) -> str:
+        """The type of a variable."""
+        return {"real": self.real, "integer": "int32_t", "truth": "int"}[variable.kind]
+
+    def helper_lines(self) -> list[str]:
+        """The functions that the text calls, in the order in which they may stand."""
+        values = {"real": self.real, "prefix": self.prefix, "suffix": self.suffix}
+        return [text.format(**values) for name, text in HELPERS.items() if name in self.helpers]
+
+    def table_lines(self) -> list[str]:
+        """The tables of the program."""
+        lines = []
+        for table, name in self.tables().items():
+            numbers = ", ".join(real_text(v, self.real) for v in table.values)
+            head = f"static const {self.real} {self.prefix}_{name}[{len(table.values)}]"
+            lines.append(f"{head} = {{ {numbers} }};")
+        return lines
+
+
+def real_text(value: float, real: Real) -> str:
+    """A real number that C reads back to the last bit."""
+    if real == "float":
+        number = np.float32(value)
+        return f"{_pointed(str(number))}f" if np.isfinite(number) else _endless(float(number), "f")
+    return _pointed(repr(float(value))) if np.isfinite(value) else _endless(value, "")
+
+
+def _pointed(text: str) -> str:
+    """With a point or an exponent: 3 would be whole."""
+    return text if "." in text or "e" in text else f"{text}.0"
+
+
+def _endless(value: float, suffix: str) -> str:
+    one, zero = f"1.0{suffix}", f"0.0{suffix}"
+    return f"(-{one}/{zero})" if value < 0 else f"({one}/{zero})"

@@ -1,0 +1,78 @@
+"""One law on one device, as a program for a machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from zwidth.compiled import Array
+from zwidth.device.device import Device
+from zwidth.environment.environment import Environment
+from zwidth.environment.transfer_function import as_environment
+from zwidth.errors import InputError
+from zwidth.firmware.program import Cells, Program, Variable
+from zwidth.firmware.specialise import specialised
+from zwidth.loop.law import LIMIT, STEP, sampled_force, sampled_force_at
+from zwidth.servo.packing import pack
+
+MEMORY = "memory"
+
+_SMALL = 1e300
+"""Any force may be given where a law begins: the machine begins where it is."""
+
+
+@dataclass(frozen=True, eq=False)
+class LawProgram:
+    """A law and how it begins.
+
+    Parameters
+    ----------
+    program
+        From counts, or from a position where the device has no counts, to the force.
+    law
+        The packed numbers that it was made of, see `loop.law`.
+    rest
+        What it remembers at rest at 0, and per metre or radian away from it; 2 × n.
+    resolution
+        Δ, metres or radians per count; 0 where the position is given.
+    """
+
+    program: Program
+    law: Array
+    rest: Array
+    resolution: float
+
+    @property
+    def step(self) -> float:
+        """ΔF of the converter, 0 where it is not known."""
+        return float(self.law[STEP])
+
+    @property
+    def limit(self) -> float:
+        """The force limit, 0 where there is none."""
+        return float(self.law[LIMIT])
+
+
+def law_program(device: Device, environment: Environment | object) -> LawProgram:
+    """The program of a law.
+
+    Raises
+    ------
+    InputError
+        If the loop cannot be simulated, the device's numbers are intervals, or the law is outside of what can be
+        emitted.
+    """
+    if not device.is_certain:
+        raise InputError(
+            "a machine runs one law with one period: give single values for the device's intervals, or emit for "
+            "the values that you take"
+        )
+    packed = pack(device, as_environment(environment), 0.0, _SMALL)
+    resolution = float(device.exact("resolution"))
+    cells = Cells(MEMORY, packed.rest.shape[1])
+    if resolution > 0.0:
+        program = specialised(sampled_force, (packed.law, cells, Variable("integer", "counts")))
+    else:
+        program = specialised(sampled_force_at, (packed.law, cells, Variable("real", "position")))
+    return LawProgram(program, packed.law, np.asarray(packed.rest, dtype=np.float64), resolution)

@@ -1,0 +1,69 @@
+"""A law as one ES module in JavaScript: `init`, `step`, `reset`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from zwidth.firmware.c99 import real_text
+from zwidth.firmware.javascript import KEYWORDS, JavaScript
+from zwidth.firmware.law import LawProgram
+
+
+def module(law: LawProgram, *, about: Sequence[str], numbers: Iterable[tuple[str, str, str]]) -> str:
+    """The text of the module.
+
+    Parameters
+    ----------
+    law
+        What is written.
+    about
+        Lines of the comment at its head.
+    numbers
+        Name, value and meaning of each constant that is exported.
+    """
+    js = JavaScript(law.program, KEYWORDS)
+    seen = "counts" if law.resolution > 0 else "position"
+    body = [*(f"    {line}" for line in js.changing()), *js.block(law.program.body, 1)]
+    result = js.read(law.program.results[0], alone=True)
+    lines = [
+        "/*",
+        *(f" * {line}".rstrip() for line in about),
+        " */",
+        *(f"export const {key} = {value}; // {meaning}" for key, value, meaning in numbers),
+        "",
+        *js.table_lines(),
+        *js.helper_lines(),
+        "",
+        f"/* What the law remembers, at rest at this {seen}, as if it had been there for ever. */",
+        f"export function init({seen}) {{",
+        f"    const s = {{ memory: new Float64Array({max(law.rest.shape[1], 1)}), {seen} }};",
+        f"    reset(s, {seen});",
+        "    return s;",
+        "}",
+        "",
+        "/* One sample: the force to be given from now on [N; N*m], out of a wall is positive. */",
+        f"export function step(s, {seen}) {{",
+        f"    s.{seen} = {seen};",
+        *body,
+        f"    return {result};",
+        "}",
+        "",
+        "/* Forget what was, at rest where the handle was seen last. */",
+        f"export function reset(s, {seen} = s.{seen}) {{",
+        *_rest(law, seen),
+        f"    s.{seen} = {seen};",
+        "}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _rest(law: LawProgram, seen: str) -> list[str]:
+    at, slope = law.rest
+    x = f"({seen} * {real_text(law.resolution, 'double')})" if law.resolution > 0 else seen
+    lines = []
+    for k, (start, per) in enumerate(zip(at, slope, strict=True)):
+        value = real_text(float(start), "double")
+        if per != 0.0:
+            value = f"{value} + {real_text(float(per), 'double')} * {x}"
+        lines.append(f"    s.memory[{k}] = {value};")
+    return lines

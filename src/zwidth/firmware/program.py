@@ -1,0 +1,229 @@
+"""A law as a machine runs it: operations on numbers, one after the other.
+
+    operation    v = a ∘ b            every result is given once and never changes
+    load, store  v = s[i],  s[i] = v  what is remembered from sample to sample
+    set          w = v                the few variables that branches and loops change
+    branch, loop, leave               as in any language
+
+No operation hides another, so the order of rounding is the order of the text, in whatever language it
+is printed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+Kind = Literal["real", "integer", "truth"]
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number that is known."""
+
+    value: float | int | bool
+    kind: Kind
+
+
+@dataclass(eq=False)
+class Variable:
+    """A number that is not known; `hint` is its name in the source."""
+
+    kind: Kind
+    hint: str = ""
+    changes: bool = False
+    """True where branches or loops set it."""
+
+
+Operand = Constant | Variable
+
+OPERATORS = (
+    "+", "-", "*", "/", "//", "%", "<", "<=", "==", "!=", ">", ">=", "and", "or", "not",
+    "negate", "abs", "floor", "ceil", "sqrt", "min", "max", "select", "real", "integer", "copy",
+)  # fmt: skip
+"""
+`min(a, b)` is b where b < a, else a; `max` likewise; `//` and `%` round towards −∞; `select(c, a, b)`;
+`real` and `integer` convert, the latter towards 0.
+"""
+
+
+@dataclass(eq=False)
+class Operation:
+    """v = operator(operands)."""
+
+    result: Variable
+    operator: str
+    operands: tuple[Operand, ...]
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Numbers that are remembered, or given by the caller, by their place."""
+
+    name: str
+    size: int
+
+
+@dataclass(frozen=True)
+class Table:
+    """Numbers that are known, by their place."""
+
+    name: str
+    values: tuple[float, ...]
+
+
+@dataclass(eq=False)
+class Load:
+    """v = cells[index]."""
+
+    result: Variable
+    source: Cells | Table
+    index: Operand
+
+
+@dataclass(eq=False)
+class Store:
+    """cells[index] = value."""
+
+    target: Cells
+    index: Operand
+    value: Operand
+
+
+@dataclass(eq=False)
+class Set:
+    """A variable that changes takes a value."""
+
+    variable: Variable
+    value: Operand
+
+
+@dataclass(eq=False)
+class Branch:
+    """If the test holds, one block, else the other."""
+
+    test: Operand
+    then: list[Statement] = field(default_factory=list)
+    other: list[Statement] = field(default_factory=list)
+
+
+@dataclass(eq=False)
+class Count:
+    """The body for counter = start, start + step … before stop; step is known and not 0."""
+
+    counter: Variable
+    start: Operand
+    stop: Operand
+    step: int
+    body: list[Statement] = field(default_factory=list)
+
+
+@dataclass(eq=False)
+class While:
+    """What comes before the test, the test, the body; again, while the test holds."""
+
+    before: list[Statement] = field(default_factory=list)
+    test: Operand = Constant(True, "truth")
+    body: list[Statement] = field(default_factory=list)
+
+
+@dataclass(eq=False)
+class Leave:
+    """Out of the innermost loop."""
+
+
+Statement = Operation | Load | Store | Set | Branch | Count | While | Leave
+
+
+@dataclass(eq=False)
+class Program:
+    """What a machine does at one call.
+
+    Parameters
+    ----------
+    parameters
+        What it is given, in order.
+    cells
+        What it remembers, or is given to change.
+    body
+        Its statements.
+    results
+        What it gives back.
+    """
+
+    parameters: tuple[Variable, ...]
+    cells: tuple[Cells, ...]
+    body: list[Statement]
+    results: tuple[Operand, ...]
+
+    def statements(self) -> Iterator[Statement]:
+        """Every statement, in the order of the text, with those inside others."""
+        return everything(self.body)
+
+    def tables(self) -> tuple[Table, ...]:
+        """The tables that are read, each once."""
+        read = (s.source for s in self.statements() if isinstance(s, Load))
+        return tuple(dict.fromkeys(t for t in read if isinstance(t, Table)))
+
+
+def blocks(statement: Statement) -> tuple[list[Statement], ...]:
+    """The blocks inside a statement."""
+    if isinstance(statement, Branch):
+        return statement.then, statement.other
+    if isinstance(statement, Count):
+        return (statement.body,)
+    if isinstance(statement, While):
+        return statement.before, statement.body
+    return ()
+
+
+def everything(block: list[Statement]) -> Iterator[Statement]:
+    """Every statement of a block, with those inside others."""
+    for statement in block:
+        yield statement
+        for inner in blocks(statement):
+            yield from everything(inner)
+
+
+def operands(statement: Statement) -> tuple[Operand, ...]:
+    """What a statement reads, but for the statements inside it."""
+    if isinstance(statement, Operation):
+        return statement.operands
+    if isinstance(statement, Load):
+        return (statement.index,)
+    if isinstance(statement, Store):
+        return statement.index, statement.value
+    if isinstance(statement, Set):
+        return (statement.value,)
+    if isinstance(statement, Count):
+        return statement.start, statement.stop
+    return (statement.test,) if isinstance(statement, Branch | While) else ()
+
+
+def without_unused(program: Program) -> Program:
+    """The same without what nobody reads."""
+    while True:
+        read = {o for s in program.statements() for o in operands(s) if isinstance(o, Variable)}
+        read |= {o for o in program.results if isinstance(o, Variable)}
+        before = sum(1 for _ in program.statements())
+        _sweep(program.body, read)
+        if sum(1 for _ in program.statements()) == before:
+            return program
+
+
+def _sweep(block: list[Statement], read: set[Variable]) -> None:
+    for statement in block:
+        for inner in blocks(statement):
+            _sweep(inner, read)
+    block[:] = [s for s in block if not _is_unused(s, read)]
+
+
+def _is_unused(statement: Statement, read: set[Variable]) -> bool:
+    if isinstance(statement, Operation | Load):
+        return statement.result not in read
+    if isinstance(statement, Set):
+        return statement.variable not in read
+    if isinstance(statement, Branch):
+        return not (statement.then or statement.other)
+    return isinstance(statement, Count) and not statement.body

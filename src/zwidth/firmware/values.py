@@ -1,0 +1,72 @@
+"""What a name may stand for while a function is read, besides a number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from zwidth.firmware.arithmetic import as_operand, converted, kind_of
+from zwidth.firmware.program import Cells, Set, Statement, Variable
+
+
+@dataclass(eq=False)
+class Changing:
+    """A name that a loop changes: its variable keeps its place."""
+
+    variable: Variable
+
+
+@dataclass(eq=False)
+class Unknown:
+    """A name that only one branch has given: it cannot be read."""
+
+
+def is_sequence(value: Any) -> bool:
+    """A tuple, or a record of numbers."""
+    return isinstance(value, tuple)
+
+
+def rebuilt(like: Any, parts: list[Any]) -> Any:
+    """A tuple, or a record, of the same kind with other parts."""
+    return type(like)(*parts) if hasattr(like, "_fields") else tuple(parts)
+
+
+def same(a: Any, b: Any) -> bool:
+    """Whether two values are known to be one."""
+    if a is b:
+        return True
+    if is_sequence(a) and is_sequence(b) and len(a) == len(b):
+        return all(same(x, y) for x, y in zip(a, b, strict=True))
+    plain = (bool, int, float)
+    if isinstance(a, plain) and isinstance(b, plain) and type(a) is type(b):
+        return a == b and str(a) == str(b)  # -0.0 is another number
+    return isinstance(a, Cells) and a == b
+
+
+def joined(
+    a: Any,
+    b: Any,
+    first: list[Statement],
+    second: list[Statement],
+    hint: str,
+    refuse: Callable[[str], Exception],
+) -> Any:
+    """What is one thing at the end of one block and another at the end of the other."""
+    if same(a, b):
+        return a
+    if isinstance(a, Unknown) or isinstance(b, Unknown):
+        return Unknown()
+    if is_sequence(a) and is_sequence(b) and len(a) == len(b):
+        parts = [joined(x, y, first, second, hint, refuse) for x, y in zip(a, b, strict=True)]
+        return rebuilt(a, parts)
+    if not all(isinstance(v, bool | int | float | Variable) for v in (a, b)):
+        raise refuse(f"{hint} is a number on one way and something else on the other")
+    kinds = {kind_of(a), kind_of(b)}
+    kind = kinds.pop() if len(kinds) == 1 else "real"
+    if kinds and "truth" in kinds:
+        raise refuse(f"{hint} is a truth on one way and a number on the other")
+    variable = Variable(kind, hint, changes=True)
+    first.append(Set(variable, as_operand(converted(a, kind, first))))
+    second.append(Set(variable, as_operand(converted(b, kind, second))))
+    return variable
