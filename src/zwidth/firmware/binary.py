@@ -8,10 +8,12 @@ from math import inf
 import numpy as np
 
 from zwidth.firmware.bound import Bound
-from zwidth.firmware.program import Operation, Statement, Store
+from zwidth.firmware.program import Constant, Operation, Statement, Store
 
 _ROUNDED = {"+", "-", "*", "/", "sqrt", "real"}
 _DOUBLE = 2.0**-53
+_TINY = 2.0**-40
+"""Three factors of this size leave a count far above the least float."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,13 @@ class Binary:
         if size == 0.0:
             return 0.0
         return self.unit * size * (1 + 2 * self.unit) + self.least
+
+    def keeps_sign(self, statement: Operation | Store) -> bool:
+        """Of products with numbers that are not tiny."""
+        if isinstance(statement, Store) or statement.operator not in ("*", "/", "real"):
+            return False
+        known = (abs(float(o.value)) for o in statement.operands if isinstance(o, Constant))
+        return all(k == 0.0 or k > _TINY for k in known)
 
 
 DOUBLE = Binary(_DOUBLE, 2.0**-1074, 1.7e308, False)

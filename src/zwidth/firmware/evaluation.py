@@ -55,6 +55,9 @@ class Arithmetic(Protocol):
     def rounding(self, statement: Operation | Store, of: tuple[Bound, ...], result: Bound) -> float:
         """How far a result is off its operands' exact result."""
 
+    def keeps_sign(self, statement: Operation | Store) -> bool:
+        """Whether a result that is off still has the exact one's sign, and is 0 only where that is."""
+
 
 class Exact:
     """Real numbers: no error at all."""
@@ -64,6 +67,9 @@ class Exact:
 
     def rounding(self, statement: Operation | Store, of: tuple[Bound, ...], result: Bound) -> float:
         return 0.0
+
+    def keeps_sign(self, statement: Operation | Store) -> bool:
+        return True
 
 
 @dataclass(frozen=True)
@@ -138,8 +144,7 @@ class Evaluation:
                 self.load(s, way, keep)
             elif isinstance(s, Store):
                 value = self.value(s.value, way, s)
-                value = value.with_error(self.arithmetic.rounding(s, (value,), value))
-                way.cells[_place(s.index)] = value
+                way.cells[_place(s.index)] = self.rounded(s, (value,), value)
             elif isinstance(s, Set):
                 self.set(s, way, keep)
             elif isinstance(s, Branch):
@@ -188,9 +193,15 @@ class Evaluation:
             return
         of = tuple(self.value(o, way, s) for o in s.operands)
         value = _result(s, of) if s is not self.converter else _to_the_nearest(of[0])
-        value = value.with_error(self.arithmetic.rounding(s, of, value))
+        value = self.rounded(s, of, value)
         way.values[s.result] = value
         self.keep(s.result, value, keep)
+
+    def rounded(self, s: Operation | Store, of: tuple[Bound, ...], exact: Bound) -> Bound:
+        """A result as the machine has it."""
+        error = self.arithmetic.rounding(s, of, exact)
+        signed = exact.signed and (error == 0.0 or self.arithmetic.keeps_sign(s))
+        return replace(exact.with_error(error), signed=signed)
 
     # ---- tests and branches
 
