@@ -1,10 +1,10 @@
-"""What is known of a number in a program: where it lies, how it depends on what is remembered, how far it is off.
+"""What is known of a number: where it lies, how it depends on what is remembered, how far it is off.
 
     exact     v ∈ [low, high],   v = Σ c_i m_i + r,   r ∈ [rest_low, rest_high]
     computed  |ṽ − v| ≤ error,   with m̃ − m of error 0 no more than `own`
 
-The sums hold where v is a sum of what is remembered, m_i; so the error of a filter is summed with the signs that
-it has, as the filter itself forgets it.  The bounds are computed in double and widened by parts in 10¹².
+The sums hold where v is a sum of what is remembered, m_i; so the error of a filter is summed with the signs
+that it has, as the filter itself forgets it.  The bounds are computed in double and widened by parts in 10¹².
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """One pass through a program with bounds in the place of numbers.
 
-Where a test is taken on numbers with errors, the computed program may go the other way than the exact one.  Both
-ways are then followed in the strip in which that can be, and what they differ by is an error too.
+Where a test is taken on numbers with errors, the computed program may go the other way than the exact one.
+Both ways are then followed in the strip in which that can be, and what they differ by is an error too.
 """
 
 from __future__ import annotations
@@ -218,10 +218,10 @@ class Evaluation:
             test = one.test and Test(_OPPOSITE[one.test.operator], one.test.left, one.test.right)
             return Truth(one.false, one.true, one.sure, test)
         if s.operator in ("and", "or"):
-            a, b = (self.truth(o, way) for o in s.operands)
+            p, q = (self.truth(o, way) for o in s.operands)
             if s.operator == "and":
-                return Truth(a.true and b.true, a.false or b.false, a.sure and b.sure)
-            return Truth(a.true or b.true, a.false and b.false, a.sure and b.sure)
+                return Truth(p.true and q.true, p.false or q.false, p.sure and q.sure)
+            return Truth(p.true or q.true, p.false and q.false, p.sure and q.sure)
         if s.operator == "copy":
             return self.truth(s.operands[0], way)
         a, b = (self.value(o, way, s) for o in s.operands)
@@ -291,7 +291,7 @@ def _joined(a: _Way, b: _Way, differing_from: _Way | None) -> _Way:
 
     def one(x: Bound, y: Bound, before: Bound | None) -> Bound:
         both = hull(x, y)
-        if differing_from is None or x is before and y is before:
+        if differing_from is None or (x is before and y is before):
             return both
         error = max(both.error, apart(x, y), apart(y, x))
         return bent(both.low, both.high, error, (x, y))

@@ -46,6 +46,10 @@ class Fixed:
         By statement of the real one: how far its known numbers are off, and its result is rounded.
     most
         The size of each result for which it was written.
+    narrow
+        The whole numbers that 16 bits hold.
+    result
+        The unit of what it gives back.
     """
 
     program: Program
@@ -53,6 +57,8 @@ class Fixed:
     constants: dict[Statement, float]
     roundings: dict[Statement, float]
     most: dict[Variable, float]
+    narrow: frozenset[Variable]
+    result: Unit
 
     def constant(self, value: float, statement: Statement | None) -> float:
         """Its rounding to whole units, and that of the double that it comes from."""
@@ -101,6 +107,7 @@ class _Lowering:
     constants: dict[Statement, float] = field(default_factory=dict)
     roundings: dict[Statement, float] = field(default_factory=dict)
     most: dict[Variable, float] = field(default_factory=dict)
+    count: dict[Variable, int] = field(default_factory=dict)
 
     @property
     def scale(self) -> Scale:
@@ -115,7 +122,8 @@ class _Lowering:
         (result,) = program.results
         out = self.read(result, self.unit(result), None, body)
         made = Program(program.parameters, program.cells, body, (out,))
-        return Fixed(made, self.units, self.constants, self.roundings, self.most)
+        narrow = frozenset(self.names[v] for v, n in self.count.items() if n <= _NARROW and v in self.names)
+        return Fixed(made, self.units, self.constants, self.roundings, self.most, narrow, self.unit(result))
 
     def unit(self, operand: Operand) -> Unit:
         """The unit of an operand; of a known number, and where nothing tells, that of a force."""
@@ -163,6 +171,7 @@ class _Lowering:
         unit = self.unit(variable)
         n = self.fits(size, unit)
         self.most[variable] = n * self.scale.size(unit)
+        self.count[variable] = n
         return n
 
     def known(self, number: float, unit: Unit, statement: Statement | None) -> Constant:
@@ -281,7 +290,8 @@ class _Lowering:
         """A product with a known number."""
         a, b = s.operands
         x, c = (a, b) if isinstance(b, Constant) else (b, a)
-        assert isinstance(c, Constant) and isinstance(x, Variable), "units_of has refused the rest"
+        assert isinstance(c, Constant), "units_of has refused the rest"
+        assert isinstance(x, Variable), "what is known twice is computed before"
         by = 1.0 / float(c.value) if s.operator == "/" else float(c.value)
         own, n = self.unit(x), self.largest(x)
         named = self.names[x]
@@ -314,7 +324,8 @@ class _Lowering:
         if isinstance(b, Constant):
             unit = self.unit(a)
             level = float(b.value) / self.scale.size(unit)
-            self.largest_of(a)
+            assert isinstance(a, Variable), "what is known twice is computed before"
+            self.largest(a)
             near = round(level)
             if abs(level - near) > 1e-9 * max(abs(level), 1.0):
                 if operator in ("==", "!="):
@@ -327,11 +338,8 @@ class _Lowering:
         of = (self.read(a, unit, s, out), self.read(b, unit, s, out))
         out.append(Operation(result, operator, of))
 
-    def largest_of(self, operand: Operand) -> None:
-        if isinstance(operand, Variable):
-            self.largest(operand)
-
 
 _MIRRORED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
+_NARROW = 2**15 - 1
 _PRECISE = 2.0**12
 """A factor from here on is as good as its whole number: off by one part in 8000, or less."""

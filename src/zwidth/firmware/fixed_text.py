@@ -51,8 +51,11 @@ class FixedC99(C99):
         return "int" if variable.kind == "truth" else self.integer
 
     def constant(self, constant: Constant) -> str:
-        text = str(int(constant.value))
-        return text if abs(int(constant.value)) <= 32767 else f"{text}L" if self.word == 32 else f"{text}LL"
+        return self.constant_text(int(constant.value))
+
+    def constant_text(self, value: int) -> str:
+        """A whole number of its word."""
+        return str(value) if abs(value) <= 32767 else f"{value}L" if self.word == 32 else f"{value}LL"
 
     def made(self, statement: Statement) -> str:
         if isinstance(statement, Operation) and statement.operator in ("<<", ">>", "product", "scaled"):
@@ -64,7 +67,7 @@ class FixedC99(C99):
                 of = ", ".join(self.read(o, alone=True) for o in statement.operands)
                 return f"{self.prefix}_scaled({of})"
             if statement.operator == "<<":  # of a negative number it is not defined
-                return f"{self.read(a)} * ({self.integer}){1 << int(self._value(b))}L"
+                return f"{self.read(a)} * ({self.integer}){self.constant_text(1 << self._value(b))}"
             return f"{self.read(a)} >> {self.read(b)}"
         return super().made(statement)
 

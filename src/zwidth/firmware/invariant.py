@@ -109,9 +109,7 @@ def _grown(rest: Places, memory: Places, after: list[Bound]) -> Places:
     for row, k in enumerate(sums):
         b = after[k]
         others = [(c, found[j]) for j, c in (b.coefficients or {}).items() if j not in sums]
-        size[row] = max(abs(b.rest_low), abs(b.rest_high)) + sum(
-            abs(c) * max(-m[0], m[1]) for c, m in others
-        )
+        size[row] = max(abs(b.rest_low), abs(b.rest_high)) + sum(abs(c) * max(-m[0], m[1]) for c, m in others)
         error[row] = b.own + sum(abs(c) * m[2] for c, m in others)
     # at rest at x it holds what an endless x would have left: that is within the sums but for its rounding
     first = np.array([rest[k][2] for k in sums])

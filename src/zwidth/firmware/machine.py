@@ -2,15 +2,15 @@
 
     |f̃_k − f_k| ≤ ε        for all readings within their range
 
-f is the law in real numbers, with the force that no converter rounds; f̃ what the machine's numbers give, to the
-converter's nearest step.  The force that is off moves no more than ε |Δx| of energy in a move Δx, which Coulomb
-friction of ε takes: so a loop that is passive with f_c − ε is passive with f_c on this machine.
+f is the law in real numbers, with the force that no converter rounds; f̃ what the machine's numbers give, to
+the converter's nearest step.  The force that is off moves no more than ε |Δx| of energy in a move Δx, which
+Coulomb friction of ε takes: so a loop that is passive with f_c − ε is passive with f_c on this machine.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from math import ceil, floor, isfinite, log2
+from dataclasses import dataclass
+from math import floor, isfinite, log2
 from typing import Literal
 
 from zwidth.errors import InputError
@@ -103,13 +103,13 @@ def machine(
         return _machine(law, number, counts, found, None)
     if law.resolution == 0.0:
         raise InputError(
-            "fixed point counts the encoder's steps, and the device has no resolution: give it one, or emit in float"
+            "fixed point counts the encoder's steps, and the device has no resolution: give it one, or take float"
         )
     try:
         return _fixed(law, counts, converter, force_unit)
     except NoBound as reason:
         raise InputError(
-            f"the law cannot be written in fixed point: {reason}; take number=\"double\" or \"float\" (on "
+            f'the law cannot be written in fixed point: {reason}; take number="double" or "float" (on '
             "the command line --number double), or another law"
         ) from None
 

@@ -59,7 +59,7 @@ class Scale:
     @property
     def largest(self) -> int:
         """The largest whole number of a word."""
-        return 2 ** (self.word - 1) - 1
+        return (1 << (self.word - 1)) - 1
 
     def size(self, unit: Unit) -> float:
         """A unit in SI."""
@@ -149,7 +149,9 @@ def units_of(program: Program, scale: Scale) -> Units:
                 _keep(units, units.values, s.variable, units.of(s.value))
         if before != (units.values, units.cells):
             continue
-        unknown = [s.result for s in program.statements() if isinstance(s, Load) and s.result not in units.values]
+        unknown = [
+            s.result for s in program.statements() if isinstance(s, Load) and s.result not in units.values
+        ]
         if not unknown:
             return units
         units.values.update(dict.fromkeys(unknown, scale.force))
