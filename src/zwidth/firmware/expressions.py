@@ -120,17 +120,15 @@ class Expressions(ABC):
         """A field of a record, or a name of a module."""
         held = self.read(node.value, block)
         if not (hasattr(held, "_fields") or inspect.ismodule(held)) or not hasattr(held, node.attr):
-            raise self.source.refuse(
-                node, f"{ast.unparse(node)} is no field of a record and no name of a module"
-            )
+            raise self.source.refuse(node, f"{ast.unparse(node)} is in no record and no module")
         return getattr(held, node.attr)
 
     def place(self, node: ast.Subscript, size: int, block: list[Statement]) -> Any:
         """The index of an array or a tuple of this size."""
         index = self.read(node.slice, block) if not isinstance(node.slice, ast.Slice) else None
-        if not isinstance(index, int | np.integer | Variable) or kind_of(index) != "integer":
+        if not isinstance(index, int | Variable) or kind_of(index) != "integer":
             raise self.source.refuse(node, f"{ast.unparse(node)}: an index is a whole number")
-        if is_known(index) and not 0 <= index < size:
+        if not isinstance(index, Variable) and not 0 <= index < size:
             raise self.source.refuse(node, f"{ast.unparse(node)}: there is no number at {index} of {size}")
         return index
 

@@ -60,13 +60,13 @@ def law_program(device: Device, environment: Environment | object) -> LawProgram
     Raises
     ------
     InputError
-        If the loop cannot be simulated, the device's numbers are intervals, or the law is outside of what can be
-        emitted.
+        If the loop cannot be simulated, the device's numbers are intervals, or the law is outside of what
+        can be emitted.
     """
     if not device.is_certain:
         raise InputError(
-            "a machine runs one law with one period: give single values for the device's intervals, or emit for "
-            "the values that you take"
+            "a machine runs one law with one period: give single values for the device's intervals, or emit "
+            "for the values that you take"
         )
     packed = pack(device, as_environment(environment), 0.0, _SMALL)
     resolution = float(device.exact("resolution"))

@@ -110,10 +110,7 @@ def _given(statement: Statement, found: dict[Variable, Bounds]) -> tuple[Variabl
         start, stop = _of(statement.start, found), _of(statement.stop, found)
         if start is None or stop is None:
             return statement.counter, None
-        if statement.step > 0:
-            between = (start[0], stop[1] - 1)
-        else:
-            between = (stop[0] + 1, start[1])
+        between = (start[0], stop[1] - 1) if statement.step > 0 else (stop[0] + 1, start[1])
         return statement.counter, between if between[0] <= between[1] else None
     if isinstance(statement, Operation):
         if statement.result.kind != "integer":
@@ -124,7 +121,7 @@ def _given(statement: Statement, found: dict[Variable, Bounds]) -> tuple[Variabl
         parts = [_of(o, found) for o in operands]
         if any(p is None for p in parts):
             return statement.result, None
-        return statement.result, _RULES.get(statement.operator, lambda *_: _ANY)(*[p for p in parts if p])
+        return statement.result, _RULES.get(statement.operator, _unknown)(*parts)
     return None, None
 
 
@@ -150,7 +147,11 @@ def _over(a: Bounds, b: Bounds) -> Bounds:
 def _rest(a: Bounds, b: Bounds) -> Bounds:
     if b[0] <= 0:
         return _ANY
-    return a if 0 <= a[0] and a[1] < b[0] else (0.0, b[1] - 1)
+    return a if a[0] >= 0 and a[1] < b[0] else (0.0, b[1] - 1)
+
+
+def _unknown(*operands: Bounds | None) -> Bounds:
+    return _ANY
 
 
 def _size(a: Bounds) -> Bounds:

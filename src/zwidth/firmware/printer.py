@@ -192,7 +192,7 @@ class Printer(ABC):
 
     def choice(self, s: Branch, variable: Variable, once: bool) -> str:
         """A branch that sets one variable, on one line."""
-        parts = [[x for x in arm if isinstance(x, Set)][0].value for arm in (s.then, s.other)]
+        parts = [next(x for x in arm if isinstance(x, Set)).value for arm in (s.then, s.other)]
         text = self.chosen(s.test, *parts)
         name = self.name(variable)
         return self.given(variable, name, text) if once else f"{name} = {text};"
@@ -253,7 +253,7 @@ def _find_inside(
     inside: dict[Variable, Statement],
     last: tuple[Operand, ...],
 ) -> None:
-    """Results that are read once, further on in the same block or by `last`, by what may be written around them."""
+    """Results that are read once, in the same block or by `last`, by what may be written around them."""
     open_loads: dict[Variable, Statement] = {}
     pure: dict[Variable, Statement] = {}
 

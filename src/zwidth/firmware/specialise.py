@@ -3,8 +3,8 @@
 What depends on known numbers alone is computed; calls are written out in place; the rest becomes the program.
 So a wall of one stiffness is three operations, not the interpreter of all laws.
 
-The subset of Python: numbers, their operators, `min`, `max`, `abs`, `float`, `int`, functions of `math` that are
-correctly rounded, arrays of float64 read and written one number at a time, tuples and named tuples, `if`,
+The subset of Python: numbers, their operators, `min`, `max`, `abs`, `float`, `int`, functions of `math` that
+are correctly rounded, arrays of float64 read and written one number at a time, tuples and named tuples, `if`,
 `for … in range(…)`, `while`, `break`, `continue`, `return`, and calls of functions of the same subset.
 """
 
@@ -191,7 +191,7 @@ class _Writer(Expressions):
 
     def change(self, held: Changing, value: Any, node: ast.AST, block: list[Statement]) -> None:
         """Set a variable that a loop changes."""
-        what = f"{held.variable.hint} is of one kind before the loop and of another in it: write 0.0 for a real 0"
+        what = f"{held.variable.hint} is whole before the loop and real in it, or a condition: write 0.0"
         set_all(held.variable, value, block, lambda _: self.source.refuse(node, what))
 
     # ---- branches
