@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 _PACKAGE = Path(__file__).parent
 
 _TOGETHER = (
-    ("scene", "rendering", "loop", "links", "network", "servo"),
+    ("elementary", "scene", "rendering", "loop", "links", "network", "servo"),
     ("passivity/storage/solve",),
     ("checker/storage",),
     ("identification/tissue",),

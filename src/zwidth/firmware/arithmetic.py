@@ -46,7 +46,7 @@ _KNOWN: dict[str, Callable[..., Any]] = {
     "abs": abs,
     "floor": lambda a: float(np.floor(a)),
     "ceil": lambda a: float(np.ceil(a)),
-    "sqrt": lambda a: float(np.sqrt(a)),
+    "sqrt": lambda a: math.sqrt(a) if a >= 0 else math.nan,
     "min": lambda a, b: b if b < a else a,
     "max": lambda a, b: b if b > a else a,
     "select": lambda c, a, b: a if c else b,
@@ -86,15 +86,10 @@ def converted(value: Value, kind: Kind, block: list[Statement]) -> Value:
 
 def applied(name: str, values: tuple[Value, ...], block: list[Statement]) -> Value:
     """The result of an operator of `program.OPERATORS`; written into the block where not all is known."""
-    if (
-        name == "/"
-        or (name not in _TESTS | {"real", "integer", "select"} and _mixed(values))
-        or (name in _TESTS and _mixed(values))
-    ):
+    if name == "/" or (name not in ("real", "integer", "select") and _mixed(values)):
         values = tuple(converted(v, "real", block) for v in values)
     if all(is_known(v) for v in values):
-        result = _KNOWN[name](*values)
-        return math.nan if isinstance(result, complex) else result
+        return _KNOWN[name](*values)  # type: ignore[no-any-return]
     short = _without(name, values)
     if short is not None:
         return short
@@ -108,7 +103,7 @@ def _mixed(values: tuple[Value, ...]) -> bool:
 
 
 def _without(name: str, values: tuple[Value, ...]) -> Value | None:
-    """What needs no operation, to the last bit: conditions half known, a whole number plus 0, x · 1 and x/1."""
+    """What needs no operation, to the last bit: conditions half known, n + 0, x · 1 and x/1."""
     known = [v for v in values if is_known(v)]
     if name in ("and", "or") and known:
         decides = name == "or"

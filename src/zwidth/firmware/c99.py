@@ -52,6 +52,12 @@ KEYWORDS = frozenset(
         "while",
         "abs",
         "fabs",
+        "fabsf",
+        "ceilf",
+        "floorf",
+        "fmod",
+        "fmodf",
+        "sqrtf",
         "floor",
         "ceil",
         "sqrt",
@@ -72,7 +78,7 @@ HELPERS = {
     "whole": "static inline int32_t {prefix}_whole(int32_t a, int32_t b) "
     "{{ return (a - {prefix}_rest(a, b)) / b; }}",
     "remainder": "static inline {real} {prefix}_remainder({real} a, {real} b) "
-    "{{ {real} r = fmod{suffix}(a, b); return r < 0 ? r + b : r; }}",
+    "{{ {real} r = fmod{suffix}(a, b); return r < 0 ? r + b : r + 0; }}",
 }
 """Functions that a text may need; divisors are positive."""
 
@@ -159,5 +165,7 @@ def _pointed(text: str) -> str:
 
 
 def _endless(value: float, suffix: str) -> str:
+    if value != value:
+        return f"(0.0{suffix}/0.0{suffix})"
     one, zero = f"1.0{suffix}", f"0.0{suffix}"
     return f"(-{one}/{zero})" if value < 0 else f"({one}/{zero})"

@@ -65,7 +65,7 @@ KEYWORDS = frozenset(
 HELPERS = {
     "least": "const least = (a, b) => (b < a ? b : a);",
     "most": "const most = (a, b) => (b > a ? b : a);",
-    "rest": "const rest = (a, b) => { const r = a % b; return r < 0 ? r + b : r; };",
+    "rest": "const rest = (a, b) => { const r = a % b; return r < 0 ? r + b : r + 0; };",
 }
 """Functions that a text may need; divisors are positive."""
 
@@ -74,7 +74,6 @@ _LIBRARY = {
     "floor": "Math.floor",
     "ceil": "Math.ceil",
     "sqrt": "Math.sqrt",
-    "integer": "Math.trunc",
 }
 
 
@@ -97,15 +96,21 @@ class JavaScript(Printer):
         if operator == "select":
             return f"{read[0]} ? {read[1]} : {read[2]}"
         if operator == "real":
-            return f"({read[0]})"
+            return read[0]
+        if operator == "integer":
+            return f"Math.trunc({read[0]}) + 0"
         if operator == "//":
             return f"Math.floor(({read[0]}) / ({read[1]}))"
         helper = {"min": "least", "max": "most", "%": "rest"}[operator]
         self.helpers.add(helper)
         return f"{helper}({', '.join(read)})"
 
-    def infix(self, operator: str) -> str:
-        return {"==": "===", "!=": "!=="}.get(operator, operator)
+    def infix(self, operator: str, kind: str, left: str, right: str) -> str:
+        text = f"{left} { {'==': '===', '!=': '!=='}.get(operator, operator) } {right}"
+        return f"{text} + 0" if operator == "*" and kind == "integer" else text  # there is no whole −0
+
+    def negated(self, kind: str, text: str) -> str:
+        return f"0 - {text}" if kind == "integer" else f"-{text}"
 
     def declared(self, variable: Variable, name: str) -> str:
         return f"let {name} = {'false' if variable.kind == 'truth' else '0'};"

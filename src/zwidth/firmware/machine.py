@@ -103,7 +103,7 @@ def machine(
         return _machine(law, number, counts, found, None)
     if law.resolution == 0.0:
         raise InputError(
-            "fixed point counts the encoder's steps, and the device has no resolution: give it one, or take float"
+            "fixed point counts encoder steps, and the device has no resolution: give it one, or take float"
         )
     try:
         return _fixed(law, counts, converter, force_unit)

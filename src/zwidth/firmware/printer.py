@@ -26,10 +26,16 @@ from zwidth.firmware.program import (
     Variable,
     While,
     blocks,
+    everything,
     operands,
 )
 
 _INFIX = {"+", "-", "*", "/", "<", "<=", "==", "!=", ">", ">="}
+_LOOSE = {"and", "or", "not", "select"}
+"""Operators whose operands stand in parentheses."""
+
+LONGEST_LINE = 110
+"""Beyond which a choice between two numbers is written as two blocks."""
 
 
 @dataclass
@@ -59,7 +65,9 @@ class Printer(ABC):
         reads = [o for s in self.program.statements() for o in operands(s)]
         self._reads = Counter(o for o in [*reads, *self.program.results] if isinstance(o, Variable))
         self._tables = {t: f"table_{k}" if k else "table" for k, t in enumerate(self.program.tables())}
-        _find_inside(self.program.body, self._reads, self._inside)
+        self._taken |= set(self._tables.values())
+        _find_inside(self.program.body, self._reads, self._inside, ())
+        self._chosen = _chosen(self.program.body, self._reads, self._inside)
 
     # ---- how a language says things
 
@@ -88,8 +96,9 @@ class Printer(ABC):
     def name(self, variable: Variable) -> str:
         """The name of a variable, given when it is first met."""
         if variable not in self._names:
-            wish, k = variable.hint or "t", 1
-            name = variable.hint or "t1"
+            hint = variable.hint.strip("_") if variable.hint.isascii() else ""
+            wish, k = hint or "t", 1
+            name = hint or "t1"
             while name in self._taken:
                 k += 1
                 name = f"{wish}{k}"
@@ -103,7 +112,9 @@ class Printer(ABC):
 
     def changing(self) -> list[str]:
         """The declarations of the variables that change."""
-        found = [s.variable for s in self.program.statements() if isinstance(s, Set)]
+        chosen = {v for v, once in self._chosen.values() if once}
+        sets = (s.variable for s in self.program.statements() if isinstance(s, Set))
+        found = [v for v in sets if v not in chosen]
         return [self.declared(v, self.name(v)) for v in dict.fromkeys(found)]
 
     def read(self, operand: Operand, alone: bool = False) -> str:
@@ -124,20 +135,22 @@ class Printer(ABC):
             return self.load(statement.source, statement.index)
         assert isinstance(statement, Operation), "results come from operations and loads"
         o, of = statement.operator, statement.operands
+        kind = of[0].kind
         if o in _INFIX:
-            return f"{self.read(of[0])} {self.infix(o)} {self.read(of[1])}"
+            return self.infix(o, kind, self.read(of[0]), self.read(of[1]))
         if o == "copy":
             return self.read(of[0], alone=True)
         if o == "negate":
-            return f"-{self.read(of[0])}"
-        kind = of[0].kind
-        return self.operation(
-            o, kind, [self.read(x, alone=o not in ("and", "or", "not", "select")) for x in of]
-        )
+            return self.negated(kind, self.read(of[0]))
+        return self.operation(o, kind, [self.read(x, alone=o not in _LOOSE) for x in of])
 
-    def infix(self, operator: str) -> str:
-        """How the language writes an infix operator."""
-        return operator
+    def infix(self, operator: str, kind: str, left: str, right: str) -> str:
+        """An infix operator."""
+        return f"{left} {operator} {right}"
+
+    def negated(self, kind: str, text: str) -> str:
+        """The negative."""
+        return f"-{text}"
 
     def load(self, source: Cells | Table, index: Operand) -> str:
         name = self._tables[source] if isinstance(source, Table) else source.name
@@ -167,6 +180,34 @@ class Printer(ABC):
 
     def branch(self, s: Branch, depth: int) -> list[str]:
         pad = "    " * depth
+        if s in self._chosen:
+            line = pad + self.choice(s, *self._chosen[s])
+            if len(line) <= LONGEST_LINE:
+                return [line]
+            variable, once = self._chosen[s]
+            if once:
+                lines = [pad + self.declared(variable, self.name(variable))]
+                return [*lines, *self.in_full(s, depth)]
+        return self.in_full(s, depth)
+
+    def choice(self, s: Branch, variable: Variable, once: bool) -> str:
+        """A branch that sets one variable, on one line."""
+        parts = [next(x for x in arm if isinstance(x, Set)).value for arm in (s.then, s.other)]
+        text = self.chosen(s.test, *parts)
+        name = self.name(variable)
+        return self.given(variable, name, text) if once else f"{name} = {text};"
+
+    def chosen(self, test: Operand, a: Operand, b: Operand) -> str:
+        """One of two values, the other is not computed."""
+        if isinstance(b, Constant) and b.kind == "truth" and not b.value:
+            return self.operation("and", "truth", [self.read(test), self.read(a)])
+        if isinstance(a, Constant) and a.kind == "truth" and a.value:
+            return self.operation("or", "truth", [self.read(test), self.read(b)])
+        return self.operation("select", "truth", [self.read(test), self.read(a), self.read(b)])
+
+    def in_full(self, s: Branch, depth: int) -> list[str]:
+        """A branch as blocks."""
+        pad = "    " * depth
         then, other = self.block(s.then, depth + 1), self.block(s.other, depth + 1)
         if not then and other:
             return [f"{pad}if (!({self.read(s.test, alone=True)})) {{", *other, f"{pad}}}"]
@@ -177,10 +218,11 @@ class Printer(ABC):
         pad = "    " * depth
         if isinstance(s, While):
             before = self.block(s.before, depth + 1)
-            test = self.read(s.test)
-            return [
-                f"{pad}for (;;) {{", *before, f"{pad}    if (!{test}) {{ break; }}", *self.block(s.body, depth + 1), f"{pad}}}",
-            ]  # fmt: skip
+            body = self.block(s.body, depth + 1)
+            if not before:
+                return [f"{pad}while ({self.read(s.test, alone=True)}) {{", *body, f"{pad}}}"]
+            leave = f"{pad}    if (!{self.read(s.test)}) {{ break; }}"
+            return [f"{pad}for (;;) {{", *before, leave, *body, f"{pad}}}"]
         stop = self.read(s.stop)
         n = self.name(s.counter)
         start, compare = self.read(s.start, alone=True), "<" if s.step > 0 else ">"
@@ -205,18 +247,32 @@ def _is_call(text: str) -> bool:
     return False
 
 
-def _find_inside(block: list[Statement], reads: Counter[Variable], inside: dict[Variable, Statement]) -> None:
-    """Results that are read once, further on in the same block, by what may be written around them."""
+def _find_inside(
+    block: list[Statement],
+    reads: Counter[Variable],
+    inside: dict[Variable, Statement],
+    last: tuple[Operand, ...],
+) -> None:
+    """Results that are read once, in the same block or by `last`, by what may be written around them."""
     open_loads: dict[Variable, Statement] = {}
     pure: dict[Variable, Statement] = {}
-    for s in block:
-        for o in _read_here(s):
+
+    def take(operands: tuple[Operand, ...], also_open: bool = True) -> None:
+        for o in operands:
             if isinstance(o, Variable) and reads[o] == 1:
-                made = pure.pop(o, None) or open_loads.pop(o, None)
+                made = pure.pop(o, None) or (open_loads.pop(o, None) if also_open else None)
                 if made is not None:
                     inside[o] = made
+
+    for s in block:
+        if isinstance(s, Count):
+            take((s.start,))
+            take((s.stop,), also_open=False)  # it is computed in every pass
+        elif not isinstance(s, While):
+            take(operands(s))
         for inner in blocks(s):
-            _find_inside(inner, reads, inside)
+            test = isinstance(s, While) and inner is s.before
+            _find_inside(inner, reads, inside, operands(s) if test else ())
         if not isinstance(s, Operation | Load):
             open_loads.clear()  # what was read before may be changed behind
             continue
@@ -227,6 +283,38 @@ def _find_inside(block: list[Statement], reads: Counter[Variable], inside: dict[
             open_loads[s.result] = s
         else:
             pure[s.result] = s
+    take(last)
+
+
+def _chosen(
+    block: list[Statement], reads: Counter[Variable], inside: dict[Variable, Statement]
+) -> dict[Branch, tuple[Variable, bool]]:
+    """Branches that only set one variable; whether nothing else sets it, and it is read behind it alone."""
+    found: dict[Branch, tuple[Variable, bool]] = {}
+    sets = Counter(s.variable for s in everything(block) if isinstance(s, Set))
+
+    def go(block: list[Statement]) -> None:
+        for k, s in enumerate(block):
+            for inner in blocks(s):
+                go(inner)
+            if not isinstance(s, Branch):
+                continue
+            ways = [_only_set(s.then, inside), _only_set(s.other, inside)]
+            if ways[0] is None or ways[0] is not ways[1]:
+                continue
+            behind = [o for x in everything(block[k + 1 :]) for o in operands(x)]
+            alone = sets[ways[0]] == 2 and (block is whole or behind.count(ways[0]) == reads[ways[0]])
+            found[s] = ways[0], alone
+
+    whole = block
+    go(block)
+    return found
+
+
+def _only_set(block: list[Statement], inside: dict[Variable, Statement]) -> Variable | None:
+    """The variable that a block sets, if it does nothing else."""
+    shown = [s for s in block if not (isinstance(s, Operation | Load) and s.result in inside)]
+    return shown[0].variable if len(shown) == 1 and isinstance(shown[0], Set) else None
 
 
 def _is_open(
@@ -241,8 +329,3 @@ def _is_open(
     return any(
         isinstance(o, Variable) and (o.changes or _is_open(o, inside, open_loads)) for o in operands(made)
     )
-
-
-def _read_here(statement: Statement) -> tuple[Operand, ...]:
-    """What a statement reads before anything inside it runs, once."""
-    return () if isinstance(statement, While) else operands(statement)

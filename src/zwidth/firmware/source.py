@@ -35,6 +35,11 @@ class Source:
     file: str
     line: int
 
+    @property
+    def arguments(self) -> list[str]:
+        """Their names, in order."""
+        return [a.arg for a in self.tree.args.args]
+
     def refuse(self, node: ast.AST, what: str) -> InputError:
         """What cannot be emitted, with file and line."""
         line = self.line + getattr(node, "lineno", 1) - 1
@@ -59,5 +64,10 @@ def source_of(function: Callable[..., Any]) -> Source:
     except (TypeError, OSError):
         raise InputError(f"{function!r} has no source to be read: it cannot be emitted") from None
     tree = ast.parse(textwrap.dedent("".join(lines))).body[0]
-    assert isinstance(tree, ast.FunctionDef), "functions have names"
-    return Source(plain.__name__, tree, plain.__globals__, inspect.getsourcefile(plain) or "?", max(line, 1))
+    if not isinstance(tree, ast.FunctionDef):
+        raise InputError(f"{function!r} is no function of its own lines: write it with def")
+    found = Source(plain.__name__, tree, plain.__globals__, inspect.getsourcefile(plain) or "?", max(line, 1))
+    given = tree.args
+    if given.vararg or given.kwarg or given.kwonlyargs or given.posonlyargs:
+        raise found.refuse(tree, f"{found.name} takes arguments that are not given one by one")
+    return found

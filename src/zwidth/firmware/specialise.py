@@ -3,68 +3,41 @@
 What depends on known numbers alone is computed; calls are written out in place; the rest becomes the program.
 So a wall of one stiffness is three operations, not the interpreter of all laws.
 
-The subset of Python: numbers, their operators, `min`, `max`, `abs`, `float`, `int`, functions of `math` that are
-correctly rounded, arrays of float64 read and written one number at a time, tuples and named tuples, `if`,
+The subset of Python: numbers, their operators, `min`, `max`, `abs`, `float`, `int`, functions of `math` that
+are correctly rounded, arrays of float64 read and written one number at a time, tuples and named tuples, `if`,
 `for … in range(…)`, `while`, `break`, `continue`, `return`, and calls of functions of the same subset.
 """
 
 from __future__ import annotations
 
 import ast
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
-from zwidth.firmware.arithmetic import applied, as_operand, converted, is_known, kind_of
+from zwidth.firmware.arithmetic import as_operand, converted, is_known, kind_of
+from zwidth.firmware.expressions import Expressions
+from zwidth.firmware.places import cut_tables
 from zwidth.firmware.program import (
     Branch,
     Cells,
     Constant,
     Count,
     Leave,
-    Load,
-    Operation,
     Program,
     Set,
     Statement,
     Store,
-    Table,
     Variable,
     While,
     without_unused,
 )
 from zwidth.firmware.source import Source, source_of
-from zwidth.firmware.values import Changing, Unknown, joined, rebuilt
+from zwidth.firmware.syntax import EndOfLoop, NextPass, assigned, behind, counters, may_leave, returns
+from zwidth.firmware.values import Changing, Unknown, joined, set_all, variables_like
 
 MOST_WRITTEN_OUT = 32
 """Passes of a loop that are written one after the other; a longer one stays a loop."""
-
-_BINARY = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.FloorDiv: "//",
-    ast.Mod: "%",
-    ast.Lt: "<",
-    ast.LtE: "<=",
-    ast.Eq: "==",
-    ast.NotEq: "!=",
-    ast.Gt: ">",
-    ast.GtE: ">=",
-}
-_FUNCTIONS: dict[Any, str] = {
-    abs: "abs",
-    math.fabs: "abs",
-    math.sqrt: "sqrt",
-    np.sqrt: "sqrt",
-    np.floor: "floor",
-    float: "real",
-    int: "integer",
-}
 
 
 def specialised(function: Callable[..., Any], arguments: Sequence[Any]) -> Program:
@@ -85,34 +58,16 @@ def specialised(function: Callable[..., Any], arguments: Sequence[Any]) -> Progr
     """
     source = source_of(function)
     body: list[Statement] = []
-    writer = _Writer(source, dict(zip(_names(source), arguments, strict=True)))
-    writer.run(source.tree.body, body)
-    value = writer.value(body)
+    value = _Writer(source, dict(zip(source.arguments, arguments, strict=True)), (source,)).whole(body)
     results = value if isinstance(value, tuple) else (() if value is None else (value,))
     parameters = tuple(a for a in _flat(arguments) if isinstance(a, Variable))
     cells = tuple(a for a in arguments if isinstance(a, Cells))
-    return without_unused(Program(parameters, cells, body, tuple(as_operand(r) for r in results)))
+    program = Program(parameters, cells, body, tuple(as_operand(r) for r in _flat(results)))
+    return without_unused(cut_tables(without_unused(program)))
 
 
 def _flat(arguments: Sequence[Any]) -> list[Any]:
     return [x for a in arguments for x in (_flat(a) if isinstance(a, tuple) else [a])]
-
-
-def _names(source: Source) -> list[str]:
-    return [a.arg for a in source.tree.args.args]
-
-
-@dataclass
-class _EndOfLoop(ast.stmt):
-    """Where `break` of a loop that is written out goes on."""
-
-
-@dataclass
-class _NextPass(ast.stmt):
-    """Where `continue` of it goes on; and what the counter then is."""
-
-    target: ast.Name
-    value: Any
 
 
 @dataclass
@@ -128,21 +83,21 @@ _FELL, _OVER = False, True
 
 
 @dataclass
-class _Writer:
-    """One call of a function."""
+class _Writer(Expressions):
+    """Writes the statements of one call."""
 
-    source: Source
-    names: dict[str, Any]
-    results: list[Any] = field(default_factory=list)
     returned: Any = None
     nested: int = 0
     exits: _Exits = field(default_factory=_Exits)
 
-    # ---- what a call gives back
-
-    def value(self, block: list[Statement]) -> Any:
-        """What the function has returned."""
+    def whole(self, block: list[Statement]) -> Any:
+        """The call: what it gives back."""
+        self.run(self.source.tree.body, block)
         return self.returned
+
+    def written_in_place(self, called: Source, names: dict[str, Any], block: list[Statement]) -> Any:
+        """Another call, inside this one."""
+        return _Writer(called, names, (*self.calls, called)).whole(block)
 
     def give_back(self, value: Any, node: ast.AST, block: list[Statement]) -> None:
         """A `return`: at once where it is the only one, else through variables that every way sets."""
@@ -150,10 +105,10 @@ class _Writer:
             self.returned = value
             return
         if self.returned is None:
-            self.returned = _variables_like(value, self.source.name)
-        _set_all(self.returned, value, block, lambda what: self.source.refuse(node, what))
+            self.returned = variables_like(value, self.source.name)
+        set_all(self.returned, value, block, lambda what: self.source.refuse(node, what))
         if self.exits.depth:
-            assert self.exits.done is not None
+            assert self.exits.done is not None, "a loop that may return has it"
             block.append(Set(self.exits.done, Constant(True, "truth")))
             block.append(Leave())
 
@@ -164,16 +119,16 @@ class _Writer:
         todo = list(todo)
         while todo:
             node = todo.pop(0)
-            if isinstance(node, _EndOfLoop):
+            if isinstance(node, EndOfLoop):
                 continue
-            if isinstance(node, _NextPass):
+            if isinstance(node, NextPass):
                 self.bind(node.target, node.value, block)
             elif isinstance(node, ast.Return):
                 value = None if node.value is None else self.settled(node.value, block)
                 self.give_back(value, node, block)
                 return _OVER
             elif isinstance(node, ast.Break | ast.Continue):
-                rest = _behind(todo, isinstance(node, ast.Break))
+                rest = behind(todo, isinstance(node, ast.Break))
                 if rest is None:  # of a loop that stays one
                     if isinstance(node, ast.Break):
                         block.append(Leave())
@@ -183,14 +138,8 @@ class _Writer:
                 over = self.branch(node, todo, block)
                 if over is not None:
                     return over
-            elif isinstance(node, ast.For):
-                written = self.written_out(node, block)
-                if written is not None:
-                    todo = written + todo
-                elif self.count(node, block) and self.exits.done is not None:
-                    return self.unless_done(node, todo, block)
-            elif isinstance(node, ast.While):
-                if self.while_loop(node, block) and self.exits.done is not None:
+            elif isinstance(node, ast.For | ast.While):
+                if self.loop(node, todo, block):
                     return self.unless_done(node, todo, block)
             else:
                 self.simple(node, block)
@@ -205,8 +154,8 @@ class _Writer:
         elif isinstance(node, ast.AnnAssign) and node.value is not None:
             self.bind(node.target, self.settled(node.value, block), block)
         elif isinstance(node, ast.AugAssign):
-            before = self.read(node.target, block)
-            after = self.operate(node, (before, self.read(node.value, block)), node.op, block)
+            before = self.settled(node.target, block)
+            after = self.operate(node, (before, self.settled(node.value, block)), node.op, block)
             self.bind(node.target, after, block)
         elif isinstance(node, ast.Expr):
             if not isinstance(node.value, ast.Constant):
@@ -230,47 +179,46 @@ class _Writer:
                 value.hint = target.id
             self.names[target.id] = value
         elif isinstance(target, ast.Subscript):
-            cells, index = self.read(target.value, block), self.read(target.slice, block)
+            cells = self.read(target.value, block)
             if not isinstance(cells, Cells):
                 raise self.source.refuse(target, "only what is remembered can be changed")
+            index = self.place(target, cells.size, block)
+            if isinstance(value, tuple) or value is None or kind_of(value) == "truth":
+                raise self.source.refuse(target, "an array holds numbers")
             block.append(Store(cells, as_operand(index), as_operand(converted(value, "real", block))))
         else:
-            raise self.source.refuse(target, "this cannot be given a value")
+            raise self.source.refuse(target, f"{ast.unparse(target)} cannot be given a value")
 
     def change(self, held: Changing, value: Any, node: ast.AST, block: list[Statement]) -> None:
         """Set a variable that a loop changes."""
-        value = converted(value, held.variable.kind, block)
-        if kind_of(value) != held.variable.kind:
-            raise self.source.refuse(
-                node, f"{held.variable.hint} is whole first and then a real number: write 0.0"
-            )
-        block.append(Set(held.variable, as_operand(value)))
+        what = f"{held.variable.hint} is whole before the loop and real in it, or a condition: write 0.0"
+        set_all(held.variable, value, block, lambda _: self.source.refuse(node, what))
 
     # ---- branches
 
     def branch(self, node: ast.If, todo: list[ast.stmt], block: list[Statement]) -> bool | None:
         """An `if`; None where what follows is still to be written."""
-        test = self.read(node.test, block)
+        test = self.condition(self.read(node.test, block), node, block)
         if is_known(test):
             todo[:0] = node.body if test else node.orelse
             return None
-        if not (_may_leave(node.body) or _may_leave(node.orelse)):
-            self.both(test, lambda w, b: w.run(node.body, b), lambda w, b: w.run(node.orelse, b), node, block)
-            return None
-        rest = list(todo)
-        return self.both(
+        # what follows goes into the branch where one of its ways leaves
+        leaves = may_leave(node.body) or may_leave(node.orelse)
+        rest = list(todo) if leaves else []
+        over = self.both(
             test,
-            lambda w, b: w.run([*node.body, *rest], b),
-            lambda w, b: w.run([*node.orelse, *rest], b),
+            lambda b: self.run([*node.body, *rest], b),
+            lambda b: self.run([*node.orelse, *rest], b),
             node,
             block,
         )
+        return over if leaves else None
 
     def both(
         self,
         test: Any,
-        then: Callable[[_Writer, list[Statement]], bool],
-        other: Callable[[_Writer, list[Statement]], bool],
+        then: Callable[[list[Statement]], bool],
+        other: Callable[[list[Statement]], bool],
         node: ast.AST,
         block: list[Statement],
     ) -> bool:
@@ -278,18 +226,15 @@ class _Writer:
         made = Branch(as_operand(test))
         before = dict(self.names)
         self.nested += 1
-        over = [then(self, made.then)]
+        over = [then(made.then)]
         first, self.names = self.names, dict(before)
-        over.append(other(self, made.other))
+        over.append(other(made.other))
         second = self.names
         self.nested -= 1
         block.append(made)
-        if all(over):
-            self.names = before
-            return _OVER
         if any(over):
-            self.names = second if over[0] else first
-            return _FELL
+            self.names = before if all(over) else second if over[0] else first
+            return _OVER if all(over) else _FELL
         self.names = {
             name: joined(
                 first.get(name, Unknown()),
@@ -305,81 +250,98 @@ class _Writer:
 
     # ---- loops
 
+    def loop(self, node: ast.For | ast.While, todo: list[ast.stmt], block: list[Statement]) -> bool:
+        """A loop; True where it stays one from which the function may have returned."""
+        if node.orelse:
+            raise self.source.refuse(node.orelse[0], "else of a loop cannot be emitted")
+        if isinstance(node, ast.While):
+            self.while_loop(node, block)
+        else:
+            written = self.written_out(node, block)
+            if written is not None:
+                todo[:0] = written
+                return False
+            self.count(node, block)
+        if self.exits.depth and returns(node.body):  # out of the loop around it as well
+            assert self.exits.done is not None, "a loop that may return has it"
+            block.append(Branch(self.exits.done, [Leave()]))
+        return returns(node.body)
+
     def written_out(self, node: ast.For, block: list[Statement]) -> list[ast.stmt] | None:
         """The passes of a short loop with a known count, one after the other; None of any other."""
-        values = self.passes(node, block)
-        if values is None or not isinstance(node.target, ast.Name):
-            return None
-        over_numbers = isinstance(node.iter, ast.Tuple)
-        if not over_numbers and (
-            len(values) > MOST_WRITTEN_OUT or (_may_leave(node.body) and len(values) > 2)
-        ):
-            return None
-        out: list[ast.stmt] = []
-        for value in values:
-            out += [_NextPass(node.target, value), *node.body]
-        return [*out, _EndOfLoop()]
-
-    def passes(self, node: ast.For, block: list[Statement]) -> list[Any] | None:
-        """What the counter will be, where that is known."""
+        if not isinstance(node.target, ast.Name):
+            raise self.source.refuse(node, "a loop has one counter")
         if isinstance(node.iter, ast.Tuple):
-            return [self.settled(e, block) for e in node.iter.elts]
-        bounds = self.bounds(node, block)
-        return list(range(*bounds)) if all(is_known(b) for b in bounds) else None
+            values = [self.settled(e, block) for e in node.iter.elts]
+        else:
+            bounds = self.bounds(node, block)
+            if not all(is_known(b) for b in bounds):
+                return None
+            values = list(range(*bounds))
+            if len(values) > MOST_WRITTEN_OUT or (may_leave(node.body) and len(values) > 2):
+                return None
+        passes = ([NextPass(node.target, value), *node.body] for value in values)
+        return [*(statement for one in passes for statement in one), EndOfLoop()]
 
     def bounds(self, node: ast.For, block: list[Statement]) -> tuple[Any, Any, Any]:
         """Start, stop and step of a range."""
         call = node.iter
         if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "range"):
             raise self.source.refuse(node, "a loop goes over range(…)")
-        given = [self.read(a, block) for a in call.args]
+        given = [self.settled(a, block) for a in call.args]
+        if any(isinstance(g, tuple) or kind_of(g) != "integer" for g in given):
+            raise self.source.refuse(node, "a range has whole numbers")
         start, stop = (0, given[0]) if len(given) == 1 else given[:2]
-        return start, stop, given[2] if len(given) == 3 else 1
+        step = given[2] if len(given) == 3 else 1
+        if not is_known(step) or step == 0:
+            raise self.source.refuse(node, "the step of a range is known and not 0")
+        return start, stop, step
 
-    def count(self, node: ast.For, block: list[Statement]) -> bool:
-        """A loop that stays one; True where it may return from the function."""
+    def count(self, node: ast.For, block: list[Statement]) -> None:
+        """A loop over a range that stays one."""
         start, stop, step = self.bounds(node, block)
-        if not is_known(step) or not isinstance(node.target, ast.Name):
-            raise self.source.refuse(node, "the step of a range is known")
-        self.hold(node.body, block)
-        counter = Variable("integer", node.target.id, changes=True)
+        assert isinstance(node.target, ast.Name), "a loop has one counter"
+        held = self.hold(node, node.body, block)
+        counter = Variable("integer", node.target.id)
         made = Count(counter, as_operand(start), as_operand(stop), int(step))
-        self.inside(node, made.body, {node.target.id: counter}, block)
+        self.names[node.target.id] = counter
+        self.inside(node, made.body, held, block)
+        self.names[node.target.id] = Unknown()
         block.append(made)
-        self.leave_further(block)
-        return _returns(node.body)
 
-    def while_loop(self, node: ast.While, block: list[Statement]) -> bool:
-        """A loop that stays one; True where it may return from the function."""
-        self.hold(node.body, block)
+    def while_loop(self, node: ast.While, block: list[Statement]) -> None:
+        """A loop that goes on while a condition holds."""
+        held = self.hold(node, node.body, block)
         made = While()
-        made.test = as_operand(self.read(node.test, made.before))
-        self.inside(node, made.body, {}, block)
+        made.test = as_operand(self.condition(self.read(node.test, made.before), node, made.before))
+        self.inside(node, made.body, held, block)
         block.append(made)
-        self.leave_further(block)
-        return _returns(node.body)
 
-    def hold(self, body: list[ast.stmt], block: list[Statement]) -> None:
-        """What the body changes gets a variable before the loop."""
-        for name in _assigned(body):
+    def hold(self, node: ast.For | ast.While, body: list[ast.stmt], block: list[Statement]) -> list[str]:
+        """What the body changes gets a variable before the loop; their names."""
+        held = []
+        for name in assigned(body):
             value = self.names.get(name)
             if value is None or isinstance(value, Changing | Unknown):
                 continue
             if not isinstance(value, bool | int | float | Variable):
-                raise self.source.refuse(body[0], f"{name} is no number, and a loop changes it")
+                raise self.source.refuse(node, f"{name} is no number, and the loop changes it")
             variable = Variable(kind_of(value), name, changes=True)
             block.append(Set(variable, as_operand(value)))
             self.names[name] = Changing(variable)
+            held.append(name)
+        for name in counters(body):  # each loop inside gives its own anew
+            self.names[name] = Unknown()
+        return held
 
     def inside(
-        self, node: ast.For | ast.While, body: list[Statement], more: dict[str, Any], block: list[Statement]
+        self, node: ast.For | ast.While, body: list[Statement], held: list[str], block: list[Statement]
     ) -> None:
         """The body of a loop."""
-        if _returns(node.body) and self.exits.done is None:
+        if returns(node.body) and self.exits.done is None:
             self.exits.done = Variable("truth", "done", changes=True)
             block.append(Set(self.exits.done, Constant(False, "truth")))
         before = dict(self.names)
-        self.names |= more
         self.nested += 1
         self.exits.depth += 1
         self.run(node.body, body)
@@ -387,229 +349,12 @@ class _Writer:
         self.nested -= 1
         # what the body gave a name for the first time is not there where it runs no time
         self.names = {name: before.get(name, Unknown()) for name in dict.fromkeys([*before, *self.names])}
-
-    def leave_further(self, block: list[Statement]) -> None:
-        """Behind a loop inside another: out of that too, where the function has returned."""
-        if self.exits.depth and self.exits.done is not None:
-            block.append(Branch(self.exits.done, [Leave()]))
+        for name in held:  # nothing changes them any more
+            self.names[name] = before[name].variable
 
     def unless_done(self, node: ast.stmt, todo: list[ast.stmt], block: list[Statement]) -> bool:
         """What follows a loop that may have returned."""
         if self.exits.depth:
             return self.run(todo, block)
         done, self.exits.done = self.exits.done, None
-        return self.both(done, lambda w, b: _OVER, lambda w, b: w.run(todo, b), node, block)
-
-    # ---- expressions
-
-    def settled(self, node: ast.expr, block: list[Statement]) -> Any:
-        """A value that stays as it is when a loop goes on."""
-        held = {id(h.variable) for h in self.names.values() if isinstance(h, Changing)}
-        return _copied(self.read(node, block), held, block)
-
-    def read(self, node: ast.expr, block: list[Statement]) -> Any:
-        """What an expression is."""
-        if isinstance(node, ast.Constant) and isinstance(node.value, bool | int | float | None):
-            return node.value
-        if isinstance(node, ast.Name):
-            return self.name(node)
-        if isinstance(node, ast.Attribute):
-            return getattr(self.read(node.value, block), node.attr)
-        if isinstance(node, ast.Tuple):
-            return tuple(self.settled(e, block) for e in node.elts)
-        if isinstance(node, ast.Subscript):
-            return self.element(node, block)
-        if isinstance(node, ast.BinOp):
-            pair = self.read(node.left, block), self.read(node.right, block)
-            return self.operate(node, pair, node.op, block)
-        if isinstance(node, ast.UnaryOp):
-            return self.unary(node, block)
-        if isinstance(node, ast.Compare):
-            return self.compare(node, block)
-        if isinstance(node, ast.BoolOp):
-            return self.truth(node, block)
-        if isinstance(node, ast.IfExp):
-            return self.either(node, block)
-        if isinstance(node, ast.Call):
-            return self.call(node, block)
-        raise self.source.refuse(node, f"{ast.unparse(node)} cannot be emitted")
-
-    def name(self, node: ast.Name) -> Any:
-        """What a name stands for: in the function, in its module, in Python."""
-        if node.id in self.names:
-            value = self.names[node.id]
-            if isinstance(value, Unknown):
-                raise self.source.refuse(node, f"{node.id} has no value on some way here")
-            return value.variable if isinstance(value, Changing) else value
-        if node.id in self.source.known:
-            return self.source.known[node.id]
-        builtin = {"abs": abs, "min": min, "max": max, "float": float, "int": int, "bool": bool}
-        if node.id in builtin:
-            return builtin[node.id]
-        raise self.source.refuse(node, f"{node.id} is not known here")
-
-    def element(self, node: ast.Subscript, block: list[Statement]) -> Any:
-        """A number of an array or a tuple."""
-        held, index = self.read(node.value, block), self.read(node.slice, block)
-        if isinstance(held, Cells):
-            result = Variable("real")
-            block.append(Load(result, held, as_operand(index)))
-            return result
-        if is_known(index):
-            part = held[index]
-            return float(part) if isinstance(held, np.ndarray) else part
-        if not all(is_known(v) for v in held):
-            raise self.source.refuse(node, "which of these numbers it is, is not known")
-        result = Variable("real")
-        table = Table("", tuple(float(v) for v in held))
-        block.append(Load(result, table, as_operand(index)))
-        return result
-
-    def operate(
-        self, node: ast.AST, values: tuple[Any, Any], operator: ast.operator, block: list[Statement]
-    ) -> Any:
-        """A binary operator."""
-        name = _BINARY.get(type(operator))
-        if name is None:
-            raise self.source.refuse(node, "this operator cannot be emitted")
-        if name == "//" and "real" in (kind_of(values[0]), kind_of(values[1])):
-            if values[1] != 1.0:
-                raise self.source.refuse(node, "of real numbers // is emitted by 1.0 only, as the floor")
-            return applied("floor", (values[0],), block)
-        return applied(name, values, block)
-
-    def unary(self, node: ast.UnaryOp, block: list[Statement]) -> Any:
-        value = self.read(node.operand, block)
-        if isinstance(node.op, ast.USub):
-            return applied("negate", (value,), block)
-        if isinstance(node.op, ast.Not):
-            return applied("not", (value,), block)
-        raise self.source.refuse(node, "this operator cannot be emitted")
-
-    def compare(self, node: ast.Compare, block: list[Statement]) -> Any:
-        """One comparison, or several in a row."""
-        result: Any = True
-        left = self.read(node.left, block)
-        for operator, right_node in zip(node.ops, node.comparators, strict=True):
-            right = self.read(right_node, block)
-            if isinstance(operator, ast.Is | ast.IsNot):
-                one = (left is right) == isinstance(operator, ast.Is)
-            else:
-                name = _BINARY.get(type(operator))
-                if name is None:
-                    raise self.source.refuse(node, "this comparison cannot be emitted")
-                one = applied(name, (left, right), block)
-            result = applied("and", (result, one), block)
-            left = right
-        return result
-
-    def truth(self, node: ast.BoolOp, block: list[Statement]) -> Any:
-        """`and`, `or`: both sides are computed, neither changes anything."""
-        name = "and" if isinstance(node.op, ast.And) else "or"
-        result = self.read(node.values[0], block)
-        for further in node.values[1:]:
-            if is_known(result) and bool(result) == (name == "or"):
-                return result
-            result = applied(name, (result, self.read(further, block)), block)
-        return result
-
-    def either(self, node: ast.IfExp, block: list[Statement]) -> Any:
-        """`a if c else b`."""
-        test = self.read(node.test, block)
-        if is_known(test):
-            return self.read(node.body if test else node.orelse, block)
-        made = Branch(as_operand(test))
-        a, b = self.settled(node.body, made.then), self.settled(node.orelse, made.other)
-        result = joined(a, b, made.then, made.other, "", lambda what: self.source.refuse(node, what))
-        block.append(made)
-        return result
-
-    def call(self, node: ast.Call, block: list[Statement]) -> Any:
-        """A function: an operator, a record, or one that is written out in place."""
-        function = self.read(node.func, block)
-        values = [self.settled(a, block) for a in node.args]
-        named = {k.arg: self.settled(k.value, block) for k in node.keywords if k.arg}
-        if function in (min, max):
-            return self.extreme("min" if function is min else "max", values, block)
-        if function in (math.floor, math.ceil):
-            whole = applied("floor" if function is math.floor else "ceil", (values[0],), block)
-            return applied("integer", (whole,), block)
-        if function in _FUNCTIONS:
-            return applied(_FUNCTIONS[function], tuple(values), block)
-        if hasattr(function, "_fields"):
-            return function(*values, **named)
-        if not callable(function) or getattr(function, "__module__", "").split(".")[0] != "zwidth":
-            raise self.source.refuse(node, f"{ast.unparse(node.func)} cannot be emitted")
-        called = source_of(function)
-        names = dict(zip(_names(called), values, strict=False)) | named
-        inner = _Writer(called, names, nested=0)
-        inner.run(called.tree.body, block)
-        return inner.value(block)
-
-    def extreme(self, name: str, values: list[Any], block: list[Statement]) -> Any:
-        result = values[0]
-        for further in values[1:]:
-            result = applied(name, (result, further), block)
-        return result
-
-
-def _copied(value: Any, held: set[int], block: list[Statement]) -> Any:
-    """A value, with those of the variables that a loop is changing read now."""
-    if isinstance(value, tuple):
-        return rebuilt(value, [_copied(v, held, block) for v in value])
-    if id(value) in held:
-        result = Variable(value.kind)
-        block.append(Operation(result, "copy", (value,)))
-        return result
-    return value
-
-
-def _variables_like(value: Any, hint: str) -> Any:
-    if isinstance(value, tuple):
-        return rebuilt(value, [_variables_like(v, hint) for v in value])
-    return None if value is None else Variable(kind_of(value), hint, changes=True)
-
-
-def _set_all(variables: Any, value: Any, block: list[Statement], refuse: Callable[[str], Exception]) -> None:
-    if isinstance(variables, tuple):
-        for one, part in zip(variables, value, strict=True):
-            _set_all(one, part, block, refuse)
-    elif variables is not None:
-        value = converted(value, variables.kind, block)
-        if kind_of(value) != variables.kind:
-            raise refuse("a function returns numbers of one kind: write 0.0 for a real 0")
-        block.append(Set(variables, as_operand(value)))
-
-
-def _behind(todo: list[ast.stmt], whole_loop: bool) -> list[ast.stmt] | None:
-    """What follows a `break`, or a `continue`, of a loop that is written out; None of one that is not."""
-    depth_end = next((k for k, n in enumerate(todo) if isinstance(n, _EndOfLoop)), None)
-    if depth_end is None:
-        return None
-    following = next((k for k, n in enumerate(todo[:depth_end]) if isinstance(n, _NextPass)), depth_end)
-    return todo[depth_end + 1 :] if whole_loop else todo[following:]
-
-
-def _may_leave(body: Sequence[ast.stmt]) -> bool:
-    """Whether a block may return, or leave the loop it is in."""
-    return any(_leaves(s) for s in body)
-
-
-def _leaves(node: ast.stmt) -> bool:
-    if isinstance(node, ast.Return | ast.Break | ast.Continue):
-        return True
-    if isinstance(node, ast.If):
-        return _may_leave([*node.body, *node.orelse])
-    return isinstance(node, ast.For | ast.While) and _returns(node.body)
-
-
-def _returns(body: Sequence[ast.stmt]) -> bool:
-    return any(isinstance(n, ast.Return) for s in body for n in ast.walk(s))
-
-
-def _assigned(body: Sequence[ast.stmt]) -> list[str]:
-    """The names that a block gives values, in their order."""
-    stored = (
-        n for s in body for n in ast.walk(s) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
-    )
-    return list(dict.fromkeys(n.id for n in stored))
+        return self.both(done, lambda b: _OVER, lambda b: self.run(todo, b), node, block)

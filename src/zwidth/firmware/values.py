@@ -70,3 +70,24 @@ def joined(
     first.append(Set(variable, as_operand(converted(a, kind, first))))
     second.append(Set(variable, as_operand(converted(b, kind, second))))
     return variable
+
+
+def variables_like(value: Any, hint: str) -> Any:
+    """Variables for a number, or for each of a tuple."""
+    if isinstance(value, tuple):
+        return rebuilt(value, [variables_like(v, hint) for v in value])
+    return None if value is None else Variable(kind_of(value), hint, changes=True)
+
+
+def set_all(variables: Any, value: Any, block: list[Statement], refuse: Callable[[str], Exception]) -> None:
+    """Set such variables."""
+    if isinstance(variables, tuple) and isinstance(value, tuple) and len(variables) == len(value):
+        for one, part in zip(variables, value, strict=True):
+            set_all(one, part, block, refuse)
+    elif isinstance(variables, Variable) and isinstance(value, bool | int | float | Variable):
+        value = converted(value, variables.kind, block)
+        if kind_of(value) != variables.kind:
+            raise refuse("a function returns numbers of one kind: write 0.0 for a real 0")
+        block.append(Set(variables, as_operand(value)))
+    elif variables is not None or value is not None:
+        raise refuse("a function returns as many numbers on every way")

@@ -6,9 +6,8 @@ the hand works against the actuator, f_c sgn v and b v.
 
 from __future__ import annotations
 
-from math import expm1
-
 from zwidth.compiled import Array, compiled
+from zwidth.elementary.exponential import expm1
 from zwidth.loop.plant import (
     ACTUATOR_WORK,
     COULOMB,

@@ -1,9 +1,8 @@
 """Batches on a graphics card: one loop per thread, the step functions of the processor.
 
-CUDA compiles the very functions that the processor runs.  Its exponentials and
-logarithms round differently and it fuses products into sums, so that results
-agree to rounding and not to the bit; where a reading lies on an encoder edge,
-the two then part, as two devices would.
+CUDA compiles the very functions that the processor runs, but fuses products into
+sums, so that results agree to rounding and not to the bit; where a reading lies
+on an encoder edge, the two then part, as two devices would.
 """
 
 from __future__ import annotations

@@ -18,6 +18,7 @@ x_m ≤ 0.
 from __future__ import annotations
 
 from zwidth.compiled import Array, compiled
+from zwidth.elementary.power import power
 from zwidth.rendering.chain import after, before
 from zwidth.scene.step import scene_force
 
@@ -73,7 +74,7 @@ def contact_force(law: Array, memory: Array, reading: float) -> float:
     moved = reading - memory[0]
     memory[0] = reading
     depth = max(reading, 0.0)
-    return law[HEADER] * depth ** law[HEADER + 1] * (1.0 + law[HEADER + 2] * moved)
+    return law[HEADER] * power(depth, law[HEADER + 1]) * (1.0 + law[HEADER + 2] * moved)
 
 
 @compiled

@@ -8,9 +8,9 @@ between two of them the motion has a closed form.
 
 from __future__ import annotations
 
-from math import exp, expm1, log
-
 from zwidth.compiled import Array, compiled
+from zwidth.elementary.exponential import exp, expm1
+from zwidth.elementary.logarithm import log
 from zwidth.loop.free import free_response, free_stop
 from zwidth.loop.ledger import book, book_rest
 from zwidth.loop.plant import (

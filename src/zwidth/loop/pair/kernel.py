@@ -7,10 +7,10 @@ has it.
 
 from __future__ import annotations
 
-from math import tanh
 from typing import NamedTuple
 
 from zwidth.compiled import Array, compiled
+from zwidth.elementary.hyperbolic import tanh
 from zwidth.loop.carry import carry
 from zwidth.loop.kernel import (
     R_COMMAND,

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from math import tanh
-
 from zwidth.compiled import Array, compiled
+from zwidth.elementary.hyperbolic import tanh
 
 _COULOMB, _VISCOUS, _SPEED, _PERIOD = range(4)
 

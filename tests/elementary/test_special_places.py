@@ -1,0 +1,113 @@
+"""Where an elementary function ends, begins or must be exact."""
+
+from __future__ import annotations
+
+from math import copysign, inf, isnan, nan, nextafter
+
+import pytest
+
+from zwidth.elementary.exponential import exp, expm1
+from zwidth.elementary.hyperbolic import tanh
+from zwidth.elementary.logarithm import log, log1p
+from zwidth.elementary.power import power
+
+LARGEST = 1.7976931348623157e308
+SMALLEST = 5e-324
+
+VALUES = [
+    (exp, 0.0, 1.0),
+    (exp, -0.0, 1.0),
+    (exp, SMALLEST, 1.0),
+    (exp, 2.0**-53, 1.0),
+    (exp, -(2.0**-55), 1.0),
+    (exp, 709.782712893384, 1.7976931348622732e308),
+    (exp, nextafter(709.782712893384, inf), inf),
+    (exp, 1e308, inf),
+    (exp, inf, inf),
+    (exp, -745.1332191019411, SMALLEST),
+    (exp, -745.14, 0.0),
+    (exp, -1e308, 0.0),
+    (exp, -inf, 0.0),
+    (expm1, SMALLEST, SMALLEST),
+    (expm1, -1e-300, -1e-300),
+    (expm1, 1e-17, 1e-17),
+    (expm1, 2.0**-30, 2.0**-30 + 2.0**-61),
+    (expm1, -37.5, -1.0),
+    (expm1, -44.5, -1.0),
+    (expm1, -1e308, -1.0),
+    (expm1, -inf, -1.0),
+    (expm1, 710.0, inf),
+    (expm1, inf, inf),
+    (log, 1.0, 0.0),
+    (log, 2.0**-1074, -744.4400719213812),
+    (log, LARGEST, 709.782712893384),
+    (log, 0.0, -inf),
+    (log, inf, inf),
+    (log1p, SMALLEST, SMALLEST),
+    (log1p, -1e-300, -1e-300),
+    (log1p, 1e-17, 1e-17),
+    (log1p, 2.0**-30, 2.0**-30 - 2.0**-61),
+    (log1p, LARGEST, 709.782712893384),
+    (log1p, -1.0, -inf),
+    (log1p, inf, inf),
+    (tanh, SMALLEST, SMALLEST),
+    (tanh, 1e-17, 1e-17),
+    (tanh, 19.5, 1.0),
+    (tanh, 1e308, 1.0),
+    (tanh, inf, 1.0),
+    (tanh, -inf, -1.0),
+]
+
+
+@pytest.mark.parametrize(("function", "x", "value"), VALUES)
+def test_values(function, x, value):
+    """Ends of the range, limits, and arguments whose result is one double alone."""
+    assert function(x) == value
+
+
+@pytest.mark.parametrize("function", [expm1, log1p, tanh])
+def test_zero_keeps_its_sign(function):
+    """As the functions pass through 0 with slope 1."""
+    assert [copysign(1.0, function(x)) for x in (0.0, -0.0)] == [1.0, -1.0]
+    assert function(0.0) == function(-0.0) == 0.0
+
+
+def test_powers_of_two_have_their_logarithm():
+    """ln 2ᵏ and 2ᵏ⸱ⁿ for every k: the parts of ln 2 add up to it."""
+    from mpmath import ln, workprec
+
+    with workprec(200):
+        assert all(log(2.0**k) == float(k * ln(2)) for k in range(-1074, 1024))
+    assert all(power(2.0**k, 3.0) == 2.0 ** (3 * k) for k in range(-350, 341))
+    assert all(power(4.0**k, 2.5) == 2.0 ** (5 * k) for k in range(-200, 200))
+
+
+def test_no_number_stays_none():
+    """And what has no real value is none."""
+    for function in (exp, expm1, log, log1p, tanh):
+        assert isnan(function(nan))
+    assert isnan(power(nan, 2.5))
+    assert isnan(power(2.5, nan))
+    assert isnan(log(-1e-300))
+    assert isnan(log1p(-1.5))
+    assert isnan(power(-2.5, 0.3))
+
+
+@pytest.mark.parametrize("n", [0.25, 0.5, 1.0, 1.5, 2.0, 2.2, 10.0])
+def test_powers_at_the_ends(n):
+    """0ⁿ = 0, 1ⁿ = 1, ∞ⁿ = ∞."""
+    assert (power(0.0, n), power(1.0, n), power(inf, n)) == (0.0, 1.0, inf)
+
+
+def test_powers_that_leave_the_range():
+    """They are ∞ above it and 0 below."""
+    assert (power(1e6, 60.0), power(1e-6, 60.0)) == (inf, 0.0)
+    assert (power(1e300, 1.5), power(1e-300, 1.5)) == (inf, 0.0)
+    assert (power(1e300, 2.0), power(1e-300, 2.0)) == (inf, 0.0)
+    assert (power(0.0, -0.5), power(inf, -0.5), power(7.3, 0.0)) == (inf, 0.0, 1.0)
+
+
+def test_first_powers_and_squares_round_once():
+    """x, x², √x are those of the machine."""
+    for x in (1e-300, 3.7e-5, 0.1, 0.7, 1.1, 123.456):
+        assert (power(x, 1.0), power(x, 2.0), power(x, 0.5)) == (x, x * x, x**0.5)

@@ -1,0 +1,166 @@
+"""Programs in C, compiled by the machine's compiler, and in JavaScript, run by node.
+
+Each program is given its inputs row by row and keeps its cells from row to row; all it gave back, and what its
+cells hold at the end, comes back as the bits of doubles.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import shutil
+import subprocess
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from zwidth.firmware.c99 import C99
+from zwidth.firmware.c99 import KEYWORDS as OF_C
+from zwidth.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
+from zwidth.firmware.javascript import JavaScript
+from zwidth.firmware.program import Program
+
+Array = NDArray[np.float64]
+
+
+class Ran(NamedTuple):
+    """What came back: a row for each row of the inputs; the cells, one after the other."""
+
+    outputs: Array
+    cells: Array
+
+
+needs_c = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler, cc, on this machine")
+needs_node = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node on this machine")
+
+
+def same_bits(one: Array, other: Array) -> bool:
+    """Equal to the last bit, the sign of 0 with it; any NaN is NaN."""
+    a, b = np.ascontiguousarray(one), np.ascontiguousarray(other)
+    both = np.isnan(a) & np.isnan(b)
+    return a.shape == b.shape and bool((both | (a.view(np.int64) == b.view(np.int64))).all())
+
+
+def compiled_c(text: str, folder: Path, options: Sequence[str] = ("-std=c99", "-O2")) -> ctypes.CDLL:
+    """A text in C as a library; warnings are errors."""
+    source, library = folder / "emitted.c", folder / f"emitted{''.join(options)}.so".replace("=", "")
+    source.write_text(text, encoding="utf-8")
+    strict = ["-Wall", "-Werror", "-Wno-unused-function", "-Wno-unused-but-set-variable", "-Wno-tautological-compare"]
+    command = ["cc", *options, *strict, "-fPIC", "-shared", "-o", str(library), str(source), "-lm"]
+    made = subprocess.run(command, capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    return ctypes.CDLL(str(library))
+
+
+def run_c(library: ctypes.CDLL, name: str, inputs: Array, cells: Array, outputs: int) -> Ran:
+    """The function `NAME_rows(const double *in, int rows, double *cells, double *out)` of a library."""
+    given = np.ascontiguousarray(inputs, dtype=np.float64)
+    out, held = np.empty((len(given), outputs)), np.array(cells, dtype=np.float64)
+    place = ctypes.c_void_p
+    function = getattr(library, f"{name}_rows")
+    function(place(given.ctypes.data), len(given), place(held.ctypes.data), place(out.ctypes.data))
+    return Ran(out, held)
+
+
+def run_node(
+    module: str, folder: Path, given: Mapping[str, tuple[Array, Array, int]], files: Mapping[str, str] | None = None
+) -> dict[str, Ran]:
+    """The functions `NAME(row, cells) → outputs` that a module exports, all in one process.
+
+    `given` are inputs, cells and how many outputs, by name; `files` further modules beside it.
+    """
+    (folder / "emitted.mjs").write_text(module, encoding="utf-8")
+    for name, text in (files or {}).items():
+        (folder / name).write_text(text, encoding="utf-8")
+    shapes = {}
+    for name, (inputs, cells, outputs) in given.items():
+        rows = np.ascontiguousarray(inputs, dtype=np.float64)
+        rows.tofile(folder / f"{name}.in")
+        np.asarray(cells, dtype=np.float64).tofile(folder / f"{name}.cells")
+        shapes[name] = [len(rows), rows.shape[1], outputs]
+    (folder / "shapes.json").write_text(json.dumps(shapes), encoding="utf-8")
+    (folder / "run.mjs").write_text(_RUN, encoding="utf-8")
+    ran = subprocess.run(["node", "run.mjs"], cwd=folder, capture_output=True, text=True)
+    assert ran.returncode == 0, ran.stderr
+    return {
+        name: Ran(
+            np.fromfile(folder / f"{name}.out").reshape(shape[0], shape[2]),
+            np.fromfile(folder / f"{name}.cells"),
+        )
+        for name, shape in shapes.items()
+    }
+
+
+_RUN = """\
+import { readFileSync, writeFileSync } from "node:fs";
+import * as all from "./emitted.mjs";
+const numbers = (name) => {
+    const bytes = readFileSync(name);
+    return new Float64Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
+};
+for (const [name, [rows, wide, outputs]] of Object.entries(JSON.parse(readFileSync("shapes.json")))) {
+    const given = numbers(`${name}.in`), cells = numbers(`${name}.cells`);
+    const out = new Float64Array(rows * outputs);
+    for (let k = 0; k < rows; k += 1) {
+        const got = all[name](given.subarray(k * wide, (k + 1) * wide), cells);
+        for (let i = 0; i < outputs; i += 1) { out[k * outputs + i] = Number(got[i]); }
+    }
+    writeFileSync(`${name}.out`, Buffer.from(out.buffer));
+    writeFileSync(`${name}.cells`, Buffer.from(cells.buffer));
+}
+"""
+
+
+def program_in_c(program: Program, name: str) -> str:
+    """A function for `run_c`; the program has one array of cells at most."""
+    c = C99(program, OF_C, prefix=name)
+    body = [*c.changing(), *c.block(program.body, 1)]
+    size = program.cells[0].size if program.cells else 1
+    cell = program.cells[0].name if program.cells else "m"
+    types = [c.type_of(v) for v in program.parameters]
+    given = "".join(f", {t} {v.hint}" for t, v in zip(types, program.parameters, strict=True))
+    read = "".join(f", ({t})in[k * {len(types)} + {i}]" for i, t in enumerate(types))
+    results = [f"    out[{i}] = {c.read(r, alone=True)};" for i, r in enumerate(program.results)]
+    lines = [
+        f"typedef struct {{ double {cell}[{size}]; }} {name}_cells;",
+        *c.table_lines(),
+        *c.helper_lines(),
+        f"static void {name}({name}_cells *s{given}, double *out)",
+        "{",
+        *body,
+        *results,
+        "}",
+        f"void {name}_rows(const double *in, int rows, double *cells, double *out)",
+        "{",
+        f"    for (int k = 0; k < rows; k += 1) {{ {name}(({name}_cells *)cells{read}, "
+        f"out + k * {len(results)}); }}",
+        "}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+INCLUDES = "#include <math.h>\n#include <stdint.h>\n"
+
+
+def program_in_javascript(program: Program, name: str) -> str:
+    """A function for `run_node`."""
+    js = JavaScript(program, OF_JAVASCRIPT)
+    body = [*(f"    {line}" for line in js.changing()), *js.block(program.body, 1)]
+    cell = program.cells[0].name if program.cells else "m"
+    names = ", ".join(v.hint for v in program.parameters)
+    lines = [
+        f"export const {name} = (() => {{",
+        *js.table_lines(),
+        *js.helper_lines(),
+        f"const whole = (s, {names}) => {{",
+        *body,
+        f"    return [{', '.join(js.read(r, alone=True) for r in program.results)}];",
+        "};",
+        f"return (row, cells) => whole({{ {cell}: cells }}, ...row);",
+        "})();",
+    ]
+    return "\n".join(lines) + "\n"
