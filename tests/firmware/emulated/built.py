@@ -1,0 +1,31 @@
+"""Compilers called, and what the emitted text declares."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-ffp-contract=off")
+"""As a law is compiled wherever it runs: a warning is an error, and no two operations become one."""
+
+
+def called(line: Sequence[str], folder: Path | None = None, seconds: float | None = None) -> str:
+    """What the program says; AssertionError with all of it where it fails."""
+    done = subprocess.run(list(line), cwd=folder, capture_output=True, text=True, timeout=seconds)
+    assert done.returncode == 0, f"{' '.join(line)}\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def defined(header: str, name: str) -> float:
+    """The number that a header gives a name, such as FORCE_PER_UNIT of LAW_FORCE_PER_UNIT."""
+    found = re.search(rf"^\s*#\s*define\s+[A-Z]\w*?_{name}\s+\(?([-+.\w]+?)f?\)?\s*$", header, re.MULTILINE)
+    assert found, f"the header defines no {name}"
+    return float(found[1])
+
+
+def sizes(size: str, program: Path) -> tuple[int, int]:
+    """Bytes that a program takes of flash and of RAM, the latter without its stack, by a `size` of binutils."""
+    text, data, bss = (int(word) for word in called([size, str(program)]).splitlines()[1].split()[:3])
+    return text + data, data + bss
