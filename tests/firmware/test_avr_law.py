@@ -84,7 +84,7 @@ def test_floats_on_the_chip() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_a_step_costs(name: str) -> None:
-    """Fixed point of 16 bits takes less than 200 cycles, what one first writes over 800; all fit into the chip."""
+    """Fixed point of 16 bits takes less than 200 cycles, what one first writes over 800; all fit in."""
     with AvrLaw(text(name)) as law:
         law.init(0)
         answers = law.run(touch(2000))

@@ -1,4 +1,4 @@
-"""The loop closed over an emulated chip: the passive wall comes to rest, the active one gives energy without end."""
+"""The loop closed over an emulated chip: the passive wall comes to rest, the active one gives energy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Laws written by hand, as a measure for what is emitted: a wall of 300 N/m and 0.05 N·s/m, encoder 22.4 µm, 1 kHz."""
+"""Laws written by hand, as a measure for what is emitted: a wall of 300 N/m and 0.05 N·s/m at 1 kHz."""
 
 from __future__ import annotations
 

@@ -15,8 +15,8 @@ _REAL = {4: np.dtype(np.float32), 8: np.dtype(np.float64)}
 class Answers:
     """Forces in the units of the law, one for each count, and what each step cost.
 
-    `cost` is in cycles or in instructions, as the target has it; `flash` and `ram` in bytes are the program's with the
-    law in it, less those of the same program with a law that does nothing.
+    `cost` is in cycles or in instructions, as the target has it; `flash` and `ram` in bytes are the
+    program's with the law in it, less those of the same program with a law that does nothing.
     """
 
     forces: NDArray[Any]

@@ -1,7 +1,7 @@
 """A law on an emulated ATmega328P at 16 MHz: its forces, the cycles of each step, flash and RAM.
 
-avr-gcc compiles it, libsimavr runs it.  The cycles are those from the call of a step to its return, less those of an
-empty function that is called in the same way: what arguments and call cost is not the law's.
+avr-gcc compiles it, libsimavr runs it.  The cycles are those from the call of a step to its return, less
+those of an empty function that is called in the same way: what arguments and call cost is not the law's.
 """
 
 from __future__ import annotations

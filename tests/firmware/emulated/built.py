@@ -26,6 +26,6 @@ def defined(header: str, name: str) -> float:
 
 
 def sizes(size: str, program: Path) -> tuple[int, int]:
-    """Bytes that a program takes of flash and of RAM, the latter without its stack, by a `size` of binutils."""
+    """Bytes that a program takes of flash and of RAM, without its stack, by a `size` of binutils."""
     text, data, bss = (int(word) for word in called([size, str(program)]).splitlines()[1].split()[:3])
     return text + data, data + bss

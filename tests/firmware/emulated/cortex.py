@@ -1,9 +1,9 @@
 """A law on an emulated Cortex-M4: its forces, the instructions of each step, flash and RAM.
 
-arm-none-eabi-gcc compiles it, qemu-system-arm runs it as the board mps2-an386.  The instructions are those executed
-from the call of a step to its return, less those of an empty function.  They are no cycles: QEMU has no pipeline and
-no flash that must be waited for.  On the chip most take one cycle, loads and taken branches two to four, a division up
-to 14: the cycles are more than the instructions.
+arm-none-eabi-gcc compiles it, qemu-system-arm runs it as the machine mps2-an386.  The instructions are those
+executed from the call of a step to its return, less those of an empty function.  They are no cycles: QEMU has
+no pipeline and no flash that must be waited for.  On the chip most take one cycle, loads and taken branches two
+to four, a division up to 14: the cycles are more than the instructions.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ def run(header: str, counts: object, start: int = 0, floats: tuple[str, ...] = H
         program = _program(header, folder, floats)
         np.append(np.int32(start), given).tofile(folder / "counts")
         (folder / "forces").touch()
-        board = ["-M", "mps2-an386", "-display", "none", "-monitor", "none", "-serial", "none"]
+        machine = ["-M", "mps2-an386", "-display", "none", "-monitor", "none", "-serial", "none"]
         clock = ["-icount", "shift=10,sleep=off", "-semihosting-config", "enable=on,target=native"]
-        called(["qemu-system-arm", *board, *clock, "-kernel", str(program)], folder, SECONDS)
+        called(["qemu-system-arm", *machine, *clock, "-kernel", str(program)], folder, SECONDS)
         told = np.fromfile(folder / "cost", np.uint32)
         forces = np.fromfile(folder / "forces", force_type(told[1], told[0]))[1:]
         flash, ram = (

@@ -1,6 +1,6 @@
-"""A sampled loop whose law runs elsewhere, such as on an emulated chip: it is given counts and answers with forces.
+"""A sampled loop whose law runs elsewhere, such as on an emulated chip: given counts it answers with forces.
 
-The plant, the hand and the energies are those of `zwidth.simulate`: between two changes of force the motion is exact.
+Plant, hand and energies are those of `zwidth.simulate`: between two changes of force the motion is exact.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ Array = NDArray[np.float64]
 class Motion:
     """What became of it, a number for each sample.
 
-    `counts` is what the encoder read; `position` [m, rad], `velocity`, `command` and `force` of the actuator [N, N·m]
-    and the work of the hand so far [J] are those of the plant.
+    `counts` is what the encoder read; `position` [m, rad], `velocity`, `command` and `force` of the actuator
+    [N, N·m] and the work of the hand so far [J] are those of the plant.
     """
 
     counts: NDArray[np.int32]

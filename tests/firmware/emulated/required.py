@@ -1,6 +1,7 @@
 """Which tools a target needs, and whether this machine has them.
 
-Where ZWIDTH_EVERY_TARGET is set a missing one fails the test that needs it; else the test is skipped, and says which.
+Where ZWIDTH_EVERY_TARGET is set a missing one fails the test that needs it; else the test is skipped, and
+says which.
 """
 
 from __future__ import annotations
