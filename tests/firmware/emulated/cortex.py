@@ -2,8 +2,8 @@
 
 arm-none-eabi-gcc compiles it, qemu-system-arm runs it as the machine mps2-an386.  The instructions are those
 executed from the call of a step to its return, less those of an empty function.  They are no cycles: QEMU has
-no pipeline and no flash that must be waited for.  On the chip most take one cycle, loads and taken branches two
-to four, a division up to 14: the cycles are more than the instructions.
+no pipeline and no flash that must be waited for.  On the chip most take one cycle, loads and taken branches
+two or more, a division up to 14: there are more cycles than instructions.
 """
 
 from __future__ import annotations
