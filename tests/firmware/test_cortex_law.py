@@ -20,7 +20,7 @@ def test_every_instruction_is_counted() -> None:
     loop = '__asm__ volatile("1: subs %0, #1\\n bne 1b" : "+r"(counts) : : "cc"); '
     for extra, more in (("", 0), ('__asm__ volatile("nop\\n nop\\n nop"); ', 3), (loop, None)):
         counts = np.array([1, 2, 7, 100, 20_000])
-        law = IDLE.replace("return s->nothing", f"{extra}return s->nothing")
+        law = IDLE.replace("return counts", f"{extra}return counts")
         bare = cortex.run(IDLE, counts).cost
         wanted = bare + (2 * counts if more is None else more)
         assert cortex.run(law, counts).cost.tolist() == wanted.tolist()

@@ -15,6 +15,7 @@ static volatile struct {
     law_force force;
     uint8_t wanted, bytes, whole;
 } exchange;
+typedef char force_has_four_bytes[sizeof(law_force) == 4 ? 1 : -1];
 
 static ALONE law_force step(int32_t counts) {
     __asm__ volatile("" ::: "memory");

@@ -36,7 +36,7 @@ static law_state state;
 static int32_t counts[SOME];
 static union {
     law_force given[SOME];
-    double room[SOME]; /* so that every law is left the same */
+    uint32_t room[2 * SOME]; /* the same for every law */
 } forces;
 static uint32_t cost[SOME];
 
