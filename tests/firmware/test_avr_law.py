@@ -144,6 +144,18 @@ def test_it_goes_on_and_begins_anew(tmp_path: Path) -> None:
             law.reset()
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_a_sketch_takes_a_header_as_well(name: str) -> None:
+    """Compiled as C++ it answers the same."""
+    counts = touch(200)
+    found = []
+    for sketch in (False, True):
+        with AvrLaw(text(name), sketch=sketch) as law:
+            law.init(0)
+            found.append(law.run(counts).forces)
+    assert np.array_equal(*found)
+
+
 def test_what_does_not_return() -> None:
     """A law that runs for ever is found out."""
     endless = UNIT + IDLE.replace("return counts", "while (counts == 3) s->nothing++; return counts")

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from firmware.emulated.answers import IDLE, Answers, as_counts, force_type
-from firmware.emulated.built import STRICT, called, defined, sizes
+from firmware.emulated.built import STRICT, WARNED, called, defined, sizes
 from numpy.typing import NDArray
 
 HERE = Path(__file__).parent
@@ -34,6 +34,8 @@ class AvrLaw:
         The text of law.h.
     optimized
         Option of the compiler.
+    sketch
+        Whether it is compiled as C++, as a sketch of the Arduino is.
 
     Raises
     ------
@@ -41,9 +43,9 @@ class AvrLaw:
         If it does not compile, or the program ends or runs for ever.
     """
 
-    def __init__(self, header: str, optimized: str = "-Os") -> None:
+    def __init__(self, header: str, optimized: str = "-Os", *, sketch: bool = False) -> None:
         self._folder = TemporaryDirectory(prefix="zwidth-avr-")
-        program = _program(header, Path(self._folder.name), optimized)
+        program = _program(header, Path(self._folder.name), optimized, sketch)
         self.flash, self.ram = (
             a - b for a, b in zip(sizes("avr-size", program), _idle_sizes(optimized), strict=True)
         )
@@ -94,10 +96,11 @@ class AvrLaw:
         return forces, cycles.astype(np.int64)
 
 
-def _program(header: str, folder: Path, optimized: str) -> Path:
+def _program(header: str, folder: Path, optimized: str, sketch: bool = False) -> Path:
     (folder / "law.h").write_text(header, encoding="utf-8")
     program = folder / "law.elf"
-    line = ["avr-gcc", f"-mmcu={CHIP}", f"-DF_CPU={FREQUENCY}UL", *STRICT, optimized, f"-I{folder}"]
+    language = ("-x", "c++", "-std=gnu++11", *WARNED) if sketch else STRICT
+    line = ["avr-gcc", f"-mmcu={CHIP}", f"-DF_CPU={FREQUENCY}UL", *language, optimized, f"-I{folder}"]
     called([*line, str(HERE / "avr_main.c"), "-o", str(program), "-lm"])
     return program
 

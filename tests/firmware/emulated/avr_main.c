@@ -24,7 +24,10 @@ static ALONE law_force step(int32_t counts) {
     return force;
 }
 
-law_force empty(int32_t counts);
+#ifdef __cplusplus
+extern "C" /* the compiler of a sketch */
+#endif
+    law_force empty(int32_t counts);
 __asm__("empty: ret\n");
 
 /* One function for both, so that what surrounds the call costs the same. */

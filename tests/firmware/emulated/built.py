@@ -7,7 +7,8 @@ import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
-STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-ffp-contract=off")
+WARNED = ("-Wall", "-Wextra", "-Werror", "-pedantic", "-ffp-contract=off")
+STRICT = ("-std=c99", *WARNED)
 """As a law is compiled wherever it runs: a warning is an error, and no two operations become one."""
 
 
@@ -22,7 +23,7 @@ def defined(header: str, name: str) -> float:
     """The number that a header gives a name, such as FORCE_PER_UNIT of LAW_FORCE_PER_UNIT."""
     found = re.search(rf"^\s*#\s*define\s+[A-Z]\w*?_{name}\s+\(?([-+.\w]+?)f?\)?\s*$", header, re.MULTILINE)
     assert found, f"the header defines no {name}"
-    return float(found[1])
+    return float.fromhex(found[1]) if found[1].lower().startswith("0x") else float(found[1])
 
 
 def sizes(size: str, program: Path) -> tuple[int, int]:

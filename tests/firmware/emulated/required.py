@@ -16,6 +16,7 @@ import pytest
 TOOLS = {
     "host": {"gcc": None},
     "node": {"node": None},
+    "gappa": {"gappa": None},
     "avr": {
         "gcc": "simavr/sim_avr.h",
         "avr-gcc": "avr/io.h",
