@@ -63,7 +63,7 @@ def test_cycles_are_those_of_the_data_sheet() -> None:
 
 def test_whole_numbers_on_the_chip() -> None:
     """A law in fixed point gives there what Python gives."""
-    counts = touch(3000)
+    counts = touch(3000, 2**31 - 1)
     with AvrLaw(text("fixed16")) as law:
         law.init(5)
         answers = law.run(counts)

@@ -29,7 +29,7 @@ def test_every_instruction_is_counted() -> None:
 @pytest.mark.parametrize("floats", [cortex.SOFT, cortex.HARD])
 def test_forces_of_the_cortex(floats: tuple[str, ...]) -> None:
     """Whole numbers, floats and doubles have the bits that they have here, with the unit and without."""
-    counts = touch(3000)
+    counts = touch(3000, 2**31 - 1)
     fixed = cortex.run(text("fixed16"), counts, 5, floats)
     assert fixed.forces.tolist() == fixed_forces(counts, 5)
     for name, real in (("naive_float", np.float32), ("naive_double", np.float64)):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from firmware.baselines.read import fixed_forces, float_forces, text, touch
-from firmware.emulated.host import HostLaw
+from firmware.emulated.host import HostLaw, watched
 from firmware.emulated.required import require
 
 COUNTS = touch(20_000)
@@ -20,10 +20,11 @@ def _tools() -> None:
 
 def test_whole_numbers(tmp_path: Path) -> None:
     """A law in fixed point gives the whole numbers that Python gives."""
+    counts = touch(20_000, 2**31 - 1)
     law = HostLaw(text("fixed16"), tmp_path)
     law.init(5)
     assert law.dtype == np.int32
-    assert law.run(COUNTS).tolist() == fixed_forces(COUNTS, 5)
+    assert law.run(counts).tolist() == fixed_forces(counts, 5)
 
 
 @pytest.mark.parametrize(("name", "real"), [("naive_float", np.float32), ("naive_double", np.float64)])
@@ -54,3 +55,13 @@ def test_a_warning_is_an_error(tmp_path: Path) -> None:
     careless = text("fixed16").replace("int32_t f;", "int32_t f, unused;")
     with pytest.raises(AssertionError, match="unused"):
         HostLaw(careless, tmp_path)
+
+
+def test_an_overflow_is_seen(tmp_path: Path) -> None:
+    """Whole numbers that grow too large end the run; those of 16 bits do not, whatever is counted."""
+    anything = touch(5000, 2**31 - 1)
+    for name in ("fixed16", "naive_float"):
+        watched(text(name), anything, tmp_path)
+    watched(text("naive_q16"), COUNTS, tmp_path)
+    with pytest.raises(AssertionError, match="overflow"):
+        watched(text("naive_q16"), anything, tmp_path)

@@ -52,11 +52,11 @@ def float_forces(counts: NDArray[np.int32], real: type[np.floating], start: int 
     return np.where(x[1:] <= 0, real(0), np.clip(f, real(-16.5), real(16.5)))
 
 
-def touch(samples: int) -> NDArray[np.int32]:
-    """Counts of a hand that goes in and out of the wall, with some steps beyond what an encoder does."""
+def touch(samples: int, most: int = 32_767) -> NDArray[np.int32]:
+    """Counts of a hand that goes in and out of the wall, and some up to ± `most` that no hand would reach."""
     rng = np.random.default_rng(7)
     k = np.arange(samples)
     counts = np.rint(200 + 400 * np.sin(0.011 * k) + 3 * rng.normal(size=samples)).astype(np.int32)
-    counts[::97] = rng.integers(-(2**31), 2**31, size=counts[::97].size)
+    counts[::97] = rng.integers(-most, most + 1, size=counts[::97].size)
     counts[::31] = rng.integers(-40, 40, size=counts[::31].size)
     return counts

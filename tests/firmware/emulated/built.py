@@ -12,11 +12,14 @@ STRICT = ("-std=c99", *WARNED)
 """As a law is compiled wherever it runs: a warning is an error, and no two operations become one."""
 
 
-def called(line: Sequence[str], folder: Path | None = None, seconds: float | None = None) -> str:
-    """What the program says; AssertionError with all of it where it fails."""
-    done = subprocess.run(list(line), cwd=folder, capture_output=True, text=True, timeout=seconds)
-    assert done.returncode == 0, f"{' '.join(line)}\n{done.stdout}{done.stderr}"
-    return done.stdout
+def called(
+    line: Sequence[str], folder: Path | None = None, seconds: float | None = None, sent: bytes = b""
+) -> str:
+    """What the program says, to which `sent` is sent; AssertionError with all of it where it fails."""
+    done = subprocess.run(list(line), cwd=folder, input=sent, capture_output=True, timeout=seconds)
+    said, complaint = done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
+    assert done.returncode == 0, f"{' '.join(line)}\n{said}{complaint}"
+    return said
 
 
 def defined(header: str, name: str) -> float:

@@ -1,4 +1,4 @@
-"""A law compiled for this machine, by its C compiler, and called here."""
+"""A law compiled for this machine, by its C compiler: called here, or watched for undefined behaviour."""
 
 from __future__ import annotations
 
@@ -58,3 +58,19 @@ class HostLaw:
     def force(self, counts: int) -> float:
         """One step: the force [N, N*m]."""
         return float(self.run([counts])[0]) * self.force_per_unit
+
+
+def watched(header: str, counts: object, folder: Path, start: int = 0) -> None:
+    """Run a law on these counts from rest at `start`, in a process that ends at undefined behaviour.
+
+    Raises
+    ------
+    AssertionError
+        If a whole number overflows, a shift is too far, or a float does not fit into a whole number.
+    """
+    (folder / "law.h").write_text(header, encoding="utf-8")
+    program = folder / "law"
+    watching = ("-O1", "-fsanitize=undefined,float-cast-overflow", "-fno-sanitize-recover=all", "-DSEPARATE")
+    called(["gcc", *STRICT, *watching, f"-I{folder}", str(HERE / "host_main.c"), "-o", str(program), "-lm"])
+    given = np.append(np.int32(start), as_counts(counts))
+    called([str(program)], sent=given.astype(np.int32).tobytes())

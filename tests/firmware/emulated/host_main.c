@@ -23,3 +23,21 @@ void run(const int32_t *counts, law_force *forces, long n) {
     for (long k = 0; k < n; k++)
         forces[k] = law_step(&state, counts[k]);
 }
+
+#ifdef SEPARATE
+#include <stdio.h>
+
+/* As a process of its own: counts come in, the first is where the law begins. */
+int main(void) {
+    int32_t counts;
+    volatile law_force force;
+    if (fread(&counts, sizeof counts, 1, stdin) == 1)
+        init(counts);
+    while (fread(&counts, sizeof counts, 1, stdin) == 1) {
+        force = law_step(&state, counts);
+        (void)force;
+    }
+    reset();
+    return 0;
+}
+#endif
