@@ -5,9 +5,11 @@ A tool that is missing skips the test by its name; with ZWIDTH_EVERY_TARGET=1 in
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shutil
 import subprocess
+from importlib.resources import files as resources
 from pathlib import Path
 
 import pytest
@@ -32,7 +34,9 @@ def tool(name: str) -> str:
 
 def run(*command: str | Path, cwd: Path | None = None) -> str:
     """What a program prints; a failure shows all of it."""
-    done = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, f"{command[0]} ended with {done.returncode}:\n{done.stdout}{done.stderr}"
     return done.stdout
 
@@ -44,3 +48,16 @@ def written(files: dict[str, str], folder: Path) -> Path:
         (folder / name).write_text(text, encoding="utf-8")
     shutil.copy(DATA / "law.h", folder / "law.h")
     return folder
+
+
+def mains() -> Path:
+    """Where the main programs are."""
+    return Path(str(resources("zwidth.firmware.mains")))
+
+
+def library(source: Path, folder: Path, *options: str) -> ctypes.CDLL:
+    """A file of C with the law of the tests, compiled for this machine and loaded anew."""
+    name = folder / f"{source.stem}-{len(list(folder.iterdir()))}.so"
+    include = ("-I", DATA, "-I", mains() / "shared")
+    run(tool("cc"), "-std=c99", *WARNINGS, "-O1", "-shared", "-fPIC", *options, *include, source, "-o", name)
+    return ctypes.CDLL(str(name))

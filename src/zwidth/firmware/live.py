@@ -3,12 +3,12 @@
     W_a = −Σ f_k (x_{k+1} − x_k),   E ≥ Σ b (x_{k+1} − x_k)²/T + f_c |x_{k+1} − x_k|
 
 as in a served loop: the energy that the actuator gave, and what the device's friction took at least.  Where
-samples are missing between two, both stay as they are.  A sample is as late as the stamp of its packet is after
-the packet before.
+samples are missing between two, both stay as they are.  The first sample of a packet is as late as its stamp.
 """
 
 from __future__ import annotations
 
+import logging
 from threading import Event, Lock, Thread
 from typing import Protocol
 
@@ -31,6 +31,9 @@ _MOST_SILENT = 50
 
 _AT_ONCE = 4096
 """Bytes that are asked for."""
+
+_PAUSE = 0.01
+"""Where a line gives nothing at once, as a file at its end does [s]."""
 
 
 class Line(Protocol):
@@ -66,14 +69,14 @@ class LiveTelemetry:
         about = self._decoder.about
         if about is None:
             raise InputError(
-                f"the line gave {self._decoder.packets} packets and then nothing, and none said what its numbers "
-                "are: check the port and its rate; the text comes once in 64 packets"
+                f"the line gave {self._decoder.packets} packets and then nothing, and none said what its "
+                "numbers are: check the port and its rate; the text comes once in 64 packets"
             )
         self._ledger = _Ledger(about, damping, coulomb_friction)
         position, force = COLUMNS[about.motion]
         self.COLUMNS = (
-            "sample", "time_s", "late_s", position, f"wished_{force}", force, "energy_out_J", "friction_loss_J",
-            "status", "phase", "law", "limited",
+            "sample", "time_s", "late_s", position, f"wished_{force}", force,
+            "energy_out_J", "friction_loss_J", "status", "phase", "law", "limited",
         )  # fmt: skip
         self.period, self.motion = about.period, about.motion
         self.title = f"a law on a machine of its own, certificate {about.certificate[:8]}"
@@ -104,8 +107,14 @@ class LiveTelemetry:
         return found
 
     def _run(self) -> None:
-        while not self._ended.is_set():
-            self._write(self._decoder.take(self._line.read(_AT_ONCE) or b""))
+        try:
+            while not self._ended.is_set():
+                data = self._line.read(_AT_ONCE) or b""
+                self._write(self._decoder.take(data))
+                if not data:
+                    self._ended.wait(_PAUSE)
+        except Exception:
+            logging.getLogger(__name__).exception("telemetry is read no more")
 
     def _write(self, samples: Samples) -> None:
         for start in np.unique(samples.start):
@@ -147,6 +156,4 @@ class _Ledger:
         cut = (samples.status & CUT > 0).astype(np.float64)
         law = np.where(phase == 0, -1.0, 0.0)
         number = count + np.arange(len(x))
-        return np.column_stack(
-            [number, time, late, x, f, f, work, loss, zero, _PHASES[phase], law, cut]
-        )
+        return np.column_stack([number, time, late, x, f, f, work, loss, zero, _PHASES[phase], law, cut])

@@ -1,7 +1,7 @@
 """Telemetry of a law on a machine of its own, as labelled data: time, position as read, force given.
 
-`zwidth.read_log`, `zwidth.identify` and ``zwidth identify`` read such a file as they read any other; here it is
-a Dataset with everything that the packets say.  Format: docs/firmware.md.
+`zwidth.read_log`, `zwidth.identify` and ``zwidth identify`` read such a file as they read any other; here it
+is a Dataset with everything that the packets say.  Format: docs/firmware.md.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ def read_telemetry(path: str | PathLike[str]) -> xr.Dataset:
     """The samples in a file of telemetry, as they came over the line.
 
     Along `time` [s], since the machine was started: `position` [m; rad], positive into the wall,
-    `actuator_force` [N; N·m], positive out of it, `phase` (0 waiting, 1 serving, 2 ended), `reason` (of the end),
-    `cut` (a force of the packet was cut at its limit) and `start`: how often the machine was started anew
-    since the first sample; the time begins anew there.  Where packets are missing the time jumps.
+    `actuator_force` [N; N·m], positive out of it, `phase` (of `PHASES`), `reason` (of `REASONS`), `cut` (a
+    force of the packet was cut at its limit) and `start`: how often the machine was started anew since the
+    first sample; the time begins anew there.  Where packets are missing the time jumps.
 
     Parameters
     ----------
@@ -66,8 +66,8 @@ def read_telemetry(path: str | PathLike[str]) -> xr.Dataset:
         pieces = list(samples_of(source, decoder))
     if decoder.about is None:
         raise InputError(
-            f"{source} has no packet that says what its numbers are, among {decoder.packets} of samples: is it "
-            "telemetry of zwidth, and of more than 64 packets?"
+            f"{source} has no packet that says what its numbers are, among {decoder.packets} of samples: "
+            "is it telemetry of zwidth, and of more than 64 packets?"
         )
     samples = Samples(*(np.concatenate(columns) for columns in zip(*pieces, strict=True)))
     return _labelled(samples, decoder, decoder.about)

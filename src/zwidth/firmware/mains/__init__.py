@@ -1,7 +1,7 @@
 """Main programs around an emitted law: files of C and C++ that take all they need to know from its header.
 
-Nothing in them is filled in.  They compile as they stand beside a header whose prefix is "law"; of another
-prefix the names of the header are replaced, ``law_step`` by ``wall_step`` and ``LAW_RATE_HZ`` by ``WALL_RATE_HZ``.
+Nothing in them is filled in.  They compile as they stand beside a header whose prefix is "law"; for another
+prefix its names are replaced, ``law_step`` by ``wall_step`` and ``LAW_RATE_HZ`` by ``WALL_RATE_HZ``.
 """
 
 from __future__ import annotations

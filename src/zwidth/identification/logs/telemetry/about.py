@@ -63,7 +63,9 @@ def about_in(content: bytes) -> About:
     flags, text = content[0], content[1:].decode("ascii", "replace")
     first, *lines = text.splitlines() or [""]
     if first != FORMAT:
-        raise InputError(f'this telemetry says it is "{first}", and "{FORMAT}" is read; use the zwidth of its law')
+        raise InputError(
+            f'this telemetry says it is "{first}", and "{FORMAT}" is read; use the zwidth of its law'
+        )
     said = dict(line.partition(" ")[::2] for line in lines)
     try:
         period, resolution, unit, most = (float(said[name]) for name in _NUMBERS)
@@ -72,7 +74,8 @@ def about_in(content: bytes) -> About:
         positive = False
     if not positive:
         raise InputError(
-            f"the telemetry must state {', '.join(_NUMBERS)} as numbers > 0, got {text!r}: check what law.h defines"
+            f"the telemetry must state {', '.join(_NUMBERS)} as numbers > 0, got {text!r}: "
+            "check what law.h defines"
         )
     return About(
         motion="rotary" if flags & _ROTARY else "linear",

@@ -2,8 +2,8 @@
 
     'z' 'W'   kind   n   sequence, uint16   n bytes   CRC-16          numbers little-endian
 
-The checksum is the CRC-16 of ITU-T V.41, polynomial 0x1021, begun with ones, of all bytes before it.  Within a
-packet nothing is looked for.  Layout: firmware/mains/shared/telemetry.h.
+The checksum is the CRC-16 of ITU-T V.41, polynomial 0x1021, begun with ones, of all bytes before it.  Within
+a packet nothing is looked for.  Layout: firmware/mains/shared/telemetry.h.
 """
 
 from __future__ import annotations

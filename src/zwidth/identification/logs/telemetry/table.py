@@ -1,4 +1,4 @@
-"""A file of telemetry as the table of a log: when a sample was taken, the position as read, the force given."""
+"""A file of telemetry as the table of a log: times of the samples, positions as read, forces given."""
 
 from __future__ import annotations
 
@@ -84,7 +84,9 @@ def samples_of(path: Path, decoder: Decoder) -> Iterator[Samples]:
 def findings(decoder: Decoder) -> Iterator[Finding]:
     """What was missing."""
     if decoder.lost:
-        text = f"{decoder.lost} packets of telemetry are missing, {decoder.damaged} damaged stretches are seen"
+        text = (
+            f"{decoder.lost} packets are missing, and {decoder.damaged} stretches of the file are no packet"
+        )
         yield Finding(kind="packets lost", text=text)
     if decoder.dropped:
         text = f"{decoder.dropped} samples were not sent: the line was too slow for them"
