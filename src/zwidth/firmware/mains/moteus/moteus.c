@@ -32,7 +32,11 @@
 #define SERVO 1         /* id.id of the controller */
 #define SENSE 1         /* -1 where the motor turns backwards while the handle goes into the wall */
 #define WATCHDOG 20     /* [ms] */
+
+/* So long the answer to a question is waited for [ms]; a later one is none. */
+#ifndef ANSWER_MS
 #define ANSWER_MS (LAW_SAMPLE_PERIOD_S > 0.002 ? (int)(500 * LAW_SAMPLE_PERIOD_S) : 1)
+#endif
 
 GUARD_CHECK(the_position_is_an_angle, LAW_ROTARY);
 GUARD_CHECK(the_watchdog_has_time, WATCHDOG > 2000 * LAW_SAMPLE_PERIOD_S);
