@@ -14,7 +14,7 @@ from zwidth.environment.environment import Environment
 from zwidth.environment.transfer_function import as_environment
 from zwidth.errors import InputError
 from zwidth.firmware.header import header
-from zwidth.firmware.judged import Decide, Judged, judged
+from zwidth.firmware.judged import PROVED, Decide, Judged, judged
 from zwidth.firmware.law import LawProgram, law_program
 from zwidth.firmware.machine import Machine, Number, machine
 from zwidth.firmware.module import module
@@ -23,9 +23,9 @@ from zwidth.passivity.check import check
 from zwidth.passivity.document import to_json
 from zwidth.passivity.result import Result
 from zwidth.passivity.verdict import Verdict
-from zwidth.quantity.exact import RealLike
+from zwidth.quantity.exact import Interval, RealLike, ends
 from zwidth.quantity.text import quantity_unit
-from zwidth.quantity.units import parse_number
+from zwidth.quantity.units import parse, parse_number
 from zwidth.writing import check_target, writing_whole
 
 MOST_COUNTS = 32767
@@ -48,10 +48,10 @@ class Emitted(Result):
 
     Parameters
     ----------
-    name
+    prefix
         What its files and names begin with.
     target
-        "c99", "arduino", "cortex-m", "posix" or "javascript".
+        One of `targets.TARGETS`.
     device, environment
         The loop.
     judged
@@ -62,7 +62,7 @@ class Emitted(Result):
 
     FORMAT = "zwidth emitted law 1"
 
-    name: str
+    prefix: str
     target: str
     device: Device
     environment: Environment
@@ -82,13 +82,13 @@ class Emitted(Result):
     @property
     def certificate_sha256(self) -> str:
         """Of the certificate's file; it stands in the header."""
-        return _digest(self.files[f"{self.name}.certificate.json"])
+        return _digest(self.files[f"{self.prefix}.certificate.json"])
 
     @property
     def text(self) -> str:
         """The header, or the module."""
         return next(
-            text for file, text in self.files.items() if file in (f"{self.name}.h", f"{self.name}.mjs")
+            text for file, text in self.files.items() if file in (f"{self.prefix}.h", f"{self.prefix}.mjs")
         )
 
     def __repr__(self) -> str:
@@ -98,13 +98,13 @@ class Emitted(Result):
         """It in a sentence."""
         return (
             f"{self.environment.describe(self.device.motion)}, for {self.target} in {self.machine.number}: "
-            f"{self.verdict.outcome}; {self.judged.statement}"
+            f"{self.judged.outcome}; {self.judged.statement}"
         )
 
     def rows(self) -> list[tuple[str, str]]:
         """The main numbers as (name, text)."""
         unit = quantity_unit("coulomb_friction", self.device.motion)
-        rows = [("numbers", _numbers(self.machine)), ("outcome", self.verdict.outcome)]
+        rows = [("numbers", _numbers(self.machine)), ("outcome", self.judged.outcome)]
         if self.machine.error is not None:
             rows.append(("force off by at most", f"{self.machine.error:.4g} {unit}"))
         cost = self.judged.cost(self.device, self.environment)
@@ -126,7 +126,7 @@ class Emitted(Result):
             *(line for line in self.verdict.assumptions if not line.startswith("ideal actuator")),
             actuator,
             f"readings from {low:g} to {high:g} {unit}; beyond them the nearest is taken, nothing is claimed",
-            "the machine computes at every sample and holds the force until the next one, after the delay given",
+            "the machine computes at every sample and holds the force to the next, after the delay",
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -135,10 +135,10 @@ class Emitted(Result):
         force, stiffness = ("N", "N_per_m") if linear else ("N_m", "N_m_per_rad")
         return {
             "format": self.FORMAT,
-            "name": self.name,
+            "prefix": self.prefix,
             "target": self.target,
             "number": self.machine.number,
-            "outcome": self.verdict.outcome,
+            "outcome": self.judged.outcome,
             "statement": self.judged.statement,
             f"error_{force}": self.machine.error,
             f"rounding_{force}": self.machine.rounding,
@@ -170,13 +170,14 @@ class Emitted(Result):
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError(f"{folder} cannot be made: {error.strerror}") from None
-        places = [folder / file for file in sorted(self.files)]
-        for place in places:
-            check_target(place, force)
-        for place in places:
-            with writing_whole(place) as file:
-                file.write(self.files[place.name].encode())
-        return places
+        sketch = f"{self.prefix}.ino"  # Arduino wants it to be called as its folder
+        named = {folder.resolve().name + ".ino" if f == sketch else f: text for f, text in self.files.items()}
+        for name in named:
+            check_target(folder / name, force)
+        for name, text in sorted(named.items()):
+            with writing_whole(folder / name) as file:
+                file.write(text.encode())
+        return [folder / name for name in sorted(named)]
 
 
 def emit(
@@ -185,9 +186,9 @@ def emit(
     *,
     target: str = "c99",
     number: str | None = None,
-    travel: tuple[RealLike | str, RealLike | str] | None = None,
+    travel: Interval | tuple[RealLike | str, RealLike | str] | str | None = None,
     force_unit: RealLike | str | None = None,
-    name: str = "law",
+    prefix: str = "law",
     anyway: bool = False,
     decide: Decide = check,
 ) -> Emitted:
@@ -204,16 +205,16 @@ def emit(
     environment
         What it renders, with the laws in its chain.
     target
-        "c99": one header.  "javascript": one ES module.  "arduino", "cortex-m", "posix": the header with
-        a main program.
+        "c99": one header.  "javascript": one ES module.  "arduino", "cortex-m", "posix", "simplefoc",
+        "moteus": the header with a main program.
     number
         "double", "float" or "fixed"; by default "fixed" for arduino, "float" for cortex-m, else "double".
     travel
-        The lowest and the highest position [m; rad], or with their unit; by default 32767 counts to each side
-        where numbers are narrow.
+        The lowest and the highest position [m; rad], such as "-50 .. 50 mm"; by default 32767 counts to each
+        side where numbers are narrow.
     force_unit
         In fixed point, where the device's `force_resolution` is not known: the unit of the force [N; N·m].
-    name
+    prefix
         What every name in the text begins with.
     anyway
         True to emit what is not proved passive, too; the text says so.
@@ -228,29 +229,37 @@ def emit(
         If it is not proved passive in the target's numbers.
     """
     kind = _target(target)
-    if not (isinstance(name, str) and name.isidentifier() and name.isascii()):
-        raise InputError(f"name is a name in C, such as 'law', got {name!r}")
+    if not (isinstance(prefix, str) and prefix.isidentifier() and prefix.isascii()):
+        raise InputError(f"prefix is a name in C, such as 'law', got {prefix!r}")
     law = as_environment(environment)
     made = law_program(device, law)
     chosen = _number(number, kind)
     numbers = machine(made, chosen, _counts(device, made, chosen, travel), _force_unit(device, force_unit))
     found = judged(device, law, numbers, decide)
     if not (found.proved or anyway):
-        raise NotEmitted(
-            found,
-            f"this is not emitted, it is {found.verdict.outcome} in {chosen}: {found.verdict.claim} "
-            f"{found.statement} Soften the wall, raise the rate, or take double",
-        )
+        raise NotEmitted(found, _why_not(found))
     certificate = f"{to_json(found.verdict.saved())}\n"
-    files = {f"{name}.certificate.json": certificate}
-    about = _about(name, device, law, found)
+    files = {f"{prefix}.certificate.json": certificate}
+    about = _about(prefix, device, law, found)
     defines = _defines(device, made, numbers, certificate)
     if kind.language == "javascript":
-        files[f"{name}.mjs"] = module(made, about=about, numbers=defines)
+        files[f"{prefix}.mjs"] = module(made, about=about, numbers=defines)
     else:
-        files[f"{name}.h"] = header(numbers, name=name, about=about, numbers=defines)
-        files |= kind.mains(name)
-    return Emitted(name, target, device, law, found, files)
+        files[f"{prefix}.h"] = header(numbers, name=prefix, about=about, numbers=defines)
+        files |= kind.mains(prefix)
+    return Emitted(prefix, target, device, law, found, files)
+
+
+def _why_not(found: Judged) -> str:
+    """Why a law is not emitted, and what to do."""
+    number, verdict = found.machine.number, found.verdict
+    if verdict.outcome in PROVED:
+        said = f"this is not emitted: it is proved in real numbers, not in {number}. {found.statement}"
+        return f'{said} Take number="double" (on the command line --number double), or another law'
+    lost = found.counted and found.ideal.outcome in PROVED
+    where = f", in {number}" if lost else ""
+    said = f"this is not emitted, it is {verdict.outcome}{where}: {verdict.claim}"
+    return f"{said} {found.statement if lost else ''}Soften the wall, raise the rate, or say anyway"
 
 
 def _target(target: str) -> Target:
@@ -268,9 +277,7 @@ def _number(number: str | None, target: Target) -> Number:
     return chosen  # type: ignore[return-value]
 
 
-def _counts(
-    device: Device, law: LawProgram, number: Number, travel: tuple[RealLike | str, RealLike | str] | None
-) -> tuple[float, float]:
+def _counts(device: Device, law: LawProgram, number: Number, travel: object) -> tuple[float, float]:
     """The readings that are claimed of."""
     if travel is None:
         if law.resolution == 0.0:
@@ -280,10 +287,10 @@ def _counts(
             )
         most = _WHOLE if number == "double" else MOST_COUNTS
         return -most, most
-    unit = quantity_unit("position", device.motion)
-    low, high = (float(parse_number(x, unit, "travel")) for x in travel)
+    found = parse(travel, quantity_unit("position", device.motion), "travel")
+    low, high = map(float, ends(found))
     if not low < high:
-        raise InputError(f"travel goes from the lowest to the highest position, got {low:g} and {high:g}")
+        raise InputError(f"travel goes from the lowest to the highest position, got {low:g} alone")
     if law.resolution == 0.0:
         return low, high
     counts = floor(low / law.resolution), -floor(-high / law.resolution)

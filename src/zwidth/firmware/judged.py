@@ -1,8 +1,8 @@
 """The verdict on a law in a machine's numbers: of the same loop, with ε less of Coulomb friction.
 
 A force that is off by e_k, |e_k| ≤ ε, gives Σ e_k Δx_k ≤ ε Σ |Δx_k| ≤ ε ∫ |v| dt more than the law's own.
-Coulomb friction takes f_c ∫ |v| dt.  So if no hand gains from the law with f_c − ε, none gains from the machine
-with f_c; whatever the delay is, since the force that is off is held as the law's is.
+Coulomb friction takes f_c ∫ |v| dt.  So if no hand gains from the law with f_c − ε, none gains from the
+machine with f_c; whatever the delay is, since the force that is off is held as the law's is.
 """
 
 from __future__ import annotations
@@ -39,6 +39,8 @@ class Judged:
     ----------
     machine
         The law in the machine's numbers.
+    ideal
+        On the law in real numbers.
     verdict
         On the law with what friction the machine's numbers leave; on the law itself where they are not
         counted.
@@ -49,6 +51,7 @@ class Judged:
     """
 
     machine: Machine
+    ideal: Verdict
     verdict: Verdict
     counted: bool
     reason: str = ""
@@ -57,6 +60,13 @@ class Judged:
     def proved(self) -> bool:
         """Whether no hand can take energy out of the loop with this machine in it."""
         return self.verdict.outcome in PROVED and (self.counted or self.machine.number == "double")
+
+    @property
+    def outcome(self) -> str:
+        """Of the law in the machine's numbers: what is proved of the law alone is not proved of them."""
+        if self.verdict.outcome in PROVED and not self.proved:
+            return "undecided"
+        return self.verdict.outcome
 
     @property
     def statement(self) -> str:
@@ -93,17 +103,18 @@ def judged(device: Device, environment: Environment, machine: Machine, decide: D
     """
     ideal = decide(device, environment)
     if machine.error is None:
-        return Judged(machine=machine, verdict=ideal, counted=False, reason=machine.reason)
+        return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=False, reason=machine.reason)
     friction, off = device.exact("coulomb_friction"), Fraction(machine.error)
     if friction < off:
         unit = quantity_unit("coulomb_friction", device.motion)
         return Judged(
             machine=machine,
+            ideal=ideal,
             verdict=ideal,
             counted=False,
             reason=f"The device has {float(friction):.4g} {unit} of Coulomb friction to pay for it.",
         )
     if ideal.outcome not in PROVED:
-        return Judged(machine=machine, verdict=ideal, counted=True)
+        return Judged(machine=machine, ideal=ideal, verdict=ideal, counted=True)
     left = device.replace(coulomb_friction=Exact(friction - off))
-    return Judged(machine=machine, verdict=decide(left, environment), counted=True)
+    return Judged(machine=machine, ideal=ideal, verdict=decide(left, environment), counted=True)

@@ -25,8 +25,8 @@ from zwidth.firmware.units import Scale, Unit
 
 Number = Literal["double", "float", "fixed"]
 
-_FINEST = 40
-"""Parts of a force unit, as a power of two, from which on finer ones are not tried."""
+_FRACTIONS = {32: (24, 16, 8, 4, 0), 64: (40, 32, 24, 16, 8)}
+"""Parts of a force unit that are tried, as powers of two, by word: whole bytes are shifted in no time."""
 _WIDE = 2.0**-10
 """Of the force: an error beyond this is worth a wider word."""
 
@@ -168,7 +168,7 @@ def _fixed(
     cells = [max(-low, high) for low, high, _ in exact.memory]
     best: Machine | None = None
     for word in (32, 64):
-        for fraction in range(_FINEST, -1, -1):
+        for fraction in _FRACTIONS[word]:
             scale = Scale(law.resolution, _unit(law, exact, force_unit), fraction, word)
             try:
                 found = lowered(law.program, scale, sizes, cells)

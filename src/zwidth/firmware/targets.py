@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from zwidth.firmware import mains
+
 ALL = ("double", "float", "fixed")
 
 
@@ -35,7 +37,7 @@ class Target:
 
     def mains(self, name: str) -> dict[str, str]:
         """The files of its main program, by name."""
-        return {}
+        return mains.files(self.name, prefix=name, folder=name) if self.name in mains.TARGETS else {}
 
 
 TARGETS: Mapping[str, Target] = MappingProxyType(
@@ -46,6 +48,8 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
         ),
         "cortex-m": Target("cortex-m", "c99", "float"),
         "posix": Target("posix", "c99", "double"),
+        "simplefoc": Target("simplefoc", "c99", "float"),
+        "moteus": Target("moteus", "c99", "double"),
         "javascript": Target(
             "javascript", "javascript", "double", ("double",), "all numbers of JavaScript are double"
         ),
