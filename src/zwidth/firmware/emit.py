@@ -123,8 +123,7 @@ class Emitted(Result):
             actuator += "; the converter's steps are"
         unit = "counts" if self.machine.law.resolution > 0 else quantity_unit("position", self.device.motion)
         return (
-            *(line for line in self.verdict.assumptions if not line.startswith("ideal actuator")),
-            actuator,
+            *(actuator if line.startswith("ideal actuator") else line for line in self.verdict.assumptions),
             f"readings from {low:g} to {high:g} {unit}; beyond them the nearest is taken, nothing is claimed",
             "the machine computes at every sample and holds the force to the next, after the delay",
         )
@@ -232,8 +231,8 @@ def emit(
     if not (isinstance(prefix, str) and prefix.isidentifier() and prefix.isascii()):
         raise InputError(f"prefix is a name in C, such as 'law', got {prefix!r}")
     law = as_environment(environment)
-    made = law_program(device, law)
     chosen = _number(number, kind)
+    made = law_program(device, law, single=chosen == "float")
     numbers = machine(made, chosen, _counts(device, made, chosen, travel), _force_unit(device, force_unit))
     found = judged(device, law, numbers, decide)
     if not (found.proved or anyway):

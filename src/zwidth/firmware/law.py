@@ -54,8 +54,16 @@ class LawProgram:
         return float(self.law[LIMIT])
 
 
-def law_program(device: Device, environment: Environment | object) -> LawProgram:
+def law_program(device: Device, environment: Environment | object, *, single: bool = False) -> LawProgram:
     """The program of a law.
+
+    Parameters
+    ----------
+    device, environment
+        The loop.
+    single
+        True where the machine keeps numbers in 24 bits: a law that reckons with its own rounding then
+        sets more aside.
 
     Raises
     ------
@@ -68,7 +76,7 @@ def law_program(device: Device, environment: Environment | object) -> LawProgram
             "a machine runs one law with one period: give single values for the intervals, those that "
             "you take"
         )
-    packed = pack(device, as_environment(environment), 0.0, _SMALL)
+    packed = pack(device, as_environment(environment), 0.0, _SMALL, single=single)
     resolution = float(device.exact("resolution"))
     cells = Cells(MEMORY, packed.rest.shape[1])
     if resolution > 0.0:
