@@ -37,7 +37,9 @@ def made(target: str, folder: Path, *changes: tuple[str, str, str], flags: str =
 def ran(*command: str | Path) -> subprocess.CompletedProcess[str]:
     """What a program says; it has no real-time priority."""
     words = [str(word) for word in command]
-    return subprocess.run([words[0], "-p", "0", *words[1:]], capture_output=True, text=True, check=False)
+    return subprocess.run(
+        [words[0], "-p", "0", *words[1:]], capture_output=True, text=True, check=False, timeout=300
+    )
 
 
 @pytest.fixture(scope="module")
