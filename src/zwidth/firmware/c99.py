@@ -71,6 +71,8 @@ KEYWORDS = frozenset(
 )
 
 HELPERS = {
+    "opposite": "static inline {real} {prefix}_opposite({real} a) {{ return a == 0 ? 0 : -a; }}",
+    "size": "static inline int32_t {prefix}_size(int32_t a) {{ return a < 0 ? -a : a; }}",
     "least": "static inline {real} {prefix}_least({real} a, {real} b) {{ return b < a ? b : a; }}",
     "most": "static inline {real} {prefix}_most({real} a, {real} b) {{ return b > a ? b : a; }}",
     "rest": "static inline int32_t {prefix}_rest(int32_t a, int32_t b) "
@@ -99,6 +101,9 @@ class C99(Printer):
         return real_text(constant.value, self.real) if constant.kind == "real" else str(int(constant.value))
 
     def operation(self, operator: str, kind: str, read: list[str]) -> str:
+        if operator == "abs" and kind == "integer":
+            self.helpers.add("size")
+            return f"{self.prefix}_size({read[0]})"
         if operator in _LIBRARY:
             return f"{_LIBRARY[operator]}{self.suffix}({read[0]})"
         if operator in ("and", "or"):
@@ -119,6 +124,13 @@ class C99(Printer):
             return f"({read[1]}) {sign} ({read[0]}) ? ({read[1]}) : ({read[0]})"
         self.helpers |= {helper, "rest"} if helper == "whole" else {helper}
         return f"{self.prefix}_{helper}({', '.join(read)})"
+
+    def infix(self, operator: str, kind: str, left: str, right: str) -> str:
+        if operator == "-" and kind == "real" and left in ("0.0", "0.0f"):
+            # gcc makes −x of 0.0 − x where it knows that x is not −0.0, and so −0.0 of 0.0 − 0.0
+            self.helpers.add("opposite")
+            return f"{self.prefix}_opposite({right})"
+        return f"{left} {operator} {right}"
 
     def declared(self, variable: Variable, name: str) -> str:
         return f"    {self.type_of(variable)} {name} = 0;"
