@@ -20,8 +20,10 @@ from numpy.typing import NDArray
 
 from zwidth.firmware.c99 import C99
 from zwidth.firmware.c99 import KEYWORDS as OF_C
+from zwidth.firmware.header import header
 from zwidth.firmware.javascript import KEYWORDS as OF_JAVASCRIPT
 from zwidth.firmware.javascript import JavaScript
+from zwidth.firmware.law import LawProgram
 from zwidth.firmware.program import Program
 
 Array = NDArray[np.float64]
@@ -49,7 +51,13 @@ def compiled_c(text: str, folder: Path, options: Sequence[str] = ("-std=c99", "-
     """A text in C as a library; warnings are errors."""
     source, library = folder / "emitted.c", folder / f"emitted{''.join(options)}.so".replace("=", "")
     source.write_text(text, encoding="utf-8")
-    strict = ["-Wall", "-Werror", "-Wno-unused-function", "-Wno-unused-but-set-variable", "-Wno-tautological-compare"]
+    strict = [
+        "-Wall",
+        "-Werror",
+        "-Wno-unused-function",
+        "-Wno-unused-but-set-variable",
+        "-Wno-tautological-compare",
+    ]
     command = ["cc", *options, *strict, "-fPIC", "-shared", "-o", str(library), str(source), "-lm"]
     made = subprocess.run(command, capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
@@ -67,7 +75,10 @@ def run_c(library: ctypes.CDLL, name: str, inputs: Array, cells: Array, outputs:
 
 
 def run_node(
-    module: str, folder: Path, given: Mapping[str, tuple[Array, Array, int]], files: Mapping[str, str] | None = None
+    module: str,
+    folder: Path,
+    given: Mapping[str, tuple[Array, Array, int]],
+    files: Mapping[str, str] | None = None,
 ) -> dict[str, Ran]:
     """The functions `NAME(row, cells) → outputs` that a module exports, all in one process.
 
@@ -112,6 +123,35 @@ for (const [name, [rows, wide, outputs]] of Object.entries(JSON.parse(readFileSy
     writeFileSync(`${name}.out`, Buffer.from(out.buffer));
     writeFileSync(`${name}.cells`, Buffer.from(cells.buffer));
 }
+"""
+
+
+def law_in_c(law: LawProgram, name: str) -> str:
+    """A law's header, and a function for `run_c`: it begins at its first reading."""
+    size, kind = law.rest.shape[1], "int32_t" if law.resolution > 0 else "double"
+    return f"""{header(law, name=name, real="double", about=[name], numbers=[])}
+void {name}_rows(const double *in, int rows, double *cells, double *out)
+{{
+    {name}_state s;
+    {name}_init(&s, ({kind})in[0]);
+    for (int k = 0; k < rows; k += 1) {{ out[k] = {name}_step(&s, ({kind})in[k]); }}
+    for (int k = 0; k < {size}; k += 1) {{ cells[k] = s.memory[k]; }}
+}}
+"""
+
+
+def law_in_javascript(name: str) -> str:
+    """A function for `run_node` of the law whose module is beside it as NAME.mjs."""
+    return f"""import * as of_{name} from "./{name}.mjs";
+export const {name} = (() => {{
+    let s;
+    return (row, cells) => {{
+        s ??= of_{name}.init(row[0]);
+        const force = of_{name}.step(s, row[0]);
+        cells.set(s.memory.subarray(0, cells.length));
+        return [force];
+    }};
+}})();
 """
 
 

@@ -22,12 +22,12 @@ _DOUBLE = """\
 #endif"""
 
 _UNCONTRACTED = """\
-/* a product and a sum stay two operations with two roundings */
+/* a product and a sum stay two operations with two roundings; gcc 12 joins them in vectors all the same */
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
 #elif defined(__GNUC__)
 #pragma GCC push_options
-#pragma GCC optimize("fp-contract=off")
+#pragma GCC optimize("fp-contract=off", "no-tree-slp-vectorize")
 #endif"""
 
 _AS_BEFORE = """\
