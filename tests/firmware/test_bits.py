@@ -73,7 +73,7 @@ def test_the_readings_make_every_law_push(known: Mapping[str, Known]) -> None:
 def test_every_header_has_the_same_bits(
     known: Mapping[str, Known], options: tuple[str, ...], tmp_path: Path
 ) -> None:
-    """Force and memory are equal to the last bit, however C is compiled, with fused products at hand as well."""
+    """Force and memory are equal to the last bit, however C is compiled, also where products can be fused."""
     library = compiled_c("".join(law_in_c(k.law, n) for n, k in known.items()), tmp_path, options)
     ran = {n: run_c(library, n, k.readings, k.ran.cells, 1) for n, k in known.items()}
     assert not _differ(known, ran)
