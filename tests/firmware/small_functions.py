@@ -160,6 +160,18 @@ def called_if_needed(m: Array, x: float, k: int) -> float:
     return m[0] + (1.0 if k < 4 and stores(m, 2, -x) else 0.0)
 
 
+def place_asked_once(m: Array, x: float, k: int) -> float:
+    m[1 if stores(m, 2, x) else 0] += 1.0
+    return m[0] - m[1]
+
+
+def stop_asked_once(m: Array, x: float, k: int) -> float:
+    total = 0.0
+    for i in range(k if stores(m, 2, x) else 2 * k):
+        total += m[2] * i
+    return total
+
+
 def records(m: Array, x: float, k: int) -> float:
     pair = Pair(x, second=2.0) if k > 3 else Pair(m[0], x)
     low, high = ordered(pair.first, pair.second)
@@ -196,6 +208,8 @@ FUNCTIONS = (
     counter_after_another,
     not_computed,
     called_if_needed,
+    place_asked_once,
+    stop_asked_once,
     records,
 )
 """Those that Python computes as they stand."""
